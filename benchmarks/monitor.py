@@ -22,7 +22,7 @@ import numpy as np
 
 from roadproof.library.bind import default_values
 from roadproof.library.elaborate import apply_definition
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Application, Formula, subformulas
 from roadproof.logic.rewrite import with_values, without_names

@@ -20,7 +20,8 @@ from roadproof.engines.solve.smt import ask
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.times import moment_of
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import Specification, bundled_library
+from roadproof.library.loading import bundled_library
+from roadproof.library.specification import Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 

@@ -16,8 +16,8 @@ from roadproof.engines.search.ask import Outcome, Search, ask
 from roadproof.engines.search.question import pose
 from roadproof.engines.solve.exact import solve_exactly
 from roadproof.engines.solve.milp import prepare
+from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import Scenario, applied
-from roadproof.library.specification import bundled_library
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 

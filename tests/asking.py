@@ -5,8 +5,9 @@ from roadproof.engines.prove.prover import Result
 from roadproof.engines.search.ask import Search
 from roadproof.engines.search.question import SearchOptions, SearchProblem, Setting, pose
 from roadproof.library.elaborate import read_claim
+from roadproof.library.loading import bundled_library
 from roadproof.library.scenario_references import read_query
-from roadproof.library.specification import Specification, bundled_library
+from roadproof.library.specification import Specification
 from roadproof.runtime.budget import Effort
 from roadproof.world.models import load_road, load_vehicle
 

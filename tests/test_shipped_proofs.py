@@ -10,7 +10,7 @@ from roadproof.engines.prove.properties import template_properties
 from roadproof.evidence.certificate import read_certificate
 from roadproof.evidence.finding import Acceptance
 from roadproof.frontends.api.checking import check
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.verdict import Verdict
 
 PROOFS = Path(__file__).parents[1] / "proofs"

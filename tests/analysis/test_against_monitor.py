@@ -17,8 +17,8 @@ from roadproof.analysis.coverage.classes import GapClasses
 from roadproof.analysis.coverage.traffic import disturbances_in, recordings_in
 from roadproof.analysis.overlap import Meeting, conjunctions
 from roadproof.frontends.cli.main import main
+from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import Scenario
-from roadproof.library.specification import bundled_library
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 

@@ -13,8 +13,9 @@ from roadproof.analysis.redundancy import changes_of
 from roadproof.library.bind import default_values
 from roadproof.library.compose import equivalence, implication
 from roadproof.library.elaborate import read_claim
+from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import Scenario, applied
-from roadproof.library.specification import Specification, bundled_library
+from roadproof.library.specification import Specification
 from roadproof.logic.rewrite import with_values
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.sampled import compile

@@ -12,7 +12,6 @@ from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.settings.groups import Budget
 from roadproof.library.scenarios import Scenario, applied
-from roadproof.library.specification import bundled_library
 from roadproof.world.models import load_vehicle
 
 

@@ -33,7 +33,7 @@ from roadproof.evidence.drive_file import DriveFile, drive_data, load_drive
 from roadproof.evidence.finding import Acceptance
 from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.logic.rewrite import with_values
 from roadproof.recordings.evaluate.evaluate import evaluate_recording
 from roadproof.recordings.evaluate.one_trace import cut_trace, sample_drive

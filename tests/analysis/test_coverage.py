@@ -26,7 +26,8 @@ from roadproof.evidence.certificate import to_json
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import judge_file
 from roadproof.frontends.cli.main import main
-from roadproof.library.specification import Source, build_library, bundled_library
+from roadproof.library.loading import build_library, bundled_library
+from roadproof.library.specification import Source
 from roadproof.logic.show import text
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact.replay import first_breach

@@ -7,7 +7,7 @@ from roadproof.analysis.coverage.minimal import simplest
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import judge_file
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road
 

@@ -5,7 +5,7 @@ import pytest
 from asking import prove
 from roadproof.analysis.coverage.claims import two_vehicle_numbers
 from roadproof.analysis.coverage.parts import Part, parts_of
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 

@@ -16,7 +16,7 @@ from roadproof.analysis.coverage.settling import ClassGroup
 from roadproof.evidence.certificate import to_json
 from roadproof.evidence.judged import judge_file
 from roadproof.frontends.cli.main import main
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact.replay import first_breach
 from roadproof.verdict import Verdict

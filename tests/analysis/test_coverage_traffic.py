@@ -10,7 +10,7 @@ from roadproof.analysis.coverage.claims import claims_of
 from roadproof.analysis.coverage.classes import GapClasses
 from roadproof.analysis.coverage.occurring import GapTrace, GapTraffic, verdict_on, with_counts
 from roadproof.errors import InputError
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.verdict import Verdict
 
 BASIS = Basis(bundled_library().select())

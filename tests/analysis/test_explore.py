@@ -40,7 +40,7 @@ from roadproof.evidence.journal import seal_of
 from roadproof.evidence.judged import JudgedDrive, judge_file
 from roadproof.frontends.cli.main import main
 from roadproof.library.elaborate import read_claim, read_term
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.verdict import Verdict
 

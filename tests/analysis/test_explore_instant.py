@@ -16,7 +16,7 @@ from roadproof.engines.search.ask import Search
 from roadproof.engines.search.question import SearchOptions, Setting
 from roadproof.frontends.cli.main import main
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 

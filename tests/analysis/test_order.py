@@ -26,8 +26,8 @@ from roadproof.engines.search.ask import ask
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.report.order import as_dot, as_text, compose_order
 from roadproof.library.elaborate import read_claim
+from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import Scenario
-from roadproof.library.specification import bundled_library
 from roadproof.library.words import called
 from roadproof.runtime.budget import Effort
 

@@ -10,7 +10,7 @@ from roadproof.engines.solve.smt import ask
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.certificate import read_certificate, refusal, to_json
 from roadproof.frontends.cli.main import main
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 
 LASTS = "danger(SV,POV) -> G[0, 0.6 s] rssViolation(SV,POV)"
 AT = f"at minDanger = 0.6 s: {LASTS}"

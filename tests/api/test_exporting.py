@@ -10,7 +10,7 @@ import roadproof as rp
 from exporting.kept import kept, motion, subject
 from roadproof.evidence.drive_file import DriveFile, drive_data
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.recordings.export.registry import FORMATS
 from roadproof.runtime.files import write_json
 from roadproof.world.drive import Drive

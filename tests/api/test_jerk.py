@@ -26,7 +26,7 @@ from roadproof.frontends.api.driving import drive, motion
 from roadproof.frontends.report.viewer_data import viewer_data
 from roadproof.frontends.studio.dropping import drop
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.logic import motion as schemas
 from roadproof.logic import terms as t
 from roadproof.recordings.evaluate.one_trace import sample_drive

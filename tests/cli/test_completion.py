@@ -79,8 +79,8 @@ def test_a_shell_completes_names_of_scenarios(shell: str, tmp_path: Path) -> Non
 
 def test_completed_names_are_accepted(tmp_path: Path) -> None:
     from roadproof.frontends.cli.completion import _scenarios
+    from roadproof.library.loading import bundled_library
     from roadproof.library.scenario_references import numbers_called
-    from roadproof.library.specification import bundled_library
 
     names = _scenarios("c")
     assert len(names) > 24

@@ -13,7 +13,7 @@ from roadproof.frontends.cli import options, prove
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.settings.flags import read_keywords
 from roadproof.frontends.settings.questions import Prove
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 
 
 def parsed(*arguments: str) -> argparse.Namespace:

@@ -20,7 +20,8 @@ from roadproof.engines.prove.properties import Task
 from roadproof.errors import InputError, LostError, MissingSolverError, TextError
 from roadproof.frontends.cli import supervising
 from roadproof.frontends.cli.main import main
-from roadproof.runtime.process_pool import LostJob, answers_of
+from roadproof.runtime.attempts import LostJob
+from roadproof.runtime.process_pool import answers_of
 
 HANGS = 60.0
 

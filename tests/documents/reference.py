@@ -11,8 +11,9 @@ from typing import Any
 
 import roadproof
 from roadproof.frontends.cli.help import COMMANDS, command_parser, jobs
+from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import number_in
-from roadproof.library.specification import Specification, bundled_library
+from roadproof.library.specification import Specification
 from roadproof.library.uses import definitions_used
 from roadproof.library.words import words_of
 from roadproof.logic.show import decimal, text

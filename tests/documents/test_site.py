@@ -15,7 +15,7 @@ import pytest
 
 from documents.reference import EXIT_CODES, PAGES
 from roadproof.frontends.cli.main import COMMANDS
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.verdict import ExitCode
 
 ROOT = Path(__file__).parents[2]

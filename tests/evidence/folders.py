@@ -15,7 +15,7 @@ from roadproof.evidence.checking import Checker
 from roadproof.evidence.finding import Finding, exit_code
 from roadproof.evidence.folder import conclude, survey
 from roadproof.evidence.journal import HEAD, seal_of
-from roadproof.library.specification import load_library
+from roadproof.library.loading import load_library
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.package_data import shipped
 

@@ -27,8 +27,9 @@ from roadproof.evidence.answers.reader import Background, first_set
 from roadproof.evidence.codec import read as read_as
 from roadproof.evidence.journal import head_of
 from roadproof.evidence.strict import Fields
+from roadproof.library.loading import bundled_library, load_library
 from roadproof.library.scenarios import Scenario
-from roadproof.library.specification import Library, bundled_library, load_library
+from roadproof.library.specification import Library
 
 LIBRARY = bundled_library()
 SAID: dict[str, Any] = {"options": {}, "parameters": {}, "specs": []}

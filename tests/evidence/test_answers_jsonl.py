@@ -14,7 +14,7 @@ from roadproof.evidence.certificate import to_json
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.journal import NAME, answers_of, head_of, read_kept, seal_of
 from roadproof.library.bind import default_values
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 
 LIBRARY = bundled_library()
 PAIRS = ((5, 6), (3, 4))

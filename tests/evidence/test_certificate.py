@@ -18,7 +18,7 @@ from roadproof.evidence.certificate import Certificate, certify, read_certificat
 from roadproof.evidence.sites import Lemma, Site
 from roadproof.evidence.times import ZERO
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.package_data import shipped
 

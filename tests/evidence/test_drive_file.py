@@ -12,7 +12,7 @@ from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile, drive_data, load_drive, read_drive
 from roadproof.evidence.judged import judge_file
 from roadproof.library.bind import default_values
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road
 

@@ -12,7 +12,7 @@ from roadproof.engines.prove.properties import find_label, template_properties
 from roadproof.errors import InputError
 from roadproof.evidence.checking import Checker
 from roadproof.evidence.finding import Acceptance
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.runtime.package_data import shipped
 from roadproof.verdict import ExitCode
 

@@ -11,7 +11,8 @@ from evidence.folders import check, code, read, some_proofs, write
 from roadproof.evidence.finding import NO_EVIDENCE
 from roadproof.evidence.folder import OTHER_LIBRARY
 from roadproof.evidence.heading import heading
-from roadproof.library.specification import Library, Source, build_library, bundled_library
+from roadproof.library.loading import build_library, bundled_library
+from roadproof.library.specification import Library, Source
 
 
 def with_text(text: str) -> Library:

@@ -11,7 +11,8 @@ from roadproof.evidence import judged
 from roadproof.evidence.judged import judge_file
 from roadproof.library import bind
 from roadproof.library.bind import default_values, values_with
-from roadproof.library.specification import Library, Source, build_library
+from roadproof.library.loading import build_library
+from roadproof.library.specification import Library, Source
 from roadproof.world.units import UNITS
 
 # The declared values in other units than SI; 130 km/h are 36 1/9 m/s.

@@ -10,7 +10,7 @@ from roadproof.evidence.answers.trace import MOST_INSTANTS
 from roadproof.evidence.refutation import Countermodel, Instant, fault_of, trace_data
 from roadproof.evidence.traces import read_trace
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.world.road import Lanelet, Road, pairs
 
 SPECIFICATION = bundled_library().select("base")

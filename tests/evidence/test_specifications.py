@@ -8,7 +8,7 @@ import pytest
 from roadproof.errors import InputError
 from roadproof.evidence.specifications import read_beside
 from roadproof.evidence.strict import Fields
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 
 MORE = "def slower(a, b: vehicle) := v_lon(a) < v_lon(b)\n"
 OTHER = "def danger(a, b: vehicle) := true\n"

@@ -18,7 +18,8 @@ from roadproof.engines.encode.circuit import evaluate
 from roadproof.engines.encode.unroll import Grid, unroll
 from roadproof.library.bind import bind, default_values
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import Specification, bundled_library
+from roadproof.library.loading import bundled_library
+from roadproof.library.specification import Specification
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula

@@ -6,7 +6,7 @@ from fuzz.case import Disagreement
 from logic import strategies
 from logic.test_show import canonical
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.logic import syntax
 from roadproof.logic.formula import Formula
 from roadproof.logic.parse import parse_claim

@@ -9,7 +9,7 @@ from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile, load_drive
 from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, subformulas
 from roadproof.semantics.exact.blame import Blame, blame

@@ -10,7 +10,7 @@ import pytest
 from roadproof.errors import InputError, UsageError
 from roadproof.library.bind import bind, default_values
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.semantics.exact.algebraic import real_roots

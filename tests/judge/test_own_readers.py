@@ -14,7 +14,8 @@ from roadproof.engines.encode.unroll import Grid, unroll
 from roadproof.engines.prove.prover import prove
 from roadproof.evidence.refutation import Countermodel, Instant, when_true
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import Source, load_library
+from roadproof.library.loading import load_library
+from roadproof.library.specification import Source
 from roadproof.logic.custom_names import code_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names

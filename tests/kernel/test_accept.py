@@ -14,7 +14,7 @@ from roadproof.evidence.kernel import accept
 from roadproof.evidence.kernel.accept import Word, find_tableau, judge, prepare
 from roadproof.evidence.kernel.coq import ready
 from roadproof.frontends.api.checking import check
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.runtime.package_data import shipped
 
 PROOFS = shipped("proofs")

@@ -21,7 +21,7 @@ from roadproof.evidence.kernel.drive import claim_text, drive_lines, module, sho
 from roadproof.evidence.kernel.source import file
 from roadproof.frontends.api.checking import check
 from roadproof.library.bind import bind
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic.rewrite import without_names
 from roadproof.semantics.exact import judge

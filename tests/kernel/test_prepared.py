@@ -10,7 +10,7 @@ from roadproof.evidence.derivations import prepare as module
 from roadproof.evidence.derivations.parts import NoDerivationError
 from roadproof.evidence.derivations.prepare import prepare
 from roadproof.evidence.kernel.accept import NO_PREMISES, CoqModule, Ruling, Word
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 
 FILE = kept()["scenario-04-base"]
 

@@ -11,7 +11,7 @@ from roadproof.errors import InputError, TextError
 from roadproof.evidence.kernel.names import WORDS, comment
 from roadproof.evidence.kernel.printer import CLOSE, Printer
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.rewrite import without_names

@@ -16,7 +16,7 @@ from roadproof.evidence.kernel.instant import reason
 from roadproof.evidence.kernel.printer import Printer
 from roadproof.evidence.kernel.source import HEAD
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.logic.rewrite import without_names
 from roadproof.runtime.package_data import shipped
 

@@ -16,7 +16,7 @@ from roadproof.evidence.kernel.coq import ready
 from roadproof.evidence.kernel.source import HEAD, module
 from roadproof.evidence.kernel.statement import state
 from roadproof.evidence.kernel.tableau import RULES, coq_tree, lines, read_lines
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.runtime.package_data import shipped
 from roadproof.verdict import Verdict
 

@@ -7,7 +7,7 @@ from typing import Any
 from hypothesis import strategies as st
 
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic import terms as t

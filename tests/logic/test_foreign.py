@@ -4,7 +4,7 @@ import pytest
 
 from roadproof.errors import TextError
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.logic.parse import parse_claim, parse_library
 
 PAST = "Formulas speak of now and later: say what holds first, and what follows with F, G or U."

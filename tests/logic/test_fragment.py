@@ -6,7 +6,7 @@ import pytest
 
 from roadproof.library.bind import default_values
 from roadproof.library.elaborate import apply_definition, read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula

@@ -3,7 +3,7 @@
 import pytest
 
 from planting import plant
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.logic import latex as latex_module
 from roadproof.logic.latex import align, latex, symbol
 from roadproof.logic.parse import parse_claim

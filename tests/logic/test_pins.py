@@ -6,7 +6,7 @@ from itertools import product
 import pytest
 
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic.fixed_parameters import pins
 from roadproof.logic.rewrite import with_values

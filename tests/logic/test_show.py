@@ -8,7 +8,7 @@ from hypothesis import given, settings
 
 from logic import strategies
 from roadproof.library.elaborate import apply_definition, read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic import terms as t

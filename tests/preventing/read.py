@@ -9,7 +9,8 @@ from roadproof.drivers.manoeuvres import MANOEUVRES
 from roadproof.drivers.models import unpreventable
 from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import Library, Specification, load_library
+from roadproof.library.loading import load_library
+from roadproof.library.specification import Library, Specification
 from roadproof.logic.formula import Formula
 from roadproof.world.road import Road
 

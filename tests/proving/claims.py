@@ -11,7 +11,8 @@ from roadproof.engines.prove.prover import Result
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.refutation import Countermodel
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import Specification, bundled_library
+from roadproof.library.loading import bundled_library
+from roadproof.library.specification import Specification
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula

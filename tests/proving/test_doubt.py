@@ -9,7 +9,7 @@ from cli.test_schemas import validator
 from roadproof.engines.prove.doubt import Cause, Doubt, Stop, Try, doubt_of
 from roadproof.frontends.cli.main import main
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.runtime.budget import Effort
 
 specification = bundled_library().select("base")

@@ -16,8 +16,8 @@ from roadproof.errors import InputError
 from roadproof.evidence.certificate import certificate_data, read_certificate_data, refusal
 from roadproof.frontends.api.checking import check
 from roadproof.library.elaborate import read_claim
+from roadproof.library.loading import bundled_library
 from roadproof.library.motion import Axiom, axiom_formula
-from roadproof.library.specification import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import induction
 from roadproof.logic import terms as t

@@ -14,7 +14,7 @@ from roadproof.evidence.periodic import Loop
 from roadproof.evidence.refutation import Countermodel, Instant, fault_of, trace_data
 from roadproof.evidence.traces import judge_trace, read_trace
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.verdict import Verdict
 
 HOME = bundled_library().select()

@@ -22,8 +22,8 @@ from roadproof.evidence.certificate import certificate_data, read_certificate_da
 from roadproof.evidence.finding import Acceptance
 from roadproof.library import motion as spec_motion
 from roadproof.library.elaborate import read_claim
+from roadproof.library.loading import bundled_library
 from roadproof.library.motion import SCHEMAS, Assumption, Axiom
-from roadproof.library.specification import bundled_library
 from roadproof.logic import motion
 from roadproof.logic import terms as t
 from roadproof.runtime.budget import Effort

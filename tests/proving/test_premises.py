@@ -10,7 +10,7 @@ from kernel.needs import needs_coq
 from roadproof.engines.solve.smt import ask
 from roadproof.evidence.certificate import certificate_data, read_certificate_data, refusal
 from roadproof.frontends.api.checking import check
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 
 LIMIT, OTHER = "a_lon(SV) <= 3 m/s^2", "a_lon(SV) >= -6 m/s^2"
 NEITHER = "the proof uses neither a limit nor a fact about motion: the claim holds without them"

@@ -6,7 +6,7 @@ from asking import prove
 from roadproof.engines.prove import prover
 from roadproof.engines.search.settle import settle
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 

@@ -24,7 +24,8 @@ from roadproof.frontends.report.drive_data import (
 from roadproof.frontends.report.one_trace import compose_strips
 from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import Source, bundled_library, load_library
+from roadproof.library.loading import bundled_library, load_library
+from roadproof.library.specification import Source
 from roadproof.recordings.evaluate.observed import observe_drive
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road

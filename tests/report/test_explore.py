@@ -9,8 +9,8 @@ from roadproof.analysis.explore.knobs import Variable
 from roadproof.analysis.explore.measure import read_measure
 from roadproof.engines.search.ask import Search
 from roadproof.frontends.report.explore import as_text, draw_exploration, show
+from roadproof.library.loading import bundled_library
 from roadproof.library.scenario_references import read_query
-from roadproof.library.specification import bundled_library
 from roadproof.verdict import Verdict
 
 BASE = bundled_library().select("base")

@@ -17,7 +17,7 @@ from roadproof.engines.encode.unroll import Grid
 from roadproof.engines.search.question import SearchProblem, assignments
 from roadproof.library.bind import bind, default_values
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.world.drive import Drive, Motion, Piece

@@ -12,7 +12,7 @@ from roadproof.engines.search.ask import answer
 from roadproof.engines.search.grid import make_grid
 from roadproof.errors import UsageError
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.runtime.package_data import shipped
 from roadproof.verdict import Verdict

@@ -8,7 +8,7 @@ from asking import search_for
 from roadproof.engines.search.bounded import check_bounded
 from roadproof.engines.search.question import SearchOptions
 from roadproof.evidence.judged import judge_file
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 

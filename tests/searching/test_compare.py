@@ -10,8 +10,8 @@ from roadproof.engines.search.compare import compare
 from roadproof.engines.search.question import SearchOptions
 from roadproof.evidence.judged import judge_file
 from roadproof.library.compose import taken_from
+from roadproof.library.loading import bundled_library
 from roadproof.library.scenario_references import read_query
-from roadproof.library.specification import bundled_library
 from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.verdict import Verdict
 

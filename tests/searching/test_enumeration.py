@@ -12,8 +12,8 @@ from roadproof.engines.search.patterns import spread
 from roadproof.engines.search.refute import beyond_limits, quick_drive
 from roadproof.engines.search.settle import settle
 from roadproof.library.elaborate import read_claim
+from roadproof.library.loading import bundled_library
 from roadproof.library.motion import under_limits
-from roadproof.library.specification import bundled_library
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.replay import first_breach, first_overlap

@@ -10,7 +10,7 @@ from roadproof.engines.search.instant_claims import sampled_drive
 from roadproof.engines.search.question import Setting
 from roadproof.engines.search.settle import settle as settled
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.logic.fragment import is_cubic_state
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact.exact import judge

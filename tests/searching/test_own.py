@@ -9,7 +9,8 @@ import roadproof as rp
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import read_drive
 from roadproof.evidence.judged import judge_file
-from roadproof.library.specification import Source, load_library
+from roadproof.library.loading import load_library
+from roadproof.library.specification import Source
 from roadproof.world.drive import Drive, Motion, Piece, value_at
 from roadproof.world.models import load_vehicle
 

@@ -10,7 +10,7 @@ from roadproof.engines.search import sampling
 from roadproof.engines.search.sampling import Space, holds, states
 from roadproof.library.bind import bind
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.terms import Signal, Size

@@ -11,8 +11,8 @@ from roadproof.engines.search.ask import Search, answer, reads_all
 from roadproof.engines.search.initial_candidates import space_of, unread
 from roadproof.engines.search.question import SearchOptions, Setting, pose
 from roadproof.engines.search.sampling import holds
+from roadproof.library.loading import bundled_library
 from roadproof.library.scenario_references import read_query
-from roadproof.library.specification import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic.rewrite import signals_of
 from roadproof.runtime.budget import Effort

@@ -14,7 +14,7 @@ from roadproof.engines.search.question import SearchOptions
 from roadproof.engines.search.variety import CLEARLY
 from roadproof.errors import UsageError
 from roadproof.evidence.judged import judge_file
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.verdict import Verdict

@@ -7,7 +7,7 @@ import pytest
 from roadproof.errors import InputError
 from roadproof.library.bind import bind, default_values, occupies
 from roadproof.library.elaborate import apply_definition, read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.library.uses import definitions_used, parameters_used
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t

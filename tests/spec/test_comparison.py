@@ -8,7 +8,7 @@ import pytest
 
 from roadproof.library.bind import bind, default_values
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.semantics.exact import judge
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road

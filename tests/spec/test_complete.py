@@ -3,7 +3,7 @@
 import pytest
 
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.logic.rewrite import without_names
 
 LIBRARY = bundled_library()

@@ -18,8 +18,8 @@ from roadproof.library.compose import (
     with_vehicles,
 )
 from roadproof.library.elaborate import apply_definition, read_claim
+from roadproof.library.loading import bundled_library
 from roadproof.library.query import Query
-from roadproof.library.specification import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic.rewrite import without_names
 

@@ -5,7 +5,7 @@ import pytest
 import roadproof as rp
 from roadproof.frontends.cli.main import main
 from roadproof.library.diagnose import Proofreader, diagnose, diagnose_claim
-from roadproof.library.specification import bundled_library, load_library
+from roadproof.library.loading import bundled_library, load_library
 from roadproof.logic.parse import parse_library
 from roadproof.logic.recover import parse_pieces
 from roadproof.runtime.package_data import shipped

@@ -7,16 +7,8 @@ import pytest
 
 from roadproof.errors import InputError, TextError
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import (
-    Library,
-    Source,
-    build_library,
-    bundled_library,
-    is_within,
-    load_library,
-    read_specification,
-    unknown,
-)
+from roadproof.library.loading import build_library, bundled_library, load_library
+from roadproof.library.specification import Library, Source, is_within, read_specification, unknown
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 

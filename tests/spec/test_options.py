@@ -6,7 +6,7 @@ import pytest
 
 from roadproof.library.bind import default_values
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.logic.rewrite import with_values
 from roadproof.semantics.exact import judge
 from roadproof.world.drive import Drive, Motion, Piece

@@ -5,7 +5,8 @@ import pytest
 from roadproof.errors import TextError
 from roadproof.library.compose import with_vehicles
 from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import Source, bundled_library, load_library
+from roadproof.library.loading import bundled_library, load_library
+from roadproof.library.specification import Source
 from roadproof.library.uses import definitions_used
 from roadproof.logic.custom_names import told_freedom
 from roadproof.logic.rewrite import vehicles_of, without_names

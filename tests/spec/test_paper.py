@@ -6,7 +6,8 @@ import pytest
 
 from roadproof.errors import RoadproofError
 from roadproof.library.elaborate import apply_definition, read_claim
-from roadproof.library.specification import Library, Source, build_library, bundled_library, source_of
+from roadproof.library.loading import build_library, bundled_library
+from roadproof.library.specification import Library, Source, source_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names

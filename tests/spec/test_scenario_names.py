@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import PAIR, TRIPLE
-from roadproof.library.specification import bundled_library
 
 SOURCE = Path(__file__).parents[2] / "src" / "roadproof"
 HOME = "library/scenarios.py"

@@ -8,8 +8,9 @@ from roadproof.errors import InputError, TextError, UsageError
 from roadproof.library import scenario_references as references
 from roadproof.library import scenarios
 from roadproof.library.elaborate import read_claim, signature
+from roadproof.library.loading import build_library, bundled_library
 from roadproof.library.scenarios import Scenario
-from roadproof.library.specification import Source, Specification, build_library, bundled_library
+from roadproof.library.specification import Source, Specification
 from roadproof.library.words import called
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.rewrite import without_names

@@ -12,7 +12,8 @@ from roadproof.evidence.specifications import read_beside
 from roadproof.evidence.strict import Fields
 from roadproof.frontends import cli
 from roadproof.frontends.cli.main import main
-from roadproof.library.specification import Library, Source, Specification, bundled_library, load_library
+from roadproof.library.loading import bundled_library, load_library
+from roadproof.library.specification import Library, Source, Specification
 from roadproof.library.words import Words, called, called_in, legend, spans, words_of
 
 BASE = bundled_library().select("base")

@@ -12,7 +12,7 @@ import pytest
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.analysis.study.frame import conduct
 from roadproof.errors import InputError, UsageError
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 
 
 @dataclass(frozen=True)

@@ -21,8 +21,9 @@ from roadproof.evidence.codec import read, write
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.journal import ANSWERS, HEAD, seal_of
 from roadproof.frontends.cli.main import main
+from roadproof.library.loading import build_library, bundled_library
 from roadproof.library.scenarios import Scenario
-from roadproof.library.specification import Source, build_library, bundled_library
+from roadproof.library.specification import Source
 from roadproof.verdict import Verdict
 
 BASIS = Basis(bundled_library().select())

@@ -6,7 +6,8 @@ from types import ModuleType
 
 import pytest
 
-from roadproof.library.specification import Library, Source, build_library, bundled_library
+from roadproof.library.loading import build_library, bundled_library
+from roadproof.library.specification import Library, Source
 
 
 def plant_fault(monkeypatch: pytest.MonkeyPatch, module: ModuleType, old: str, new: str) -> None:

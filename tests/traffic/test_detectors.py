@@ -7,8 +7,9 @@ from itertools import permutations
 import numpy as np
 import pytest
 
+from roadproof.library.loading import build_library, bundled_library
 from roadproof.library.scenarios import COMPARISON
-from roadproof.library.specification import Source, build_library, bundled_library
+from roadproof.library.specification import Source
 from roadproof.recordings.evaluate import detectors
 from roadproof.recordings.evaluate.detectors import Detection, find_detections
 from roadproof.recordings.evaluate.evaluate import evaluate_recording

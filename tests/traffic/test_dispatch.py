@@ -11,7 +11,7 @@ import pytest
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.coverage.traffic import disturbances_in, recordings_in
 from roadproof.frontends.cli.main import main
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.recordings.formats.highd import read_highd
 from roadproof.recordings.formats.recording import Recording, keep_vehicles
 from roadproof.recordings.formats.samples import read_columns

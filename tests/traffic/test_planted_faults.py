@@ -15,8 +15,9 @@ from roadproof.analysis.classify.drives import Example
 from roadproof.analysis.classify.shares import Shares
 from roadproof.errors import InputError
 from roadproof.frontends.report import classify
+from roadproof.library.loading import build_library, bundled_library
 from roadproof.library.scenarios import COMPARISON, PAIR, TRIPLE
-from roadproof.library.specification import Source, build_library, bundled_library
+from roadproof.library.specification import Source
 from roadproof.library.words import Words
 from roadproof.recordings.evaluate import disturbances, evaluate
 from roadproof.recordings.evaluate.detectors import find_detections

@@ -7,7 +7,7 @@ import pytest
 
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.simulate.planting import (
     PLANTED_COLUMNS,

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import Scenario, lane_owner
-from roadproof.library.specification import bundled_library
 from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
 from roadproof.recordings.evaluate.questions import Questions, ask, default_settings
 from roadproof.recordings.evaluate.recheck import recheck

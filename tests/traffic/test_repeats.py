@@ -12,8 +12,8 @@ from roadproof.analysis.classify.classes import Classes, plan_of, what_axis
 from roadproof.analysis.classify.shares import Shares, count_shares
 from roadproof.analysis.classify.text import with_classes, write_classes
 from roadproof.library.bind import default_values
+from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import COMPARISON
-from roadproof.library.specification import bundled_library
 from roadproof.recordings.evaluate.counting import Counts
 from roadproof.recordings.evaluate.experiment import Experiment, run_experiment
 from roadproof.recordings.evaluate.questions import default_settings

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from roadproof.frontends.report.traffic import results_tables
-from roadproof.library.specification import Source, build_library, bundled_library
+from roadproof.library.loading import build_library, bundled_library
+from roadproof.library.specification import Source
 from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
 from roadproof.recordings.evaluate.questions import Settings, ask, askable, default_settings
 from roadproof.recordings.evaluate.recheck import recheck

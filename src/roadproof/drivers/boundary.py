@@ -55,7 +55,7 @@ def plane_of(
 def line(plane: Plane, formula: Formula, row: Fraction) -> TruthSet:
     """At which places of a row's line a bound formula is true; nowhere where a vehicle would go backwards."""
     values = plane.values(row)
-    if not is_possible(plane.manoeuvre, values):
+    if not is_possible(values):
         return NEVER
     signals = along_line(plane.manoeuvre, values)
     return truth_within(formula, signals, *plane.along)

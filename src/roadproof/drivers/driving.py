@@ -6,13 +6,14 @@ It is worked out from times, apart from the formulas of ``driver.spec``; the jud
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 
 from roadproof.drivers.braking import AssistedBraking, Ramp
 from roadproof.drivers.manoeuvres import FIRST, OTHER, SECOND, Manoeuvre, Values, lane_width
 from roadproof.drivers.models import MODELS
 from roadproof.drivers.stepped import course_of
 from roadproof.library.scenarios import SUBJECT
-from roadproof.world.drive import Drive, Motion
+from roadproof.world.drive import Drive
 from roadproof.world.pieces import Across, Along, motion_of
 from roadproof.world.road import Lanelet, Road, pairs
 
@@ -34,65 +35,44 @@ class DriverSettings:
 def drive_of(manoeuvre: Manoeuvre, model: str, values: Values, reading: DriverSettings) -> Drive:
     """The drive from these initial values on. Raises ``InputError`` where an instant of it is irrational."""
     lane, width = lane_width(values), values["width"]
-    middle = (lane + width) / 2
-    box = (values["length"], width)
-    speed, apart = values["Ve0"], values["length"]
-    ego = (_STILL, middle), (speed, _STILL)
-    stepped = course_of(manoeuvre, values).along if MODELS[model].is_stepped else None
+    middle, apart, speed = (lane + width) / 2, values["length"], values["Ve0"]
+    motion = partial(motion_of, (apart, width))
+    ego = motion((_STILL, middle), (speed, _STILL), _driven(manoeuvre, model, values, reading))
     match manoeuvre.name:
         case "cut-in":
-            other, w = speed - values["dV0"], values["Vy"]
-            return Drive(
-                {
-                    SUBJECT: motion_of(
-                        box, *ego, _cut_in(model, values, reading) if stepped is None else stepped
-                    ),
-                    OTHER: motion_of(
-                        box,
-                        (values["dx0"] + apart, middle + lane),
-                        (other, -w),
-                        (),
-                        _across(lane, -w, width / 4 if is_aided(model, reading) else _STILL),
-                    ),
-                }
-            )
+            w = values["Vy"]
+            across = _across(lane, -w, width / 4 if is_aided(model, reading) else _STILL)
+            place = (values["dx0"] + apart, middle + lane)
+            return Drive({SUBJECT: ego, OTHER: motion(place, (speed - values["dV0"], -w), (), across)})
         case "cut-out":
             first = values["headway"] * speed + apart
-            onset = reading.values["cc_wander"] / values["Vy"] + _reaction(reading)
-            obstacle = (first + values["dx0_f"] + apart, middle), (values["Vf0"], _STILL)
-            return Drive(
-                {
-                    SUBJECT: motion_of(
-                        box, *ego, _along(model, speed, onset, reading) if stepped is None else stepped
-                    ),
-                    FIRST: motion_of(
-                        box, (first, middle), (speed, values["Vy"]), (), _across(lane, values["Vy"])
-                    ),
-                    SECOND: motion_of(box, *obstacle, ()),
-                }
-            )
+            second = (first + values["dx0_f"] + apart, middle)
+            leaves = motion((first, middle), (speed, values["Vy"]), (), _across(lane, values["Vy"]))
+            return Drive({SUBJECT: ego, FIRST: leaves, SECOND: motion(second, (values["Vf0"], _STILL), ())})
         case "deceleration":
-            other = speed - values["dV0"]
-            pieces = _braking(other, values)
-            return Drive(
-                {
-                    SUBJECT: motion_of(
-                        box,
-                        *ego,
-                        motion_in_deceleration(model, values, reading) if stepped is None else stepped,
-                    ),
-                    OTHER: motion_of(box, (values["dx0"] + apart, middle), (other, _STILL), pieces),
-                }
-            )
+            other, place = speed - values["dV0"], (values["dx0"] + apart, middle)
+            return Drive({SUBJECT: ego, OTHER: motion(place, (other, _STILL), _braking(other, values))})
+
+
+def _driven(manoeuvre: Manoeuvre, model: str, values: Values, reading: DriverSettings) -> list[Along]:
+    """How SV moves."""
+    if MODELS[model].is_stepped:
+        return course_of(manoeuvre, values).along
+    match manoeuvre.name:
+        case "cut-in":
+            return _cut_in(model, values, reading)
+        case "cut-out":
+            onset = reading.values["cc_wander"] / values["Vy"] + _reaction(reading)
+            return _along(model, values["Ve0"], onset, reading)
+        case "deceleration":
+            return motion_in_deceleration(model, values, reading)
 
 
 def rest_of(drive: Drive) -> Fraction:
     """When the last piece of all motions begins, in s."""
-    return max((_rest(motion) for motion in drive.vehicles.values()), default=_STILL)
-
-
-def _rest(motion: Motion) -> Fraction:
-    return sum((x.duration for x in motion.pieces if x.duration is not None), _STILL)
+    pieces = (motion.pieces for motion in drive.vehicles.values())
+    lasting = (sum((x.duration for x in those if x.duration is not None), _STILL) for those in pieces)
+    return max(lasting, default=_STILL)
 
 
 def road_of(values: Values) -> Road:
@@ -223,11 +203,9 @@ def motion_in_deceleration(model: str, values: Values, reading: DriverSettings) 
 def _braking(speed: Fraction, values: Values) -> list[Along]:
     """POV brakes, at once or harder and harder, until it stands."""
     braking, rate = values["Gx"], values.get("dGdt")
-    return (
-        _brakes(speed, braking)
-        if rate is None
-        else AssistedBraking(Ramp(_STILL, braking / rate, braking)).pieces(speed)
-    )
+    if rate is None:
+        return _brakes(speed, braking)
+    return AssistedBraking(Ramp(_STILL, braking / rate, braking)).pieces(speed)
 
 
 def _along(model: str, speed: Fraction, onset: Fraction | None, reading: DriverSettings) -> list[Along]:

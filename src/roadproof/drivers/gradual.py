@@ -49,7 +49,7 @@ def check_gradual(model: str, values: Values, reading: DriverSettings) -> None:
 def line(plane: Plane, model: str, reading: DriverSettings, row: Fraction) -> TruthSet:
     """At which gaps on a row's line the collision is unpreventable; nowhere where POV would go backwards."""
     values = plane.values(row)
-    if not is_possible(plane.manoeuvre, values):
+    if not is_possible(values):
         return NEVER
     motion = motion_in_deceleration(model, values, reading)
     if not motion and values["Ve0"] > 0:

@@ -161,7 +161,7 @@ MANOEUVRES: Mapping[ManoeuvreName, Manoeuvre] = MappingProxyType(
 )
 
 
-def is_possible(manoeuvre: Manoeuvre, values: Values) -> bool:
+def is_possible(values: Values) -> bool:
     """Whether no vehicle would have to go backwards."""
     return "dV0" not in values or values["dV0"] <= values["Ve0"]
 

@@ -61,37 +61,21 @@ class State:
     def values(self, manoeuvre: ManoeuvreName, vehicles: tuple[str, ...]) -> dict[str, Fraction]:
         """The initial values of a manoeuvre that say this state; ``length`` is that of a middling vehicle."""
         first, other, last = vehicles[0], vehicles[1], vehicles[-1]
-        speed = self.signals["v_lon", first]
+        signals, speed = self.signals, self.signals["v_lon", first]
         sizes = {x: (self.sizes[x, first] + self.sizes[x, last]) / 2 for x in ("length", "width")}
+        gap, nothing = self.gap(first, other), Fraction(0)
         match manoeuvre:
             case "cut-in":
-                return {
-                    "Ve0": speed,
-                    "dV0": speed - self.signals["v_lon", other],
-                    "Vy": abs(self.signals["v_lat", other]),
-                    "dx0": self.gap(first, other),
-                    "dy0": self.beside(first, other),
-                    **sizes,
-                }
+                said = {"dV0": speed - signals["v_lon", other], "Vy": abs(signals["v_lat", other])}
+                said |= {"dx0": gap, "dy0": self.beside(first, other)}
             case "cut-out":
-                near = self.gap(first, other) if speed else Fraction(0)
-                ahead = self.gap(first, last) - near - sizes["length"]
-                return {
-                    "Ve0": speed,
-                    "Vf0": self.signals["v_lon", last],
-                    "Vy": abs(self.signals["v_lat", other]),
-                    "headway": near / speed if speed else Fraction(0),
-                    "dx0_f": ahead,
-                    **sizes,
-                }
+                near = gap if speed else nothing
+                said = {"Vf0": signals["v_lon", last], "Vy": abs(signals["v_lat", other])}
+                said |= {"headway": near / speed if speed else nothing}
+                said |= {"dx0_f": self.gap(first, last) - near - sizes["length"]}
             case "deceleration":
-                return {
-                    "Ve0": speed,
-                    "dV0": speed - self.signals["v_lon", other],
-                    "Gx": -self.signals["a_lon", other],
-                    "dx0": self.gap(first, other),
-                    **sizes,
-                }
+                said = {"dV0": speed - signals["v_lon", other], "Gx": -signals["a_lon", other], "dx0": gap}
+        return {"Ve0": speed, **said, **sizes}
 
 
 @dataclass(frozen=True)

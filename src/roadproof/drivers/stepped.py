@@ -244,7 +244,7 @@ def labels_of(plane: Plane) -> tuple[tuple[bool, ...], ...]:
 
 def _label(plane: Plane, row: Fraction, place: Fraction) -> bool:
     values = plane.values(row, place)
-    return is_possible(plane.manoeuvre, values) and course_of(plane.manoeuvre, values, False).touches
+    return is_possible(values) and course_of(plane.manoeuvre, values, False).touches
 
 
 def spans_of(places: tuple[Fraction, ...], labels: tuple[bool, ...]) -> Iterator[tuple[Fraction, Fraction]]:

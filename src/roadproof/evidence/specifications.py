@@ -9,7 +9,8 @@ from pathlib import Path
 
 from roadproof.errors import InputError
 from roadproof.evidence.strict import Fields
-from roadproof.library.specification import Library, load_library, on_request, read_specification
+from roadproof.library.loading import load_library
+from roadproof.library.specification import Library, on_request, read_specification
 
 
 def read_beside(data: Fields | None, folder: Path, given: Sequence[Path]) -> tuple[Library, tuple[Path, ...]]:

@@ -15,17 +15,10 @@ from roadproof.library import scopes
 from roadproof.library.arithmetic import ValueOfTermError
 from roadproof.library.elaborate import mistakes_in
 from roadproof.library.elaboration import Elaborator, Known, LostError
+from roadproof.library.loading import gather, gather_files, place_of
 from roadproof.library.quantity import Quantity
 from roadproof.library.scopes import Value, Vehicles
-from roadproof.library.specification import (
-    Library,
-    Source,
-    Specification,
-    gather,
-    gather_files,
-    place_of,
-    source_of,
-)
+from roadproof.library.specification import Library, Source, Specification, source_of
 from roadproof.logic import syntax
 from roadproof.logic import terms as t
 from roadproof.logic.parse import parse_claim

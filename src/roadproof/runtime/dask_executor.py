@@ -3,16 +3,15 @@
 import gc
 import importlib.metadata
 from collections.abc import Callable, Generator, Sequence
-from contextlib import closing
-from functools import cache
+from functools import cache, partial
 from itertools import islice
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from roadproof.errors import InputError, MissingSolverError, UsageError
 from roadproof.runtime import process_pool
+from roadproof.runtime.attempts import LostJob, try_twice
 from roadproof.runtime.executors import Cluster
 from roadproof.runtime.memory import keep_freed_memory
-from roadproof.runtime.process_pool import LostJob
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -41,21 +40,14 @@ def answers_of(
     """
     client = _client(cluster)
     shared = client.submit(_same, function, pure=False)  # made again where its worker ends
-    died: list[int] = []
-    with closing(_try_once(client, shared, jobs, range(len(jobs)), died)) as found:
-        yield from found
-    for place in sorted(died):  # each alone, so that no other job is taken for the one that kills
-        again: list[int] = []
-        with closing(_try_once(client, shared, jobs, [place], again)) as found:
-            yield from found
-        if again:
-            yield place, LostJob("its workers ended each time, the last time while no other job ran")
+    lost = "its workers ended each time, the last time while no other job ran"
+    yield from try_twice(partial(_try_once, client, shared, jobs), len(jobs), lost)
 
 
 def _try_once(
-    client: "Client", shared: "Future", jobs: Sequence[Job], places: Sequence[int], died: list[int]
+    client: "Client", shared: "Future", jobs: Sequence[Job], places: Sequence[int], died: dict[int, str]
 ) -> Generator[tuple[int, Any], None, None]:
-    """The answers at ``places``; where workers ended instead, the place is added to ``died``."""
+    """The answers at ``places``; where workers ended instead, ``died`` has the place, without a reason."""
     from distributed import as_completed
     from distributed.scheduler import KilledWorker
 
@@ -75,7 +67,7 @@ def _try_once(
             submit(max(1, _AHEAD * _count_workers(client) - len(placed) + 1))
             place, error = placed.pop(future), future.exception()
             if isinstance(error, KilledWorker):
-                died.append(place)
+                died[place] = ""
             elif error is not None:
                 raise error
             else:

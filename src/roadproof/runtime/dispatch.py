@@ -4,8 +4,8 @@ from collections.abc import Callable, Generator, Sequence
 from typing import TypeVar
 
 from roadproof.runtime import process_pool
+from roadproof.runtime.attempts import LostJob
 from roadproof.runtime.executors import Executor
-from roadproof.runtime.process_pool import LostJob
 
 Job = TypeVar("Job")
 Answer = TypeVar("Answer")

@@ -81,13 +81,17 @@ LETTING_GO = 5.0
 
 
 @contextmanager
-def hold_folder(folder: Path, shared: bool = False) -> Iterator[None]:
+def hold_folder(folder: Path | None, shared: bool = False) -> Iterator[None]:
     """Keep other runs out of a folder, which is made where there is none; the system lets go of it with us.
 
     ``shared``: but not runs that share it with this one. Raises ``InputError`` where another process holds
     it: at once where that process lives, and after LETTING_GO where it is gone and others that it began are
-    still there. Nothing is kept out where the system or the disk knows no such locks.
+    still there. Nothing is kept out where the system or the disk knows no such locks, or where there is no
+    folder.
     """
+    if folder is None:
+        yield
+        return
     make_folder(folder)
     try:
         import fcntl
@@ -140,16 +144,6 @@ def _state_of(pid: str) -> str:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
     except OSError:
         return ""
-
-
-@contextmanager
-def hold_if_any(folder: Path | None, shared: bool = False) -> Iterator[None]:
-    """As ``hold_folder``; nothing is held where there is no folder."""
-    if folder is None:
-        yield
-    else:
-        with hold_folder(folder, shared):
-            yield
 
 
 def write_whole(path: Path, content: bytes) -> None:

@@ -9,12 +9,12 @@ import sys
 import time
 from collections import deque
 from collections.abc import Callable, Generator, Sequence
-from dataclasses import dataclass
 from functools import partial
 from multiprocessing.connection import wait
 from typing import Any, TypeVar
 
 from roadproof.errors import UsageError
+from roadproof.runtime.attempts import OUTSIDE, LostJob, ended_by, try_twice
 from roadproof.runtime.parent_watchdog import die_with
 from roadproof.runtime.progress import Stage, is_heard, listening, pass_on
 
@@ -22,13 +22,6 @@ Job = TypeVar("Job")
 Answer = TypeVar("Answer")
 
 _PATIENCE = 0.5  # seconds that a worker has to remove half-written files when it is dismissed
-
-
-@dataclass(frozen=True)
-class LostJob:
-    """In place of an answer: the process of the job ended twice, the second time while no other ran."""
-
-    reason: str
 
 
 def answers_of(
@@ -41,30 +34,27 @@ def answers_of(
     An error that a job raises is raised here, and ends the others. ``most``: processes at once, None for one
     a core.
     """
-    processes = min(most or os.cpu_count() or 1, len(jobs))
-    died: dict[int, str] = {}
-    yield from _try_once(function, jobs, range(len(jobs)), processes, fresh, died)
-    for place in sorted(died):
-        again: dict[int, str] = {}
-        yield from _try_once(function, jobs, [place], 1, fresh, again)
-        if again:
-            yield place, LostJob(f"its process ended twice, the second time alone: {again[place]}")
+    start = partial(_Worker, function, fresh)
+
+    def attempt(places: Sequence[int], died: dict[int, str]) -> Generator[tuple[int, Answer], None, None]:
+        return _try_once(start, jobs, places, min(most or os.cpu_count() or 1, len(places)), died)
+
+    yield from try_twice(attempt, len(jobs), "its process ended twice, the second time alone: ")
 
 
 def _try_once(
-    function: Callable[[Job], Answer],
+    start: "Callable[[], _Worker]",
     jobs: Sequence[Job],
     places: Sequence[int],
     processes: int,
-    fresh: bool,
     died: dict[int, str],
-) -> Generator[tuple[int, Answer], None, None]:
+) -> Generator[tuple[int, Any], None, None]:
     """The answers at ``places``; where a process ended instead, ``died`` says by what."""
     waiting = deque(places)
     team: list[_Worker] = []
     try:
         while waiting or any(worker.place is not None for worker in team):
-            while waiting and (worker := _free(team, processes, function, fresh)) is not None:
+            while waiting and (worker := _free(team, processes, start)) is not None:
                 worker.take(waiting[0], jobs[waiting[0]])
                 waiting.popleft()
             busy = {worker.connection: worker for worker in team if worker.place is not None}
@@ -89,9 +79,7 @@ def _try_once(
         _dismiss(team)
 
 
-def _free(
-    team: "list[_Worker]", processes: int, function: Callable[..., object], fresh: bool
-) -> "_Worker | None":
+def _free(team: "list[_Worker]", processes: int, start: "Callable[[], _Worker]") -> "_Worker | None":
     """A worker without a job, a new one if there may be one more, or None."""
     for worker in list(team):
         if worker.place is None and worker.process.is_alive():
@@ -101,7 +89,7 @@ def _free(
     if len(team) >= processes:
         return None
     try:
-        team.append(_Worker(function, fresh))
+        team.append(start())
     except OSError as error:
         if team:
             return None
@@ -132,10 +120,9 @@ class _Worker:
     def cause_of_death(self) -> str:
         self.process.join(_PATIENCE)
         code = self.process.exitcode
-        if code is not None and code < 0:
-            told = " (from outside, or for want of memory)" if code == -signal.SIGKILL else ""
-            return f"killed by {signal.Signals(-code).name}{told}"
-        return f"it exited with {code}"
+        if code is None:
+            return "its pipe was closed"
+        return f"{ended_by(code)} ({OUTSIDE})" if code == -signal.SIGKILL else ended_by(code)
 
 
 def _dismiss(team: "Sequence[_Worker]") -> None:

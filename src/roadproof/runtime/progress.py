@@ -69,10 +69,7 @@ def about(question: str) -> Iterator[None]:
 
 def begin(name: str, told: str = "") -> None:
     """A stage begins now. Raises what the listener raises."""
-    heard = _listener.get()
-    if heard is not None:
-        listener, since = heard
-        listener(Stage(name, told, _about.get(), time.monotonic() - since))
+    pass_on(Stage(name, told, _about.get(), 0.0))
 
 
 def is_heard() -> bool:
@@ -81,7 +78,7 @@ def is_heard() -> bool:
 
 
 def pass_on(stage: Stage) -> None:
-    """Tell of a stage that another process has begun."""
+    """Tell of a stage, which may be one that another process has begun, at the time that it is here."""
     heard = _listener.get()
     if heard is not None:
         listener, since = heard

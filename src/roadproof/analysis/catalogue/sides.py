@@ -23,8 +23,9 @@ from roadproof.engines.search.question import SearchOptions, Setting
 from roadproof.errors import InputError
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import both
+from roadproof.library.loading import load_library
 from roadproof.library.scenarios import Scenario, applied, number_in
-from roadproof.library.specification import Library, Source, Specification, load_library
+from roadproof.library.specification import Library, Source, Specification
 
 
 @dataclass(frozen=True)

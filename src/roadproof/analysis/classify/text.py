@@ -18,9 +18,10 @@ from roadproof.analysis.study.evidence_store import specification_names
 from roadproof.errors import InputError
 from roadproof.evidence.answers.classify import Kind
 from roadproof.library.elaborate import read_claim
+from roadproof.library.loading import build_library
 from roadproof.library.query import Query
 from roadproof.library.scenarios import name_of
-from roadproof.library.specification import Source, Specification, build_library
+from roadproof.library.specification import Source, Specification
 
 WIDTH = 110
 

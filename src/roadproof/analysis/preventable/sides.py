@@ -17,7 +17,6 @@ from roadproof.library.scenarios import LANE
 from roadproof.library.specification import Specification
 from roadproof.semantics.exact.algebraic import Point, bounds
 from roadproof.semantics.exact.truth import TruthSet
-from roadproof.world.drive import Drive
 
 _FINE = 10**9  # of a line, for spans that have no place with few digits
 _LOOKED_AT = 400  # candidates for a drive
@@ -39,19 +38,6 @@ def judged_drive(
     Raises ``RejectedError``, and ``InputError`` as ``drive_of``.
     """
     drive = drive_of(manoeuvre, model, values, reading)
-    return _judged(drive, manoeuvre, model, values, side, specification, reading, also)
-
-
-def _judged(
-    drive: Drive,
-    manoeuvre: Manoeuvre,
-    model: str,
-    values: Values,
-    side: Side,
-    specification: Specification,
-    reading: DriverSettings,
-    also: str,
-) -> JudgedDrive:
     file = DriveFile(
         None,
         specification.set_name,
@@ -120,12 +106,10 @@ def first_drive(
     tried = 0
     for values in islice(candidates, _LOOKED_AT):
         try:
-            drive = drive_of(plane.manoeuvre, model, values, reading)
-            tried += 1
-            judged = _judged(drive, plane.manoeuvre, model, values, side, specification, reading, also)
-            return values, judged
+            manoeuvre = plane.manoeuvre
+            return values, judged_drive(manoeuvre, model, values, side, specification, reading, also)
         except RejectedError as error:
-            reason = str(error)
+            tried, reason = tried + 1, str(error)
             if not also:
                 told = ", ".join(f"{name}={value}" for name, value in values.items())
                 return f"the drive from {told} (SI) is not {side}, as the boundary says it is: {reason}"

@@ -19,8 +19,9 @@ from roadproof.library.query import Query
 from roadproof.logic.formula import is_state
 from roadproof.logic.fragment import is_cubic_state
 from roadproof.logic.rewrite import parameters_of
+from roadproof.runtime.attempts import LostJob
 from roadproof.runtime.budget import BudgetExceeded, Effort
-from roadproof.runtime.process_pool import LostJob, answers_of, is_worker
+from roadproof.runtime.process_pool import answers_of, is_worker
 from roadproof.runtime.progress import about
 from roadproof.verdict import ClaimVerdict, Verdict
 

@@ -25,7 +25,8 @@ from roadproof.frontends.api.settings import work_of
 from roadproof.frontends.settings.evidence import Check
 from roadproof.frontends.settings.keywords import CheckKeywords
 from roadproof.frontends.settings.signatures import takes
-from roadproof.library.specification import Library, load_library
+from roadproof.library.loading import load_library
+from roadproof.library.specification import Library
 from roadproof.library.words import called_by, legend
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.executors import Jobs

@@ -33,7 +33,7 @@ from roadproof.frontends.settings.keywords import CoverageKeywords
 from roadproof.frontends.settings.signatures import takes
 from roadproof.library.words import Called, called
 from roadproof.runtime.executors import Jobs, hands_of
-from roadproof.runtime.files import hold_if_any
+from roadproof.runtime.files import hold_folder
 from roadproof.verdict import ExitCode, Verdict
 
 ROADS, ELSEWHERE = ("main-2", "main-3"), ("main-3", "merge", "depart")
@@ -174,5 +174,5 @@ def coverage(
         return {"traffic": count_in_traffic(basis, recordings, tell or (lambda line: None))}
 
     folder = None if given.out is None else Path(given.out)
-    with hold_if_any(folder, shared=hands_of(given.jobs).shard is not None):
+    with hold_folder(folder, shared=hands_of(given.jobs).shard is not None):
         return Coverages.asked(study, given, more=count, begun=begun)

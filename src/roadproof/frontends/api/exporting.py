@@ -14,7 +14,8 @@ from roadproof.frontends.report.moving import draw_moving
 from roadproof.frontends.settings.keywords import ExportKeywords
 from roadproof.frontends.settings.recordings import Export
 from roadproof.frontends.settings.signatures import takes
-from roadproof.library.specification import Library, load_library, unknown
+from roadproof.library.loading import load_library
+from roadproof.library.specification import Library, unknown
 from roadproof.recordings.export.registry import FORMATS
 from roadproof.recordings.export.subject import Subject, subject_of
 from roadproof.recordings.formats.table import Frame, frame_of

@@ -20,7 +20,8 @@ from roadproof.evidence.kernel.accept import CoqModule, KernelRulings, Ruling, W
 from roadproof.evidence.kernel.coq import THEORIES, ready
 from roadproof.evidence.kernel.source import file
 from roadproof.evidence.strict import read_json
-from roadproof.library.specification import Library, load_library
+from roadproof.library.loading import load_library
+from roadproof.library.specification import Library
 from roadproof.runtime.executors import Jobs
 from roadproof.runtime.files import make_folder, write_whole
 from roadproof.runtime.package_data import shipped

@@ -34,7 +34,7 @@ from roadproof.library.motion import MOTION, AssumedClaim, at_values, is_moving,
 from roadproof.library.scenario_references import names_scenarios, read_numbers
 from roadproof.library.specification import Specification
 from roadproof.runtime.executors import Jobs, hands_of
-from roadproof.runtime.files import hold_if_any
+from roadproof.runtime.files import hold_folder
 from roadproof.runtime.progress import Listener, listening
 from roadproof.verdict import ClaimVerdict, ExitCode, Verdict, claim_verdict, exit_code
 from roadproof.world.vehicle import Vehicle
@@ -60,7 +60,7 @@ class Proofs(StudyAnswers[Claims, ClaimResult, Record]):
     ) -> Self:
         """As of all studies; a folder of claims grows, and only one run at a time may write into it."""
         folder = None if given.out is None else Path(given.out)
-        with hold_if_any(folder):
+        with hold_folder(folder):
             if folder is not None:
                 former_claims(folder, study)
             return super().asked(study, given, each, more, begun)
@@ -152,7 +152,7 @@ class Proofs(StudyAnswers[Claims, ClaimResult, Record]):
         write_claims(folder, self.study, found.records)
 
     def _write(self, folder: Path, pictures: bool) -> None:
-        with hold_if_any(folder):
+        with hold_folder(folder):
             former_claims(folder, self.study)
             super()._write(folder, pictures)
 

@@ -18,7 +18,7 @@ from roadproof.frontends.settings import evidence
 from roadproof.frontends.settings.keywords import CheckKeywords, PageKeywords
 from roadproof.frontends.settings.signatures import takes
 from roadproof.library.scenarios import numbers_of
-from roadproof.library.specification import Library, load_library
+from roadproof.library.specification import Library
 from roadproof.library.words import words_of
 from roadproof.runtime.files import whole_file
 from roadproof.verdict import ExitCode

@@ -13,7 +13,7 @@ from roadproof.frontends.report.sheet import csv_text
 from roadproof.frontends.settings.keywords import SimulateKeywords
 from roadproof.frontends.settings.recordings import Simulate
 from roadproof.frontends.settings.signatures import takes
-from roadproof.library.specification import bundled_library
+from roadproof.library.loading import bundled_library
 from roadproof.recordings.export.road_toml import road_toml
 from roadproof.recordings.formats.table import Frame, frame_of
 from roadproof.recordings.formats.write_highd import write_highd

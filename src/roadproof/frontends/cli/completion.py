@@ -76,7 +76,7 @@ def _completer(values: Callable[[str], Values], files: bool) -> Callable[..., Va
 
 def _scenarios(prefix: str) -> Values:
     """Numbers, also behind a comma; names of ISO 34502 where a letter was typed."""
-    from roadproof.library.specification import bundled_library
+    from roadproof.library.loading import bundled_library
     from roadproof.library.words import called
 
     known = called(bundled_library().select())
@@ -95,21 +95,21 @@ def _claims(prefix: str) -> Values:
 
 
 def _sets(prefix: str) -> Values:
-    from roadproof.library.specification import bundled_library
+    from roadproof.library.loading import bundled_library
 
     head = prefix[: prefix.rfind(",") + 1]
     return {f"{head}{name}": block.doc for name, block in bundled_library().sets.items()}
 
 
 def _readings(prefix: str) -> Values:
-    from roadproof.library.specification import bundled_library
+    from roadproof.library.loading import bundled_library
 
     options = bundled_library().options.values()
     return {f"{option.name}={value}": option.doc for option in options for value in option.values}
 
 
 def _parameters(prefix: str) -> Values:
-    from roadproof.library.specification import bundled_library
+    from roadproof.library.loading import bundled_library
 
     return {f"{name}=": declared.doc for name, declared in bundled_library().parameters.items()}
 

@@ -71,7 +71,7 @@ def _read(path: Path) -> "Iterator[DriveFile]":
     """The drives of a file or a folder."""
     from roadproof.evidence.drive_file import load_drive
     from roadproof.evidence.judged import judge_file
-    from roadproof.library.specification import bundled_library
+    from roadproof.library.loading import bundled_library
     from roadproof.recordings.simulate.planting import plantable
 
     files = [x for x in sorted(path.glob("*.json")) if _may_be_drive(x)] if path.is_dir() else [path]
@@ -107,7 +107,7 @@ def _found(text: str, set_name: str) -> "Iterator[DriveFile]":
     from roadproof.library import scenarios as s
     from roadproof.library.bind import default_values
     from roadproof.library.compose import both
-    from roadproof.library.specification import bundled_library
+    from roadproof.library.loading import bundled_library
     from roadproof.world.models import load_road
 
     specification = bundled_library().select(set_name)

@@ -12,6 +12,7 @@ import time
 from collections.abc import Callable
 
 from roadproof.frontends.cli import progress
+from roadproof.runtime.attempts import OUTSIDE, ended_by
 from roadproof.runtime.parent_watchdog import die_with
 from roadproof.verdict import ExitCode
 
@@ -90,14 +91,11 @@ def _code_of(status: int) -> int:
     code = os.waitstatus_to_exitcode(status)
     if code >= 0:
         return code
-    name = signal.Signals(-code).name
     if code == -signal.SIGKILL:
-        _say(
-            f"ended by {name}, from outside or for want of memory: what was written before is whole, "
-            "what is missing is unknown"
-        )
+        told = "what was written before is whole, what is missing is unknown"
+        _say(f"ended by {ended_by(code)}, {OUTSIDE}: {told}")
         return ExitCode.UNKNOWN
-    _say(f"this is our fault: ended by {name}; report it with the command line.")
+    _say(f"this is our fault: ended by {ended_by(code)}; report it with the command line.")
     return ExitCode.OUR_FAULT
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from roadproof.errors import RoadproofError
+from roadproof.runtime.attempts import OUTSIDE, ended_by
 
 BEAT = 0.25  # seconds between two words about a job that runs
 LONGEST_LINE = 256 * 2**20
@@ -193,6 +194,5 @@ class WorkerPool:
 
 
 async def _cause_of_death(worker: Worker) -> str:
-    code = await worker.process.wait()
-    by = signal.Signals(-code).name if code < 0 else f"exit code {code}"
-    return f"its process ended ({by}), from outside or for want of memory; ask again"
+    by = ended_by(await worker.process.wait())
+    return f"its process ended ({by}), {OUTSIDE}; ask again"

@@ -1,0 +1,264 @@
+"""Specification texts to a library: files read, statements put into their mappings, mistakes gathered."""
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+from importlib import resources
+from pathlib import Path
+from typing import TypeAlias, assert_never
+
+from roadproof.errors import Position, TextError, raise_all
+from roadproof.library.specification import (
+    BUILT_IN,
+    NOT_A_COLUMN,
+    ROLE,
+    Library,
+    Source,
+    is_within,
+    key_of,
+    read_specification,
+    unknown,
+)
+from roadproof.logic.each import instances
+from roadproof.logic.parse import parse_bundled, parse_library
+from roadproof.logic.recover import ParseResult, parse_pieces
+from roadproof.logic.syntax import (
+    Binding,
+    Definition,
+    EachBlock,
+    LaneDeclaration,
+    OptionDeclaration,
+    ParameterDeclaration,
+    SetBlock,
+    SignalDeclaration,
+    Statement,
+    TitleDeclaration,
+    WhenBlock,
+)
+
+Parse: TypeAlias = Callable[[str, str], tuple[Statement, ...]]
+
+
+@cache
+def bundled_library() -> Library:
+    """The library that comes with roadproof: ``library/sets/*.spec``."""
+    folder = resources.files("roadproof.library").joinpath("sets")
+    files = sorted((f for f in folder.iterdir() if f.name.endswith(".spec")), key=lambda f: f.name)
+    sources = [Source(f.name, f.read_text("utf-8")) for f in files]
+    return build_library(sources, parse=parse_bundled)
+
+
+def load_library(files: Iterable[Path | Source] = ()) -> Library:
+    """The bundled library, with the users' files or texts on top: their definitions replace or add."""
+    extra = sources_of(files)
+    if not extra:
+        return bundled_library()
+    return replace(build_library(extra, bundled_library()), files=tuple(extra))
+
+
+def sources_of(files: Iterable[Path | Source]) -> list[Source]:
+    """Texts, read from files where they are none yet. Raises ``InputError``."""
+    return [file if isinstance(file, Source) else read_specification(file) for file in files]
+
+
+def build_library(
+    sources: Iterable[Source], below: Library | None = None, parse: Parse = parse_library
+) -> Library:
+    """Put statements into their mappings, as ``parse`` reads them.
+
+    Raises ``TextError`` for all that does not parse, is there twice, or names what does not exist.
+    """
+    gathered = gather({source: _parsed(source, parse) for source in sources}, below)
+    raise_all(gathered.errors)
+    return gathered.library
+
+
+def _parsed(source: Source, parse: Parse = parse_library) -> ParseResult:
+    """What is read of a text; the whole at once, which is quicker where it has no mistake."""
+    try:
+        return ParseResult(parse(source.text, source.name))
+    except TextError as error:
+        pieces = parse_pieces(source.text, source.name)
+        return pieces if pieces.errors else replace(pieces, errors=(error,))
+
+
+@dataclass(frozen=True)
+class ReadOutcome:
+    """What could be read of texts, all that could not, in their order, and how names look that are lost."""
+
+    library: Library
+    errors: tuple[TextError, ...] = ()
+    lost: tuple[re.Pattern[str], ...] = ()
+
+
+def gather(readings: Mapping[Source, ParseResult], below: Library | None = None) -> ReadOutcome:
+    """What was read of texts, put into its mappings."""
+    building, errors, lost = _Builder(below or Library()), list[TextError](), list[re.Pattern[str]]()
+    for source, parsed in readings.items():
+        errors += sorted([*parsed.errors, *building.add(parsed.statements, source)], key=place_of)
+        lost += parsed.lost
+    lost += (re.compile(re.escape(name)) for name in building.refused)
+    return ReadOutcome(building.library(), tuple(errors), tuple(lost))
+
+
+def gather_files(files: Iterable[Path | Source]) -> ReadOutcome:
+    """As ``load_library``, with all that is wrong. Raises ``InputError`` where a file is no text."""
+    extra = sources_of(files)
+    if not extra:
+        return ReadOutcome(bundled_library())
+    gathered = gather({source: _parsed(source) for source in extra}, bundled_library())
+    return replace(gathered, library=replace(gathered.library, files=tuple(extra)))
+
+
+def place_of(error: TextError) -> tuple[int, int]:
+    """Line and column of an error, to sort by."""
+    return (0, 0) if error.position is None else (error.position.line, error.position.column)
+
+
+class _Builder:
+    def __init__(self, below: Library) -> None:
+        self.parameters, self.options, self.sets = {**below.parameters}, {**below.options}, {**below.sets}
+        self.definitions, self.variants = {**below.definitions}, {**below.variants}
+        self.sources, self.signals = {**below.sources}, {**below.signals}
+        self.lanes, self.titles = {**below.lanes}, {**below.titles}
+        self.refused: list[str] = []
+
+    def library(self) -> Library:
+        return Library(**{name: table for name, table in vars(self).items() if name != "refused"})
+
+    def add(self, statements: Iterable[Statement], source: Source) -> list[TextError]:
+        """Add what a text says, and tell what of it cannot be added."""
+        fresh: set[tuple[str, str]] = set()
+        blocks: list[SetBlock | WhenBlock] = []
+        errors: list[TextError] = []
+        for statement in statements:
+            if isinstance(statement, SetBlock | WhenBlock):
+                blocks.append(statement)
+                continue
+            try:
+                self._add(statement, fresh, source)
+            except TextError as error:
+                errors.append(error.locate(source.name, source.text))
+                self.refused += _declares(statement)
+        for block in blocks:
+            try:
+                self._override(block, fresh, source, errors)
+            except TextError as error:
+                errors.append(error.locate(source.name, source.text))
+        return errors
+
+    def _add(self, statement: Statement, fresh: set[tuple[str, str]], source: Source) -> None:
+        match statement:
+            case ParameterDeclaration():
+                _once(fresh, "parameter", statement.name, statement.at)
+                if not is_within(statement.bound, statement.value):
+                    raise TextError(
+                        f"{statement.name}={statement.value} {statement.unit}: it is declared with "
+                        f"{statement.name} {statement.bound} 0",
+                        statement.at,
+                        "Give a value within the bound, or another bound.",
+                    )
+                if statement.name in self.signals:
+                    raise TextError(f"'{statement.name}' is a signal already", statement.at)
+                self.parameters[statement.name] = statement
+                self.sources[key_of(statement)] = source
+            case OptionDeclaration():
+                _once(fresh, "option", statement.name, statement.at)
+                self.options[statement.name] = statement
+            case Definition():
+                self._define(statement, fresh, source)
+            case SignalDeclaration():
+                self._declare(statement, fresh, source)
+            case EachBlock():
+                for definition in instances(statement):
+                    self._define(definition, fresh, source)
+            case SetBlock() | WhenBlock():
+                raise AssertionError("blocks are added last")
+            case LaneDeclaration():
+                for number in statement.scenarios:
+                    _once(fresh, "lane of scenario", str(number), statement.at)
+                    self.lanes[number] = statement
+            case TitleDeclaration():
+                for number in statement.scenarios:
+                    _once(fresh, "title of scenario", str(number), statement.at)
+                    self.titles[number] = (statement, source)
+            case _:
+                assert_never(statement)
+
+    def _define(self, definition: Definition, fresh: set[tuple[str, str]], source: Source) -> None:
+        _once(fresh, "definition", definition.name, definition.at)
+        if definition.name in BUILT_IN:
+            raise TextError(f"'{definition.name}' is built in and cannot be defined", definition.at)
+        if definition.name in self.signals:
+            raise TextError(
+                f"'{definition.name}' is a signal",
+                definition.at,
+                "Say what it is with signal … derived by ….",
+            )
+        self.definitions[definition.name] = definition
+        self.sources[key_of(definition)] = source
+
+    def _declare(self, signal: SignalDeclaration, fresh: set[tuple[str, str]], source: Source) -> None:
+        """An own signal; one that is derived is a definition whose body has to be of its unit."""
+        name, at = signal.name, signal.at
+        _once(fresh, "signal", name, at)
+        if name in BUILT_IN:
+            raise TextError(f"'{name}' is built in and cannot be declared", at)
+        if ROLE.fullmatch(name) or name in NOT_A_COLUMN:
+            raise TextError(f"'{name}' means something else already", at, "Give the signal another name.")
+        known = self.definitions.keys() - self.signals.keys()
+        for what, others in (("definition", known), ("parameter", self.parameters)):
+            if name in others:
+                raise TextError(f"'{name}' is a {what} already", at, "Give the signal another name.")
+        self.definitions.pop(name, None)
+        self.signals[name] = signal
+        self.sources[key_of(signal)] = source
+        if signal.body is not None:
+            bindings = (Binding(signal.vehicle, "vehicle", at),) if signal.vehicle else ()
+            self.definitions[name] = Definition(name, bindings, signal.doc, signal.body, at)
+
+    def _override(
+        self,
+        block: SetBlock | WhenBlock,
+        fresh: set[tuple[str, str]],
+        source: Source,
+        errors: list[TextError],
+    ) -> None:
+        inside: set[tuple[str, str]] = set()
+        for definition in block.definitions:
+            try:
+                _once(inside, "definition", definition.name, definition.at)
+                if definition.name not in self.definitions:
+                    message = unknown("definition", definition.name, self.definitions)
+                    raise TextError(f"an override needs something to replace: {message}", definition.at)
+                self.sources[key_of(definition)] = source
+            except TextError as error:
+                errors.append(error.locate(source.name, source.text))
+                self.refused += _declares(definition)
+        if isinstance(block, SetBlock):
+            _once(fresh, "set", block.name, block.at)
+            if block.parent and block.parent not in self.sets:
+                raise TextError(unknown("spec set", block.parent, self.sets), block.at)
+            self.sets[block.name] = block
+        else:
+            if block.option not in self.options:
+                raise TextError(unknown("option", block.option, self.options), block.at)
+            if block.value not in self.options[block.option].values:
+                message = unknown(
+                    f"value of option {block.option}", block.value, self.options[block.option].values
+                )
+                raise TextError(message, block.at)
+            key = (block.option, block.value)
+            self.variants[key] = (*self.variants.get(key, ()), *block.definitions)
+
+
+def _declares(statement: Statement) -> list[str]:
+    declares = Definition | ParameterDeclaration | SignalDeclaration
+    return [statement.name] if isinstance(statement, declares) else []
+
+
+def _once(fresh: set[tuple[str, str]], kind: str, name: str, at: Position) -> None:
+    if (kind, name) in fresh:
+        raise TextError(f"{kind} '{name}' is given twice", at, "Remove or rename one of the two.")
+    fresh.add((kind, name))
