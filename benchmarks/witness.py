@@ -11,7 +11,9 @@ import time
 from dataclasses import replace
 from fractions import Fraction
 
-from roadproof.engines.encode.build import NONE, build_problem
+from roadproof.engines.encode.build import NONE, encode_formula, frame
+from roadproof.engines.encode.custom_signals import own_columns
+from roadproof.engines.encode.motion import Layout
 from roadproof.engines.search.ask import Outcome, Search, ask
 from roadproof.engines.search.question import pose
 from roadproof.engines.solve.exact import solve_exactly
@@ -70,7 +72,10 @@ def plainly(search: Search, lanes: dict[str, str], limit: float) -> tuple[float,
     assumptions = replace(question.assumptions.plain(), margin=NONE, inside=Fraction(0))
     grid = question.grid
     begun = time.perf_counter()
-    problem, _ = build_problem(question.bound(lanes), question.road, question.vehicles, grid, assumptions)
+    formula, vehicles = question.bound(lanes), question.vehicles
+    layout = Layout(tuple(vehicles), grid, own_columns(formula))
+    wanted = encode_formula(formula, vehicles, layout, assumptions)
+    problem = frame(wanted, question.road, vehicles, layout, assumptions)
     status = solve_exactly(problem, Effort(limit).meter()).status
     return time.perf_counter() - begun, {"found": "sat", "infeasible": "unsat"}.get(status, "gave up")
 

@@ -23,7 +23,6 @@ from roadproof.analysis.catalogue.decisions import (
     decide_trace,
 )
 from roadproof.analysis.catalogue.sides import read_side_name, side_name
-from roadproof.drivers import margins
 from roadproof.drivers.claims import SIDES, Side
 from roadproof.drivers.driving import OWN_LANE, DriverSettings, drive_of, road_of
 from roadproof.drivers.manoeuvres import KMH, MANOEUVRES, signals_of
@@ -98,7 +97,7 @@ def random_values(name: str, random: Random) -> dict[str, Fraction]:
 
 def is_hit(state: State, name: str, model: str, given: dict[str, Fraction]) -> bool:
     text = unpreventable(name, model, MANOEUVRES[name].vehicles)
-    return judge(with_values(DRIVERS.formula(text), given), margins._VariedState(state)).holds
+    return judge(with_values(DRIVERS.formula(text), given), state.along()).holds
 
 
 @pytest.mark.parametrize(("name", "model"), EACH)

@@ -102,8 +102,8 @@ FAULTS = {
     "each vehicle for itself": ("names_places", "any(", "all("),
     "the first factor only": (
         "slope_along",
-        "if _is_place_along(signal):",
-        "if _is_place_along(signal) and k == 0 and 1 > 2:",
+        "if signal == place and",
+        "if k == 0 and 1 > 2 and signal == place and",
     ),
 }
 

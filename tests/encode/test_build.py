@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from roadproof.engines.encode.build import NONE, Assumptions, build_problem, ground
+from roadproof.engines.encode.build import NONE, Assumptions, encode_formula, frame, ground
 from roadproof.engines.encode.circuit import evaluate
 from roadproof.engines.encode.motion import Layout
 from roadproof.engines.encode.unroll import Grid, unroll
@@ -26,6 +26,13 @@ def steady(layout, places):
             state = {"s": s + 20 * k * layout.grid.dt, "d": d, "v_lon": 20, "v_lat": 0}
             values |= {layout.column(name, signal, k): Fraction(x) for signal, x in state.items()}
     return values
+
+
+def build_problem(assumptions):
+    """The problem of any drive at all."""
+    layout = Layout(tuple(CARS), GRID)
+    wanted = encode_formula(f.Truth(True), CARS, layout, assumptions)
+    return frame(wanted, ROAD, CARS, layout, assumptions), layout
 
 
 def is_solution(problem, values):
@@ -53,14 +60,14 @@ def is_solution(problem, values):
     ],
 )
 def test_drives_within_the_reach_apart_and_on_the_road(b, c, possible):
-    problem, layout = build_problem(f.Truth(True), ROAD, CARS, GRID, Assumptions(natural=False))
+    problem, layout = build_problem(Assumptions(natural=False))
     places = {"A": (0, Fraction(3)), "B": (b[0], Fraction(b[1])), "C": (c[0], Fraction(c[1]))}
     assert is_solution(problem, steady(layout, places)) == possible
 
 
 def test_columns_across_end_where_the_road_does():
     """How strong a linear relaxation is follows from these."""
-    problem, layout = build_problem(f.Truth(True), ROAD, CARS, GRID, Assumptions())
+    problem, layout = build_problem(Assumptions())
     for name, car in CARS.items():
         column = problem.columns[layout.column(name, "d", 2)]
         assert (column.low, column.high) == (car.width, 7)

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from types import SimpleNamespace
 
 import pytest
 from hypothesis import given, settings
@@ -26,7 +27,9 @@ WIDE = (Fraction(-1000), Fraction(1000))
 def motions(natural=False, straight=()):
     cars = {"A": CAR, "B": CAR}
     places = dict.fromkeys(cars, WIDE)
-    return encode_motions(cars, GRID, places, places, natural, Fraction(0), straight)
+    layout = Layout(tuple(cars), GRID)
+    columns, rows = encode_motions(cars, layout, places, places, natural, Fraction(0), straight)
+    return SimpleNamespace(layout=layout, columns=columns, rows=rows)
 
 
 def columns_of(accelerations, speed=Fraction(25), s=Fraction(0), d=Fraction(3)):

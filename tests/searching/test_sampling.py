@@ -80,8 +80,8 @@ def test_what_floating_point_sees_is_not_taken_for_granted(monkeypatch):
     """Where every point is called true, only what the judge accepts comes out."""
 
     def every_point(self):
-        spread = sampling._sequence(0, 64, len(self.axes))
-        return np.column_stack([x.values(spread[:, k]) for k, x in enumerate(self.axes)])
+        evenly = sampling.spread(0, 64, len(self.axes))
+        return np.column_stack([x.values(evenly[:, k]) for k, x in enumerate(self.axes)])
 
     formula = bound(STATES[0])
     monkeypatch.setattr(sampling._StateSampler, "points", every_point)

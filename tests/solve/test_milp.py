@@ -15,7 +15,7 @@ from roadproof.engines.encode.problem import Column, Problem, Unknown
 from roadproof.engines.solve import milp
 from roadproof.engines.solve.bounds import TooNonlinearError, approximate, value_of
 from roadproof.engines.solve.exact import solve_exactly
-from roadproof.engines.solve.milp import Cost, box_of, find_solver, solve_mixed
+from roadproof.engines.solve.milp import box_of, find_solver, solve_mixed
 from roadproof.errors import MissingSolverError, UsageError
 from roadproof.runtime.budget import Effort
 from solve import small
@@ -78,17 +78,6 @@ def test_more_pieces_are_nearer():
         return sum(small.approximation_holds(made, p) for p in small.grid_of(box, 161))
 
     assert kept(1) < kept(8) <= sum(value_of(inequality, p) >= 0 for p in small.grid_of(box, 161))
-
-
-def test_a_cost_is_made_small():
-    columns = (
-        Column(Unknown("x", "s", 0), Fraction(-5), Fraction(5)),
-        Column(Unknown("y", "s", 0), Fraction(-5), Fraction(5)),
-    )
-    far = AnyOf((Leaf(Inequality(affine([(0, Fraction(1))], Fraction(-3)), False)), AnyOf(())))
-    problem = Problem(columns, (), All((far,)))
-    solution = solve_mixed(problem, box_of(problem), cost=Cost({0: 1.0}, {1: 1.0}), gap=0.0)
-    assert solution.values == pytest.approx((3.0, 0.0), abs=1e-6)
 
 
 def test_another_solver_gives_the_same_answers():

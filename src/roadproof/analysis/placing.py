@@ -5,13 +5,14 @@ from dataclasses import replace
 from fractions import Fraction
 
 from roadproof.engines.search.impossible import parts
+from roadproof.engines.search.question import zones_of
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.library.bind import bind, values_with
 from roadproof.library.query import Query
 from roadproof.library.specification import Library
 from roadproof.logic import formula as f
-from roadproof.logic.formula import Formula, is_state, subformulas
+from roadproof.logic.formula import is_state
 from roadproof.semantics.exact.exact import judge
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road, names_of
@@ -53,12 +54,6 @@ def judged_as(file: DriveFile, query: Query, library: Library) -> JudgedDrive | 
         return JudgedDrive(here, library)
     except RejectedError:
         return None
-
-
-def zones_of(formula: Formula) -> frozenset[str]:
-    """The zones that a formula speaks of."""
-    quantified = (x for x in subformulas(formula) if isinstance(x, f.Some | f.Every))
-    return frozenset(x.domain.of for x in quantified if x.domain.kind == "zone")
 
 
 def _roads(file: DriveFile, zones: frozenset[str]) -> Iterator[Road]:

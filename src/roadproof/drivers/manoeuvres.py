@@ -11,9 +11,9 @@ from typing import Any, Literal, TypeAlias, assert_never
 from roadproof.errors import UsageError
 from roadproof.library.scenarios import PAIR, SUBJECT, TRIPLE
 from roadproof.library.specification import unknown
-from roadproof.logic.terms import Own, Signal, Size
-from roadproof.semantics.exact.piecewise import Pieces, constant
+from roadproof.logic.terms import Own, Signal, SignalName, Size, SizeName
 from roadproof.semantics.exact.polynomial import Polynomial, polynomial
+from roadproof.semantics.exact.signals import LineSignals
 from roadproof.world.signals import SIGNALS, STARTING
 
 KMH = Fraction(5, 18)
@@ -166,36 +166,18 @@ def is_possible(values: Values) -> bool:
     return "dV0" not in values or values["dV0"] <= values["Ve0"]
 
 
-@dataclass(frozen=True)
-class States:
-    """The states of all vehicles along a line; what the judge takes for time is the value that runs."""
-
-    signals: Mapping[tuple[str, str], Polynomial]
-    length: Fraction
-    width: Fraction
-
-    def signal(self, signal: Signal | Own) -> Pieces:
-        """Raises ``UsageError`` for vehicles and signals that the manoeuvre does not have."""
-        found = self.signals.get((signal.name, signal.vehicle))
-        if found is None:
-            raise UsageError(f"the initial values say nothing of {signal.name}({signal.vehicle})")
-        return constant(found)
-
-    def size(self, size: Size) -> Fraction:
-        if size.name not in ("length", "width"):
-            raise UsageError(f"the initial values say nothing of {size.name}({size.vehicle})")
-        return self.length if size.name == "length" else self.width
-
-
-def along_line(manoeuvre: Manoeuvre, values: Values) -> States:
+def along_line(manoeuvre: Manoeuvre, values: Values) -> LineSignals:
     """The states along the line through ``values``: every signal is an affine function of what runs."""
     begin = signals_of(manoeuvre, {**values, manoeuvre.line: Fraction(0)})
     one = signals_of(manoeuvre, {**values, manoeuvre.line: Fraction(1)})
-    signals = {key: polynomial(value, one[key] - value) for key, value in begin.items()}
-    return States(signals, values["length"], values["width"])
+    signals: dict[Signal | Own, Polynomial] = {
+        Signal(*key): polynomial(value, one[key] - value) for key, value in begin.items()
+    }
+    box: tuple[SizeName, ...] = ("length", "width")
+    return LineSignals(signals, {Size(x, name): values[x] for name in manoeuvre.vehicles for x in box})
 
 
-def signals_of(manoeuvre: Manoeuvre, values: Mapping[str, Any]) -> dict[tuple[str, str], Any]:
+def signals_of(manoeuvre: Manoeuvre, values: Mapping[str, Any]) -> dict[tuple[SignalName, str], Any]:
     """The state at time 0, of numbers or arrays of them.
 
     The front of SV is at s = 0, SV in the middle of its lane, POV ahead of it or in the lane to its left.
@@ -229,7 +211,7 @@ def lane_width(values: Mapping[str, Any]) -> Any:
 
 def _vehicle(
     name: str, place: Any, left: Any, speed: Any, lateral: Any, acceleration: Any
-) -> dict[tuple[str, str], Any]:
+) -> dict[tuple[SignalName, str], Any]:
     begins = zip(STARTING, (place, left, speed, lateral), strict=True)
     known: dict[str, Any] = {**dict(begins), "a_lon": acceleration}
     nothing = 0 * speed

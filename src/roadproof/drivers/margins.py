@@ -12,14 +12,23 @@ from itertools import pairwise
 from roadproof.drivers import stepped
 from roadproof.drivers.manoeuvres import MANOEUVRES, ManoeuvreName
 from roadproof.errors import InputError
+from roadproof.logic.custom_names import own_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import map_terms, with_values
-from roadproof.logic.terms import Own, Parameter, Signal, Size, Term
-from roadproof.logic.terms import children as terms_in
-from roadproof.logic.terms import with_children as with_terms
+from roadproof.logic.terms import (
+    Leaf,
+    Own,
+    Parameter,
+    Signal,
+    SignalName,
+    Size,
+    SizeName,
+    Term,
+    replace_leaves,
+)
 from roadproof.semantics.exact.algebraic import approximate
-from roadproof.semantics.exact.piecewise import Pieces, constant
-from roadproof.semantics.exact.polynomial import polynomial
+from roadproof.semantics.exact.polynomial import Polynomial, polynomial
+from roadproof.semantics.exact.signals import LineSignals
 from roadproof.semantics.exact.truth import TruthSet
 from roadproof.semantics.exact.within import truth_within
 
@@ -41,8 +50,16 @@ _PLACES = 2
 class State:
     """The vehicles at one instant: signals and sizes by name and vehicle (SI)."""
 
-    signals: Mapping[tuple[str, str], Fraction]
-    sizes: Mapping[tuple[str, str], Fraction]
+    signals: Mapping[tuple[SignalName, str], Fraction]
+    sizes: Mapping[tuple[SizeName, str], Fraction]
+
+    def along(self, moved: str = "", begin: Fraction = Fraction(0), own: Sequence[Own] = ()) -> LineSignals:
+        """As signals; what runs is where the front of ``moved`` is, from ``begin`` on, or ``own`` signals."""
+        courses: dict[Signal | Own, Polynomial] = {}
+        courses |= {Signal(*key): polynomial(x) for key, x in self.signals.items()}
+        courses |= {Signal("s", moved): polynomial(begin, Fraction(1))} if moved else {}
+        courses |= {x: polynomial(Fraction(0), Fraction(1)) for x in own}
+        return LineSignals(courses, {Size(*key): x for key, x in self.sizes.items()})
 
     def gap(self, behind: str, ahead: str) -> Fraction:
         """From the front of one vehicle to the rear of the other, along the road."""
@@ -62,7 +79,8 @@ class State:
         """The initial values of a manoeuvre that say this state; ``length`` is that of a middling vehicle."""
         first, other, last = vehicles[0], vehicles[1], vehicles[-1]
         signals, speed = self.signals, self.signals["v_lon", first]
-        sizes = {x: (self.sizes[x, first] + self.sizes[x, last]) / 2 for x in ("length", "width")}
+        box: tuple[SizeName, ...] = ("length", "width")
+        sizes = {str(x): (self.sizes[x, first] + self.sizes[x, last]) / 2 for x in box}
         gap, nothing = self.gap(first, other), Fraction(0)
         match manoeuvre:
             case "cut-in":
@@ -109,18 +127,19 @@ def boundary_of(formula: Formula, model: str, values: Mapping[str, Fraction]) ->
 
 def holds_in(formula: Formula, state: State) -> bool:
     """Whether a formula about a state, without parameters, holds in this one; exact."""
-    return truth_within(formula, _VariedState(state), Fraction(0), Fraction(1)).at(Fraction(0))
+    return truth_within(formula, state.along(), Fraction(0), Fraction(1)).at(Fraction(0))
 
 
 def margin(state: State, boundary: Boundary, vehicles: tuple[str, ...]) -> Margin:
     """How far a state is from the boundary. Ends of what was looked at, as a gap of 0, are no changes."""
     last = vehicles[-1]
     room = state.gap(vehicles[-2], last)  # less is no such manoeuvre
-    shifted = _VariedState(state, last, state.signals["s", last] - room)
+    shifted = state.along(last, state.signals["s", last] - room)
     farthest = max(room, Fraction(0)) + _FARTHEST
     gaps = _inside(truth_within(boundary.at_values, shifted, Fraction(0), farthest), farthest)
     latest = boundary.delay + _LATEST
-    delays = _inside(truth_within(boundary.delayed, _VariedState(state), Fraction(0), latest), latest)
+    responding = state.along(own=own_of([boundary.delayed]))
+    delays = _inside(truth_within(boundary.delayed, responding, Fraction(0), latest), latest)
     return Margin(_distance(gaps, room), _distance(delays, boundary.delay))
 
 
@@ -138,34 +157,10 @@ def _distance(ends: Sequence[float], here: Fraction) -> float | None:
 def _varying(formula: Formula, name: str) -> Formula:
     """The formula with a parameter as a signal of its own."""
 
-    def change(term: Term) -> Term:
-        if isinstance(term, Parameter) and term.name == name:
-            return Own(name, "", term.dimension)
-        return with_terms(term, tuple(map(change, terms_in(term))))
+    def change(leaf: Leaf) -> Term:
+        return Own(name, "", leaf.dimension) if isinstance(leaf, Parameter) and leaf.name == name else leaf
 
-    return map_terms(formula, change)
-
-
-@dataclass(frozen=True)
-class _VariedState:
-    """A state as signals: what runs is where the rear of ``moved`` is, from ``begin`` on, or a parameter."""
-
-    state: State
-    moved: str = ""
-    begin: Fraction = Fraction(0)
-
-    def signal(self, signal: Signal | Own) -> Pieces:
-        if isinstance(signal, Own):
-            return constant(polynomial(Fraction(0), Fraction(1)))
-        if signal.name == "s" and signal.vehicle == self.moved:
-            return constant(polynomial(self.begin, Fraction(1)))
-        found = self.state.signals.get((signal.name, signal.vehicle))
-        if found is None:
-            raise InputError(f"nothing is known of {signal.name}({signal.vehicle})")
-        return constant(polynomial(found))
-
-    def size(self, size: Size) -> Fraction:
-        return self.state.sizes[size.name, size.vehicle]
+    return map_terms(formula, lambda term: replace_leaves(term, change))
 
 
 # --- controllers ---------------------------------------------------------------------------------

@@ -6,7 +6,7 @@ scenario of the set holds at the start, for any lane and with the two vehicles i
 
 from collections.abc import Sequence
 
-from roadproof.analysis.placing import zones_of
+from roadproof.engines.search.question import zones_of
 from roadproof.library.compose import both, either, eventually, implication, in_some_lane, negation
 from roadproof.library.query import Query
 from roadproof.library.scenarios import (

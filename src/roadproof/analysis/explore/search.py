@@ -11,8 +11,9 @@ from fractions import Fraction
 from math import ceil, floor
 from typing import Literal, TypeAlias
 
+from roadproof.engines.encode.unroll import common_step
 from roadproof.engines.search.ask import Search, judge_found, telling_values
-from roadproof.engines.search.grid import COARSEST, coarsest, common_step, durations
+from roadproof.engines.search.grid import COARSEST, coarsest, durations
 from roadproof.engines.search.question import SearchProblem, Setting, pose
 from roadproof.engines.search.search import Attempt, find_witness, show_none
 from roadproof.errors import UsageError

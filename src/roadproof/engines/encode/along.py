@@ -7,7 +7,6 @@ ends, the moved drive is a drive of the same question: the first vehicle may sta
 
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
-from typing import assert_never
 
 from roadproof.engines.encode.circuit import Leaf, nodes
 from roadproof.engines.encode.inequalities import Quantity, inequalities_of, sizes_of
@@ -30,35 +29,22 @@ def is_same_everywhere(formula: Formula, road: Road, vehicles: Mapping[str, Vehi
     return endless and not names_places(formula, vehicles)
 
 
-def names_places(formula: Formula, vehicles: Mapping[str, Vehicle]) -> bool:
-    """Whether a comparison of the bound ``formula`` changes when all vehicles are moved along together."""
-    return any(slope_along(p).terms for p in _polynomials(formula, vehicles))
+def names_places(formula: Formula, vehicles: Mapping[str, Vehicle], place: SignalName = "s") -> bool:
+    """Whether a comparison of the bound ``formula`` changes when all vehicles are moved along, or across."""
+    return any(slope_along(p, place).terms for p in _polynomials(formula, vehicles))
 
 
-def slope_along(polynomial: Polynomial[Quantity]) -> Polynomial[Quantity]:
-    """By how much a polynomial grows for each metre that all vehicles are moved along together."""
+def slope_along(polynomial: Polynomial[Quantity], place: SignalName = "s") -> Polynomial[Quantity]:
+    """By how much a polynomial grows for each metre that all vehicles are moved along, or across (``d``).
+
+    All other signals stay; an own signal is any function of time, of which a moved drive has the same.
+    """
     total: Polynomial[Quantity] = Polynomial({})
     for monomial, factor in polynomial.terms.items():
         for k, (_, signal) in enumerate(monomial):
-            if _is_place_along(signal):
+            if signal == place and not isinstance(signal, OwnName):
                 total = total + Polynomial({monomial[:k] + monomial[k + 1 :]: factor})
     return total
-
-
-def _is_place_along(signal: SignalName | OwnName) -> bool:
-    """Whether a signal grows by a metre for each metre that its vehicle is moved along; else it stays.
-
-    An own signal is any function of time, of which a moved drive has the same.
-    """
-    if isinstance(signal, OwnName):
-        return False
-    match signal:
-        case "s":
-            return True
-        case "d" | "v_lon" | "v_lat" | "a_lon" | "a_lat" | "j_lon":
-            return False
-        case _:
-            assert_never(signal)
 
 
 def starting_range(

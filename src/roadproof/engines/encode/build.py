@@ -7,13 +7,12 @@ from itertools import combinations
 from typing import TypeAlias, assert_never
 
 from roadproof.engines.encode.circuit import Circuit, Leaf, all_of, replace_leaves
-from roadproof.engines.encode.custom_signals import own_columns
 from roadproof.engines.encode.inequalities import Quantity, inequalities_of, sizes_of
-from roadproof.engines.encode.motion import Layout, Motions, encode_motions
+from roadproof.engines.encode.motion import Layout, encode_motions
 from roadproof.engines.encode.place import be_in_lane, move_one_way, span, stay_apart, stay_on_road
 from roadproof.engines.encode.polynomial import Inequality, Polynomial, affine, variable
 from roadproof.engines.encode.problem import ColumnInequality, Problem, Row, row_of
-from roadproof.engines.encode.unroll import At, Grid, unroll
+from roadproof.engines.encode.unroll import At, unroll
 from roadproof.logic.formula import Compare, Formula
 from roadproof.world.road import Road
 from roadproof.world.signals import OwnName
@@ -74,18 +73,6 @@ class Assumptions:
         )
 
 
-def build_problem(
-    formula: Formula, road: Road, vehicles: Mapping[str, Vehicle], grid: Grid, assumptions: Assumptions
-) -> tuple[Problem, Layout]:
-    """The problem whose solutions are the drives on ``grid`` that satisfy the bound ``formula``.
-
-    Raises ``UsageError`` for interval bounds that are no multiples of dt.
-    """
-    layout = Layout(tuple(vehicles), grid, own_columns(formula))
-    wanted = encode_formula(formula, vehicles, layout, assumptions)
-    return frame(wanted, road, vehicles, layout, assumptions), layout
-
-
 def frame(
     wanted: Circuit[ColumnInequality],
     road: Road,
@@ -94,22 +81,6 @@ def frame(
     assumptions: Assumptions,
 ) -> Problem:
     """An encoded formula put among motions, road and assumptions."""
-    motions = _motions(road, vehicles, layout, assumptions)
-    around = surroundings(road, vehicles, layout, assumptions)
-    rows = (*motions.rows, *_starts_within(layout, assumptions))
-    return Problem(motions.columns, rows, all_of([wanted, *around]))
-
-
-def encode_formula(
-    formula: Formula, vehicles: Mapping[str, Vehicle], layout: Layout, assumptions: Assumptions
-) -> Circuit[ColumnInequality]:
-    """The formula as a circuit over the columns of ``layout``."""
-    return ground(unroll(formula, layout.grid), vehicles, layout, assumptions.margin, assumptions.lasting)
-
-
-def _motions(
-    road: Road, vehicles: Mapping[str, Vehicle], layout: Layout, assumptions: Assumptions
-) -> Motions:
     right, left = span(road)
     starts: dict[str, Range] = dict.fromkeys(
         vehicles, assumptions.starts or (-assumptions.reach, assumptions.reach)
@@ -117,16 +88,20 @@ def _motions(
     if assumptions.starts is None:
         starts[next(iter(vehicles))] = Fraction(0), Fraction(0)
     across: dict[str, Range] = {name: (right + v.width, left) for name, v in vehicles.items()}
-    return encode_motions(
-        vehicles,
-        layout.grid,
-        starts,
-        across,
-        assumptions.natural,
-        assumptions.inside,
-        assumptions.straight,
-        layout.own,
-    )
+    natural, straight = assumptions.natural, assumptions.straight
+    columns, rows = encode_motions(vehicles, layout, starts, across, natural, assumptions.inside, straight)
+    around = surroundings(road, vehicles, layout, assumptions)
+    return Problem(columns, (*rows, *_starts_within(layout, assumptions)), all_of([wanted, *around]))
+
+
+def encode_formula(
+    formula: Formula, vehicles: Mapping[str, Vehicle], layout: Layout, assumptions: Assumptions
+) -> Circuit[ColumnInequality]:
+    """The formula as a circuit over the columns of ``layout``.
+
+    Raises ``UsageError`` for interval bounds that are no multiples of dt.
+    """
+    return ground(unroll(formula, layout.grid), vehicles, layout, assumptions.margin, assumptions.lasting)
 
 
 def _starts_within(layout: Layout, assumptions: Assumptions) -> Iterator[Row]:

@@ -138,11 +138,3 @@ def implicant(circuit: Circuit[T], margin: Callable[[T], float]) -> tuple[T, ...
             case _:
                 assert_never(node)
     return tuple(leaf.content for leaf in chosen.values())
-
-
-def size(circuit: Circuit[T]) -> dict[str, int]:
-    """How many conjunctions, disjunctions and leaves ``circuit`` has."""
-    counts = {"all": 0, "any": 0, "leaf": 0}
-    for node in nodes(circuit):
-        counts["leaf" if isinstance(node, Leaf) else "all" if isinstance(node, All) else "any"] += 1
-    return counts

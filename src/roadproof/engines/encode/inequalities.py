@@ -141,25 +141,7 @@ def _inner_extremum(term: Term) -> t.Maximum | t.Minimum | None:
 def _replace(term: Term, old: Term, new: Term) -> Term:
     if term == old:
         return new
-    match term:
-        case t.Sum(terms):
-            return t.Sum(tuple(_replace(x, old, new) for x in terms))
-        case t.Product(factors):
-            return t.Product(tuple(_replace(x, old, new) for x in factors))
-        case t.Power(base, exponent):
-            return t.Power(_replace(base, old, new), exponent)
-        case t.Quotient(numerator, denominator):
-            return t.Quotient(_replace(numerator, old, new), _replace(denominator, old, new))
-        case t.Maximum(terms):
-            return t.Maximum(tuple(_replace(x, old, new) for x in terms))
-        case t.Minimum(terms):
-            return t.Minimum(tuple(_replace(x, old, new) for x in terms))
-        case t.Inverse(inner):
-            return t.Inverse(_replace(inner, old, new))
-        case t.Number() | t.Parameter() | t.Variable() | t.Signal() | t.Size() | t.Own():
-            return term
-        case _:
-            assert_never(term)
+    return t.with_children(term, tuple(_replace(x, old, new) for x in t.children(term)))
 
 
 def polynomial_of(term: Term, sizes: Sizes) -> Polynomial[Quantity]:

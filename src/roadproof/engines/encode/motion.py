@@ -8,6 +8,7 @@ positions follow the trapezoid rule exactly. After the last sample there is no a
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import chain
 from typing import assert_never
 
 from roadproof.engines.encode.custom_signals import OwnColumns, index_of
@@ -79,44 +80,32 @@ class Layout:
         return affine([(after, 1 / self.grid.dt), (before, -1 / self.grid.dt)])
 
 
-@dataclass(frozen=True)
-class Motions:
-    """Columns and rows of all vehicles on one grid."""
-
-    layout: Layout
-    columns: tuple[Column, ...]
-    rows: tuple[Row, ...]
-
-
 def encode_motions(
     vehicles: Mapping[str, Vehicle],
-    grid: Grid,
+    layout: Layout,
     starts: Mapping[str, Range],
     across: Mapping[str, Range],
     natural: bool,
     inside: Fraction,
-    straight: Collection[str] = (),
-    own: tuple[OwnColumns, ...] = (),
-) -> Motions:
-    """Columns and rows for ``vehicles``.
+    straight: Collection[str],
+) -> tuple[tuple[Column, ...], tuple[Row, ...]]:
+    """Columns and rows for ``vehicles``; the columns of own signals come last.
 
     ``starts``: where the front of each vehicle may be at time 0; ``across``: where its left side may
     be at all (m). ``natural`` asks in addition that no vehicle moves across the road at the first
     and last sample and that accelerations change by no more than the vehicle's jumps, from and to
     none at the end; the first speed is then the vehicle's cruising speed. ``inside`` is how far
     accelerations stay inside their limits, so that rounding cannot break them. Vehicles in
-    ``straight`` never move across the road. ``own``: own signals, whose columns come last.
+    ``straight`` never move across the road.
     """
-    layout = Layout(tuple(vehicles), grid, own)
+    grid = layout.grid
     columns = tuple(
         Column(of, *_bounds(of, vehicle, grid, starts[name], across[name], natural, name in straight))
         for name, vehicle in vehicles.items()
         for of in layout.unknowns(name)
     )
-    rows = [
-        row for name, vehicle in vehicles.items() for row in _rows(name, vehicle, layout, natural, inside)
-    ]
-    return Motions(layout, (*columns, *layout.own_unknowns()), tuple(rows))
+    rows = (_rows(name, vehicle, layout, natural, inside) for name, vehicle in vehicles.items())
+    return (*columns, *layout.own_unknowns()), tuple(chain.from_iterable(rows))
 
 
 def _bounds(

@@ -45,13 +45,13 @@ class Grid:
         if steps.denominator != 1:
             raise UsageError(
                 f"the interval bound {float(bound):g} s is no multiple of dt={float(self.dt):g} s: "
-                f"choose a dt that divides both, such as dt={_common_divisor(bound, self.dt)}"
+                f"choose a dt that divides both, such as dt={common_step(bound, self.dt)}"
             )
         return int(steps)
 
 
-def _common_divisor(a: Fraction, b: Fraction) -> Fraction:
-    """The greatest time of which both are multiples."""
+def common_step(a: Fraction, b: Fraction) -> Fraction:
+    """The greatest number of which both are multiples; of 0 and b it is b."""
     return Fraction(
         gcd(a.numerator * b.denominator, b.numerator * a.denominator), a.denominator * b.denominator
     )

@@ -2,9 +2,9 @@
 
 from collections.abc import Collection, Mapping
 from fractions import Fraction
-from math import ceil, gcd
+from math import ceil
 
-from roadproof.engines.encode.unroll import Grid
+from roadproof.engines.encode.unroll import Grid, common_step
 from roadproof.errors import UsageError
 from roadproof.logic.formula import Formula
 from roadproof.logic.fragment import intervals_of
@@ -70,10 +70,3 @@ def durations(formula: Formula, values: Mapping[str, Fraction]) -> set[Fraction]
     """The finite bounds of all intervals, in s, with parameters at ``values``."""
     bounds = (bounds_of(interval) for interval in intervals_of(with_values(formula, values)))
     return {bound for pair in bounds for bound in pair if bound is not None}
-
-
-def common_step(a: Fraction, b: Fraction) -> Fraction:
-    """The greatest number of which both are multiples; of 0 and b it is b."""
-    return Fraction(
-        gcd(a.numerator * b.denominator, b.numerator * a.denominator), a.denominator * b.denominator
-    )

@@ -6,16 +6,15 @@ says that the part holds. So a start implies the parts; what is found from it is
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations
 
+from roadproof.engines.encode.along import names_places
 from roadproof.engines.encode.build import inequality_at
 from roadproof.engines.encode.circuit import Leaf, nodes
-from roadproof.engines.encode.inequalities import Quantity, inequalities_of, sizes_of
+from roadproof.engines.encode.inequalities import inequalities_of, sizes_of
 from roadproof.engines.encode.motion import Layout
 from roadproof.engines.encode.place import span
-from roadproof.engines.encode.polynomial import Polynomial
 from roadproof.engines.search.initial_conditions import Condition, Start
 from roadproof.engines.search.question import SearchProblem
 from roadproof.engines.search.sampling import Space, State, signals_in, states
@@ -29,9 +28,8 @@ from roadproof.logic.initial_conditions import compared, conjuncts, demands
 from roadproof.logic.terms import Own, Signal, Size
 from roadproof.semantics.exact.algebraic import bounds
 from roadproof.semantics.exact.exact import judge
-from roadproof.semantics.exact.piecewise import Pieces
-from roadproof.semantics.exact.piecewise import constant as always
-from roadproof.semantics.exact.polynomial import polynomial
+from roadproof.semantics.exact.polynomial import Polynomial, polynomial
+from roadproof.semantics.exact.signals import LineSignals
 from roadproof.semantics.exact.truth import Span
 from roadproof.world.signals import FIXED, SignalName
 from roadproof.world.vehicle import Range
@@ -177,53 +175,18 @@ def _beside(parts: Formula, spoken: Sequence[Signal], question: SearchProblem) -
     beside: dict[Signal, Signal] = {}
     for name in _PLACES:
         same = [x for x in spoken if x.name == name]
-        if len(same) > 1 and not _tells_where(parts, question, name):
+        if len(same) > 1 and not names_places(parts, question.vehicles, name):
             beside |= dict.fromkeys(same[1:], same[0])
     return beside
-
-
-def _tells_where(parts: Formula, question: SearchProblem, place: SignalName) -> bool:
-    """Whether a comparison changes when all vehicles are moved together, along (s) or across the road (d)."""
-    sizes = sizes_of(question.vehicles)
-    compared = [x for x in f.subformulas(parts) if isinstance(x, f.Compare)]
-    leaves = (x for part in compared for x in nodes(inequalities_of(part, sizes)) if isinstance(x, Leaf))
-    return any(_slope(x.content.polynomial, place).terms for x in leaves)
-
-
-def _slope(polynomial: Polynomial[Quantity], place: SignalName) -> Polynomial[Quantity]:
-    """By how much it grows for each metre that all vehicles are moved."""
-    total: Polynomial[Quantity] = Polynomial({})
-    for monomial, factor in polynomial.terms.items():
-        for k, (_, signal) in enumerate(monomial):
-            if signal == place:
-                total = total + Polynomial({monomial[:k] + monomial[k + 1 :]: factor})
-    return total
-
-
-@dataclass(frozen=True)
-class _Line:
-    """A state in which one signal begins at ``low`` and grows with what the judge takes for time."""
-
-    state: State
-    sizes: Mapping[Size, Fraction]
-    free: Signal
-    low: Fraction
-
-    def signal(self, signal: Signal | Own) -> Pieces:
-        assert isinstance(signal, Signal)
-        if signal == self.free:
-            return always(polynomial(self.low, Fraction(1)))
-        return always(polynomial(self.state[signal]))
-
-    def size(self, size: Size) -> Fraction:
-        return self.sizes[size]
 
 
 def _free(parts: Formula, signal: Signal, state: State, space: Space) -> Range:
     """Around its value in ``state``, where the signal may be with the others as they are: ends on a grid."""
     low, high = space.ranges[signal]
     value = state[signal]
-    truth = judge(parts, _Line(state, space.sizes, signal, low)).truth(parts)
+    courses: dict[Signal | Own, Polynomial] = {x: polynomial(known) for x, known in state.items()}
+    courses[signal] = polynomial(low, Fraction(1))
+    truth = judge(parts, LineSignals(courses, space.sizes)).truth(parts)
     span = next((x for x in truth.spans() if _has(x, value - low)), None)
     if span is None:
         return value, value

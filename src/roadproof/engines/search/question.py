@@ -194,9 +194,11 @@ def assignments(query: Query, road: Road, chosen: Mapping[str, str]) -> tuple[di
 
 def usual_road(formula: Formula) -> Road:
     """The reference road that has the zones which ``formula`` speaks of: merge, depart, else main-2."""
-    zones = {
-        x.domain.of
-        for x in subformulas(formula)
-        if isinstance(x, f.Some | f.Every) and x.domain.kind == "zone"
-    }
+    zones = zones_of(formula)
     return load_road("merge" if "merge" in zones else "depart" if "depart" in zones else "main-2")
+
+
+def zones_of(formula: Formula) -> frozenset[str]:
+    """The zones that a formula speaks of."""
+    quantified = (x for x in subformulas(formula) if isinstance(x, f.Some | f.Every))
+    return frozenset(x.domain.of for x in quantified if x.domain.kind == "zone")

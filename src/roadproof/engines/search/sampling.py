@@ -8,7 +8,6 @@ What is handed out has been judged exactly; where nothing is, nothing is said.
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from math import isqrt
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 
 from roadproof.engines.encode.inequalities import Quantity, polynomial_of
 from roadproof.engines.encode.polynomial import Polynomial, constant, variable
+from roadproof.engines.search.patterns import spread
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare, Formula
@@ -207,8 +207,8 @@ class _StateSampler:
 
     def _around(self, shares: Points, reach: float, turn: int) -> Points:
         """Points spread evenly around some, which are shares of ranges; ``turn``: of a sequence."""
-        spread = _sequence(turn * POINTS, POINTS, len(self.axes))
-        near = np.repeat(shares, -(-POINTS // len(shares)), axis=0)[:POINTS] + (2 * spread - 1) * reach
+        evenly = spread(turn * POINTS, POINTS, len(self.axes))
+        near = np.repeat(shares, -(-POINTS // len(shares)), axis=0)[:POINTS] + (2 * evenly - 1) * reach
         columns = [x.values(np.clip(near[:, k], 0, 1)) for k, x in enumerate(self.axes)]
         return np.column_stack(columns) if columns else np.zeros((1, 0))
 
@@ -252,24 +252,6 @@ def _scaled(formula: Formula, batch: Batch) -> Formula:
         by = t.number(1 / max(typical, Fraction(1, 1 << 20)))
         scaled[part] = Compare(t.Product((by, part.left)), part.op, t.Product((by, part.right)))
     return f.transform(formula, lambda x: scaled.get(x, x))
-
-
-def _sequence(first: int, count: int, sides: int) -> Points:
-    """Points of the unit cube that lie evenly: multiples of the roots of primes (H. Weyl, 1916), cut off."""
-    if not sides:
-        return np.zeros((count, 0))
-    roots = np.sqrt(np.array(_primes(sides), dtype=np.float64))
-    return np.asarray(np.mod(np.arange(first + 1, first + count + 1)[:, None] * roots[None, :], 1.0))
-
-
-def _primes(count: int) -> list[int]:
-    found: list[int] = []
-    number = 2
-    while len(found) < count:
-        if all(number % p for p in found if p <= isqrt(number)):
-            found.append(number)
-        number += 1
-    return found
 
 
 def _unlike(points: Points, axes: list[_Axis], most: int) -> Iterator[Points]:

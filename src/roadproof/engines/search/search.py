@@ -313,7 +313,7 @@ class _Search:
             try:
                 box = box_of(problem)
                 meter = self.meter.part(REFUTING)
-                relaxed = solve_mixed(problem, box, "outer", 2, None, self.search_options.solver, meter)
+                relaxed = solve_mixed(problem, box, "outer", 2, self.search_options.solver, meter)
                 if relaxed.status == "infeasible":
                     return f"a relaxation is infeasible for {self.search_options.solver}", None
             except TooNonlinearError:

@@ -18,6 +18,8 @@ from roadproof.world.road import Road
 from roadproof.world.signals import OwnName, SignalName
 from roadproof.world.vehicle import Vehicle
 
+ROUNDS = 3
+
 
 def reshape(
     problem: Problem,
@@ -27,7 +29,6 @@ def reshape(
     found: Sequence[float],
     objective: Objective,
     depths: Sequence[ColumnInequality] = (),
-    rounds: int = 3,
 ) -> tuple[float, ...]:
     """A better drive than ``found`` for the same choices; ``found`` where there is none.
 
@@ -37,7 +38,7 @@ def reshape(
     squares = list(comfort(layout, road, vehicles, found))
     widths = [_trust_column(column) for column in problem.columns]
     best = tuple(found)
-    for _ in range(rounds):
+    for _ in range(ROUNDS):
         box = narrow(box_of(problem), best, widths)
         try:
             bounds = [near(inequality, best, box) for inequality in choices]

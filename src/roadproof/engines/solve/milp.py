@@ -10,7 +10,7 @@ import math
 import sys
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from importlib import import_module
 from importlib.util import find_spec
@@ -36,6 +36,7 @@ NODES_A_UNIT = 300
 # a limit without a solution.
 INFEASIBLE = ("infeasible", "infeasible_or_unbounded")
 _STATISTICS = "scipy.stats"
+GAP = 0.5  # how far from the best a solution may be
 TOLERANCE = 1e-4  # of a row or a bound, relative to its size
 
 
@@ -136,14 +137,6 @@ class Solution:
     values: tuple[float, ...] | tuple[Fraction, ...] = ()
 
 
-@dataclass(frozen=True)
-class Cost:
-    """What to make small: Σ weight · column, and Σ weight · |column|."""
-
-    linear: Mapping[int, float] = field(default_factory=dict)
-    absolute: Mapping[int, float] = field(default_factory=dict)
-
-
 def find_solver(name: str) -> SolverFacts:
     """Raises ``UsageError`` for an unknown name, ``MissingSolverError`` where it is not installed."""
     if name not in SOLVERS:
@@ -162,10 +155,8 @@ def solve_mixed(
     box: Box,
     side: Side = "inner",
     pieces: int = 1,
-    cost: Cost | None = None,
     solver: str = "highs",
     meter: Budget | None = None,
-    gap: float = 0.5,
 ) -> Solution:
     """A solution of ``problem`` in ``box`` (a bound pair per column), within what ``meter`` has left.
 
@@ -188,7 +179,7 @@ def solve_mixed(
         high = np.inf if row.high is None else float(row.high) + slack
         tableau.add(affine.terms, low, high)
     tableau.require(circuit)
-    return _run(tableau, len(problem.columns), cost or Cost(), known, meter, gap)
+    return _run(tableau, len(problem.columns), known, meter)
 
 
 class _Tableau:
@@ -256,24 +247,11 @@ class _Tableau:
         self.add([*affine.terms, (guard, -slack)], least - slack, np.inf)
 
 
-def _run(
-    tableau: _Tableau, wanted: int, cost: Cost, known: SolverFacts, meter: Budget, gap: float
-) -> Solution:
+def _run(tableau: _Tableau, wanted: int, known: SolverFacts, meter: Budget) -> Solution:
     cvxpy = modelling()
     from scipy.sparse import csr_array
 
-    sizes = {c: len(tableau.box) + k for k, c in enumerate(cost.absolute)}
-    for column, size in sizes.items():
-        bound = max(abs(tableau.box[column][0]), abs(tableau.box[column][1]))
-        tableau.box.append((0.0, bound))
-        tableau.add([(size, 1.0), (column, 1.0)], 0.0, np.inf)
-        tableau.add([(size, 1.0), (column, -1.0)], 0.0, np.inf)
     count = len(tableau.box)
-    weights = np.zeros(count)
-    for column, weight in cost.linear.items():
-        weights[column] += weight
-    for column, weight in cost.absolute.items():
-        weights[sizes[column]] += weight
     rows, columns, values = tableau.entries
     matrix = csr_array((values, (rows, columns)), shape=(len(tableau.low), count))
     low, high = np.array(tableau.low), np.array(tableau.high)
@@ -289,8 +267,8 @@ def _run(
         constraints.append(matrix[above] @ x >= low[above])
     if below.any():
         constraints.append(matrix[below] @ x <= high[below])
-    program = cvxpy.Problem(cvxpy.Minimize(weights @ x), constraints)
-    allowed = Limits(meter.left(), meter.seconds_left(), gap)
+    program = cvxpy.Problem(cvxpy.Minimize(np.zeros(count) @ x), constraints)  # any solution will do
+    allowed = Limits(meter.left(), meter.seconds_left(), GAP)
     status = _solve(program, known, allowed)
     meter.spend(_spent(program.solver_stats, allowed, status))
     if status in INFEASIBLE:

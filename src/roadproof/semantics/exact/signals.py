@@ -104,6 +104,24 @@ class AbstractSignals:
 
 
 @dataclass(frozen=True)
+class LineSignals:
+    """States along a line: what the judge takes for time is a value that runs, and signals depend on it."""
+
+    courses: Mapping[Signal | Own, Polynomial]
+    sizes: Mapping[Size, Fraction]
+
+    def signal(self, signal: Signal | Own) -> Pieces:
+        if signal not in self.courses:
+            raise InputError(f"nothing is said of {signal.name}({signal.vehicle}) at this instant")
+        return piecewise.constant(self.courses[signal])
+
+    def size(self, size: Size) -> Fraction:
+        if size not in self.sizes:
+            raise InputError(f"nothing is said of {size.name}({size.vehicle}) at this instant")
+        return self.sizes[size]
+
+
+@dataclass(frozen=True)
 class Courses:
     """Terms to pieces, each computed once."""
 
