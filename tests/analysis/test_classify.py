@@ -27,7 +27,7 @@ from roadproof.analysis.classify.divide import divide
 from roadproof.analysis.classify.drives import find_examples, patched, with_zones
 from roadproof.analysis.classify.shares import Shares, count_shares
 from roadproof.analysis.classify.study import ProofClaims, classification_of
-from roadproof.analysis.classify.text import claims_of, ranges, with_classes, write_classes
+from roadproof.analysis.classify.text import claims_of, with_classes, write_classes
 from roadproof.analysis.study.evidence_store import EvidenceStore
 from roadproof.analysis.study.frame import conduct
 from roadproof.errors import InputError, UsageError
@@ -42,6 +42,7 @@ from roadproof.library.loading import build_library, bundled_library, load_libra
 from roadproof.library.query import Query
 from roadproof.library.scenarios import components
 from roadproof.library.specification import Source, Specification
+from roadproof.library.words import spans
 from roadproof.logic.rewrite import with_values, without_names
 from roadproof.recordings.simulate.synthetic import simulate
 from roadproof.recordings.simulate.traffic import Traffic
@@ -656,7 +657,7 @@ def test_a_scenario_of_ones_own_is_divided_too() -> None:
 
 
 def test_ranges() -> None:
-    assert ranges([1, 2, 3, 5]) == "1-3, 5"
+    assert spans([1, 2, 3, 5], least=2) == "1-3, 5"
 
 
 @pytest.mark.parametrize(

@@ -14,8 +14,7 @@ from roadproof.errors import InputError
 from roadproof.evidence.answers import drives as kept
 from roadproof.evidence.answers.drives import SCHEMA
 from roadproof.library.elaborate import read_claim
-from roadproof.logic import syntax
-from roadproof.logic.show import text
+from roadproof.logic.show import declared
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 
@@ -99,8 +98,7 @@ class WitnessStudy:
         certificate = shelf.read_certificate(said.certificate)
         shown = None
         if certificate is not None:
-            head = text(syntax.Claim(query.claim.given, syntax.Literal_(True))).removesuffix("true")
-            parts = (read_claim(home, (head if query.claim.given else "") + part) for part in said.core)
+            parts = (read_claim(home, declared(query.claim.given) + part) for part in said.core)
             shown = Impossibility(tuple(part.formula for part in parts), said.minimal, certificate)
         return name, Outcome(
             said.scenario,

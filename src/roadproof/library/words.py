@@ -108,8 +108,8 @@ def _numbers_by(named: Iterable[tuple[int, str]]) -> dict[str, str]:
     return {name: spans(numbers) for name, numbers in found.items()}
 
 
-def spans(numbers: Iterable[int]) -> str:
-    """Numbers as text, those that follow each other as a span.
+def spans(numbers: Iterable[int], least: int = 3) -> str:
+    """Numbers as text, ``least`` or more that follow each other as a span.
 
     >>> spans([1, 2, 3, 9, 17, 18])
     '1-3, 9, 17, 18'
@@ -117,5 +117,5 @@ def spans(numbers: Iterable[int]) -> str:
     shown: list[str] = []
     for _, group in groupby(enumerate(sorted(numbers)), key=lambda x: x[1] - x[0]):
         run = [number for _, number in group]
-        shown += [f"{run[0]}-{run[-1]}"] if len(run) > 2 else map(str, run)
+        shown += [f"{run[0]}-{run[-1]}"] if len(run) >= least else map(str, run)
     return ", ".join(shown)

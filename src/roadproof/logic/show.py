@@ -33,6 +33,11 @@ _LEVEL: dict[syntax.BinaryOperator, int] = {
 }
 
 
+def declared(given: tuple[Binding, ...]) -> str:
+    """What is declared in front of a claim, as text; empty where nothing is."""
+    return text(Claim(given, syntax.Literal_(True))).removesuffix("true") if given else ""
+
+
 def text(tree: Expression | Claim | Definition, width: int | None = None) -> str:
     """``tree`` as the parser reads it; on lines of about ``width`` characters where that is given."""
     match tree:

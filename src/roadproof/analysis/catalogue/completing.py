@@ -8,8 +8,9 @@ from typing import TypeAlias
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Questions
+from roadproof.analysis.catalogue.entries import Concrete
 from roadproof.analysis.catalogue.gaps import PREFIX
-from roadproof.analysis.catalogue.showing import begins_of, names_shown
+from roadproof.analysis.catalogue.showing import begins_of, names_shown, signal_of
 from roadproof.analysis.classify.classes import Class
 from roadproof.analysis.classify.drives import Example, find_examples
 from roadproof.analysis.classify.text import with_classes, write_classes
@@ -259,36 +260,17 @@ def _lost(job: _Job, reason: str) -> list[Completion]:
 # --- catalogue.toml of drives that complete a catalogue --------------------------------------------
 
 
-@dataclass(frozen=True)
-class CatalogueEntry:
-    """An entry: a concrete test in ``file``; ``copy_of``: the test of which it is the same drive, if any."""
-
-    id: str
-    title: str
-    file: str
-    claims: tuple[str, ...]
-    copy_of: str = ""
+def catalogue_text(tests: Iterable[Concrete]) -> str:
+    """Tests as TOML; basic strings and arrays of some are written as in JSON."""
+    return "\n".join(
+        "[[test]]\n" + "".join(f"{x} = {json.dumps(y, ensure_ascii=False)}\n" for x, y in _said(test).items())
+        for test in tests
+    )
 
 
-def catalogue_text(entries: Iterable[CatalogueEntry]) -> str:
-    """The entries as TOML."""
-    return "\n".join(map(_entry, entries))
-
-
-def _entry(entry: CatalogueEntry) -> str:
-    said: dict[str, str | list[str]] = {
-        "id": entry.id,
-        "title": entry.title,
-        "file": entry.file,
-        "claims": [*entry.claims],
-    }
-    said |= {"copy_of": entry.copy_of} if entry.copy_of else {}
-    return "[[test]]\n" + "".join(f"{field} = {_written(value)}\n" for field, value in said.items())
-
-
-def _written(value: str | list[str]) -> str:
-    """A basic string of TOML, or an array of some, which are written as in JSON."""
-    return json.dumps(value, ensure_ascii=False)
+def _said(test: Concrete) -> dict[str, object]:
+    said: dict[str, object] = {"id": test.id, "title": test.title, "file": test.place, "claims": test.claims}
+    return said | ({"copy_of": test.copy_of} if test.copy_of else {})
 
 
 # --- how far apart drives begin --------------------------------------------------------------------
@@ -347,5 +329,5 @@ def _spread(points: Sequence[Mapping[str, float]]) -> list[Mapping[str, float]]:
 
 
 def _clearly(name: str) -> Fraction:
-    """What is clearly different in a number of a beginning, by its signal: ``s`` of ``s(POV) - s(SV)``."""
-    return next(far for signal, far in CLEARLY.items() if name.startswith(f"{signal}("))
+    """What is clearly different in a number of a beginning."""
+    return next(far for signal, far in CLEARLY.items() if signal == signal_of(name))

@@ -13,7 +13,7 @@ from typing import get_args
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.fact import Fact
-from roadproof.analysis.catalogue.showing import ConcreteAnswer
+from roadproof.analysis.catalogue.showing import ConcreteAnswer, signal_of
 from roadproof.analysis.explore.extreme import ExtremeQuestion, find_extreme
 from roadproof.analysis.explore.measure import Sense, read_measure
 from roadproof.analysis.placing import judged_as
@@ -85,7 +85,7 @@ def _end(basis: Basis, reach: Reach, sense: Sense) -> Fact:
     still_open = Fact("", reach.target, "open", reach.query, term=reach.term, sense=sense)
     try:
         found = find_extreme(
-            ExtremeQuestion(search, measure, _PRECISION[reach.term.partition("(")[0]], seeds=reach.known)
+            ExtremeQuestion(search, measure, _PRECISION[signal_of(reach.term)], seeds=reach.known)
         )
     except BudgetExceeded as late:
         return replace(still_open, reason=f"{told}: {late}")

@@ -3,6 +3,7 @@
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -28,6 +29,8 @@ from roadproof.library.scenarios import LANE, PAIR, SUBJECT, endangered, name_of
 from roadproof.library.scenarios import roles as scenario_roles
 from roadproof.library.specification import Specification
 from roadproof.logic import formula as f
+from roadproof.logic import syntax
+from roadproof.logic.parse import parse_claim
 from roadproof.recordings.evaluate.one_trace import OneTrace, is_pair
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.exact import judge
@@ -364,6 +367,12 @@ def _begins(states: Mapping[str, tuple[float, ...]]) -> dict[str, float]:
             f"d({name}) - d({first})": other_d - d,
         }
     return begins
+
+
+@cache
+def signal_of(begin: str) -> str:
+    """Which signal a number of ``begins_of`` is of: ``s`` of ``s(POV) - s(SV)``."""
+    return next(x.name for x in syntax.walk(parse_claim(begin).body) if isinstance(x, syntax.Call))
 
 
 def _sorted(shown: Iterable[Shown]) -> tuple[Shown, ...]:

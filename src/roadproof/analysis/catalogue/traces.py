@@ -28,11 +28,6 @@ def is_samples(entry: Concrete) -> bool:
     return not is_pair(entry.place) and Path(entry.place).suffix in (".csv", ".parquet", ".xosc")
 
 
-def first_trace(entry: Concrete) -> OneTrace | None:
-    """The first trace of a test that is samples. Raises ``InputError``."""
-    return next((trace for trace, _ in traces_of(entry, {*PAIR, *TRIPLE, *entry.roles})), None)
-
-
 def traces_of(entry: Concrete, known: Collection[str]) -> Iterator[tuple[OneTrace, Mapping[str, str]]]:
     """The traces of a test, each with what the test calls the vehicles; ``known``: the roles of scenarios."""
     path = Path(entry.place)
@@ -110,13 +105,12 @@ def courses_of(entry: Concrete) -> Courses | None:
     """How the vehicles of a test move; None where it cannot be read."""
     if entry.fault:
         return None
+    known = {*PAIR, *TRIPLE, *entry.roles}
     try:
         if entry.place.endswith(".json") and not is_pair(entry.place):
             file = load_drive(Path(entry.place))
-            known = {*PAIR, *TRIPLE, *entry.roles}
             return of_drive(play_drive(file, roles_of(entry, tuple(file.drive.vehicles), known)))
-        trace = first_trace(entry)
-        return None if trace is None else _of_trace(trace)
+        return next((_of_trace(trace) for trace, _ in traces_of(entry, known)), None)
     except InputError:
         return None
 

@@ -126,8 +126,8 @@ def with_zones(road: Road, cuts: Sequence[Fraction], zones: Sequence[Zone]) -> R
 
     def pieces(lanelet: Lanelet) -> Iterator[Lanelet]:
         for k, zone in enumerate(zones):
-            low = _later(lanelet.s[0], bounds[k])
-            high = _sooner(lanelet.s[1], bounds[k + 1])
+            low = max((x for x in (lanelet.s[0], bounds[k]) if x is not None), default=None)
+            high = min((x for x in (lanelet.s[1], bounds[k + 1]) if x is not None), default=None)
             if low is None or high is None or low < high:
                 yield replace(lanelet, id=f"{lanelet.id}-{k + 1}", zone=zone, s=(low, high))
 
@@ -135,11 +135,3 @@ def with_zones(road: Road, cuts: Sequence[Fraction], zones: Sequence[Zone]) -> R
     return Road(
         f"{road.name} with zones {told}", tuple(x for y in road.lanelets for x in pieces(y)), road.adjacent
     )
-
-
-def _later(one: Fraction | None, other: Fraction | None) -> Fraction | None:
-    return other if one is None else one if other is None else max(one, other)
-
-
-def _sooner(one: Fraction | None, other: Fraction | None) -> Fraction | None:
-    return other if one is None else one if other is None else min(one, other)

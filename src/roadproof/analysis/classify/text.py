@@ -22,6 +22,7 @@ from roadproof.library.loading import build_library
 from roadproof.library.query import Query
 from roadproof.library.scenarios import name_of
 from roadproof.library.specification import Source, Specification
+from roadproof.library.words import spans
 
 WIDTH = 110
 
@@ -80,7 +81,7 @@ def _head(classes: Classes, specification: Specification) -> Iterator[str]:
     )
     plan = classes.plan
     told = [
-        f"{len(classes.all())} classes of scenarios {ranges(plan.numbers)} of set {plan.set_name}.",
+        f"{len(classes.all())} classes of scenarios {spans(plan.numbers, least=2)} of set {plan.set_name}.",
         f"Read with {files} --set {SET_NAME}{options}; in other sets the names mean other things.",
         "A class says of one trace, its vehicles and a lane L which of these scenarios hold, and that no "
         "others between the same vehicles do. Classes of the same vehicles exclude each other, and a "
@@ -98,17 +99,6 @@ def _head(classes: Classes, specification: Specification) -> Iterator[str]:
         )
     for paragraph in told:
         yield from wrap(paragraph, WIDTH, initial_indent="# ", subsequent_indent="#   ")
-
-
-def ranges(numbers: Sequence[int]) -> str:
-    """``1-8, 12`` for 1 to 8 and 12."""
-    runs: list[list[int]] = []
-    for number in numbers:
-        if runs and runs[-1][-1] == number - 1:
-            runs[-1].append(number)
-        else:
-            runs.append([number])
-    return ", ".join(f"{run[0]}-{run[-1]}" if len(run) > 1 else str(run[0]) for run in runs)
 
 
 def _definitions(classes: Classes, specification: Specification) -> Iterator[tuple[str, str]]:

@@ -11,9 +11,8 @@ from roadproof.library.compose import both, comparison, eventually
 from roadproof.library.elaborate import read_claim, read_term
 from roadproof.library.query import Query
 from roadproof.library.specification import Specification
-from roadproof.logic import syntax
 from roadproof.logic.parse import parse_claim
-from roadproof.logic.show import text as shown
+from roadproof.logic.show import declared
 from roadproof.logic.syntax import BinaryOperator, Binding, Expression
 from roadproof.logic.terms import Dimension, Inverse, Term, Varying, leaves
 
@@ -71,7 +70,7 @@ def read_measure(
 
     Raises ``TextError``, and ``UsageError`` for what no drive changes.
     """
-    head = shown(syntax.Claim(given, syntax.Literal_(True))).removesuffix("true") if given else ""
+    head = declared(given)
     term, dimension = read_term(specification, head + text, f"--{sense}")
     if isinstance(term, Inverse):
         raise UsageError(f"--{sense} '{text}': 1/x may be infinite; ask for the other extreme of x")

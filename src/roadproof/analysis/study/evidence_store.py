@@ -160,15 +160,8 @@ class EvidenceStore:
 
     def with_paths(self, data: Any) -> Any:
         """``data`` with the names of evidence files as paths from here."""
-        match data:
-            case dict():
-                return {k: self.with_paths(v) for k, v in data.items()}
-            case list():
-                return [self.with_paths(item) for item in data]
-            case str() if data in self.names and self.folder is not None:
-                return str(self.folder / data)
-            case _:
-                return data
+        folder = self.folder
+        return data if folder is None else _mapped(data, lambda x: str(folder / x) if x in self.names else x)
 
 
 def write_index(folder: Path, data: Mapping[str, Any]) -> None:
@@ -188,15 +181,19 @@ def refuse_vanished(folder: Path) -> None:
 
 def inside(data: Any, folder: Path) -> Any:
     """``data`` with paths into ``folder`` as they are from there, so that the folder may be moved."""
+    begins = f"{folder}{os.sep}"
+    return _mapped(data, lambda x: Path(x).relative_to(folder).as_posix() if x.startswith(begins) else x)
+
+
+def _mapped(data: Any, change: Callable[[str], str]) -> Any:
+    """Plain data with every text in it changed."""
     match data:
         case dict():
-            return {key: inside(value, folder) for key, value in data.items()}
+            return {key: _mapped(value, change) for key, value in data.items()}
         case list():
-            return [inside(item, folder) for item in data]
-        case str() if data.startswith(f"{folder}{os.sep}"):
-            return Path(data).relative_to(folder).as_posix()
+            return [_mapped(item, change) for item in data]
         case _:
-            return data
+            return change(data) if isinstance(data, str) else data
 
 
 def specification_names(library: Library) -> list[str]:

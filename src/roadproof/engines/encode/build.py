@@ -11,7 +11,7 @@ from roadproof.engines.encode.inequalities import Quantity, inequalities_of, siz
 from roadproof.engines.encode.motion import Layout, encode_motions
 from roadproof.engines.encode.place import be_in_lane, move_one_way, span, stay_apart, stay_on_road
 from roadproof.engines.encode.polynomial import Inequality, Polynomial, affine, variable
-from roadproof.engines.encode.problem import ColumnInequality, Problem, Row, row_of
+from roadproof.engines.encode.problem import Column, ColumnInequality, Problem, Row, row_of
 from roadproof.engines.encode.unroll import At, unroll
 from roadproof.logic.formula import Compare, Formula
 from roadproof.world.road import Road
@@ -81,6 +81,14 @@ def frame(
     assumptions: Assumptions,
 ) -> Problem:
     """An encoded formula put among motions, road and assumptions."""
+    columns, rows = _motions(road, vehicles, layout, assumptions)
+    around = surroundings(road, vehicles, layout, assumptions)
+    return Problem(columns, (*rows, *_starts_within(layout, assumptions)), all_of([wanted, *around]))
+
+
+def _motions(
+    road: Road, vehicles: Mapping[str, Vehicle], layout: Layout, assumptions: Assumptions
+) -> tuple[tuple[Column, ...], tuple[Row, ...]]:
     right, left = span(road)
     starts: dict[str, Range] = dict.fromkeys(
         vehicles, assumptions.starts or (-assumptions.reach, assumptions.reach)
@@ -89,9 +97,7 @@ def frame(
         starts[next(iter(vehicles))] = Fraction(0), Fraction(0)
     across: dict[str, Range] = {name: (right + v.width, left) for name, v in vehicles.items()}
     natural, straight = assumptions.natural, assumptions.straight
-    columns, rows = encode_motions(vehicles, layout, starts, across, natural, assumptions.inside, straight)
-    around = surroundings(road, vehicles, layout, assumptions)
-    return Problem(columns, (*rows, *_starts_within(layout, assumptions)), all_of([wanted, *around]))
+    return encode_motions(vehicles, layout, starts, across, natural, assumptions.inside, straight)
 
 
 def encode_formula(

@@ -37,7 +37,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic.formula import Formula
 from roadproof.logic.parse import parse_claim
-from roadproof.logic.show import text as show
+from roadproof.logic.show import declared
 from roadproof.logic.syntax import BinaryOperator
 from roadproof.verdict import DriveVerdict
 from roadproof.world.signals import LIMITED, SignalName
@@ -310,7 +310,7 @@ def _of_measure(
     if len(at) > 1:
         raise InputError(f"{where}: it is no value of a measure")
     specification, given = one.common.specification, one.base.claim.given
-    head = show(syntax.Claim(given, syntax.Literal_(True))).removesuffix("true") if given else ""
+    head = declared(given)
     term = head + extreme.measure
     left, dimension = parse_claim(term).body, read_term(specification, term, "measure")[1]
     if extreme.unit != unit_text(dimension):

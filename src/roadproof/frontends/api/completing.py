@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from roadproof.analysis.catalogue.asked import Questions
-from roadproof.analysis.catalogue.completing import CatalogueEntry, Completion, catalogue_text
+from roadproof.analysis.catalogue.completing import Completion, catalogue_text
 from roadproof.analysis.catalogue.entries import Concrete
 from roadproof.analysis.catalogue.listing import FILE_NAME
 from roadproof.analysis.catalogue.showing import Freedom, show
@@ -30,7 +30,7 @@ class CompletionAnswer:
 
     folder: Path
     completions: tuple[Completion, ...]
-    copies: tuple[CatalogueEntry, ...] = ()
+    copies: tuple[Concrete, ...] = ()
     told: tuple[str, ...] = ()
 
     def __str__(self) -> str:
@@ -73,10 +73,9 @@ def write_completions(
             if x.empty is not None:
                 write_whole(folder / PROOFS / f"{x.name}.json", to_json(x.empty).encode())
         entries = [
-            CatalogueEntry(path.stem, titles[name], path.name, (made[name].target,))
-            for name, path in files.items()
+            Concrete(path.stem, path.name, titles[name], (made[name].target,)) for name, path in files.items()
         ]
-        copies, told = list[CatalogueEntry](), list[str]()
+        copies, told = list[Concrete](), list[str]()
         for name in names:
             for copy in _exported(folder, name, list(files.values()), specs, told):
                 copies += _listed(folder, copy, entries, asked, told)
@@ -122,8 +121,8 @@ def _free(folder: Path, name: str) -> Path:
 
 
 def _listed(
-    folder: Path, copy: ExportedDrive, entries: Sequence[CatalogueEntry], asked: Questions, told: list[str]
-) -> Iterator[CatalogueEntry]:
+    folder: Path, copy: ExportedDrive, entries: Sequence[Concrete], asked: Questions, told: list[str]
+) -> Iterator[Concrete]:
     """The entry of a copy, which claims what its original does; it is looked at again as it was written."""
     original = next(x for x in entries if x.id == copy.name)
     path = next((x for x in copy.files if x.name.endswith(_TESTS.get(copy.format, "\0"))), None)
@@ -137,10 +136,10 @@ def _listed(
     if not claims:
         what = shown.fault or f"it shows {', '.join(sorted(shown.names)) or 'no scenario'}"
         told.append(f"{original.id} as {copy.format} is no test of {original.claims[0]}: {what}")
-    yield CatalogueEntry(f"{original.id} as {copy.format}", original.title, place, claims, original.id)
+    yield Concrete(f"{original.id} as {copy.format}", place, original.title, claims, original.id)
 
 
-def _with_known(path: Path, entries: Sequence[CatalogueEntry]) -> str:
+def _with_known(path: Path, entries: Sequence[Concrete]) -> str:
     """The text of a ``catalogue.toml``, with what it says already."""
     if not path.exists():
         return catalogue_text(entries)
