@@ -11,6 +11,7 @@ from roadproof.evidence.drive_file import load_drive
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.settings.groups import Budget
+from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import Scenario, applied
 from roadproof.world.models import load_vehicle
 

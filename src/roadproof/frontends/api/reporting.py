@@ -17,6 +17,7 @@ from roadproof.frontends.report.page.sections import evidence_section, section
 from roadproof.frontends.settings import evidence
 from roadproof.frontends.settings.keywords import CheckKeywords, PageKeywords
 from roadproof.frontends.settings.signatures import takes
+from roadproof.library.loading import load_library
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.specification import Library
 from roadproof.library.words import words_of
