@@ -54,15 +54,18 @@ def check_sessions(item: Sessions, results: Results, update: bool) -> list[Wrong
 
 
 def check_statement(item: Statement, results: Results, update: bool) -> list[Wrong]:
-    path = ROOT / item.page
-    page = path.read_text("utf-8")
     outcome = results.ask(item.commands)
-    differences = [d for figures in item.figures for d in compare(figures, page, outcome)]
-    differences += _exits(page, item.named or item.commands[-1], outcome.exit)
-    if differences and update:
-        path.write_text(_put_right(page, differences), "utf-8")
+    texts = {name: (ROOT / name).read_text("utf-8") for name in (item.data or item.page, item.page)}
+    shown, page = texts[item.data or item.page], texts[item.page]
+    found = {name: list[Difference]() for name in texts}
+    found[item.data or item.page] += [d for x in item.figures for d in compare(x, shown, outcome)]
+    found[item.page] += _exits(page, item.named or item.commands[-1], outcome.exit)
+    for name, differences in found.items():
+        if differences and update:
+            (ROOT / name).write_text(_put_right(texts[name], differences), "utf-8")
     return [
-        Wrong(item.page, _line_of(page, d), d.said, f"{d.found}   ($ {item.commands[-1]})")
+        Wrong(name, _line_of(texts[name], d), d.said, f"{d.found}   ($ {item.commands[-1]})")
+        for name, differences in found.items()
         for d in differences
     ]
 

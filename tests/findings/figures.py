@@ -56,6 +56,7 @@ class Statement:
     figures: tuple[Figures, ...] = ()
     quick: bool = False  # asked in every run of the tests
     named: str = ""  # how the page names the last command, where it leaves something out
+    data: str = ""  # the file with the figures, if the page shows them as a table of data
 
 
 @dataclass(frozen=True)

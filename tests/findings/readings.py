@@ -154,7 +154,9 @@ def drives_that_serve(outcome: Outcome) -> tuple[int, int, str]:
 def us101_rows(outcome: Outcome, sector: str = "") -> tuple[str, ...]:
     """The cells of a results table of US-101, row by row; ``sector`` is what its file's name ends in."""
     lines = (outcome.folder / US101 / f"results{sector}.md").read_text("utf-8").splitlines()
-    return tuple(line.split("| here | ")[1].rstrip(" |") for line in lines if "| here |" in line)
+    return tuple(
+        line.split("| here | ")[1].rstrip(" |").replace(" | ", ",") for line in lines if "| here |" in line
+    )
 
 
 def uncertain_matches(outcome: Outcome) -> tuple[int, int]:

@@ -477,27 +477,27 @@ LIMITS = (
 
 EVALUATE = "roadproof evaluate ../shared/data/us101 --out out/us101 --no-pictures"
 US101 = "docs/explanation/us101.md"
-ROWS = "".join(f"| {x} | {name} | {{}} |\n" for x in ("0", "0.6") for name in ("base", "extA", "ext"))
-COLUMNS = "| minDanger | set | traces | matching | recall | {} |\n|---:|---|---:|---:|---:|{}|\n"
 
-
-def _table(first: int, sector: str) -> Figures:
-    """A results table of the page: its columns are what tells it from the others."""
-    names = " | ".join(f"s{i}" for i in range(first, first + 8))
-    head = COLUMNS.format(names, "|".join(["---:"] * 8))
-    return Figures(head + ROWS, lambda x: r.us101_rows(x, sector))
-
-
-TABLES = (_table(1, ""), _table(9, "-merge-zone"), _table(17, "-departure-zone"))
+TABLES = tuple(
+    Figures(
+        "".join(f"{where},{x},{name},{{}}\n" for x in ("0", "0.6") for name in ("base", "extA", "ext")),
+        lambda x, ending=ending: r.us101_rows(x, ending),
+    )
+    for where, ending in (
+        ("main road", ""),
+        ("merge zone", "-merge-zone"),
+        ("departure zone", "-departure-zone"),
+    )
+)
 
 LISTED = "roadproof evaluate ../shared/data/us101 --list"
 MEASURED = (
+    Statement(US101, (EVALUATE,), TABLES, data="docs/data/us101.csv"),
     Statement(US101, (LISTED,), (Figures("That is so in {} of the eight windows", r.windows_with_ramps),)),
     Statement(
         US101,
         (EVALUATE,),
         (
-            *TABLES,
             Figures("Scenarios {} match in {} windows", r.sectors_of_matches),
             Figures("{} of {} matches are uncertain", r.uncertain_matches),
             Figures("{} pairs violate the RSS distance", lambda x: r.us101_counts(x)["violating"]),
@@ -522,7 +522,7 @@ MEASURED = (
             Figures("One sample of {} has the centre", "vehicles (Car evaluated), {} samples"),
             Figures("{} sample of 14", r.samples_on_no_lane),
             Figures(
-                "they are off by {} to {} % on average, by up to {} % on a vehicle's whole way (obstacle 610 of "
+                "they are off by {} to {} % on average; at most by {} % on a vehicle's whole way (obstacle 610 of "
                 "USA_US101-10_4_T-1) and {} % at one place",
                 r.errors_of_lengths,
             ),

@@ -30,6 +30,9 @@ def test_a_page_says_what_comes_out(statement: Statement, results: Results) -> N
 def test_every_figure_is_on_its_page_once(statement: Statement) -> None:
     page = ROOT.joinpath(statement.page).read_text("utf-8")
     assert f"`{statement.named or statement.commands[-1]}`" in page
+    if statement.data:
+        assert f"/{Path(statement.data).name})" in page
+        page = ROOT.joinpath(statement.data).read_text("utf-8")
     for figures in statement.figures:
         assert len(covered(figures, page)) == figures.said.count("{}"), figures.said
         assert compare_without_output(figures, page) == [], figures.said
