@@ -5,11 +5,15 @@ import json
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from inspect import isclass, isfunction
+from inspect import getdoc, isclass, isfunction
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import roadproof
+from roadproof.frontends.api.answer import Answer
+from roadproof.frontends.api.definitions import Definitions
+from roadproof.frontends.api.phrases import Phrase
+from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.cli.help import COMMANDS, command_parser, jobs
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import number_in
@@ -214,11 +218,30 @@ def python_api() -> str:
         "Every public name of `import roadproof as rp`, generated from docstrings. [Python](python.md) shows "
         "them in use.",
     ]
+    lines += ["", "## Questions", "", "| function | | answer | members of the answer |", "|---|---|---|---|"]
+    lines += [row for name in functions if (row := _question(name, public[name]))]
     for title, names in (("Functions", functions), ("Classes", classes)):
         lines += ["", f"## {title}", "", *(f"::: roadproof.{name}\n" for name in names)]
     named = ", ".join(map(_code, others))
     lines += ["", "## Values for formulas", "", f"Vehicles, lanes and operators: {named}."]
     return "\n".join(lines) + "\n"
+
+
+def _question(name: str, function: Callable[..., object]) -> str:
+    """A row: a function, the first sentence about it, its answer and members; empty for parts of formulas."""
+    answer: object = function.__annotations__["return"]
+    answer = next(iter(get_args(answer)), answer)
+    if not isclass(answer) or answer is Phrase or answer is Definitions:
+        return ""
+    about = (getdoc(function) or "").partition("\n\n")[0].replace("``", "`")
+    every = _members(StudyAnswers) if issubclass(answer, Answer) else set()
+    members = sorted(x for x in _members(answer) - every if x[0] != "_")
+    shown = ", ".join(map(_code, members))
+    return f"| [{name}](#roadproof.{name}) | {_cell(about)} | `{answer.__name__}` | {shown} |"
+
+
+def _members(of: type) -> set[str]:
+    return {*dir(of), *getattr(of, "__dataclass_fields__", ())}
 
 
 def json_fields() -> str:

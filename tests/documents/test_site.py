@@ -150,3 +150,10 @@ def test_every_table_of_data_is_on_a_page(site: Path) -> None:
     for path in ROOT.glob("docs/data/**/*.csv"):
         assert f"/{path.name})" in "".join(x.read_text("utf-8") for x in ROOT.glob("docs/*/*.md")), path
     assert "perception by distance" in pages
+
+
+def test_every_question_is_in_the_reference() -> None:
+    page = PAGES["reference/api.md"]().partition("\n## Functions\n")[0]
+    for name in {"prove", "witness", "catalogue", "evaluate"}:
+        assert f"| [{name}](#roadproof.{name}) | " in page
+    assert "(#roadproof.F)" not in page
