@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.row import Row
+from roadproof.frontends.report.sheet import Sheet, as_rows
 from roadproof.runtime.files import write_whole
 from roadproof.verdict import ExitCode, Verdict
 
@@ -67,9 +68,14 @@ class Answer(ABC):
     def exit_code(self) -> ExitCode:
         """The exit code of the command line with this answer."""
 
+    @property
     @abstractmethod
+    def _sheet(self) -> Sheet[Any]:
+        """An entry for each thing that was asked."""
+
     def rows(self) -> list[Row]:
         """A row for each thing that was asked."""
+        return as_rows(self._sheet)
 
     @abstractmethod
     def as_data(self) -> dict[str, Any]:

@@ -10,9 +10,9 @@ from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.definitions import Among, Definitions, load
-from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.api.studied import StudyAnswers
+from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.frontends.settings.keywords import AskKeywords
 from roadproof.frontends.settings.signatures import takes
 from roadproof.frontends.settings.studies import Ask
@@ -77,10 +77,16 @@ class Answers(StudyAnswers[Listing[A, R], A, R]):
     def evidence(self) -> tuple[Evidence, ...]:
         return tuple(y for x in self.each.values() if (y := x.certificate or x.drive) is not None)
 
-    def rows(self) -> list[Row]:
-        return [
-            {"name": name, "verdict": str(x.verdict), "reason": x.reason} for name, x in self.each.items()
-        ]
+    @property
+    def _sheet(self) -> Sheet[tuple[str, A]]:
+        return Sheet(
+            (
+                Column("name", lambda x: x[0]),
+                Column("verdict", lambda x: x[1].verdict),
+                Column("reason", lambda x: x[1].reason),
+            ),
+            [*self.each.items()],
+        )
 
     def _index(self, records: Mapping[str, R]) -> object:
         verdicts = tuple(records[name].verdict for name in self.study.names)

@@ -30,12 +30,12 @@ from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.completing import CompletionAnswer, write_completions
 from roadproof.frontends.api.definitions import Definitions, load
 from roadproof.frontends.api.restricting import drivers_of, restricted
-from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import basis_of, one_of
 from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import catalogue as report
 from roadproof.frontends.report import catalogue_drivers as decisions
 from roadproof.frontends.report.catalogue_drives import DrivePicture, draw_tests
+from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import CatalogueKeywords
 from roadproof.frontends.settings.signatures import takes
@@ -141,21 +141,11 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record]):
     def _index(self, records: Mapping[str, kept.Record]) -> kept.Index:
         return self.result.index(records, self.seconds)
 
-    def rows(self) -> list[Row]:
-        """A row for each scenario and class, and for each class of gaps that is shown or asked for."""
-        verdicts, gaps = self.verdicts, self.tested.gaps
-        return [
-            {
-                "target": x.name,
-                "words": x.words,
-                "sector": x.sector,
-                "verdict": str(verdicts.get(x.name, Verdict.COVERED)),
-                "tests": len(x.tested),
-                "tested_by": ", ".join(x.tested),
-                "possible_in": ", ".join(x.possible),
-            }
-            for x in (*self.tested.all_targets, *gaps.empty)
-        ]
+    @property
+    def _sheet(self) -> Sheet[kept.Target]:
+        """An entry for each scenario and class, and for each class of gaps that is shown or asked for."""
+        found = self.tested
+        return report.sheet_of((*found.all_targets, *found.gaps.empty), self.verdicts)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """Which test shows which scenario and gap, how many tests each class has; then all tests, small."""

@@ -25,10 +25,10 @@ from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Among, Definitions, load
 from roadproof.frontends.api.restricting import restricted
-from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import classify as report
+from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import ClassifyKeywords
 from roadproof.frontends.settings.signatures import takes
@@ -86,20 +86,10 @@ class Classifications(StudyAnswers[Classification, Example | ProofResult[ClassCl
         broken = self.shares is not None and self.shares.broken
         return max(code, ExitCode.CROSSCHECK_FAILED) if broken else code
 
-    def rows(self) -> list[Row]:
-        """A row for each class; situations where shares were counted."""
-        counts: Mapping[str, int] = {} if self.shares is None else self.shares.situations
-        return [
-            {
-                "class": x.one.name,
-                "scenarios": ", ".join(map(str, x.one.scenarios)),
-                "where": x.one.place,
-                "verdict": str(x.verdict),
-                "situations": counts.get(x.one.name),
-                "reason": x.reason,
-            }
-            for x in self.classified.examples
-        ]
+    @property
+    def _sheet(self) -> Sheet[kept.CountedClass]:
+        """An entry for each class; situations where shares were counted."""
+        return report.sheet_of(self._index(self.found.records).classes)
 
     @cached_property
     def words(self) -> Called:

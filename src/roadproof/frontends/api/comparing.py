@@ -21,10 +21,10 @@ from roadproof.evidence.heading import heading
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Answer, Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, load
-from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import setting, work_of
-from roadproof.frontends.report.compare import as_text as compare_text
+from roadproof.frontends.report import compare as compare_report
 from roadproof.frontends.report.drive import draw_drive
+from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.keywords import CompareKeywords
 from roadproof.frontends.settings.questions import Compare
 from roadproof.frontends.settings.signatures import takes
@@ -63,11 +63,9 @@ class ComparisonAnswer(Answer):
     def exit_code(self) -> ExitCode:
         return ExitCode.UNKNOWN if self.relation == "unknown" else ExitCode.AS_EXPECTED
 
-    def rows(self) -> list[Row]:
-        return [
-            {"direction": name, "claim": x.claim.text, "verdict": str(x.verdict), "reason": x.reason}
-            for name, x in self.comparison.directions.items()
-        ]
+    @property
+    def _sheet(self) -> Sheet[tuple[str, Direction]]:
+        return compare_report.sheet_of(self.comparison)
 
     def as_data(self) -> dict[str, Any]:
         found = self.comparison
@@ -102,7 +100,7 @@ class ComparisonAnswer(Answer):
         return ((n, picture(draw_drive(x.file, library))) for n, x in drives.items() if x is not None)
 
     def __str__(self) -> str:
-        return compare_text(self.comparison, self.specification)
+        return compare_report.as_text(self.comparison, self.specification)
 
 
 @takes(Compare)

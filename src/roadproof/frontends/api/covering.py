@@ -24,10 +24,10 @@ from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, load
 from roadproof.frontends.api.restricting import restricted
-from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import as_road, basis_of
 from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.report import coverage as report
+from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import CoverageKeywords
 from roadproof.frontends.settings.signatures import takes
@@ -87,25 +87,12 @@ class Coverages(StudyAnswers[Coverage, Kept, kept.Record]):
     def exit_code(self) -> ExitCode:
         return CODES[self.verdict]
 
-    def rows(self) -> list[Row]:
-        """A row for each class of gaps, and where there is none, for each claim that shows so."""
-        rows: list[Row] = [
-            {
-                "scenario": None if x.part is None else x.part.scenario,
-                "name": "" if x.part is None else self.words[x.part.scenario].name,
-                "component": "" if x.part is None else x.part.component,
-                "condition": "" if x.part is None else x.part.condition,
-                "verdict": str(x.verdict),
-                "drives": len(x.gaps),
-                "first_caught_by": ", ".join(dict.fromkeys(gap.first for gap in x.gaps)),
-                "reason": x.reason,
-            }
-            for x in self.surveyed.classes
-        ]
-        return rows or [
-            {"claim": x.claim.text, "verdict": str(x.verdict), "reason": x.reason}
-            for x in self.surveyed.claims
-        ]
+    @property
+    def _sheet(self) -> Sheet[kept.CountedClass] | Sheet[kept.Claim]:
+        """An entry for each class of gaps, and where there is none, for each claim that shows so."""
+        index = self._index(self.found.records)
+        names = {number: x.name for number, x in self.words.items()}
+        return report.sheet_of(index, names) if index.classes else report.sheet_of_claims(index)
 
     def _index(self, records: Mapping[str, kept.Record]) -> kept.Index:
         return self.study.index(self.surveyed, self.found.answers, records, self.seconds)

@@ -22,16 +22,15 @@ from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.restricting import restricted
-from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import searches_of, setting, work_of
 from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.report.drive import draw_drive
-from roadproof.frontends.report.witness import as_line, files_of, kinds
+from roadproof.frontends.report.sheet import Sheet
+from roadproof.frontends.report.witness import SearchedFor, as_line, files_of, kinds, sheet_of
 from roadproof.frontends.settings.keywords import WitnessKeywords
 from roadproof.frontends.settings.questions import Witness
 from roadproof.frontends.settings.signatures import takes
 from roadproof.library.specification import Library
-from roadproof.library.words import words_of
 from roadproof.runtime.files import make_folder, write_whole
 from roadproof.runtime.progress import Listener, listening
 from roadproof.verdict import ExitCode, Verdict, exit_code
@@ -92,22 +91,10 @@ class Witnesses(StudyAnswers[WitnessStudy, Outcome, kept.Record]):
     def exit_code(self) -> ExitCode:
         return exit_code((x.verdict, Verdict.WITNESSED) for x in self.outcomes)
 
-    def rows(self) -> list[Row]:
+    @property
+    def _sheet(self) -> Sheet[SearchedFor]:
         homes = (search.specification for search in self.study.named.values())
-        return [
-            {
-                "scenario": x.scenario,
-                "name": "" if x.scenario is None else words_of(home, x.scenario).name,
-                "set": x.set_name,
-                "formula": x.query.text,
-                "verdict": str(x.verdict),
-                "road": x.road,
-                "drives": len(x.drives),
-                "reason": x.reason or _core_of(x),
-                "seconds": x.seconds["all"],
-            }
-            for x, home in zip(self.outcomes, homes, strict=True)
-        ]
+        return sheet_of([*zip(self.outcomes, homes, strict=True)])
 
     def as_data(self) -> dict[str, Any]:
         return write(self._index(self.found.records))
@@ -141,11 +128,6 @@ class Witnesses(StudyAnswers[WitnessStudy, Outcome, kept.Record]):
         """How many were found, in words."""
         found = sum(x.verdict is Verdict.WITNESSED for x in self.outcomes)
         return f"{found} of {len(self.outcomes)} witnessed in {self.seconds:.1f} s"
-
-
-def _core_of(outcome: Outcome) -> str:
-    """The parts that clash where there is no drive at all; empty otherwise."""
-    return "" if outcome.impossibility is None else f"core: {'; '.join(outcome.impossibility.told)}"
 
 
 @takes(Witness)

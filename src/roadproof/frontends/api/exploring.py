@@ -18,10 +18,10 @@ from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.phrases import Term
 from roadproof.frontends.api.restricting import restricted
-from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import searches_of, setting, work_of
 from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.report import explore as report
+from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.groups import Run
 from roadproof.frontends.settings.keywords import ExploreKeywords
 from roadproof.frontends.settings.questions import Explore
@@ -41,40 +41,25 @@ class Explorations(StudyAnswers[Exploration, ExplorationResult, kept.Record]):
         """What was found, by the name of the formula."""
         return {name: self.found.answers[name] for name in self.study.named}
 
-    def _findings(self) -> Iterator[tuple[str, str, PointFinding]]:
-        for name, explored in self.explored.items():
-            yield from ((name, "value", x) for x in explored.findings)
-            for boundary in explored.boundaries:
-                yield name, "boundary, held", boundary.held
-                yield name, "boundary, missed", boundary.missed
-            for extreme in explored.extremes:
-                sides = {"best": extreme.best, "missed": extreme.missed}
-                sense = f"{extreme.measure.sense} {extreme.measure.text}"
-                yield from ((name, f"{sense}, {side}", x) for side, x in sides.items() if x is not None)
+    @property
+    def _entries(self) -> list[report.Entry]:
+        return [*report.entries_of(self.study.named, self.explored)]
 
     @property
     def verdicts(self) -> dict[str, Verdict]:
-        return {f"{name}, {kind} {_at(x)}": x.verdict for name, kind, x in self._findings()}
+        return {f"{name}, {kind} {_at(x)}": x.verdict for name, kind, x, _ in self._entries}
 
     @property
     def evidence(self) -> tuple[Evidence, ...]:
-        return tuple(y for _, _, x in self._findings() if (y := x.certificate or x.drive) is not None)
+        return tuple(y for _, _, x, _ in self._entries if (y := x.certificate or x.drive) is not None)
 
     @property
     def exit_code(self) -> ExitCode:
         return exit_code((x, x) for each in self.explored.values() for x in each.verdicts)
 
-    def rows(self) -> list[Row]:
-        """A row for each value, and for both sides of each boundary and extreme; values in SI units."""
-        rows: list[Row] = []
-        for name, kind, x in self._findings():
-            knobs = [knob.name for knob in self.study.named[name].knobs]
-            at: Row = {f"at {k}": float(value) for k, value in enumerate(x.at, 1)}
-            if kind in ("value", "boundary, held", "boundary, missed"):
-                at = {knob: float(value) for knob, value in zip(knobs, x.at, strict=True)}
-            rows.append({"formula": name, "kind": kind, **at, "verdict": str(x.verdict), "reason": x.reason})
-        names = dict.fromkeys(column for row in rows for column in row)
-        return [{column: row.get(column) for column in names} for row in rows]
+    @property
+    def _sheet(self) -> Sheet[report.Entry]:
+        return report.sheet_of(self._entries)
 
     def _index(self, records: Mapping[str, kept.Record]) -> kept.Index:
         return self.study.index(records, self.seconds)

@@ -15,12 +15,11 @@ from roadproof.evidence.answers import plates as kept
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, load
-from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import preventable as report
 from roadproof.frontends.report.drive import draw_drive
-from roadproof.frontends.report.sheet import as_csv, as_rows
+from roadproof.frontends.report.sheet import Sheet, as_csv
 from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import PreventableKeywords
 from roadproof.frontends.settings.signatures import takes
@@ -60,9 +59,10 @@ class Plates(StudyAnswers[Preventable, Found, kept.Record]):
         drives = [y.drive for x in self.plates for y in x.shown if y.drive is not None]
         return (*drives, *(x.certificate for x in self.lemmas if x.certificate is not None))
 
-    def rows(self) -> list[Row]:
-        """A row for each span in which a collision is unpreventable, in SI units."""
-        return as_rows(report.sheet_of(self.study, self.plates))
+    @property
+    def _sheet(self) -> Sheet[report.Entry]:
+        """An entry for each span in which a collision is unpreventable, in SI units."""
+        return report.sheet_of(self.study, self.plates)
 
     def _index(self, records: Mapping[str, kept.Record]) -> kept.Index:
         return self.study.index(records, self.seconds)
@@ -79,7 +79,7 @@ class Plates(StudyAnswers[Preventable, Found, kept.Record]):
                     )
 
     def files(self, pictures: bool) -> dict[str, bytes]:
-        table = {"plates.csv": as_csv(report.sheet_of(self.study, self.plates)).encode()}
+        table = {"plates.csv": as_csv(self._sheet).encode()}
         sheet = {"plates": picture(report.draw_sheet(self.study, self.plates))} if pictures else {}
         return table | drawn(sheet)
 

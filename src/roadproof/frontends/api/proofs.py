@@ -21,10 +21,10 @@ from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api import kernel as kernels
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, load
-from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import models_of, setting, work_of
 from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.report import claims as claims_text
+from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.groups import Run, SearchPlace
 from roadproof.frontends.settings.keywords import ProveKeywords
 from roadproof.frontends.settings.questions import Prove
@@ -113,21 +113,9 @@ class Proofs(StudyAnswers[Claims, ClaimResult, Record]):
                 lines.append(f"kernel: {ruling.told}  {claim}" + f": {ruling.reason}" * bool(ruling.reason))
         return "\n".join([*lines, str(self.kernel)])
 
-    def rows(self) -> list[Row]:
-        return [
-            {
-                "claim": " ".join(x.task.claim.split()),
-                "assuming": ", ".join(x.task.assuming),
-                "premises": _premises(x),
-                "set": x.task.set_name,
-                "verdict": str(x.verdict),
-                "refuted_by": x.settled.refuted_by,
-                "expected": str(x.expected),
-                "reason": x.settled.result.reason,
-                "seconds": x.settled.result.seconds,
-            }
-            for x in self.answers
-        ]
+    @property
+    def _sheet(self) -> Sheet[ClaimResult]:
+        return claims_text.sheet_of(self.answers)
 
     def as_data(self) -> dict[str, Any]:
         files = {name: x.claim.evidence for name, x in self.found.records.items()}
@@ -233,12 +221,6 @@ def claims_asked(
 
 def _said(ruling: Ruling) -> KernelSays:
     return KernelSays(says=str(ruling), reason=ruling.reason, premises=ruling.premises.count)
-
-
-def _premises(answer: ClaimResult) -> str:
-    """The limits and facts about motion that a proof uses; empty where there is no proof or it uses none."""
-    certificate = answer.settled.result.certificate
-    return "" if certificate is None else "; ".join(certificate.assumed.premises)
 
 
 @dataclass(frozen=True)

@@ -18,13 +18,12 @@ from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Among, Definitions, load
 from roadproof.frontends.api.restricting import restricted
-from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import basis_of, positive
 from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import order as order_report
 from roadproof.frontends.report import overlap as overlap_report
 from roadproof.frontends.report import redundancy as redundancy_report
-from roadproof.frontends.report.sheet import Sheet, as_csv, as_rows
+from roadproof.frontends.report.sheet import Sheet, as_csv
 from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import OrderKeywords, OverlapKeywords, RedundancyKeywords
 from roadproof.frontends.settings.signatures import takes
@@ -69,9 +68,6 @@ class Overlaps(StudyAnswers[Overlap, PairVerdict, overlap_answers.Record]):
     @property
     def _sheet(self) -> Sheet[PairVerdict]:
         return overlap_report.sheet_of(self.pairs, self.words)
-
-    def rows(self) -> list[Row]:
-        return as_rows(self._sheet)
 
     def _index(self, records: Mapping[str, overlap_answers.Record]) -> overlap_answers.Index:
         return self.study.index(records, self.seconds)
@@ -145,8 +141,9 @@ class Orders(StudyAnswers[Ordering, Decisions, order_answers.Record]):
     def evidence(self) -> tuple[Evidence, ...]:
         return (*(x.certificate for x in self.order.proved), *(x.drive for x in self.order.drives))
 
-    def rows(self) -> list[Row]:
-        return [{"implication": name, "verdict": str(x)} for name, x in self.verdicts.items()]
+    @property
+    def _sheet(self) -> Sheet[tuple[str, Verdict]]:
+        return order_report.sheet_of(self.verdicts)
 
     @cached_property
     def words(self) -> Called:
@@ -205,21 +202,10 @@ class Redundancies(StudyAnswers[Redundancy, ChangeFindings, redundancy_answers.R
         every = (x for each in self.findings.values() for x in each)
         return tuple(y for x in every if (y := x.certificate or x.drive or x.trace) is not None)
 
-    def rows(self) -> list[Row]:
-        return [
-            {
-                "scenario": number,
-                "name": self.words[number].name,
-                "part": x.change.part,
-                "where": " > ".join(x.change.where),
-                "as": x.change.value,
-                "redundant": x.redundant,
-                "verdict": str(x.verdict),
-                "reason": x.reason,
-            }
-            for number, each in self.findings.items()
-            for x in each
-        ]
+    @property
+    def _sheet(self) -> Sheet[redundancy_answers.Finding]:
+        names = {number: x.name for number, x in self.words.items()}
+        return redundancy_report.sheet_of(self._index(self.found.records).verdicts, names)
 
     def _index(self, records: Mapping[str, redundancy_answers.Record]) -> redundancy_answers.Index:
         return self.study.index(records, self.seconds)

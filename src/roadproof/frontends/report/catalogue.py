@@ -1,6 +1,6 @@
 """What a catalogue tests, to look at: lines, a table for a spreadsheet, a report for CI, a matrix."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from textwrap import indent
 from typing import Any
@@ -13,8 +13,10 @@ from roadproof.analysis.catalogue.tested import CLASSES, SCENARIOS, Targets, kin
 from roadproof.evidence.answers.catalogue_index import Figure, Remark, Target
 from roadproof.frontends.report import catalogue_drivers
 from roadproof.frontends.report.figures import as_bytes, count_axis, make_figure
-from roadproof.frontends.report.sheet import csv_text
+from roadproof.frontends.report.sheet import Column, Mark, Sheet, csv_text
+from roadproof.frontends.report.sheet import as_csv as csv_of
 from roadproof.library.scenarios import number_in
+from roadproof.verdict import Verdict
 
 MOST_TOLD = 40
 _SURE, _POSSIBLE, _NONE = "#1f5fbf", "#9dbbe3", "#b5473c"
@@ -92,8 +94,51 @@ def tables(result: Result) -> dict[str, bytes]:
 
 def figures_csv(counted: Sequence[Figure]) -> str:
     """The figures as a table."""
-    rows = ([x.set_name, x.kind, x.sector, x.tested, x.total] for x in counted)
-    return csv_text(["set", "kind", "sector", "tested", "total"], rows)
+    columns: tuple[Column[Figure], ...] = (
+        Column("set", lambda x: x.set_name),
+        Column("kind", lambda x: x.kind),
+        Column("sector", lambda x: x.sector),
+        Column("tested", lambda x: x.tested),
+        Column("total", lambda x: x.total),
+    )
+    return csv_of(Sheet(columns, counted))
+
+
+def sheet_of(
+    targets: Sequence[Target], verdicts: Mapping[str, Verdict], possible: bool = True
+) -> Sheet[Target]:
+    """An entry for each scenario, class and class of gaps; those without a verdict are covered.
+
+    ``possible``: whether pages show which tests show it on some drives only.
+    """
+
+    def verdict(x: Target) -> Verdict:
+        return verdicts.get(x.name, Verdict.COVERED)
+
+    def mark(x: Target) -> Mark:
+        if verdict(x) is not Verdict.COVERED:
+            return Mark("✗ not tested", "against")
+        count = len(x.tested)
+        return Mark(f"✓ {count} test{'s' * (count != 1)}", "proof") if count else Mark("– none", "none")
+
+    return Sheet(
+        (
+            Column("", mark, "page"),
+            Column("target", lambda x: x.name, heading="what"),
+            Column("words", lambda x: x.words, heading="in words"),
+            Column("sector", lambda x: x.sector, "frame"),
+            Column("verdict", verdict, "frame"),
+            Column("tests", lambda x: len(x.tested), "frame"),
+            Column("tested_by", lambda x: ", ".join(x.tested), heading="tests that show it"),
+            Column(
+                "possible_in",
+                lambda x: ", ".join(x.possible),
+                "" if possible else "frame",
+                "some of whose drives do",
+            ),
+        ),
+        targets,
+    )
 
 
 def headings(found: Targets) -> dict[str, Sequence[Remark]]:

@@ -1,11 +1,13 @@
 """What becomes of tests under driver models, as lines and as a table for a spreadsheet."""
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 from itertools import groupby
 
 from roadproof.analysis.catalogue.decisions import Decision
 from roadproof.drivers.models import MODELS
-from roadproof.frontends.report.sheet import csv_text
+from roadproof.frontends.report.sheet import Column, Sheet
+from roadproof.frontends.report.sheet import as_csv as csv_of
 
 MOST_TOLD, MOST_ALIKE = 40, 8
 _STARTS = ("Ve0", "dV0", "Vf0", "Vy", "Gx", "headway", "dx0", "dx0_f", "dy0")
@@ -51,13 +53,20 @@ def said(decision: Decision) -> str:
 
 def as_csv(decisions: Sequence[tuple[str, Decision]]) -> str:
     """A row for each test, scenario and model; of the state when the manoeuvre begins in SI units."""
-    head = ["test", "scenario", "vehicles", "driver", "side", "at", "margin_m", "margin_s"]
-    rows = (
-        [
-            *(test, x.scenario, " ".join(x.vehicles), x.driver, x.side, x.at, x.metres, x.seconds),
-            *(x.start.get(name) for name in _STARTS),
-            x.reason,
-        ]
-        for test, x in decisions
+    columns: tuple[Column[tuple[str, Decision]], ...] = (
+        Column("test", lambda x: x[0]),
+        Column("scenario", lambda x: x[1].scenario),
+        Column("vehicles", lambda x: " ".join(x[1].vehicles)),
+        Column("driver", lambda x: x[1].driver),
+        Column("side", lambda x: x[1].side),
+        Column("at", lambda x: x[1].at),
+        Column("margin_m", lambda x: x[1].metres),
+        Column("margin_s", lambda x: x[1].seconds),
+        *(Column[tuple[str, Decision]](name, partial(_start, name)) for name in _STARTS),
+        Column("reason", lambda x: x[1].reason),
     )
-    return csv_text([*head, *_STARTS, "reason"], rows)
+    return csv_of(Sheet(columns, decisions))
+
+
+def _start(name: str, entry: tuple[str, Decision]) -> float | None:
+    return entry[1].start.get(name)

@@ -8,6 +8,7 @@ from roadproof.analysis.claims import ClaimResult, Claims
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.refutation import Countermodel
+from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.motion import Assumption, is_moving, statement
 from roadproof.library.scenarios import LANE
 from roadproof.library.specification import Specification
@@ -56,6 +57,30 @@ def table(answered: Sequence[ClaimResult], specification: Specification) -> str:
     words = called_by(specification, (s.task.claim for s in answered))
     rows += [f"  {line}" for line in legend(words)]
     return "\n".join(rows)
+
+
+def sheet_of(answered: Sequence[ClaimResult]) -> Sheet[ClaimResult]:
+    """An entry for each claim."""
+    return Sheet(
+        (
+            Column("claim", lambda x: " ".join(x.task.claim.split()), look="code"),
+            Column("assuming", lambda x: ", ".join(x.task.assuming)),
+            Column("premises", _premises),
+            Column("set", lambda x: x.task.set_name),
+            Column("verdict", lambda x: x.verdict, look="verdict"),
+            Column("refuted_by", lambda x: x.settled.refuted_by),
+            Column("expected", lambda x: x.expected),
+            Column("reason", lambda x: x.settled.result.reason),
+            Column("seconds", lambda x: x.settled.result.seconds, "frame"),
+        ),
+        answered,
+    )
+
+
+def _premises(answer: ClaimResult) -> str:
+    """The limits and facts about motion that a proof uses; empty where there is no proof or it uses none."""
+    certificate = answer.settled.result.certificate
+    return "" if certificate is None else "; ".join(certificate.assumed.premises)
 
 
 def details(answered: ClaimResult, asked: Claims) -> str:

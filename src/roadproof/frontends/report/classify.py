@@ -1,4 +1,4 @@
-"""Classes of scenarios to look at: a table and a few lines, and a picture of which scenarios make them up."""
+"""Classes of scenarios to look at: tables and a few lines, and a picture of which scenarios make them up."""
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
@@ -9,7 +9,9 @@ from roadproof.analysis.classify.drives import Example
 from roadproof.analysis.classify.shares import Shares
 from roadproof.analysis.classify.study import ClassificationResult
 from roadproof.analysis.classify.text import HEADINGS
+from roadproof.evidence.answers.classify import CountedClass
 from roadproof.frontends.report.figures import as_bytes, count_axis, legend_beside, make_figure
+from roadproof.frontends.report.sheet import Bar, Column, Sheet, as_lines
 from roadproof.library.words import Called
 from roadproof.verdict import Verdict
 
@@ -49,17 +51,49 @@ class _Row:
 
 def as_table(examples: Sequence[Example], shares: Shares | None, words: Called) -> str:
     """A line for each thing that happens, its places added up; below it a line for each place."""
-    heading = ["situations"] if shares else []
-    rows = [["class", "drives", *heading, "what happens"]]
-    rows += [[x.name, x.drives, *_share(x, shares), x.told(words)] for x in _happenings(examples, shares)]
-    lines = _aligned(rows)
+    drives = Column[_Row]("drives", lambda x: x.drives)
+    columns = (drives, *(() if shares is None else (_share_column(shares),)))
+    told = Column[_Row]("what happens", lambda x: x.told(words))
+    happenings = _happenings(examples, shares)
+    lines = as_lines(Sheet((Column("class", lambda x: x.name), *columns, told), happenings))
     lines += [f"  {line}" for line in _not_alone(examples, words)]
     places = _merged(examples, shares, lambda x: (str(x.one.place), ()))
     if len(places) > 1:
-        rows = [["where", "drives", *heading]]
-        rows += [[x.name, x.drives, *_share(x, shares)] for x in places]
-        lines += ["", *_aligned(rows)]
+        lines += ["", *as_lines(Sheet((Column("where", lambda x: x.name), *columns), places))]
     return "\n".join(lines)
+
+
+def sheet_of(classes: Sequence[CountedClass]) -> Sheet[CountedClass]:
+    """An entry for each class; the share is that of situations with as many vehicles."""
+    totals: Counter[int] = Counter()
+    for x in classes:
+        totals[len(x.vehicles)] += x.situations or 0
+    counted = totals.total() > 0
+
+    def share(x: CountedClass) -> Bar | str:
+        total = totals[len(x.vehicles)]
+        if x.situations is None or not total:
+            return ""
+        part = x.situations / total
+        return Bar(f"{x.situations}, {100 * part:.1f} %", part)
+
+    shares: tuple[Column[CountedClass], ...] = (
+        Column("traces", lambda x: x.traces, "" if counted else "frame"),
+        Column("situations", lambda x: x.situations, "frame"),
+        *((Column("share of situations with as many vehicles", share, "page"),) if counted else ()),
+    )
+    return Sheet(
+        (
+            Column("verdict", lambda x: x.verdict, look="verdict"),
+            Column("class", lambda x: x.name, look="strong"),
+            Column("scenarios", lambda x: ", ".join(map(str, x.scenarios)), "frame"),
+            Column("where", lambda x: x.where, "frame"),
+            Column("description", lambda x: x.description, heading="what happens"),
+            *shares,
+            Column("reason", lambda x: x.reason, "frame"),
+        ),
+        classes,
+    )
 
 
 def _not_alone(examples: Sequence[Example], words: Called) -> Iterator[str]:
@@ -94,18 +128,15 @@ def _merged(
     return list(rows.values())
 
 
-def _share(row: _Row, shares: Shares | None) -> list[str]:
+def _share_column(shares: Shares) -> Column[_Row]:
     """How many situations, and of those with as many vehicles how much."""
-    if shares is None:
-        return []
-    whole = sum(shares.classified[size] for size in row.sizes)
-    part = f"{100 * row.situations / whole:5.1f} %" if whole else "      -"
-    return [f"{row.situations:>5} {part}"]
 
+    def cell(row: _Row) -> str:
+        whole = sum(shares.classified[size] for size in row.sizes)
+        part = f"{100 * row.situations / whole:5.1f} %" if whole else "      -"
+        return f"{row.situations:>5} {part}"
 
-def _aligned(rows: Sequence[Sequence[str]]) -> list[str]:
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return ["  ".join(x.ljust(width) for x, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+    return Column("situations", cell)
 
 
 def summary(found: ClassificationResult) -> Iterator[str]:

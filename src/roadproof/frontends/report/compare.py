@@ -1,8 +1,9 @@
-"""Two formulas side by side, in words."""
+"""Two formulas side by side, in words and as a sheet."""
 
 from collections.abc import Iterator
 
-from roadproof.engines.search.compare import Comparison
+from roadproof.engines.search.compare import Comparison, Direction
+from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.query import Query
 from roadproof.library.scenarios import scenario_number
 from roadproof.library.specification import Specification
@@ -38,6 +39,19 @@ def as_text(comparison: Comparison, specification: Specification) -> str:
         shown += f"; {direction.reason}" if direction.reason else ""
         lines.append(shown)
     return "\n".join(lines)
+
+
+def sheet_of(comparison: Comparison) -> Sheet[tuple[str, Direction]]:
+    """An entry for each direction."""
+    return Sheet(
+        (
+            Column("direction", lambda x: x[0]),
+            Column("claim", lambda x: x[1].claim.text, look="code"),
+            Column("verdict", lambda x: x[1].verdict, look="verdict"),
+            Column("reason", lambda x: x[1].reason),
+        ),
+        [*comparison.directions.items()],
+    )
 
 
 def _called(query: Query, specification: Specification) -> Iterator[str]:

@@ -1,13 +1,15 @@
 """Which disturbances a set misses, in words: its classes of gaps as a table; and a picture for each gap."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from roadproof.analysis.coverage.answers import ClassAnswer, Gap
 from roadproof.analysis.coverage.needed import Need
 from roadproof.analysis.coverage.occurring import GapTraffic, Survey
+from roadproof.evidence.answers import coverage as kept
 from roadproof.frontends.report.drive import draw_drive
+from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.scenarios import PAIR, Scenario, applied, danger_comes
 from roadproof.library.specification import Library
 from roadproof.library.words import Called, words_of
@@ -89,6 +91,37 @@ def summary(classes: Sequence[ClassAnswer]) -> Iterator[str]:
         has = sum(any(gap.first == name for gap in answer.gaps) for answer in classes)
         who = f"{name} is the first set to catch" if name else "no set catches"
         yield f"  {who} a drive of {has} classes"
+
+
+def sheet_of(index: kept.Index, names: Mapping[int, str]) -> Sheet[kept.CountedClass]:
+    """An entry for each class of gaps; ``names``: what scenarios are called."""
+    first = {gap.number: gap.first for gap in index.gaps}
+    return Sheet(
+        (
+            Column("scenario", lambda x: x.scenario),
+            Column("name", lambda x: names.get(x.scenario or 0, ""), "frame"),
+            Column("component", lambda x: x.component, "frame"),
+            Column("condition", lambda x: x.condition, "frame"),
+            Column("what", lambda x: x.description, "page"),
+            Column("verdict", lambda x: x.verdict, "frame"),
+            Column("drives", lambda x: len(x.gaps), "frame"),
+            Column("first_caught_by", lambda x: ", ".join(dict.fromkeys(first[k] for k in x.gaps)), "frame"),
+            Column("reason", lambda x: x.reason, heading="note"),
+        ),
+        index.classes,
+    )
+
+
+def sheet_of_claims(index: kept.Index) -> Sheet[kept.Claim]:
+    """An entry for each claim that there is no gap."""
+    return Sheet(
+        (
+            Column("claim", lambda x: x.claim),
+            Column("verdict", lambda x: x.verdict),
+            Column("reason", lambda x: x.reason),
+        ),
+        index.claims,
+    )
 
 
 def draw_gap(answer: ClassAnswer, gap: Gap, library: Library) -> dict[str, bytes]:

@@ -1,7 +1,8 @@
 """An exploration to look at: a strip or a map as text, the ends of what was found, and pictures."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
+from functools import partial
 from itertools import pairwise
 from textwrap import wrap
 from typing import Any, TypeAlias
@@ -12,6 +13,7 @@ from roadproof.analysis.explore.record import ends_of
 from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.figures import as_bytes, legend_beside, make_figure
 from roadproof.frontends.report.overlap import COLOURS, SIGNS
+from roadproof.frontends.report.sheet import Cell, Column, Sheet
 from roadproof.library.words import words_of
 from roadproof.verdict import Verdict
 from roadproof.world.units import unit_text
@@ -150,6 +152,45 @@ def _extreme(asked: Explorable, extreme: Extreme, notes: Notes) -> list[str]:
         return [f"{head}: no end; the judged drive goes past {_value(best.at[0], unit)}"]
     line = f"{head}: {_value(best.at[0], unit)} on a judged drive"
     return [line if missed is None else f"{line}; {_beyond(missed, extreme.surely, unit, notes)}"]
+
+
+Entry: TypeAlias = tuple[str, str, PointFinding, tuple[str, ...]]
+"""The name of a formula, the kind of a value, what was found, and the names of the values that it is at."""
+
+
+def entries_of(named: Mapping[str, Explorable], explored: Mapping[str, ExplorationResult]) -> Iterator[Entry]:
+    """Each value, and both sides of each boundary and extreme."""
+    for name, found in explored.items():
+        knobs = tuple(knob.name for knob in named[name].knobs)
+        yield from ((name, "value", x, knobs) for x in found.findings)
+        for boundary in found.boundaries:
+            yield name, "boundary, held", boundary.held, knobs
+            yield name, "boundary, missed", boundary.missed, knobs
+        for extreme in found.extremes:
+            sense = f"{extreme.measure.sense} {extreme.measure.text}"
+            for side, x in (("best", extreme.best), ("missed", extreme.missed)):
+                if x is not None:
+                    yield name, f"{sense}, {side}", x, tuple(f"at {k}" for k, _ in enumerate(x.at, 1))
+
+
+def sheet_of(entries: Sequence[Entry]) -> Sheet[Entry]:
+    """An entry for each value, and for both sides of each boundary and extreme; values in SI units."""
+    names = dict.fromkeys(name for *_, at in entries for name in at)
+    values: tuple[Column[Entry], ...] = tuple(Column(name, partial(_value_of, name)) for name in names)
+    return Sheet(
+        (
+            Column("formula", lambda x: x[0]),
+            Column("kind", lambda x: x[1]),
+            *values,
+            Column("verdict", lambda x: x[2].verdict, look="verdict"),
+            Column("reason", lambda x: x[2].reason),
+        ),
+        entries,
+    )
+
+
+def _value_of(name: str, entry: Entry) -> Cell:
+    return dict(zip(entry[3], entry[2].at, strict=True)).get(name)
 
 
 def draw_all(name: str, asked: Explorable, explored: ExplorationResult) -> Iterator[tuple[str, bytes]]:

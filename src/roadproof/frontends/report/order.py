@@ -6,8 +6,10 @@ from typing import Any
 from roadproof.analysis.order.deciding import Edge, Kind
 from roadproof.analysis.order.study import Order
 from roadproof.frontends.report.figures import as_bytes, make_figure
+from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.scenarios import Scenario
 from roadproof.library.words import Called, Words, legend
+from roadproof.verdict import Verdict
 
 
 def as_text(order: Order, seconds: float, words: Called) -> str:
@@ -24,6 +26,14 @@ def as_text(order: Order, seconds: float, words: Called) -> str:
         f"{len(order.doubts)} in doubt, in {seconds:.1f} s"
     )
     return "\n".join(lines)
+
+
+def sheet_of(verdicts: Mapping[str, Verdict]) -> Sheet[tuple[str, Verdict]]:
+    """An entry for each implication, ``4@base -> 4@ext``."""
+    return Sheet(
+        (Column("implication", lambda x: x[0]), Column("verdict", lambda x: x[1], look="verdict")),
+        [*verdicts.items()],
+    )
 
 
 def as_dot(order: Order, words: Called) -> str:

@@ -1,8 +1,10 @@
-"""Which parts of scenarios are redundant, in words."""
+"""Which parts of scenarios are redundant, in words and as a sheet."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from roadproof.analysis.redundancy import ChangeFinding, ChangeFindings
+from roadproof.evidence.answers.redundancy import Finding
+from roadproof.frontends.report.sheet import Column, Sheet, Trail
 from roadproof.library.words import Called, legend
 from roadproof.verdict import Verdict
 
@@ -27,6 +29,34 @@ def as_text(findings: Mapping[int, ChangeFindings], seconds: float, words: Calle
         f"drive, {traces} by a trace, {len(doubts)} in doubt, in {seconds:.1f} s"
     )
     return "\n".join(lines)
+
+
+_SIGNS: Mapping[bool | None, str] = {
+    True: "✗\u00a0could\u00a0go",
+    False: "✓\u00a0needed",
+    None: "?\u00a0in\u00a0doubt",
+}
+
+
+def sheet_of(findings: Sequence[Finding], names: Mapping[int, str]) -> Sheet[Finding]:
+    """An entry for each change; ``names``: what scenarios are called."""
+    return Sheet(
+        (
+            Column("", lambda x: _SIGNS[x.redundant], "page", link="change"),
+            Column("scenario", lambda x: x.scenario, "frame"),
+            Column("name", lambda x: names.get(x.scenario, ""), "frame"),
+            Column("scenario", lambda x: f"{x.scenario} {names.get(x.scenario, '')}".rstrip(), "page"),
+            Column("where", lambda x: Trail(x.where)),
+            Column("part", lambda x: x.part, look="code"),
+            Column("as", lambda x: x.value, "frame"),
+            Column("put in its place", lambda x: f"as {str(x.value).lower()}", "page"),
+            Column("assuming", lambda x: x.assuming, heading="where it is assumed that"),
+            Column("redundant", lambda x: x.redundant, "frame"),
+            Column("verdict", lambda x: x.verdict, "frame"),
+            Column("reason", lambda x: x.reason, "frame"),
+        ),
+        findings,
+    )
 
 
 def _change(finding: ChangeFinding) -> str:

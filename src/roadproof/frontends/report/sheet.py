@@ -1,27 +1,72 @@
-"""The result of a question, described once as columns and entries: CSV and data frames are made of it."""
+"""The result of a question, described once as columns and entries.
+
+CSV files, data frames, tables on terminals and tables of pages are made of it.
+"""
 
 import csv
 import io
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Generic, Literal, TypeAlias, TypeVar
+from typing import Generic, Literal, NamedTuple, TypeAlias, TypeVar
 
 from roadproof.library.scenarios import Scenario
 
 T = TypeVar("T")
 Value: TypeAlias = str | int | float | bool | None
-Cell: TypeAlias = Value | Fraction | Scenario
+
+
+class Mark(NamedTuple):
+    """A word or sign, and the class of its colour on pages."""
+
+    text: str
+    colour: str
+
+
+class Bar(NamedTuple):
+    """A share from 0 to 1, which pages draw as a bar, in words."""
+
+    text: str
+    share: float
+
+
+@dataclass(frozen=True)
+class Trail:
+    """Names from the outside in."""
+
+    names: Sequence[str]
+
+    @property
+    def text(self) -> str:
+        """The names in a line."""
+        return " > ".join(self.names)
+
+
+Cell: TypeAlias = Value | Fraction | Scenario | Mark | Bar | Trail
 """CSV rounds a fraction and writes of a scenario its number; a frame has floats, and names such as 4@base."""
+Renderer: TypeAlias = Literal["csv", "frame", "terminal", "page"]
 
 
 @dataclass(frozen=True)
 class Column(Generic[T]):
-    """A name, the cell of each entry below it, and whether only one renderer has the column."""
+    """A column of a sheet.
+
+    ``name``: in CSV files and frames; ``heading``: on terminals and pages, where it is another. ``cell``: the
+    value of an entry. ``only``: the one renderer that has the column; all have it where that is empty.
+    ``look``: how pages show a cell. ``link``: the kind of evidence on the page to which a cell leads.
+    """
 
     name: str
     cell: Callable[[T], Cell]
-    only: Literal["", "csv", "frame"] = ""
+    only: Literal["", Renderer] = ""
+    heading: str | None = None
+    look: Literal["", "verdict", "code", "strong"] = ""
+    link: str = ""
+
+    @property
+    def title(self) -> str:
+        """What stands above the column on terminals and pages."""
+        return self.name if self.heading is None else self.heading
 
 
 @dataclass(frozen=True)
@@ -31,18 +76,31 @@ class Sheet(Generic[T]):
     columns: tuple[Column[T], ...]
     entries: Sequence[T]
 
+    def columns_of(self, renderer: Renderer) -> list[Column[T]]:
+        """The columns that a renderer has."""
+        return [x for x in self.columns if x.only in ("", renderer)]
+
 
 def as_csv(sheet: Sheet[T]) -> str:
     """A header and a row for each entry; nothing is written where there is no value."""
-    columns = [x for x in sheet.columns if x.only != "frame"]
+    columns = sheet.columns_of("csv")
     rows = ([_written(x.cell(entry)) for x in columns] for entry in sheet.entries)
     return csv_text([x.name for x in columns], rows)
 
 
 def as_rows(sheet: Sheet[T]) -> list[dict[str, Value]]:
     """A row for each entry, values by the name of their column."""
-    columns = [x for x in sheet.columns if x.only != "csv"]
+    columns = sheet.columns_of("frame")
     return [{x.name: _value(x.cell(entry)) for x in columns} for entry in sheet.entries]
+
+
+def as_lines(sheet: Sheet[T]) -> list[str]:
+    """A line of headings and a line for each entry, columns aligned."""
+    columns = sheet.columns_of("terminal")
+    body = ([str(_value(x.cell(entry))) for x in columns] for entry in sheet.entries)
+    rows = [[x.title for x in columns], *body]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return ["  ".join(x.ljust(width) for x, width in zip(row, widths, strict=True)).rstrip() for row in rows]
 
 
 def csv_text(header: Iterable[object], rows: Iterable[Iterable[object]]) -> str:
@@ -57,10 +115,12 @@ def csv_text(header: Iterable[object], rows: Iterable[Iterable[object]]) -> str:
 def _written(cell: Cell) -> Value:
     if isinstance(cell, Fraction):
         return f"{float(cell):.10g}"
-    return cell.number if isinstance(cell, Scenario) else cell
+    return cell.number if isinstance(cell, Scenario) else _value(cell)
 
 
 def _value(cell: Cell) -> Value:
     if isinstance(cell, Fraction):
         return float(cell)
+    if isinstance(cell, Mark | Bar | Trail):
+        return cell.text
     return str(cell) if isinstance(cell, str | Scenario) else cell  # a verdict becomes plain text

@@ -1,15 +1,20 @@
-"""Drives that were found: a line about each search, and the files of its drives."""
+"""Drives that were found: a line about each search, a sheet of all, and the files of the drives."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from typing import TypeAlias
 
 from roadproof.engines.search.ask import Outcome
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.report.drive import draw_drive
+from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.scenarios import LANE
 from roadproof.library.specification import Library, Specification
 from roadproof.library.words import Words, words_of
 from roadproof.logic.custom_names import told_freedom
 from roadproof.recordings.export.csv_table import csv_of
+
+SearchedFor: TypeAlias = tuple[Outcome, Specification]
+"""What a search found, and the definitions that it was about."""
 
 
 def as_line(outcome: Outcome, specification: Specification, verbose: bool = False) -> str:
@@ -42,6 +47,29 @@ def as_line(outcome: Outcome, specification: Specification, verbose: bool = Fals
 def _called(words: Words) -> str:
     """What a scenario is called, on a line below its number."""
     return f"\n  {words.name}" if words.name else ""
+
+
+def sheet_of(searches: Sequence[SearchedFor]) -> Sheet[SearchedFor]:
+    """An entry for each search."""
+    return Sheet(
+        (
+            Column("scenario", lambda x: x[0].scenario),
+            Column("name", lambda x: "" if x[0].scenario is None else words_of(x[1], x[0].scenario).name),
+            Column("set", lambda x: x[0].set_name),
+            Column("formula", lambda x: x[0].query.text, look="code"),
+            Column("verdict", lambda x: x[0].verdict, look="verdict"),
+            Column("road", lambda x: x[0].road),
+            Column("drives", lambda x: len(x[0].drives)),
+            Column("reason", lambda x: x[0].reason or _core_of(x[0])),
+            Column("seconds", lambda x: x[0].seconds["all"], "frame"),
+        ),
+        searches,
+    )
+
+
+def _core_of(outcome: Outcome) -> str:
+    """The parts that clash where there is no drive at all; empty otherwise."""
+    return "" if outcome.impossibility is None else f"core: {'; '.join(outcome.impossibility.told)}"
 
 
 def kinds(pictures: bool) -> tuple[str, ...]:

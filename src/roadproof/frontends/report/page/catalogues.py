@@ -17,10 +17,12 @@ from roadproof.evidence.answers.catalogue_index import (
 )
 from roadproof.evidence.codec import read
 from roadproof.evidence.drive_file import DriveFile
+from roadproof.frontends.report.catalogue import sheet_of
 from roadproof.frontends.report.page.page_context import PageContext, ShownDrive
-from roadproof.frontends.report.page.results import Result
+from roadproof.frontends.report.page.results import Result, Words
 from roadproof.frontends.report.viewer_data import ShownFormula
 from roadproof.library.scenarios import danger_comes, number_in, roles
+from roadproof.verdict import Verdict
 
 MOST_FORMULAS = 6
 
@@ -65,7 +67,7 @@ class _Test:
         return {*self.claims} & {x.other for x in self.facts if x.relation == "excludes"}
 
 
-def catalogue(result: Result, context: PageContext) -> dict[str, object]:
+def catalogue(result: Result, context: PageContext, words: Words) -> dict[str, object]:
     """Situations and tests, decisions of driver models, and how the answer was made."""
     data = read(Index, result.data, result.name)
     targets = (*data.targets, *data.gaps.targets)
@@ -75,9 +77,11 @@ def catalogue(result: Result, context: PageContext) -> dict[str, object]:
         for k, x in enumerate(data.tests)
     ]
     known = {x.id for x in tests}
+    missing = dict.fromkeys(data.not_tested, Verdict.GAPS)
     return {
         "answer": data,
         "targets": targets,
+        "situations": sheet_of(targets, missing, any(x.possible for x in targets)),
         "tests": tests,
         "asked": len(asked),
         "lacking": sum(x.name in data.not_tested for x in asked),

@@ -10,7 +10,7 @@ from roadproof.evidence.answers.proofs import ANSWER_SCHEMA, OWN, Answer, Claim,
 from roadproof.evidence.codec import read
 from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.frontends.report.page.page_context import PageContext
-from roadproof.frontends.report.page.results import Result
+from roadproof.frontends.report.page.results import Result, Words
 from roadproof.library.motion import statement
 from roadproof.verdict import Verdict
 
@@ -43,7 +43,7 @@ class _ShownClaim:
         return "" if self.finding is None else str(self.finding.outcome)
 
 
-def claims(result: Result, context: PageContext) -> dict[str, object]:
+def claims(result: Result, context: PageContext, words: Words) -> dict[str, object]:
     """An index of claims, or the answer of ``prove --json``."""
     shown = [*_shown_claims(result, context)]
     accepted = sum(x.outcome == Acceptance.ACCEPTED for x in shown)

@@ -1,16 +1,20 @@
 """Values of sections with a matrix: where in a result the answer about a row and a column is."""
 
+from dataclasses import replace
+
 from roadproof.evidence.answers import coverage as gaps
 from roadproof.evidence.answers import explore as explorations
 from roadproof.evidence.answers import order as implications
 from roadproof.evidence.answers import overlap as pairs
 from roadproof.evidence.answers import redundancy as changes
 from roadproof.evidence.codec import read
+from roadproof.frontends.report.coverage import sheet_of as sheet_of_classes
 from roadproof.frontends.report.page.page_context import PageContext
-from roadproof.frontends.report.page.results import Result
+from roadproof.frontends.report.page.results import Result, Words
+from roadproof.frontends.report.redundancy import sheet_of as sheet_of_changes
 
 
-def overlap(result: Result, context: PageContext) -> dict[str, object]:
+def overlap(result: Result, context: PageContext, words: Words) -> dict[str, object]:
     """Pairs of scenarios; ``ends``: each scenario by name, with its number."""
     found = read(pairs.Index, result.data, result.name).verdicts
     several = len({x for pair in found for x in (pair.set_a, pair.set_b)}) > 1
@@ -27,20 +31,21 @@ def overlap(result: Result, context: PageContext) -> dict[str, object]:
     return {"pairs": found, "ends": ends, "places": places}
 
 
-def coverage(result: Result, context: PageContext) -> dict[str, object]:
+def coverage(result: Result, context: PageContext, words: Words) -> dict[str, object]:
     """Classes of gaps: a column for each scenario, a row for each part that is false."""
     index = read(gaps.Index, result.data, result.name)
+    sheet = sheet_of_classes(index, words)
     places = {(x.scenario, (x.component, x.condition)): k for k, x in enumerate(index.classes)}
     return {
         "answer": index,
         "places": places,
         "scenarios": list(dict.fromkeys(scenario for scenario, _ in places)),
         "kinds": list(dict.fromkeys(kind for _, kind in places)),
-        "notes": [x for x in index.classes if x.reason and x.gaps],
+        "notes": replace(sheet, entries=[x for x in index.classes if x.reason and x.gaps]),
     }
 
 
-def order(result: Result, context: PageContext) -> dict[str, object]:
+def order(result: Result, context: PageContext, words: Words) -> dict[str, object]:
     """Implications: the place of each proof, the number of each drive; ``numbers`` of scenarios by name."""
     index = read(implications.Index, result.data, result.name)
     return {
@@ -54,15 +59,16 @@ def order(result: Result, context: PageContext) -> dict[str, object]:
     }
 
 
-def redundancy(result: Result, context: PageContext) -> dict[str, object]:
+def redundancy(result: Result, context: PageContext, words: Words) -> dict[str, object]:
     """Changes of scenarios, those that are needed last."""
     found = read(changes.Index, result.data, result.name).verdicts
     entries = sorted(found, key=lambda x: x.redundant is False)
     said = [x.redundant for x in entries]
-    return {"entries": entries, "needed": said.count(False), "spare": said.count(True)}
+    sheet = sheet_of_changes(entries, words)
+    return {"sheet": sheet, "needed": said.count(False), "spare": said.count(True)}
 
 
-def explored(result: Result, context: PageContext) -> dict[str, object]:
+def explored(result: Result, context: PageContext, words: Words) -> dict[str, object]:
     """Explorations, each with the values ``across`` and ``up`` of its map and the places of findings."""
     return {"explored": [(x, _grid(x)) for x in read(explorations.Index, result.data, result.name).explored]}
 

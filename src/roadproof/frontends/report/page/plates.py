@@ -10,14 +10,14 @@ from roadproof.drivers.words import legend
 from roadproof.evidence.answers.plates import Index, Plate
 from roadproof.evidence.codec import read
 from roadproof.frontends.report.page.page_context import PageContext
-from roadproof.frontends.report.page.results import Result
+from roadproof.frontends.report.page.results import Result, Words
 from roadproof.frontends.report.preventable import COLOURS, measured
 from roadproof.world.units import UNITS
 
 _WIDE, _HIGH, _LEFT, _BELOW = 300.0, 190.0, 34.0, 28.0  # of a plate in px, and the room for its numbers
 
 
-def plates(result: Result, context: PageContext) -> dict[str, object]:
+def plates(result: Result, context: PageContext, words: Words) -> dict[str, object]:
     """Plates, in ``groups`` of the same fixed values."""
     index = read(Index, result.data, result.name)
     quantities = MANOEUVRES[index.manoeuvre].quantities

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from roadproof.analysis.study.evidence_store import INDEX
 from roadproof.errors import InputError
@@ -11,6 +11,8 @@ from roadproof.evidence import certificate, drive_file
 from roadproof.evidence.journal import ANSWERS, HEAD
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
 
+Words: TypeAlias = Mapping[int, str]
+"""What scenarios are called."""
 TRAFFIC = "results.json"
 EVIDENCE = (certificate.SCHEMA, *drive_file.SCHEMAS_READ)
 

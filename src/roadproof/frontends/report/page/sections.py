@@ -10,7 +10,7 @@ from roadproof.evidence.codec import read
 from roadproof.evidence.finding import Finding
 from roadproof.frontends.report.page import catalogues, claims, matrices, plates, shares
 from roadproof.frontends.report.page.page_context import PageContext
-from roadproof.frontends.report.page.results import Result
+from roadproof.frontends.report.page.results import Result, Words
 from roadproof.frontends.report.page.templates import render
 
 Values: TypeAlias = Mapping[str, object]
@@ -18,17 +18,17 @@ _HEADING = ("schema", "roadproof", "library", "seconds", "options", "parameters"
 _EMPTY: tuple[object, ...] = (None, "", [], {})
 
 
-def section(result: Result, context: PageContext, words: Mapping[int, str]) -> str:
+def section(result: Result, context: PageContext, words: Words) -> str:
     """A result of any kind as HTML; ``words`` are what scenarios are called. Raises ``InputError``."""
     title, template, values_of = _SECTIONS.get(
         result.kind, (_TITLES.get(result.kind, result.kind), "plain", _plain)
     )
     rejected = () if result.folder is None else context.rejected.get(str(result.folder / "index.json"), ())
     frame = {"title": title, "set": result.data.get("set"), "rejections": rejected}
-    frame["words"] = {number: x for number, x in words.items() if x}
+    known = {number: x for number, x in words.items() if x}
     try:
-        values = values_of(result, context)
-        return render(f"{template}.html", page=context, result=result, **frame, **values)
+        values = values_of(result, context, known)
+        return render(f"{template}.html", page=context, result=result, words=known, **frame, **values)
     except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
         reason = f"{type(error).__name__}: {error}"[:200]
         raise InputError(
@@ -52,7 +52,7 @@ class _Part:
     columns: Sequence[str] | None
 
 
-def _plain(result: Result, context: PageContext) -> Values:
+def _plain(result: Result, context: PageContext, words: Words) -> Values:
     """Each value of an answer."""
     parts = [
         _Part(key, value, _columns(value))
@@ -69,12 +69,12 @@ def _columns(value: object) -> Sequence[str] | None:
     return [key for key in names if any(x.get(key) not in _EMPTY for x in value)]
 
 
-def _read_as(answer: type) -> Callable[[Result, PageContext], Values]:
+def _read_as(answer: type) -> Callable[[Result, PageContext, Words], Values]:
     """Values of a section that needs no more than the answer itself."""
-    return lambda result, context: {"answer": read(answer, result.data, result.name)}
+    return lambda result, context, words: {"answer": read(answer, result.data, result.name)}
 
 
-_SECTIONS: Mapping[str, tuple[str, str, Callable[[Result, PageContext], Values]]] = {
+_SECTIONS: Mapping[str, tuple[str, str, Callable[[Result, PageContext, Words], Values]]] = {
     "index": ("Claims", "claims", claims.claims),
     "verdicts": ("Claims", "claims", claims.claims),
     "witness": ("Drives that were looked for", "witness", _read_as(drives.Answer)),
