@@ -15,7 +15,8 @@ from roadproof.recordings.export.points import upper_left
 from roadproof.recordings.export.road_toml import road_toml
 from roadproof.recordings.export.subject import Subject, class_of
 from roadproof.recordings.formats.highd import LOWER, lanes_of_markings
-from roadproof.recordings.formats.recording import Floats, Recording, beside_by_order, occupy_bands, offsets
+from roadproof.recordings.formats.recording import Floats, Recording, offsets
+from roadproof.recordings.formats.straight import of_bands, place
 from roadproof.recordings.formats.table import table_bytes
 from roadproof.recordings.formats.write_highd import highd_tables
 from roadproof.world.road import Road
@@ -57,7 +58,7 @@ def shift_of(subject: Subject) -> Shift:
 def recording_of(subject: Subject, name: str, shift: Shift) -> Recording:
     """The samples of the drive as a recording."""
     edges = sorted({x + shift.d for lanelet in subject.file.road.lanelets for x in lanelet.d}, reverse=True)
-    lanes = lanes_of_markings(_UPPER, tuple(round(float(-y), DECIMALS) for y in edges))
+    road = of_bands(lanes_of_markings(_UPPER, tuple(round(float(-y), DECIMALS) for y in edges)))
     motions = [*subject.vehicles.values()]
     counts = np.full(len(motions), len(subject.times))
     length, width = (np.array([float(getattr(m, x)) for m in motions]) for x in ("length", "width"))
@@ -69,12 +70,12 @@ def recording_of(subject: Subject, name: str, shift: Shift) -> Recording:
     rows = [state for each in subject.samples.values() for state in each]
     d = _floats([-y + shift.d for _, y in corners])
     direction = np.full(len(motions), LOWER)
-    occupancy, lane = occupy_bands(lanes, np.repeat(direction, counts), d, np.repeat(width, counts))
+    s = _floats([x + shift.s for x, _ in corners]) + np.repeat(length, counts)
+    sizes = (np.repeat(x, counts) for x in (length, width))
     return Recording(
         name=name,
         rate=subject.rate,
-        lanes=lanes,
-        beside=beside_by_order(lanes),
+        **vars(road),
         vehicle_id=np.array([*subject.ids.values()]),
         direction=direction,
         kind=np.array([class_of(m) for m in motions]),
@@ -82,15 +83,13 @@ def recording_of(subject: Subject, name: str, shift: Shift) -> Recording:
         width=width,
         first_frame=np.ones(len(motions), np.int64),
         start=offsets(counts),
-        s=_floats([x + shift.s for x, _ in corners]) + np.repeat(length, counts),
+        s=s,
         d=d,
         v_lon=_floats([x.v_lon for x in rows]),
         v_lat=_floats([x.v_lat for x in rows]),
         a_lon=_floats([x.a_lon for x in rows]),
         a_lat=_floats([x.a_lat for x in rows]),
-        occupancy=occupancy,
-        lane=lane,
-        zones=(occupancy != 0).astype(np.uint32),
+        **vars(place(road, np.repeat(direction, counts), s, d, *sizes)),
     )
 
 

@@ -22,6 +22,7 @@ import numpy as np
 from roadproof.errors import InputError
 from roadproof.recordings.formats import windows
 from roadproof.recordings.formats.believable import PlausibilityChecks
+from roadproof.recordings.formats.content import require_unchanged, stamp_of
 from roadproof.recordings.formats.recording import (
     Integers,
     Lane,
@@ -33,7 +34,7 @@ from roadproof.recordings.formats.recording import (
 )
 from roadproof.recordings.formats.samples import CONVERTED
 from roadproof.recordings.formats.source import Files, Format, RecordingSource, with_suffix
-from roadproof.recordings.formats.table import Column, Frame, polars_module, require_unchanged, stamp_of
+from roadproof.recordings.formats.table import Column, Frame, polars_module
 from roadproof.recordings.formats.windows import Window, WindowedRecording, divide
 from roadproof.runtime.files import read_limited, write_json, write_whole
 from roadproof.world.road import Lanelet

@@ -7,12 +7,11 @@ which lanelets are of ramps. Further columns are passed over, as versions of the
 """
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
-from roadproof.errors import InputError
 from roadproof.recordings.formats.contradictions import contradictions, nowhere, seldom
 from roadproof.recordings.formats.lanelets import ZONES_ENDING, network_of, read_said
 from roadproof.recordings.formats.measured_roads import MeasuredTraffic, place_traffic
@@ -24,62 +23,38 @@ from roadproof.recordings.formats.plausible import (
     Implausible,
 )
 from roadproof.recordings.formats.recording import Integers, Recording, with_notes
-from roadproof.recordings.formats.source import (
-    TRACK_FILES,
-    Files,
-    Format,
-    beside,
-    first_line,
-    rate_in_meta,
-    with_suffix,
+from roadproof.recordings.formats.source import Files, Format, beside, rate_in_meta
+from roadproof.recordings.formats.table import Table, kinds_of, read_named
+from roadproof.recordings.formats.tracks import (
+    by_id,
+    files_of,
+    find_recordings,
+    in_order,
+    match_vehicles,
+    rate_of,
 )
-from roadproof.recordings.formats.table import Kind, Table, read_named
-from roadproof.recordings.formats.tracks import in_order, match_vehicles
 
-RECORDING_KINDS: Mapping[str, Kind] = {
-    "recordingId": "integer",
-    "locationId": "integer",
-    "frameRate": "number",
-    "xUtmOrigin": "number",
-    "yUtmOrigin": "number",
-}
-VEHICLE_KINDS: Mapping[str, Kind] = {
-    "recordingId": "integer",
-    "trackId": "integer",
-    "initialFrame": "integer",
-    "finalFrame": "integer",
-    "numFrames": "integer",
-    "width": "number",
-    "length": "number",
-    "class": "text",
-}
-SAMPLE_KINDS: Mapping[str, Kind] = {
-    "recordingId": "integer",
-    "trackId": "integer",
-    "frame": "integer",
-    "xCenter": "number",
-    "yCenter": "number",
-    "heading": "number",
-    "xVelocity": "number",
-    "yVelocity": "number",
-    "xAcceleration": "number",
-    "yAcceleration": "number",
-    "lonVelocity": "number",
-    "latVelocity": "number",
-    "laneletId": "list",
-}
+RECORDING_KINDS = kinds_of(
+    integer="recordingId locationId",
+    number="frameRate xUtmOrigin yUtmOrigin",
+)
+VEHICLE_KINDS = kinds_of(
+    integer="recordingId trackId initialFrame finalFrame numFrames",
+    number="width length",
+    text="class",
+)
+SAMPLE_KINDS = kinds_of(
+    integer="recordingId trackId frame",
+    number="xCenter yCenter heading xVelocity yVelocity xAcceleration yAcceleration lonVelocity latVelocity",
+    list="laneletId",
+)
 LARGEST_PLACE = 10_000.0
 
 
 def read_exid(folder: Path, name: str) -> Recording:
     """Recording ``name`` of ``folder``. Raises ``InputError`` that names file, element, value and rule."""
     about = read_named(folder / f"{name}_recordingMeta.csv", RECORDING_KINDS)
-    if about.rows != 1:
-        raise InputError(f"{about.path}: {about.rows} rows; one recording has one row of meta data")
-    about.require(about["recordingId"] == int(name), "recordingId", f"the file is of recording {name}")
-    rate = about["frameRate"][0]
-    if not (0 < rate <= 1000 and rate == int(rate)):
-        raise about.refuse(0, "frameRate", "a whole number of frames a second is needed")
+    rate = rate_of(about, "recordingId", int(name), f"the file is of recording {name}")
     meta = _read_vehicles(folder / f"{name}_tracksMeta.csv", int(name))
     tracks, notes = in_order(read_named(folder / f"{name}_tracks.csv", SAMPLE_KINDS), "trackId")
     tracks.require(tracks["recordingId"] == int(name), "recordingId", f"the file is of recording {name}")
@@ -92,7 +67,7 @@ def read_exid(folder: Path, name: str) -> Recording:
     heading = np.radians(tracks["heading"])
     traffic = MeasuredTraffic(
         name=name,
-        rate=int(rate),
+        rate=rate,
         vehicle_id=meta["trackId"],
         kind=np.array([str(x).capitalize() for x in meta["class"]]),
         length=meta["length"],
@@ -113,34 +88,19 @@ def read_exid(folder: Path, name: str) -> Recording:
 def _read_vehicles(path: Path, recording: int) -> Table:
     meta = read_named(path, VEHICLE_KINDS)
     meta.require(meta["recordingId"] == recording, "recordingId", f"the file is of recording {recording}")
-    order = np.argsort(meta["trackId"], kind="stable")
-    repeated = np.zeros(meta.rows, bool)
-    repeated[order[1:]] = np.diff(meta["trackId"][order]) == 0
-    meta.require(~repeated, "trackId", "a vehicle has one row")
     for column in ("width", "length"):
         size = meta[column]
         meta.require(size > 0, column, "the size of a vehicle is greater than zero; people have none")
         meta.require(size <= LARGEST_SIZE, column, f"no vehicle is larger than {LARGEST_SIZE:g} m")
-    meta.require(meta["initialFrame"] >= 0, "initialFrame", "a frame is never negative")
-    frames = meta["finalFrame"] - meta["initialFrame"] + 1
-    meta.require(frames > 0, "finalFrame", "must not come before initialFrame")
-    meta.require(meta["numFrames"] == frames, "numFrames", "must be finalFrame - initialFrame + 1")
-    columns = {name: values[order] for name, values in meta.columns.items()}
-    return Table(path, columns, meta.rows, order)
+    return by_id(meta, "trackId")
 
 
 def _check_cells(tracks: Table) -> None:
     """No cell may say what no vehicle does."""
-    limits: dict[float, tuple[str, ...]] = {
-        LARGEST_PLACE: ("xCenter", "yCenter"),
-        LARGEST_SPEED: ("xVelocity", "yVelocity", "lonVelocity", "latVelocity"),
-        LARGEST_ACCELERATION: ("xAcceleration", "yAcceleration"),
-        360.0: ("heading",),
-    }
-    for most, columns in limits.items():
-        for column in columns:
-            rule = f"must lie between {-most:g} and {most:g}"
-            tracks.require(np.abs(tracks[column]) <= most, column, rule)
+    tracks.require_within(LARGEST_PLACE, "xCenter", "yCenter")
+    tracks.require_within(LARGEST_SPEED, "xVelocity", "yVelocity", "lonVelocity", "latVelocity")
+    tracks.require_within(LARGEST_ACCELERATION, "xAcceleration", "yAcceleration")
+    tracks.require_within(360.0, "heading")
 
 
 def _check_velocities(tracks: Table) -> Iterator[str]:
@@ -201,16 +161,13 @@ def _map_of(folder: Path, location: int, about: Table) -> Path:
     return named[0]
 
 
+def _files(folder: Path, name: str) -> Files:
+    maps = [x for osm in maps_near(folder) for x in (*beside(osm, ZONES_ENDING), osm)]
+    return (*maps, *files_of(folder, name))
+
+
 def _find(path: Path) -> dict[str, Files]:
-    found: dict[str, Files] = {}
-    for file in with_suffix(path, ".csv"):
-        match = TRACK_FILES.fullmatch(file.name)
-        if match is not None and "recordingId" in first_line(file).split(","):
-            name = match[1]
-            maps = [x for osm in maps_near(file.parent) for x in (*beside(osm, ZONES_ENDING), osm)]
-            meta = (file.with_name(f"{name}_{x}.csv") for x in ("recordingMeta", "tracksMeta", "tracks"))
-            found[name] = (*maps, *meta)
-    return dict(sorted(found.items(), key=lambda entry: (int(entry[0]), entry[0])))
+    return find_recordings(path, True, _files)
 
 
 def _read(files: Files) -> Recording:

@@ -20,18 +20,18 @@ from roadproof.recordings.formats.highd_checks import (
     check_plausible,
     check_sight,
 )
-from roadproof.recordings.formats.recording import Bools, Floats, Lane, Recording, beside_by_order, with_notes
-from roadproof.recordings.formats.source import (
-    TRACK_FILES,
-    Files,
-    Format,
-    first_line,
-    rate_in_meta,
-    with_suffix,
+from roadproof.recordings.formats.recording import Bools, Floats, Lane, Recording, with_notes
+from roadproof.recordings.formats.source import Files, Format, rate_in_meta
+from roadproof.recordings.formats.straight import StraightRoad, of_bands, of_road, place
+from roadproof.recordings.formats.table import Table, kinds_of, names_in, read_table
+from roadproof.recordings.formats.tracks import (
+    by_id,
+    files_of,
+    find_recordings,
+    in_order,
+    match_vehicles,
+    rate_of,
 )
-from roadproof.recordings.formats.straight import StraightRoad, of_road, place
-from roadproof.recordings.formats.table import Kind, Table, names_in, read_table
-from roadproof.recordings.formats.tracks import in_order, match_vehicles
 from roadproof.world.models import load_recorded_road
 
 RECORDING_COLUMNS = names_in(
@@ -50,38 +50,20 @@ SAMPLE_COLUMNS = names_in(
 UPPER, LOWER = 1, 2
 """Driving directions: on the upper lanes towards -x, on the lower ones towards +x."""
 
-_RECORDING_KINDS: Mapping[str, Kind] = {
-    "id": "integer",
-    "frameRate": "number",
-    "numVehicles": "integer",
-    "numCars": "integer",
-    "numTrucks": "integer",
-    "upperLaneMarkings": "text",
-    "lowerLaneMarkings": "text",
-}
-_VEHICLE_KINDS: Mapping[str, Kind] = {
-    "id": "integer",
-    "width": "number",
-    "height": "number",
-    "initialFrame": "integer",
-    "finalFrame": "integer",
-    "numFrames": "integer",
-    "class": "text",
-    "drivingDirection": "integer",
-}
-SAMPLE_KINDS: Mapping[str, Kind] = {
-    "frame": "integer",
-    "id": "integer",
-    "x": "number",
-    "y": "number",
-    "width": "number",
-    "height": "number",
-    "xVelocity": "number",
-    "yVelocity": "number",
-    "xAcceleration": "number",
-    "yAcceleration": "number",
-    "laneId": "integer",
-}
+_RECORDING_KINDS = kinds_of(
+    integer="id numVehicles numCars numTrucks",
+    number="frameRate",
+    text="upperLaneMarkings lowerLaneMarkings",
+)
+_VEHICLE_KINDS = kinds_of(
+    integer="id initialFrame finalFrame numFrames drivingDirection",
+    number="width height",
+    text="class",
+)
+SAMPLE_KINDS = kinds_of(
+    integer="frame id laneId",
+    number="x y width height xVelocity yVelocity xAcceleration yAcceleration",
+)
 
 
 def find_highd(path: Path) -> dict[str, Files]:
@@ -89,20 +71,13 @@ def find_highd(path: Path) -> dict[str, Files]:
 
     A recording counts when any one of its three files is there.
     """
-    found: dict[str, Files] = {}
-    for file in with_suffix(path, ".csv"):
-        match = TRACK_FILES.fullmatch(file.name)
-        if match is not None and "recordingId" not in first_line(file).split(","):
-            found[match[1]] = highd_files(file.parent, match[1])
-    return dict(sorted(found.items(), key=lambda entry: (int(entry[0]), entry[0])))
+    return find_recordings(path, False, highd_files)
 
 
 def highd_files(folder: Path, name: str) -> Files:
     """The files that recording ``name`` of ``folder`` is read from."""
-    tracks = folder / f"{name}_tracks.csv"
     road = folder / f"{name}_road.toml"
-    meta = (tracks.with_name(f"{name}_{x}.csv") for x in ("recordingMeta", "tracksMeta"))
-    return (*((road,) if road.is_file() else ()), *meta, tracks)
+    return (*((road,) if road.is_file() else ()), *files_of(folder, name))
 
 
 def read_highd(folder: Path, name: str) -> Recording:
@@ -133,9 +108,7 @@ def read_highd(folder: Path, name: str) -> Recording:
     recording = Recording(
         name=name,
         rate=rate,
-        lanes=road.lanes,
-        beside=road.beside,
-        lanelets=road.lanelets,
+        **vars(road),
         vehicle_id=meta["id"],
         direction=meta["drivingDirection"],
         kind=meta["class"].astype(np.str_),
@@ -150,10 +123,7 @@ def read_highd(folder: Path, name: str) -> Recording:
         a_lon=blockwise(_turned, up, tracks["xAcceleration"]),
         a_lat=blockwise(_turned, ~up, tracks["yAcceleration"]),
         notes=notes,
-        occupancy=placed.occupancy,
-        lane=placed.lane,
-        zones=placed.zones,
-        inside=placed.inside,
+        **vars(placed),
     )
     more = (*check_plausible(recording, tracks), *check_lanes(tracks, recording, direction != way))
     return with_notes(recording, (*more, *check_sight(meta, tracks, SAMPLE_COLUMNS, UPPER)))
@@ -167,7 +137,7 @@ def _turned(backwards: Bools, values: Floats) -> Floats:
 def _read_road(path: Path, bands: tuple[Lane, ...]) -> tuple[StraightRoad, int]:
     """The lanes of both directions, and that of which a file gives them, 0 for none."""
     if not path.is_file():
-        return StraightRoad(bands, beside_by_order(bands), ()), 0
+        return of_bands(bands), 0
     road, way = load_recorded_road(path, (LOWER, UPPER))
     return of_road(road, way, path, (x for x in bands if x.direction != way)), way
 
@@ -182,12 +152,7 @@ def lanes_of_markings(upper: tuple[float, ...], lower: tuple[float, ...]) -> tup
 
 def _read_recording(path: Path, name: str) -> tuple[int, tuple[Lane, ...], Mapping[str, int]]:
     meta = read_table(path, RECORDING_COLUMNS, _RECORDING_KINDS)
-    if meta.rows != 1:
-        raise InputError(f"{path}: {meta.rows} rows; one recording has one row of meta data")
-    meta.require(meta["id"] == int(name), "id", f"the name of the file says recording {name}")
-    rate = meta["frameRate"][0]
-    if not (0 < rate <= 1000 and rate == int(rate)):
-        raise meta.refuse(0, "frameRate", "a whole number of frames a second is needed")
+    rate = rate_of(meta, "id", int(name), f"the name of the file says recording {name}")
     for column in ("numVehicles", "numCars", "numTrucks"):
         meta.require(meta[column] >= 0, column, "a count is never negative")
     if meta["numVehicles"][0] != meta["numCars"][0] + meta["numTrucks"][0]:
@@ -197,7 +162,7 @@ def _read_recording(path: Path, name: str) -> tuple[int, tuple[Lane, ...], Mappi
     if upper[-1] > lower[0]:
         raise meta.refuse(0, "lowerLaneMarkings", f"must lie below the last upper marking {upper[-1]}")
     return (
-        int(rate),
+        rate,
         lanes_of_markings(upper, lower),
         {"Car": meta["numCars"][0], "Truck": meta["numTrucks"][0]},
     )
@@ -217,19 +182,10 @@ def _read_markings(meta: Table, column: str) -> tuple[float, ...]:
 
 def _read_vehicles(path: Path, counts: Mapping[str, int]) -> Table:
     meta = read_table(path, VEHICLE_COLUMNS, _VEHICLE_KINDS)
-    order = np.argsort(meta["id"], kind="stable")
-    repeated = np.zeros(meta.rows, bool)
-    repeated[order[1:]] = np.diff(meta["id"][order]) == 0
-    meta.require(~repeated, "id", "a vehicle has one row")
     meta.require(meta["id"] > 0, "id", "an id is greater than zero, which stands for no vehicle")
     for column in ("width", "height"):
         meta.require(meta[column] > 0, column, "the size of a vehicle is greater than zero")
-    meta.require(meta["initialFrame"] >= 0, "initialFrame", "a frame is never negative")
-    frames = meta["finalFrame"] - meta["initialFrame"] + 1
-    meta.require(
-        meta["finalFrame"] >= meta["initialFrame"], "finalFrame", "must not come before initialFrame"
-    )
-    meta.require(meta["numFrames"] == frames, "numFrames", "must be finalFrame - initialFrame + 1")
+    ordered = by_id(meta, "id")
     meta.require(np.isin(meta["drivingDirection"], (UPPER, LOWER)), "drivingDirection", "must be 1 or 2")
     kinds = meta["class"].astype(np.str_)
     meta.require(np.isin(kinds, list(counts)), "class", f"must be {' or '.join(counts)}")
@@ -239,8 +195,7 @@ def _read_vehicles(path: Path, counts: Mapping[str, int]) -> Table:
             raise InputError(
                 f"{path}: {found} vehicles of class {kind}, but the recordingMeta file counts {expected}"
             )
-    columns = {name: values[order] for name, values in meta.columns.items()}
-    return Table(path, columns, meta.rows, order)
+    return ordered
 
 
 def _read(files: Files) -> Recording:

@@ -23,20 +23,10 @@ LARGEST_PLACE = 10_000.0
 
 def check_limits(tracks: Table) -> None:
     """No cell may say what no vehicle does; one of them would decide the pairs that are looked at."""
-    limits = {
-        "x": LARGEST_PLACE,
-        "y": LARGEST_PLACE,
-        "xVelocity": LARGEST_SPEED,
-        "yVelocity": LARGEST_SPEED,
-        "xAcceleration": LARGEST_ACCELERATION,
-        "yAcceleration": LARGEST_ACCELERATION,
-        "width": LARGEST_SIZE,
-        "height": LARGEST_SIZE,
-    }
-    for column, most in limits.items():
-        values = tracks[column]
-        if max(-values.min(), values.max()) > most:
-            tracks.require(np.abs(values) <= most, column, f"must lie between {-most:g} and {most:g}")
+    tracks.require_within(LARGEST_PLACE, "x", "y")
+    tracks.require_within(LARGEST_SPEED, "xVelocity", "yVelocity")
+    tracks.require_within(LARGEST_ACCELERATION, "xAcceleration", "yAcceleration")
+    tracks.require_within(LARGEST_SIZE, "width", "height")
 
 
 def check_boxes(meta: Table, tracks: Table, start: Integers) -> None:

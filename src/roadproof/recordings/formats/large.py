@@ -15,6 +15,7 @@ import numpy as np
 
 from roadproof.errors import InputError
 from roadproof.recordings.formats import windows
+from roadproof.recordings.formats.content import require_unchanged, stamp_of
 from roadproof.recordings.formats.contradictions import noted_doubts, noted_nowhere
 from roadproof.recordings.formats.converted import (
     HEAD,
@@ -39,7 +40,7 @@ from roadproof.recordings.formats.samples import (
 )
 from roadproof.recordings.formats.source import Files
 from roadproof.recordings.formats.straight import StraightRoad
-from roadproof.recordings.formats.table import Table, polars_module, require_unchanged, stamp_of
+from roadproof.recordings.formats.table import Table, polars_module
 from roadproof.recordings.formats.windows import Window, WindowedRecording
 from roadproof.runtime.files import write_json
 from roadproof.world.signals import RECORDED

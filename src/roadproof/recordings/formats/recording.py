@@ -8,7 +8,7 @@ Samples are grouped by vehicle and consecutive within one: vehicle v owns rows
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, TypeAlias
@@ -199,7 +199,7 @@ def keep_vehicles(recording: Recording, wanted: Bools) -> Recording:
         changed["own"] = {name: values[rows] for name, values in recording.own.items()}
     if recording.slack is not None:
         changed["slack"] = Slack(*(values[rows] for values in vars(recording.slack).values()))
-    return _replace(recording, changed | {"start": offsets(counts)})
+    return replace(recording, **changed, start=offsets(counts))
 
 
 def join_vehicles(recording: Recording, guests: Recording) -> Recording:
@@ -224,12 +224,12 @@ def join_vehicles(recording: Recording, guests: Recording) -> Recording:
         for name in (*per_vehicle, *RECORDED, "occupancy", "lane", "zones", "inside")
     }
     changed["start"] = np.concatenate((recording.start, recording.start[-1] + guests.start[1:]))
-    return _replace(recording, changed)
+    return replace(recording, **changed)
 
 
 def with_notes(recording: Recording, notes: Iterable[str]) -> Recording:
     """The recording with more notes."""
-    return _replace(recording, {"notes": (*recording.notes, *notes)})
+    return replace(recording, notes=(*recording.notes, *notes))
 
 
 def offsets(counts: npt.NDArray[Any]) -> Integers:
@@ -272,9 +272,3 @@ def occupy_bands(
             occupancy[part] |= (ours & (left > low) & (right < high)).astype(np.uint32) << np.uint32(k)
             lane[part][ours & (low <= centre) & (centre < high)] = k
     return occupancy, lane
-
-
-def _replace(recording: Recording, changed: Mapping[str, Any]) -> Recording:
-    return Recording(
-        **{**{name: getattr(recording, name) for name in Recording.__dataclass_fields__}, **changed}
-    )

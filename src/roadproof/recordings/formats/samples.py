@@ -7,8 +7,9 @@ NAME_road.toml beside NAME.csv or NAME.parquet, in the form of models/roads, say
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -138,11 +139,11 @@ def vehicles_of(table: Table, ids: Integers, clock: "Clock", road: StraightRoad,
     placed = place(
         road, np.full(table.rows, DIRECTION), *(table[x] for x in ("s", "d")), *(table[x] for x in SIZES)
     )
+    moving: dict[str, Any] = {name: table[name] for name in RECORDED}
     return Recording(
         name=name,
         rate=clock.rate,
-        lanes=road.lanes,
-        beside=road.beside,
+        **vars(road),
         vehicle_id=ids[first],
         direction=np.full(len(first), DIRECTION),
         kind=kind[first],
@@ -150,17 +151,8 @@ def vehicles_of(table: Table, ids: Integers, clock: "Clock", road: StraightRoad,
         width=table["width"][first],
         first_frame=frames[first],
         start=start,
-        s=table["s"],
-        d=table["d"],
-        v_lon=table["v_lon"],
-        v_lat=table["v_lat"],
-        a_lon=table["a_lon"],
-        a_lat=table["a_lat"],
-        occupancy=placed.occupancy,
-        lane=placed.lane,
-        zones=placed.zones,
-        lanelets=road.lanelets,
-        inside=placed.inside,
+        **moving,
+        **vars(placed),
         label=table[LABEL].astype(np.str_)[first] if LABEL in table.columns else np.zeros(0, np.str_),
         own={name: own_numbers(table[name].tolist()) for name in own_columns(table.columns)},
     )
@@ -179,9 +171,7 @@ def number_vehicles(names: npt.NDArray[np.str_]) -> tuple[Integers, tuple[str, .
 def by_vehicle(table: Table, ids: Integers) -> tuple[Table, Integers]:
     """The rows by vehicle, in the order of the file, and the number of each row's vehicle."""
     order = np.argsort(ids, kind="stable")
-    columns = {name: values[order] for name, values in table.columns.items()}
-    places = order if table.places is None else table.places[order]
-    return replace(table, columns=columns, places=places), ids[order]
+    return table.at(order), ids[order]
 
 
 @dataclass(frozen=True)
@@ -236,15 +226,10 @@ def _frames(table: Table, ids: Integers, clock: Clock) -> Integers:
 
 def _check_cells(table: Table, start: Integers) -> None:
     """No cell may say what no vehicle does, and no vehicle changes its size or drives backwards."""
-    limits: dict[float, tuple[str, ...]] = {
-        LARGEST_PLACE: ("s", "d"),
-        LARGEST_SPEED: ("v_lon", "v_lat"),
-        LARGEST_ACCELERATION: ("a_lon", "a_lat"),
-        LARGEST_SIZE: tuple(SIZES),
-    }
-    for most, columns in limits.items():
-        for column in columns:
-            table.require(np.abs(table[column]) <= most, column, f"must lie between {-most:g} and {most:g}")
+    table.require_within(LARGEST_PLACE, "s", "d")
+    table.require_within(LARGEST_SPEED, "v_lon", "v_lat")
+    table.require_within(LARGEST_ACCELERATION, "a_lon", "a_lat")
+    table.require_within(LARGEST_SIZE, *SIZES)
     for column in SIZES:
         size = table[column]
         table.require(size > 0, column, "the size of a vehicle is greater than zero")

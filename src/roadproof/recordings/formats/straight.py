@@ -63,6 +63,11 @@ def of_road(road: Road, direction: int, path: Path, others: Iterable[Lane] = ())
     return StraightRoad(lanes, beside_by_order(bands) | road.adjacent, lanelets)
 
 
+def of_bands(lanes: tuple[Lane, ...]) -> StraightRoad:
+    """Lanes without end, beside each other in their order."""
+    return StraightRoad(lanes, beside_by_order(lanes), ())
+
+
 def whole(lane: Lane) -> Lanelet:
     """A band as one lanelet of the main road, without end."""
     if lane.d is None:

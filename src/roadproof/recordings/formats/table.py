@@ -8,16 +8,16 @@ first cell that breaks a rule is named by file, row (the header is row 1), colum
 import io
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, BinaryIO, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, BinaryIO, Literal, TypeAlias, cast
 
 import numpy as np
 import numpy.typing as npt
 
 from roadproof.errors import InputError, MissingSolverError
-from roadproof.recordings.formats.plain import plain_text
+from roadproof.recordings.formats.content import Content
 from roadproof.runtime.file_kind import other_table
 from roadproof.runtime.files import whole_file
 
@@ -65,6 +65,19 @@ class Table:
         place = row if self.places is None else int(self.places[row])
         return f"row {place + 2}, column {column}={self.columns[column][row]}"
 
+    def at(self, order: Column) -> "Table":
+        """The rows at ``order``; each knows its place in the file."""
+        columns = {name: values[order] for name, values in self.columns.items()}
+        places = order if self.places is None else self.places[order]
+        return replace(self, columns=columns, rows=len(order), places=places)
+
+    def require_within(self, most: float, *columns: str) -> None:
+        """Raise for the first cell of the columns that is greater than ``most`` or less than -``most``."""
+        for column in columns:
+            values = self[column]
+            if not max(-values.min(), values.max()) <= most:
+                self.require(np.abs(values) <= most, column, f"must lie between {-most:g} and {most:g}")
+
     def require(self, holds: npt.NDArray[np.bool_], column: str, rule: str) -> None:
         """Raise for the first row where ``holds`` is false."""
         if not holds.all():
@@ -74,6 +87,11 @@ class Table:
 def names_in(*lines: str) -> tuple[str, ...]:
     """The names of columns in lines of them."""
     return tuple(" ".join(lines).split())
+
+
+def kinds_of(**names: str) -> dict[str, Kind]:
+    """The kinds of columns, from their names by kind."""
+    return {name: cast(Kind, kind) for kind, text in names.items() for name in text.split()}
 
 
 def cell_error(path: Path, row: int, column: str, value: object, rule: str) -> InputError:
@@ -87,65 +105,64 @@ def read_table(path: Path, header: Sequence[str], wanted: Mapping[str, Kind]) ->
     Integers come as int64, numbers as finite float64, texts as str. Raises ``InputError`` for a
     file that cannot be read, is empty or truncated, or breaks a rule above.
     """
-    content = _Content.of(path)
+    content = Content.of(path)
     beginning = content.beginning()
     other = other_table(beginning, len(header))
     if other is not None:
         raise InputError(f"{path}: the file {other}")
     _check_header(path, beginning.partition(b"\n")[0], header)
     rows = _check_shape(content, len(header))
-    columns = _read_fast(content.source(), wanted, rows)
-    content.require_unchanged()
-    if columns is None:
-        _blame(path, content.all().partition(b"\n")[2], header, wanted)
-        raise InputError(f"{path}: the file is no table of numbers with the columns {', '.join(header)}")
-    _require_finite(path, columns, wanted)
-    return Table(path, columns, rows)
+    return Table(path, _columns(content, content.source(), header, wanted, rows), rows)
 
 
 def read_pieces(path: Path, header: Sequence[str], wanted: Mapping[str, Kind]) -> Iterator[Table]:
     """As ``read_table``, in pieces of about PIECE bytes, of which one at a time is in memory."""
-    content = _Content.of(path)
+    content = Content.of(path)
     names, _, _ = content.beginning().partition(b"\n")
     _check_header(path, names, header)
     _check_shape(content, len(header))
-    done, rest = 0, b""
-    for block in content.pieces(PIECE):
-        lines, rest = (rest + block).rpartition(b"\n")[0], (rest + block).rpartition(b"\n")[2]
-        body = lines.partition(b"\n")[2] if done == 0 else lines
-        rows = body.count(b"\n") + 1 if body else 0
-        if not rows:
-            rest = lines + b"\n" + rest if lines and done == 0 else rest
-            continue
-        body += b"\n"
-        columns = _read_fast(names + b"\n" + body, wanted, rows)
-        if columns is None:
-            content.require_unchanged()
-            _blame(path, body, header, wanted, done)
-            raise InputError(f"{path}: the file is no table of numbers with the columns {', '.join(header)}")
-        _require_finite(path, columns, wanted, done)
-        yield Table(path, columns, rows, np.arange(done, done + rows))
-        done += rows
+    done = 0
+    with content.open() as file:
+        file.readline()
+        while piece := file.read(PIECE) + file.readline():
+            rows = piece.count(b"\n")
+            columns = _columns(content, names + b"\n" + piece, header, wanted, rows, done)
+            yield Table(path, columns, rows, np.arange(done, done + rows))
+            done += rows
     content.require_unchanged()
 
 
 def count_lines(path: Path) -> int:
     """How many line breaks a file has."""
-    return sum(piece.count(b"\n") for piece in _Content.of(path).pieces())
+    return sum(piece.count(b"\n") for piece in Content.of(path).pieces())
 
 
-def _require_finite(
-    path: Path, columns: Mapping[str, Column], wanted: Mapping[str, Kind], before: int = 0
-) -> None:
+def _columns(
+    content: Content,
+    source: Path | bytes,
+    header: Sequence[str],
+    wanted: Mapping[str, Kind],
+    rows: int,
+    before: int = 0,
+) -> dict[str, Column]:
+    """The columns of so many rows, with others ``before`` them. Raises ``InputError`` for a bad cell."""
+    path = content.path
+    columns = _read_fast(source, wanted, rows)
+    content.require_unchanged()
+    if columns is None:
+        text = content.all() if isinstance(source, Path) else source
+        _blame(path, text.partition(b"\n")[2], header, wanted, before)
+        raise InputError(f"{path}: the file is no table of numbers with the columns {', '.join(header)}")
     for name, kind in wanted.items():
         if kind == "number" and not np.isfinite(columns[name]).all():
             row = int(np.argmin(np.isfinite(columns[name])))
             raise cell_error(path, before + row, name, columns[name][row], "a number must be finite")
+    return columns
 
 
 def read_named(path: Path, wanted: Mapping[str, Kind]) -> Table:
     """As ``read_table``, for a file that may have other columns too, in any order. Raises ``InputError``."""
-    header = _Content.of(path).beginning().partition(b"\n")[0].decode("utf-8", "replace").strip().split(",")
+    header = Content.of(path).beginning().partition(b"\n")[0].decode("utf-8", "replace").strip().split(",")
     return read_table(path, header if set(wanted) <= set(header) else tuple(wanted), wanted)
 
 
@@ -153,7 +170,7 @@ def sample_rows(path: Path, header: Sequence[str], names: Sequence[str], count: 
     """The numbers of ``names`` in about ``count`` rows, evenly over a file that ``read_table`` took."""
     places = [header.index(name) for name in names]
     found = []
-    with _Content.of(path).open() as file:
+    with Content.of(path).open() as file:
         size = file.seek(0, 2)
         for k in range(count):
             file.seek(size * k // count)
@@ -162,13 +179,6 @@ def sample_rows(path: Path, header: Sequence[str], names: Sequence[str], count: 
             if len(cells) == len(header):
                 found.append([float(cells[place]) for place in places])
     return found
-
-
-def read_columns(path: Path, names: Sequence[str]) -> None:
-    """Read some columns and check nothing: what benchmarks compare ``read_table`` with."""
-    pl = polars_module()
-
-    pl.read_csv(path, columns=list(names))
 
 
 def write_table(path: Path, columns: Mapping[str, Column], decimals: int | None = None) -> None:
@@ -214,99 +224,6 @@ def polars_module() -> ModuleType:
     return polars
 
 
-_MARK = b"\xef\xbb\xbf"
-"""What some programs begin text in UTF-8 with."""
-
-
-@dataclass(frozen=True)
-class _Content:
-    """What is in a file, without the mark of UTF-8: looked at piece by piece, and not kept.
-
-    ``kept``: of what is no file on a disk, which can be read once, and of files with quoted cells or other
-    line ends, as they are without. ``stamp`` changes when the file does.
-    """
-
-    path: Path
-    stamp: tuple[int, ...]
-    kept: bytes | None
-
-    @classmethod
-    def of(cls, path: Path) -> "_Content":
-        """Raises ``InputError`` for a file that cannot be read or is empty."""
-        try:
-            kept = None if path.is_file() else path.read_bytes().removeprefix(_MARK)
-            found = cls(path, stamp_of(path), kept)
-            empty = not found.beginning() or (found.beginning().isspace() and found.all().isspace())
-            if not empty and found.needs_change():
-                found = cls(path, found.stamp, plain_text(path, found.all()))
-        except OSError as error:
-            raise InputError(f"{path}: the file cannot be read ({error.strerror}); check the path") from None
-        if empty:
-            raise InputError(f"{path}: the file is empty; get it again from its source")
-        return found
-
-    def open(self) -> BinaryIO:
-        """The content, to be read."""
-        return self.path.open("rb") if self.kept is None else io.BytesIO(self.kept)
-
-    def needs_change(self) -> bool:
-        """Whether cells are quoted, or lines end with a carriage return alone; False of what is no text."""
-        first = self.beginning()
-        if not first.isascii() or b"\0" in first:
-            return False
-        return (b"\r" in first and b"\n" not in first) or any(b'"' in piece for piece in self.pieces())
-
-    def pieces(self, size: int = 1 << 18) -> Iterator[bytes]:
-        """All of it, in pieces that by default fit the cache."""
-        with self.open() as file:
-            if file.read(len(_MARK)) != _MARK or self.kept is not None:
-                file.seek(0)
-            while piece := file.read(size):
-                yield piece
-
-    def beginning(self) -> bytes:
-        """The first of the pieces, in which the header is."""
-        return next(self.pieces(), b"")
-
-    def ends_line(self) -> bool:
-        """Whether it ends with a line break."""
-        if self.kept is not None:
-            return self.kept.endswith(b"\n")
-        with self.path.open("rb") as file:
-            file.seek(-1, io.SEEK_END)
-            return file.read() == b"\n"
-
-    def all(self) -> bytes:
-        return b"".join(self.pieces())
-
-    def source(self) -> Path | bytes:
-        """What polars is to read; the file itself where it has no mark."""
-        if self.kept is not None:
-            return self.kept
-        with self.path.open("rb") as file:
-            marked = file.read(len(_MARK)) == _MARK
-        return self.all() if marked else self.path
-
-    def require_unchanged(self) -> None:
-        """Raise ``InputError`` where the file was written to since it was first looked at."""
-        require_unchanged(self.path, self.stamp)
-
-
-def require_unchanged(path: Path, stamp: tuple[int, ...]) -> None:
-    """Raise ``InputError`` where a file is not what it was when ``stamp_of`` it was asked for."""
-    if stamp_of(path) != stamp:
-        raise InputError(f"{path}: the file changed while it was read; ask again when it is whole")
-
-
-def stamp_of(path: Path) -> tuple[int, ...]:
-    """What changes when a file does; nothing of one that is gone."""
-    try:
-        found = path.stat()
-    except OSError:
-        return ()
-    return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns
-
-
 def _check_header(path: Path, line: bytes, header: Sequence[str]) -> None:
     names = line.decode("utf-8", "replace").strip("\r\n ").split(",")
     missing = [name for name in header if name not in names]
@@ -322,7 +239,7 @@ def _check_header(path: Path, line: bytes, header: Sequence[str]) -> None:
         raise InputError(f"{path}, row 1: the columns must come in the order {', '.join(header)}, each once")
 
 
-def _check_shape(content: _Content, fields: int) -> int:
+def _check_shape(content: Content, fields: int) -> int:
     """The number of data rows; every line must end, and hold ``fields`` fields."""
     path = content.path
     if not content.ends_line():
@@ -377,7 +294,7 @@ def _blame(
     path: Path, body: bytes, header: Sequence[str], wanted: Mapping[str, Kind], before: int = 0
 ) -> None:
     """Read cell by cell and raise for the first one that is wrong; slow, and only after a failure."""
-    places = [(header.index(name), name, kind) for name, kind in wanted.items()]
+    places = sorted((header.index(name), name, kind) for name, kind in wanted.items())
     for row, line in enumerate(body.decode("utf-8", "replace").split("\n")[:-1], before):
         cells = line.rstrip("\r").split(",")
         if len(cells) != len(header):

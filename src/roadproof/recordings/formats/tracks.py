@@ -1,10 +1,56 @@
 """Samples of tracks in one file and what another says of each track, as highD and exiD have them."""
 
+from collections.abc import Callable
+from pathlib import Path
+
 import numpy as np
 
 from roadproof.errors import InputError
 from roadproof.recordings.formats.recording import Integers
+from roadproof.recordings.formats.source import TRACK_FILES, Files, first_line, with_suffix
 from roadproof.recordings.formats.table import Table
+
+
+def files_of(folder: Path, name: str) -> Files:
+    """The files of a recording, that of its samples last."""
+    return tuple(folder / f"{name}_{x}.csv" for x in ("recordingMeta", "tracksMeta", "tracks"))
+
+
+def find_recordings(path: Path, with_ids: bool, files: Callable[[Path, str], Files]) -> dict[str, Files]:
+    """The recordings of a folder, in order, or that of one of its files, by name.
+
+    ``with_ids``: files have a column recordingId. ``files``: of the recording of a folder and name.
+    """
+    found: dict[str, Files] = {}
+    for file in with_suffix(path, ".csv"):
+        match = TRACK_FILES.fullmatch(file.name)
+        if match is not None and ("recordingId" in first_line(file).split(",")) == with_ids:
+            found[match[1]] = files(file.parent, match[1])
+    return dict(sorted(found.items(), key=lambda entry: (int(entry[0]), entry[0])))
+
+
+def rate_of(meta: Table, column: str, number: int, rule: str) -> int:
+    """The frames a second of a recording, whose ``number`` is in ``column``. Raises ``InputError``."""
+    if meta.rows != 1:
+        raise InputError(f"{meta.path}: {meta.rows} rows; one recording has one row of meta data")
+    meta.require(meta[column] == number, column, rule)
+    rate = meta["frameRate"][0]
+    if not (0 < rate <= 1000 and rate == int(rate)):
+        raise meta.refuse(0, "frameRate", "a whole number of frames a second is needed")
+    return int(rate)
+
+
+def by_id(meta: Table, column: str) -> Table:
+    """The vehicles by their ids in ``column``, each once, with frames that fit. Raises ``InputError``."""
+    order = np.argsort(meta[column], kind="stable")
+    repeated = np.zeros(meta.rows, bool)
+    repeated[order[1:]] = np.diff(meta[column][order]) == 0
+    meta.require(~repeated, column, "a vehicle has one row")
+    meta.require(meta["initialFrame"] >= 0, "initialFrame", "a frame is never negative")
+    frames = meta["finalFrame"] - meta["initialFrame"] + 1
+    meta.require(frames > 0, "finalFrame", "must not come before initialFrame")
+    meta.require(meta["numFrames"] == frames, "numFrames", "must be finalFrame - initialFrame + 1")
+    return meta.at(order)
 
 
 def in_order(tracks: Table, column: str) -> tuple[Table, tuple[str, ...]]:
@@ -20,9 +66,9 @@ def in_order(tracks: Table, column: str) -> tuple[Table, tuple[str, ...]]:
     repeated = np.zeros(tracks.rows, bool)
     repeated[order[1:]] = (np.diff(ids[order]) == 0) & (np.diff(frames[order]) == 0)
     tracks.require(~repeated, "frame", "vehicle and frame occur together once")
-    columns = {name: values[order] for name, values in tracks.columns.items()}
-    ordered = Table(tracks.path, columns, tracks.rows, order)
-    return ordered, (f"{tracks.path.name}: rows were not in order of {column} and frame; they were sorted",)
+    return tracks.at(order), (
+        f"{tracks.path.name}: rows were not in order of {column} and frame; they were sorted",
+    )
 
 
 def match_vehicles(meta: Table, tracks: Table, column: str, least: int) -> Integers:

@@ -3,14 +3,8 @@
 import numpy as np
 
 from roadproof.recordings.formats.highd import LOWER, UPPER, lanes_of_markings
-from roadproof.recordings.formats.recording import (
-    Floats,
-    Integers,
-    Recording,
-    beside_by_order,
-    occupy_bands,
-    offsets,
-)
+from roadproof.recordings.formats.recording import Floats, Integers, Recording, offsets
+from roadproof.recordings.formats.straight import of_bands, place
 from roadproof.recordings.simulate.simulate import STEP_SECONDS, Movement, move_traffic
 from roadproof.recordings.simulate.traffic import Traffic
 
@@ -24,7 +18,7 @@ def simulate(traffic: Traffic, seed: int, number: int = 1) -> Recording:
     random = np.random.default_rng([seed, number])
     movement = move_traffic(traffic, random)
     upper, lower = markings_of(traffic)
-    lanes = lanes_of_markings(upper, lower)
+    road = of_bands(lanes_of_markings(upper, lower))
     row, tick = _sample_rows(traffic, movement)
     vehicle = movement.vehicle[row]
     order = np.argsort(vehicle, kind="stable")
@@ -48,17 +42,16 @@ def simulate(traffic: Traffic, seed: int, number: int = 1) -> Recording:
     s: Floats = np.round(along[rows] - np.where(up, traffic.section, 0.0), 2)
     d = np.round(d[rows] + right_edge, 2)
     direction = np.where(way == 0, UPPER, LOWER)
-    width = movement.width[seen]
-    occupancy, lane = occupy_bands(lanes, np.repeat(direction, counts), d, np.repeat(width, counts))
+    length, width = movement.length[seen], movement.width[seen]
+    sizes = (np.repeat(x, counts) for x in (length, width))
     return Recording(
         name=f"{number:02d}",
         rate=traffic.rate,
-        lanes=lanes,
-        beside=beside_by_order(lanes),
+        **vars(road),
         vehicle_id=np.arange(1, len(seen) + 1),
         direction=direction,
         kind=np.where(movement.truck[seen], "Truck", "Car"),
-        length=movement.length[seen],
+        length=length,
         width=width,
         first_frame=frame[first][by_entry],
         start=offsets(counts),
@@ -68,9 +61,7 @@ def simulate(traffic: Traffic, seed: int, number: int = 1) -> Recording:
         v_lat=_two_decimals(v_lat[rows]),
         a_lon=_two_decimals(a[rows]),
         a_lat=_two_decimals(a_lat[rows]),
-        occupancy=occupancy,
-        lane=lane,
-        zones=(occupancy != 0).astype(np.uint32),
+        **vars(place(road, np.repeat(direction, counts), s, d, *sizes)),
     )
 
 

@@ -1,0 +1,102 @@
+"""The content of text files, looked at piece by piece."""
+
+import io
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+from roadproof.errors import InputError
+from roadproof.recordings.formats.plain import plain_text
+
+_MARK = b"\xef\xbb\xbf"
+"""What some programs begin text in UTF-8 with."""
+
+
+@dataclass(frozen=True)
+class Content:
+    """What is in a file, without the mark of UTF-8: looked at piece by piece, and not kept.
+
+    ``kept``: of what is no file on a disk, which can be read once, and of files with quoted cells or other
+    line ends, as they are without. ``stamp`` changes when the file does.
+    """
+
+    path: Path
+    stamp: tuple[int, ...]
+    kept: bytes | None
+
+    @classmethod
+    def of(cls, path: Path) -> "Content":
+        """Raises ``InputError`` for a file that cannot be read or is empty."""
+        try:
+            kept = None if path.is_file() else path.read_bytes().removeprefix(_MARK)
+            found = cls(path, stamp_of(path), kept)
+            empty = not found.beginning() or (found.beginning().isspace() and found.all().isspace())
+            if not empty and found.needs_change():
+                found = cls(path, found.stamp, plain_text(path, found.all()))
+        except OSError as error:
+            raise InputError(f"{path}: the file cannot be read ({error.strerror}); check the path") from None
+        if empty:
+            raise InputError(f"{path}: the file is empty; get it again from its source")
+        return found
+
+    def open(self) -> BinaryIO:
+        """The content, to be read."""
+        return self.path.open("rb") if self.kept is None else io.BytesIO(self.kept)
+
+    def needs_change(self) -> bool:
+        """Whether cells are quoted, or lines end with a carriage return alone; False of what is no text."""
+        first = self.beginning()
+        if not first.isascii() or b"\0" in first:
+            return False
+        return (b"\r" in first and b"\n" not in first) or any(b'"' in piece for piece in self.pieces())
+
+    def pieces(self, size: int = 1 << 18) -> Iterator[bytes]:
+        """All of it, in pieces that by default fit the cache."""
+        with self.open() as file:
+            if file.read(len(_MARK)) != _MARK or self.kept is not None:
+                file.seek(0)
+            while piece := file.read(size):
+                yield piece
+
+    def beginning(self) -> bytes:
+        """The first of the pieces, in which the header is."""
+        return next(self.pieces(), b"")
+
+    def ends_line(self) -> bool:
+        """Whether it ends with a line break."""
+        if self.kept is not None:
+            return self.kept.endswith(b"\n")
+        with self.path.open("rb") as file:
+            file.seek(-1, io.SEEK_END)
+            return file.read() == b"\n"
+
+    def all(self) -> bytes:
+        return b"".join(self.pieces())
+
+    def source(self) -> Path | bytes:
+        """What polars is to read; the file itself where it has no mark."""
+        if self.kept is not None:
+            return self.kept
+        with self.path.open("rb") as file:
+            marked = file.read(len(_MARK)) == _MARK
+        return self.all() if marked else self.path
+
+    def require_unchanged(self) -> None:
+        """Raise ``InputError`` where the file was written to since it was first looked at."""
+        require_unchanged(self.path, self.stamp)
+
+
+def require_unchanged(path: Path, stamp: tuple[int, ...]) -> None:
+    """Raise ``InputError`` where a file is not what it was when ``stamp_of`` it was asked for."""
+    if stamp_of(path) != stamp:
+        raise InputError(f"{path}: the file changed while it was read; ask again when it is whole")
+
+
+def stamp_of(path: Path) -> tuple[int, ...]:
+    """What changes when a file does; nothing of one that is gone."""
+    try:
+        found = path.stat()
+    except OSError:
+        return ()
+    return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns
