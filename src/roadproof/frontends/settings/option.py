@@ -23,6 +23,8 @@ class Option:
     gather: Callable[[list[Any]], object] | None = None
     """The flag may be repeated, and this makes the value out of what was read."""
     choices: tuple[str, ...] | None = None
+    checked: bool = True
+    """Settings compare values with ``choices``; otherwise the question does."""
     least: int | None = None
     keyword: bool = True
     required: bool = False
@@ -31,7 +33,7 @@ class Option:
 
     def check(self, name: str, value: object) -> None:
         """Raises ``UsageError`` where a Python caller gives a value that is not allowed."""
-        if self.choices is not None and value not in self.choices:
+        if self.checked and self.choices is not None and value not in self.choices:
             raise UsageError(f"{name}={value!r}: write {' or '.join(map(repr, self.choices))}")
         if self.least is not None and isinstance(value, int) and value < self.least:
             raise UsageError(f"{name}={value}: write a whole number greater than {self.least - 1}")

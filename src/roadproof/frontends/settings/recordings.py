@@ -153,6 +153,7 @@ class Simulate(Workers):
         "--ramp",
         help="add an on-ramp or an off-ramp to the lower carriageway, with XX_road.toml (default: none)",
         choices=("none", "merge", "depart"),
+        checked=False,
     )
     ramp_flow: float = option(
         400.0, "--ramp-flow F", help="vehicles per hour on the ramp (default: 400)", read=decimal
