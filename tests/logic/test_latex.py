@@ -3,11 +3,12 @@
 import pytest
 
 from planting import plant
+from roadproof.evidence.answers.tree import claim_node
+from roadproof.evidence.codec import write
 from roadproof.library.loading import bundled_library
 from roadproof.logic import latex as latex_module
 from roadproof.logic.latex import align, latex, symbol
 from roadproof.logic.parse import parse_claim
-from roadproof.logic.tree import tree
 
 U = r"\mathbin{\mathcal{U}}"
 DEFINITIONS = bundled_library().select("ext").definitions
@@ -142,7 +143,8 @@ def test_braces_balance_in_every_definition() -> None:
 
 
 def test_tree_is_plain_data() -> None:
-    assert tree(parse_claim("given v: m/s: some x in {SV}: G[0, 0.5 s] (not p(x) U v > 1 m/s)")) == {
+    claim = parse_claim("given v: m/s: some x in {SV}: G[0, 0.5 s] (not p(x) U v > 1 m/s)")
+    assert write(claim_node(claim)) == {
         "node": "claim",
         "given": [{"name": "v", "sort": "m/s"}],
         "body": {

@@ -71,6 +71,43 @@ def tagged_schema(kinds: tuple[type, ...], name: str, title: str) -> dict[str, A
     }
 
 
+def joined_schema(name: str, title: str, beside: type, kinds: Mapping[str, Any]) -> dict[str, Any]:
+    """The schema of a file that holds an object of one of several kinds, with the fields of ``beside`` too.
+
+    ``kinds``: the schema of each, by its title.
+    """
+    [told] = _alternatives(beside)
+    joined = {
+        word: {
+            **x,
+            "required": [*told["required"], *x["required"]],
+            "properties": {**told["properties"], **x["properties"]},
+        }
+        for word, x in kinds.items()
+    }
+    every = [{"title": word, **x} for word, x in joined.items()]
+    version = {x: told["properties"][x] for x in ("schema",) if x in told["properties"]}
+    head = {"properties": version} if version else {}
+    return {"$schema": DRAFT, "$id": name, "title": title, **head, "oneOf": every}
+
+
+def kinds_in(kind: type, file: str) -> list[dict[str, Any]]:
+    """The schemas of the kinds of a definition, for another file than ``file``, which defines it."""
+    return [_moved(x, file) for x in _alternatives(kind)]
+
+
+def _moved(content: Any, file: str) -> Any:
+    """A schema with references as they are written in another file."""
+    if isinstance(content, list):
+        return [_moved(x, file) for x in content]
+    if not isinstance(content, dict):
+        return content
+    return {
+        key: f"{file}{x}" if key == "$ref" and x.startswith("#") else _moved(x, file)
+        for key, x in content.items()
+    }
+
+
 def shared_schemas(kinds: Mapping[str, Any]) -> dict[str, Any]:
     """The definitions of common.json, of types by name, and those that they are made of."""
     every = [x for kind in kinds.values() for x in _definitions(kind, set())]
@@ -111,14 +148,26 @@ def _definitions(kind: Any, seen: set[Any]) -> Iterator[type]:
 
 
 def _object(kind: type) -> dict[str, Any]:
+    """The schema of a definition; where it is one of several kinds, of any of these."""
+    several = _alternatives(kind)
+    return several[0] if len(several) == 1 else {**_told(kind.__doc__ or ""), "oneOf": several}
+
+
+def _alternatives(kind: type) -> list[dict[str, Any]]:
+    """The schemas of the kinds of a definition, which ``ALTERNATIVES`` tells by their fields."""
     every = fields_of(kind)
-    return {
-        "type": "object",
-        **_told(kind.__doc__ or ""),
-        "required": [x.key for x in every if x.is_written and not x.has(LACKING)],
-        "additionalProperties": False,
-        "properties": {x.key: _of_field(x) for x in every},
-    }
+    required = tuple(x.key for x in every if x.is_written and not x.has(LACKING))
+    kinds = getattr(kind, "ALTERNATIVES", ())
+    return [
+        {
+            "type": "object",
+            **({} if kinds else _told(kind.__doc__ or "")),
+            "required": [*needed],
+            "additionalProperties": False,
+            "properties": {x.key: _of_field(x) for x in every if not kinds or x.key in needed},
+        }
+        for needed in kinds or (required,)
+    ]
 
 
 def _told(text: str) -> dict[str, str]:

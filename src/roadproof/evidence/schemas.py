@@ -3,8 +3,9 @@
 import json
 import sys
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, get_args
+from typing import Annotated, Any, Literal, get_args
 
 from roadproof.evidence.answers import (
     catalogue_index,
@@ -27,9 +28,20 @@ from roadproof.evidence.answers import (
     show,
     trace,
     traffic,
+    tree,
 )
-from roadproof.evidence.codec import fields_of, notes_of
-from roadproof.evidence.json_schema import COMMON, DRAFT, Shared, schema_of, shared_schemas, tagged_schema
+from roadproof.evidence.answers.reader import KeptFile
+from roadproof.evidence.codec import Doc, Rule, fields_of, notes_of
+from roadproof.evidence.json_schema import (
+    COMMON,
+    DRAFT,
+    Shared,
+    joined_schema,
+    kinds_in,
+    schema_of,
+    shared_schemas,
+    tagged_schema,
+)
 from roadproof.library.motion import INDUCTIONS
 
 TITLES: Mapping[type, str] = {
@@ -91,7 +103,7 @@ RECORDS: Mapping[type, type] = {
 
 def shared_types() -> dict[str, Any]:
     """The types that several answers share, by their name among the definitions of common.json."""
-    kinds = (x for module in (shared, overlap, drive, trace) for x in vars(module).values())
+    kinds = (x for module in (shared, overlap, drive, trace, tree) for x in vars(module).values())
     return {note.name: x for x in kinds for note in notes_of(x) if isinstance(note, Shared)}
 
 
@@ -99,7 +111,7 @@ def schemas() -> Iterator[tuple[str, dict[str, Any]]]:
     """The name and the content of each schema."""
     for kind, title in TITLES.items():
         [schema] = get_args(next(x.type for x in fields_of(kind) if x.name == "schema"))
-        name = f"{schema.split('/')[1]}.json"
+        name = file_of(schema)
         yield name, schema_of(kind, RECORDS.get(kind, kind), name, title)
     title = "A proof for all time that a second program can check"
     made = schema_of(certificate.Certificate, certificate.Certificate, "certificate.json", title)
@@ -108,6 +120,8 @@ def schemas() -> Iterator[tuple[str, dict[str, Any]]]:
         "drive.json",
         tagged_schema(DRIVES, "drive.json", "A judged drive, with all that is needed to judge it again"),
     )
+    yield "answer.json", kept_answers("answer.json")
+    yield "question.json", questions("question.json")
     yield (
         COMMON,
         {
@@ -117,6 +131,53 @@ def schemas() -> Iterator[tuple[str, dict[str, Any]]]:
             "$defs": shared_schemas(shared_types()),
         },
     )
+
+
+KEEPING = (proofs, drives, plates, overlap, redundancy, order, coverage, classify, catalogue_index, explore)
+"""The questions whose answers are kept one by one."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Question:
+    """What the answers of a folder are answers to."""
+
+    schema: Literal["roadproof/journal/1"]
+    question: Annotated[
+        str,
+        Rule(pattern="^[0-9a-f]{16}$"),
+        Doc(
+            "Fingerprint of the question, the library and the version: a run goes on in a folder where it is "
+            "its own."
+        ),
+    ]
+
+
+def kept_answers(name: str) -> dict[str, Any]:
+    """The schema of kept answers."""
+    every = [(x.SCHEMA, kind) for x in KEEPING for kind in kinds_in(x.Record, file_of(x.SCHEMA))]
+    kinds = {" ".join((schema.split("/")[1], *kind["required"])): kind for schema, kind in every}
+    return joined_schema(name, "answers/NAME.json: one answer that a run has kept", KeptFile, kinds)
+
+
+def questions(name: str) -> dict[str, Any]:
+    """The schema of what was asked; ``said`` is what the index says once for all answers."""
+    kinds = {}
+    for schema, preamble in ((x.SCHEMA, x.Preamble) for x in KEEPING):
+        [said] = kinds_in(preamble, file_of(schema))
+        properties = {"of": {"const": schema}, "said": said}
+        kinds[schema] = {
+            "type": "object",
+            "required": [*properties],
+            "additionalProperties": False,
+            "properties": properties,
+        }
+    title = "question.json: what the answers of a folder are answers to"
+    return joined_schema(name, title, Question, kinds)
+
+
+def file_of(schema: str) -> str:
+    """The file of the schema of an answer, by what the answer calls it."""
+    return f"{schema.split('/')[1]}.json"
 
 
 def main(folder: Path) -> None:

@@ -307,6 +307,13 @@ class Index(Preamble, Heading):
 class Record:
     """A kept answer: facts about a test or a target, or an answer about gaps."""
 
-    name: str
+    name: Annotated[
+        str,
+        Rule(pattern="^(test-[0-9a-f]{12}|gaps-.+)$"),
+        Doc(
+            "Made of the ids of one test, of two, or of a class and a number of its start; or of what is "
+            "asked about gaps."
+        ),
+    ]
     facts: tuple[KeptFact, ...]
     gaps: coverage.Record | None

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Annotated, Final, Literal, TypeAlias
+from typing import Annotated, ClassVar, Final, Literal, TypeAlias
 
 from roadproof.errors import InputError
 from roadproof.evidence.answers.entry import PROOFS, Common, Entry, evidence_name, shows_of, shows_of_claim
@@ -212,6 +212,7 @@ class Index(Preamble, Heading):
 class Record:
     """A kept answer: to a claim, on a definition, or on the classes of a component."""
 
+    ALTERNATIVES: ClassVar = (("claim",), ("need",), ("group", "classes"))
     claim: Annotated[Claim | None, LEFT_OUT] = None
     need: Annotated[Need | None, LEFT_OUT] = None
     group: Annotated[str | None, LEFT_OUT, Doc("The component that the classes are of.")] = None

@@ -154,7 +154,7 @@ class Index(Preamble, Heading):
 class Record:
     """A kept answer: what was found about the scenarios of a family."""
 
-    family: str
+    family: Annotated[str, Rule(least=1), Doc("The first scenario of those that were asked together.")]
     proved: tuple[Edge, ...]
     drives: tuple[Refutation, ...]
     doubts: tuple[Doubt, ...]

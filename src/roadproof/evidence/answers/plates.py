@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Annotated, Final, Literal, TypeAlias
+from typing import Annotated, ClassVar, Final, Literal, TypeAlias
 
 from roadproof.drivers import lines as drawn
 from roadproof.drivers.claims import Side
@@ -190,5 +190,6 @@ class Index(Preamble, Heading):
 class Record:
     """A kept answer: a plate or a lemma."""
 
+    ALTERNATIVES: ClassVar = (("plate",), ("lemma",))
     plate: Annotated[Plate | None, LEFT_OUT] = None
     lemma: Annotated[Lemma | None, LEFT_OUT] = None

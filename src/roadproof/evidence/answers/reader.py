@@ -2,11 +2,12 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TypeAlias, TypeVar, get_args
+from typing import Annotated, TypeAlias, TypeVar, get_args
 
 from roadproof.errors import InputError
+from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.entry import Common, Entry, common_of
-from roadproof.evidence.codec import bare, fields_of, read
+from roadproof.evidence.codec import Doc, Rule, bare, fields_of, read
 from roadproof.evidence.heading import HEADING
 from roadproof.evidence.strict import Fields
 from roadproof.evidence.unchecked import unchecked
@@ -61,13 +62,21 @@ def first_set(data: Fields) -> str:
     return sets[0]
 
 
-_ABOUT_FILE = ("evidence", "seal")
-"""What a file of a kept answer says beside the answer."""
+@dataclass(frozen=True, kw_only=True)
+class KeptFile:
+    """What a file of a kept answer says beside the answer."""
+
+    evidence: Annotated[tuple[shared.KeptFile, ...], Doc("All files that the answer rests on.")]
+    seal: Annotated[
+        str,
+        Rule(pattern="^[0-9a-f]{64}$"),
+        Doc("SHA-256 over question, answer and the bytes of its evidence."),
+    ]
 
 
 def read_kept(kind: type[T], record: Fields) -> T:
     """A kept answer, as it is defined. Raises ``InputError``."""
-    content = {key: x for key, x in record.content.items() if key not in _ABOUT_FILE}
+    content = {key: x for key, x in record.content.items() if key not in ("evidence", "seal")}
     return read(kind, content, record.where)
 
 

@@ -1,7 +1,7 @@
 """The answer of ``roadproof show --format json``: a scenario, a definition or a formula."""
 
 from dataclasses import dataclass
-from typing import Annotated, Any, Final, Literal
+from typing import Annotated, Final, Literal
 
 from roadproof.evidence.answers.shared import (
     Formula,
@@ -11,8 +11,8 @@ from roadproof.evidence.answers.shared import (
     Rational,
     SetName,
 )
+from roadproof.evidence.answers.tree import ClaimNode, DefinitionNode
 from roadproof.evidence.codec import Doc
-from roadproof.evidence.json_schema import Whole
 
 SCHEMA: Final = "roadproof/show/1"
 
@@ -22,7 +22,7 @@ class ShownFormula:
     """A formula as text and as a syntax tree."""
 
     text: Formula
-    tree: Annotated[Any, Whole("tree.json#/$defs/claim")]
+    tree: ClaimNode
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,7 +31,7 @@ class Definition:
 
     name: str
     text: str
-    tree: Annotated[Any, Whole("tree.json#/$defs/definition")]
+    tree: DefinitionNode
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,6 +9,7 @@ from typing import Any
 
 from roadproof.errors import InputError
 from roadproof.evidence.answers import show as kept
+from roadproof.evidence.answers.tree import claim_node, definition_node
 from roadproof.evidence.codec import write
 from roadproof.evidence.heading import heading
 from roadproof.frontends.cli.options import add_specification_options, select_specification, write_json
@@ -26,7 +27,6 @@ from roadproof.logic.parse import parse_claim
 from roadproof.logic.restore import as_syntax, term_as_syntax
 from roadproof.logic.show import decimal, text
 from roadproof.logic.syntax import Binding, Claim, Definition, ParameterDeclaration, SetBlock
-from roadproof.logic.tree import tree
 from roadproof.verdict import ExitCode
 
 SUMMARY = "show a scenario, a definition or a formula"
@@ -205,9 +205,9 @@ def _as_json(exhibit: Exhibit, specification: Specification) -> dict[str, Any]:
         set=specification.set_name,
         options=specification.options,
         scenario=None if exhibit.about is None else exhibit.about.words,
-        formula=None if claim is None else kept.ShownFormula(text=text(claim), tree=tree(claim)),
+        formula=None if claim is None else kept.ShownFormula(text=text(claim), tree=claim_node(claim)),
         definitions=tuple(
-            kept.Definition(name=x.name, text=text(x), tree=tree(x)) for x in exhibit.definitions
+            kept.Definition(name=x.name, text=text(x), tree=definition_node(x)) for x in exhibit.definitions
         ),
         parameters=tuple(
             kept.Parameter(name=p.name, value=str(p.value), unit=p.unit, doc=p.doc)

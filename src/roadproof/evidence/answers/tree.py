@@ -1,0 +1,219 @@
+"""Syntax trees as they stand in JSON: every part is an object whose ``node`` says what it is."""
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Annotated, Any, Literal, TypeAlias, assert_never
+
+from roadproof.evidence.answers.shared import Binding, KeptBinding
+from roadproof.evidence.codec import Doc, Rule
+from roadproof.evidence.json_schema import Shared
+from roadproof.logic import syntax
+from roadproof.logic.syntax import BinaryOperator, Bounds, Expression
+
+Low: TypeAlias = Annotated["Node", Doc("Begin of its interval, in s.")]
+High: TypeAlias = Annotated["Node | None", Doc("End of its interval, in s; null is without end.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class TruthNode:
+    """A truth value."""
+
+    node: Literal["truth"]
+    value: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class NumberNode:
+    """A number."""
+
+    node: Literal["number"]
+    value: Fraction
+    unit: Annotated[str, Doc("Empty where it has none.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class NameNode:
+    """A name of a parameter, a vehicle or a lane."""
+
+    node: Literal["name"]
+    name: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class CallNode:
+    """A definition, a signal or a function, applied."""
+
+    node: Literal["call"]
+    name: str
+    arguments: tuple["Node", ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PrefixNode:
+    """Not, or minus."""
+
+    node: Literal["not", "-"]
+    body: "Node"
+
+
+@dataclass(frozen=True, kw_only=True)
+class BinaryNode:
+    """Two parts with an operator between."""
+
+    node: BinaryOperator
+    left: "Node"
+    right: "Node"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ChainNode:
+    """Two or more parts with one operator between."""
+
+    node: Literal["and", "or"]
+    parts: Annotated[tuple["Node", ...], Rule(least=2)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class WithinNode:
+    """Eventually, or always."""
+
+    node: Literal["F", "G"]
+    low: Low
+    high: High
+    body: "Node"
+
+
+@dataclass(frozen=True, kw_only=True)
+class UntilNode:
+    """Until."""
+
+    node: Literal["U"]
+    low: Low
+    high: High
+    left: "Node"
+    right: "Node"
+
+
+@dataclass(frozen=True, kw_only=True)
+class GroupNode:
+    """A group of vehicles."""
+
+    node: Literal["group"]
+    members: Annotated[tuple[str, ...], Rule(least=1)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class QuantifiedNode:
+    """A quantifier over a name, a call such as lanelets(L), or a group of vehicles."""
+
+    node: Literal["some", "every"]
+    variable: str
+    domain: NameNode | CallNode | GroupNode
+    body: "Node"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClaimNode:
+    """A claim with the free names that it declares."""
+
+    node: Literal["claim"]
+    given: tuple[KeptBinding, ...]
+    body: "Node"
+
+
+@dataclass(frozen=True, kw_only=True)
+class DefinitionNode:
+    """A definition."""
+
+    node: Literal["definition"]
+    name: str
+    parameters: tuple[KeptBinding, ...]
+    doc: str
+    body: "Node"
+
+
+Node: TypeAlias = Annotated[
+    TruthNode
+    | NumberNode
+    | NameNode
+    | CallNode
+    | PrefixNode
+    | BinaryNode
+    | ChainNode
+    | WithinNode
+    | UntilNode
+    | QuantifiedNode,
+    Doc("A part of a formula or of a term; node says which."),
+    Shared("node"),
+]
+
+
+def claim_node(claim: syntax.Claim) -> ClaimNode:
+    """A claim as its tree stands in JSON."""
+    return ClaimNode(node="claim", given=_bindings(claim.given), body=node(claim.body))
+
+
+def definition_node(of: syntax.Definition) -> DefinitionNode:
+    """A definition as its tree stands in JSON."""
+    bindings, body = _bindings(of.parameters), node(of.body)
+    return DefinitionNode(node="definition", name=of.name, parameters=bindings, doc=of.doc, body=body)
+
+
+def node(of: Expression) -> Node:
+    """An expression as its tree stands in JSON."""
+    match of:
+        case syntax.Literal_(bool() as value, _, _):
+            return TruthNode(node="truth", value=value)
+        case syntax.Literal_(value, unit, _):
+            return NumberNode(node="number", value=Fraction(value), unit=unit)
+        case syntax.Name():
+            return _name(of)
+        case syntax.Call():
+            return _call(of)
+        case syntax.Prefix(op, body, _):
+            return PrefixNode(node=op, body=node(body))
+        case syntax.Binary(op, left, right, _):
+            return BinaryNode(node=op, left=node(left), right=node(right))
+        case syntax.Chain(op, parts, _):
+            return ChainNode(node=op, parts=tuple(map(node, parts)))
+        case syntax.Temporal():
+            return _temporal(of)
+        case syntax.Quantified(kind, variable, domain, body, _):
+            return QuantifiedNode(node=kind, variable=variable, domain=_domain(domain), body=node(body))
+        case _:
+            assert_never(of)
+
+
+def _name(of: syntax.Name) -> NameNode:
+    return NameNode(node="name", name=of.name)
+
+
+def _call(of: syntax.Call) -> CallNode:
+    return CallNode(node="call", name=of.name, arguments=tuple(map(node, of.arguments)))
+
+
+def _temporal(of: syntax.Temporal) -> WithinNode | UntilNode:
+    interval, right = _interval(of.bounds), node(of.right)
+    if of.left is None:
+        return WithinNode(node="G" if of.op == "G" else "F", **interval, body=right)
+    return UntilNode(node="U", **interval, left=node(of.left), right=right)
+
+
+def _bindings(bindings: tuple[syntax.Binding, ...]) -> tuple[Binding, ...]:
+    return tuple(Binding(name=x.name, sort=x.sort) for x in bindings)
+
+
+def _interval(bounds: Bounds | None) -> dict[str, Any]:
+    if bounds is None:
+        return {"low": node(syntax.Literal_(Fraction(0))), "high": None}
+    return {"low": node(bounds.low), "high": None if bounds.high is None else node(bounds.high)}
+
+
+def _domain(domain: syntax.Name | syntax.Call | syntax.Group) -> NameNode | CallNode | GroupNode:
+    match domain:
+        case syntax.Name():
+            return _name(domain)
+        case syntax.Call():
+            return _call(domain)
+        case syntax.Group(members, _):
+            return GroupNode(node="group", members=tuple(x.name for x in members))
