@@ -11,6 +11,7 @@ and limits a value is one more of what is assumed. What is proved is the claim w
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -56,7 +57,7 @@ SCHEMAS: Mapping[str, tuple[str, ...]] = {
     "within-twice": ("left", "right", "speed", "growth", "time"),
     "after-twice": ("left", "right", "speed", "growth", "time"),
 }
-"""The schemas of motion, and what each is made of: terms, but for ``inside``, a formula."""
+"""The schemas of motion by what makes them, and what of: terms, but for ``inside``, a formula."""
 INDUCTIONS: Mapping[str, tuple[str, ...]] = {
     "steps": ("inside", "low", "high"),
     "lasts": ("inside", "time"),
@@ -155,7 +156,8 @@ def split(written: str, source: str = "claim") -> tuple[tuple[str, ...], str]:
     """
     found = _HEAD.match(written)
     if found is None:
-        _refuse_other_words(written, source)
+        if begun := _ASSUMING.match(written):
+            raise _unknown_word(written, begun.end(), "cannot be assumed", source)
         return (), written
     said = str(found["motion"] or found["values"])
     begin = place = found.start("motion" if found["motion"] else "values")
@@ -167,12 +169,6 @@ def split(written: str, source: str = "claim") -> tuple[tuple[str, ...], str]:
     return tuple(" ".join(x.split()) for x in said.split(",")), blank + written[found.end() :]
 
 
-def _refuse_other_words(written: str, source: str) -> None:
-    begun = _ASSUMING.match(written)
-    if begun is not None:
-        raise _unknown_word(written, begun.end(), "cannot be assumed", source)
-
-
 def _unknown_word(written: str, place: int, what: str, source: str) -> TextError:
     """What is said of a word that stands where something known is assumed."""
     before, word = written[:place], re.match(r"\w*", written[place:])
@@ -182,10 +178,10 @@ def _unknown_word(written: str, place: int, what: str, source: str) -> TextError
     return TextError(told, position, hint).locate(source, written)
 
 
-def read_under(specification: Specification, written: str, source: str = "claim") -> AssumedClaim:
+def read_under(specification: Specification, written: str) -> AssumedClaim:
     """A claim with what it says that it assumes. Raises ``InputError``."""
-    said, claim = split(written, source)
-    return under(specification, read_claim(specification, claim, source), said)
+    said, claim = split(written)
+    return under(specification, read_claim(specification, claim), said)
 
 
 def under(specification: Specification, query: Query, said: Sequence[str]) -> AssumedClaim:
@@ -204,9 +200,8 @@ def at_values(
     specification: Specification, claim: AssumedClaim, values: Mapping[str, Fraction]
 ) -> AssumedClaim:
     """``claim`` at ``values`` (SI) as well, of which it may say others itself. Raises ``InputError``."""
-    known = {*values_said(specification, claim.said)}
-    more = {name: value for name, value in values.items() if name not in known}
-    return under(specification, claim.query, (*claim.said, *value_texts(specification, more)))
+    all_values = {**values, **values_said(specification, claim.said)}
+    return under(specification, claim.query, (*claim.said, *value_texts(specification, all_values)))
 
 
 def values_said(specification: Specification, said: Sequence[str]) -> dict[str, Fraction]:
@@ -215,10 +210,8 @@ def values_said(specification: Specification, said: Sequence[str]) -> dict[str, 
     for written in said:
         if not _VALUE.match(written):
             continue
-        try:
+        with _located(written):
             read = elaborate(specification, syntax.Claim((), _parsed(written)))
-        except TextError as error:
-            raise error.locate(SOURCE, written) from None
         found = pins(f.negation(read.formula))
         if [read.formula] != [x.formula for x in _equalities(specification, found)]:
             raise InputError(
@@ -314,9 +307,8 @@ def assumption(specification: Specification, query: Query, assumed: Assumption) 
         raise InputError(f"{len(assumed.axioms)} facts about motion; at most {MOST_AXIOMS} are read")
     if tuple(x for x in limits_said(assumed.said) if x in assumed.unused) != assumed.unused:
         raise InputError(f"unused={', '.join(assumed.unused)[:200]}: the claim does not say these limits")
-    limits = limit_formulas(specification, query, assumed).values()
     axioms = (axiom_formula(specification, query, x) for x in assumed.axioms)
-    return f.conjunction(*limits, *axioms)
+    return f.conjunction(*limit_formulas(specification, query, assumed).values(), *axioms)
 
 
 def limit_formulas(specification: Specification, query: Query, assumed: Assumption) -> dict[str, Formula]:
@@ -340,34 +332,20 @@ def axiom_formula(specification: Specification, query: Query, axiom: Axiom) -> F
 
 
 def _made(specification: Specification, query: Query, axiom: Axiom) -> Formula:
+    maker = axiom.schema.replace("-", "_")
+    make: Callable[..., Formula] = getattr(induction if axiom.is_induction else motion, maker)
     if ALL_SCHEMAS[axiom.schema][0] == "inside":
         inside = _elaborated(specification, query, axiom.arguments[0]).formula
-        times = [_time(specification, query, x) for x in axiom.arguments[1:]]
-        of_formula: dict[str, Callable[..., Formula]] = {
-            "leaves": motion.leaves,
-            "steps": induction.steps,
-            "lasts": induction.lasts,
-        }
-        return of_formula[axiom.schema](inside, *times)
-    left, right, *more = (_term(specification, query, x) for x in axiom.arguments)
-    _alike(left, right)
-    simple: dict[str, Callable[[Term, Term], Formula]] = {
-        "at-most": motion.at_most,
-        "below": motion.below,
-        "meets": motion.meets,
-    }
-    if axiom.schema in simple:
-        return simple[axiom.schema](left.term, right.term)
-    speed, *growth, _ = more
-    bound = _time(specification, query, axiom.arguments[-1])
+        return make(inside, *(_time(specification, query, x) for x in axiom.arguments[1:]))
+    left, right, *rates = (_term(specification, query, x) for x in axiom.arguments)
+    _alike(left, right.dimension)
+    if not rates:
+        return make(left.term, right.term)
+    time = _time(specification, query, axiom.arguments[-1])
     metres, seconds = left.dimension or right.dimension or (0, 0)
-    _alike(speed, Quantity(speed.term, (metres, seconds - 1)))
-    if growth:
-        _alike(growth[0], Quantity(growth[0].term, (metres, seconds - 2)))
-        twice = motion.within_twice if axiom.schema == "within-twice" else motion.after_twice
-        return twice(left.term, right.term, speed.term, growth[0].term, bound)
-    bounded = motion.within if axiom.schema == "within" else motion.after
-    return bounded(left.term, right.term, speed.term, bound)
+    for order, rate in enumerate(rates[:-1], 1):
+        _alike(rate, (metres, seconds - order))
+    return make(left.term, right.term, *(x.term for x in rates[:-1]), time)
 
 
 def _time(specification: Specification, query: Query, written: str) -> Term:
@@ -377,30 +355,25 @@ def _time(specification: Specification, query: Query, written: str) -> Term:
     return bound
 
 
-def _alike(one: Quantity, other: Quantity) -> None:
-    if None not in (one.dimension, other.dimension) and one.dimension != other.dimension:
+def _alike(one: Quantity, dimension: t.Dimension | None) -> None:
+    if None not in (one.dimension, dimension) and one.dimension != dimension:
         raise ValueError("its units do not fit")
 
 
 def _elaborated(specification: Specification, query: Query, written: str) -> Query:
     """A formula about what ``query`` speaks of. Raises ``InputError``."""
     body = _parsed(written)
-    try:
+    with _located(written):
         made = elaborate(specification, syntax.Claim(query.claim.given, body))
-    except TextError as error:
-        raise error.locate(SOURCE, written) from None
-    strangers = {*vehicles_of(made.formula)} - {*query.vehicles} or {*made.lanes} - {*query.lanes}
-    _refuse(strangers, written)
+    _refuse({*vehicles_of(made.formula)} - {*query.vehicles} or {*made.lanes} - {*query.lanes}, written)
     return Query(syntax.Claim((), body), made.formula, made.vehicles, made.lanes)
 
 
 def _term(specification: Specification, query: Query, written: str) -> Quantity:
     """A term about what ``query`` speaks of. Raises ``InputError``."""
     walk = Elaborator(specification)
-    try:
+    with _located(written):
         made = walk.term(_parsed(written), walk.given(query.claim))
-    except TextError as error:
-        raise error.locate(SOURCE, written) from None
     moving = {x.vehicle for x in t.leaves(made.term) if isinstance(x, t.Signal | t.Size | t.Own)}
     _refuse(moving - {*query.vehicles, ""}, written)
     return made
@@ -409,6 +382,14 @@ def _term(specification: Specification, query: Query, written: str) -> Quantity:
 def _refuse(strangers: set[str], written: str) -> None:
     if strangers:
         raise InputError(f"'{written[:80]}' speaks of {min(strangers)}, but the claim does not")
+
+
+@contextmanager
+def _located(written: str) -> Iterator[None]:
+    try:
+        yield
+    except TextError as error:
+        raise error.locate(SOURCE, written) from None
 
 
 def _parsed(written: str) -> syntax.Expression:

@@ -138,20 +138,29 @@ def endangered(vehicles: Sequence[str]) -> tuple[str, str]:
 # --- parts of the template ----------------------------------------------------------------------
 
 
+def sector_name(number: int) -> str:
+    """What the definition of a scenario's road sector is called."""
+    return f"roadSector_{number}"
+
+
+def disturbance_name(number: int) -> str:
+    """What the definition of what happens in a scenario is called."""
+    return f"disturb_{number}"
+
+
 def sector(specification: Specification, number: int, vehicles: Sequence[str]) -> Query:
     """That ``vehicles`` are where a scenario happens. Raises ``TextError``."""
-    return apply_definition(specification, f"roadSector_{number}", tuple(vehicles))
+    return apply_definition(specification, sector_name(number), tuple(vehicles))
 
 
 def sector_words(specification: Specification, number: int) -> str:
     """Where a scenario happens, in words; empty where nothing is said of it."""
-    definition = specification.definitions.get(f"roadSector_{number}")
-    return "" if definition is None else specification.describe(definition)
+    return _words(specification, sector_name(number))
 
 
 def disturbance(specification: Specification, number: int, vehicles: Sequence[str]) -> Query:
     """What happens in a scenario, after safety and wherever it is, in the lane L. Raises ``TextError``."""
-    return apply_definition(specification, f"disturb_{number}", (*vehicles, LANE))
+    return apply_definition(specification, disturbance_name(number), (*vehicles, LANE))
 
 
 def initial_condition(specification: Specification, number: int, vehicles: Sequence[str]) -> Query:
@@ -178,12 +187,12 @@ def components(specification: Specification, number: int, vehicles: Sequence[str
 
 def follows_template(specification: Specification, number: int) -> bool:
     """Whether a scenario has a road sector and a disturbance of its own, as the template says."""
-    return {f"roadSector_{number}", f"disturb_{number}"} <= {*specification.definitions}
+    return not missing_part(specification, number)
 
 
 def is_disturbance(name: str, number: int) -> bool:
     """Whether a definition is what happens in the scenario."""
-    return name == f"disturb_{number}"
+    return name == disturbance_name(number)
 
 
 def is_sector(name: str) -> bool:
@@ -291,20 +300,10 @@ def _in_set(name: str, scenario: Scenario, home: Specification) -> str:
 TEMPLATE = "initSafe and roadSector_i and disturb_i"
 
 
-def sector_name(number: int) -> str:
-    """What the definition of a scenario's road sector is called."""
-    return f"roadSector_{number}"
-
-
 def missing_part(specification: Specification, number: int) -> str:
     """The first definition of a scenario's template that is not there; empty where all are."""
-    names = (sector_name(number), f"disturb_{number}")
+    names = (sector_name(number), disturbance_name(number))
     return next((name for name in names if name not in specification.definitions), "")
-
-
-def disturbance_name(number: int) -> str:
-    """What the definition of what happens in a scenario is called."""
-    return f"disturb_{number}"
 
 
 def behaviour_words(specification: Specification, number: int) -> tuple[str, str]:
