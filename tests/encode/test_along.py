@@ -102,8 +102,8 @@ FAULTS = {
     "each vehicle for itself": ("names_places", "any(", "all("),
     "the first factor only": (
         "slope_along",
-        "if signal == place and",
-        "if k == 0 and 1 > 2 and signal == place and",
+        "if _is_moved(signal, place):",
+        "if _is_moved(signal, place) and k == 0 and 1 > 2:",
     ),
 }
 

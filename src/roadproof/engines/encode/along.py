@@ -7,6 +7,7 @@ ends, the moved drive is a drive of the same question: the first vehicle may sta
 
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
+from typing import Literal, TypeAlias, assert_never
 
 from roadproof.engines.encode.circuit import Leaf, nodes
 from roadproof.engines.encode.inequalities import Quantity, inequalities_of, sizes_of
@@ -17,6 +18,7 @@ from roadproof.world.road import Road
 from roadproof.world.signals import OwnName, SignalName
 from roadproof.world.vehicle import Range, Vehicle
 
+Place: TypeAlias = Literal["s", "d"]
 # Places farther from s = 0 are no places to start from: numbers of that size drown those of a drive.
 FARTHEST = Fraction(10_000)
 # Starts are looked at this far around what is named, or as far as vehicles may be apart, in m.
@@ -29,22 +31,37 @@ def is_same_everywhere(formula: Formula, road: Road, vehicles: Mapping[str, Vehi
     return endless and not names_places(formula, vehicles)
 
 
-def names_places(formula: Formula, vehicles: Mapping[str, Vehicle], place: SignalName = "s") -> bool:
+def names_places(formula: Formula, vehicles: Mapping[str, Vehicle], place: Place = "s") -> bool:
     """Whether a comparison of the bound ``formula`` changes when all vehicles are moved along, or across."""
     return any(slope_along(p, place).terms for p in _polynomials(formula, vehicles))
 
 
-def slope_along(polynomial: Polynomial[Quantity], place: SignalName = "s") -> Polynomial[Quantity]:
-    """By how much a polynomial grows for each metre that all vehicles are moved along, or across (``d``).
-
-    All other signals stay; an own signal is any function of time, of which a moved drive has the same.
-    """
+def slope_along(polynomial: Polynomial[Quantity], place: Place = "s") -> Polynomial[Quantity]:
+    """By how much a polynomial grows for each metre that all vehicles are moved along, or across (``d``)."""
     total: Polynomial[Quantity] = Polynomial({})
     for monomial, factor in polynomial.terms.items():
         for k, (_, signal) in enumerate(monomial):
-            if signal == place and not isinstance(signal, OwnName):
+            if _is_moved(signal, place):
                 total = total + Polynomial({monomial[:k] + monomial[k + 1 :]: factor})
     return total
+
+
+def _is_moved(signal: SignalName | OwnName, place: Place) -> bool:
+    """Whether a signal grows by a metre for each metre that its vehicle is moved; else it stays.
+
+    An own signal is any function of time, of which a moved drive has the same.
+    """
+    if isinstance(signal, OwnName):
+        return False
+    match signal:
+        case "s":
+            return place == "s"
+        case "d":
+            return place == "d"
+        case "v_lon" | "v_lat" | "a_lon" | "a_lat" | "j_lon":
+            return False
+        case _:
+            assert_never(signal)
 
 
 def starting_range(

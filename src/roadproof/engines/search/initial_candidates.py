@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import combinations
 
-from roadproof.engines.encode.along import names_places
+from roadproof.engines.encode.along import Place, names_places
 from roadproof.engines.encode.build import inequality_at
 from roadproof.engines.encode.circuit import Leaf, nodes
 from roadproof.engines.encode.inequalities import inequalities_of, sizes_of
@@ -31,11 +31,11 @@ from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.polynomial import Polynomial, polynomial
 from roadproof.semantics.exact.signals import LineSignals
 from roadproof.semantics.exact.truth import Span
-from roadproof.world.signals import FIXED, SignalName
+from roadproof.world.signals import FIXED
 from roadproof.world.vehicle import Range
 
 READABLE = 2  # the highest degree that the engine milp bounds
-_PLACES: tuple[SignalName, SignalName] = ("s", "d")
+_PLACES: tuple[Place, Place] = ("s", "d")
 GRAIN = Fraction(1, 100)  # m; how finely places are rounded (``rounding``)
 
 

@@ -60,7 +60,7 @@ class _Area:
 
 
 @dataclass(frozen=True)
-class _Drawn:
+class _Drawing:
     """Areas, and the numbers at the ends of the axes."""
 
     areas: Sequence[_Area]
@@ -90,13 +90,13 @@ class _Plane:
         """The name of an axis, with its unit."""
         return f"{name} [{self._unit(name)}]"
 
-    def drawn(self, plates: Sequence[Plate]) -> _Drawn:
+    def drawn(self, plates: Sequence[Plate]) -> _Drawing:
         """Plates over each other."""
         low, high = (float(Fraction(x)) for x in self.along[1:])
         rows = [float(Fraction(line.at)) for x in plates for line in x.lines] or [0.0, 1.0]
         frame = _Frame((low, high), (min(rows), max(rows)))
         ends = (self._number(self.along[0], low), self._number(self.along[0], high))
-        return _Drawn(
+        return _Drawing(
             [_area(x, frame) for x in plates], *ends, *(self._number(self.across[0], x) for x in frame.across)
         )
 
