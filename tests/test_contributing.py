@@ -302,7 +302,7 @@ def test_a_survey_is_asked_kept_taken_up_again_and_checked(copy):
     whole = forge(copy / "X/index.json", ("scenario_6(SV, POV, L) and not", "scenario_6(SV, POV, L) or not"))
     assert "is not about scenario_6 alone" in roadproof(copy, 10, "check X --jobs 1")
     forge(copy / "X/index.json", ('"verdicts"', '"more": 1, "verdicts"'))
-    assert "nobody reads 'more'" in roadproof(copy, 3, "check X --jobs 1")
+    assert "unknown field 'more'" in roadproof(copy, 3, "check X --jobs 1")
     (copy / "X/index.json").write_text(whole)
     forge(copy / "X/answers/scenario_6.json", ("SV, POV, L) and not", "SV, POV, L) or not"))
     assert "not what its seal was made for" in roadproof(copy, 10, "check X --jobs 1")

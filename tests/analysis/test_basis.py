@@ -26,7 +26,7 @@ def test_models_go_to_the_vehicles_that_a_formula_has() -> None:
 
 
 def test_roles_that_no_scenario_has_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(UsageError, match="vehicle XV: scenarios speak of POV, POV1, POV2, SV"):
+    with pytest.raises(UsageError, match="vehicle XV: scenarios mention POV, POV1, POV2, SV"):
         basis_of(rp.load(), Budget(), {"XV": "truck"})
     for command in ("overlap", "order", "redundancy", "coverage", "classify"):
         assert main([command, "--vehicle", "XV=truck"]) == 2

@@ -308,8 +308,8 @@ def test_mistakes_in_entries(test: str, told: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "told"),
     [
-        (["--spread", "2"], "--spread is for drives that are made: add --complete DIR"),
-        (["--objective", "mild"], "--objective is for drives that are made"),
+        (["--spread", "2"], "--spread requires --complete DIR"),
+        (["--objective", "mild"], "--objective requires --complete DIR"),
         (["--complete", "more", "--format", "gpx"], "there is no format 'gpx'"),
         (["--complete", "more", "--spread", "0"], "--spread"),
     ],

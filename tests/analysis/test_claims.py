@@ -187,7 +187,7 @@ def test_an_altered_answer_is_asked_again_and_said_so(
     capsys.readouterr()
     assert prove(tmp_path, SYMMETRIC, ALWAYS) == 0
     assert asked == [SYMMETRIC, ALWAYS, SYMMETRIC]
-    assert "asked again, since a kept answer does not count" in capsys.readouterr().err
+    assert "a stored answer is invalid and is computed again" in capsys.readouterr().err
     assert {x.outcome for x in check(tmp_path)} == {Acceptance.ACCEPTED}
 
 

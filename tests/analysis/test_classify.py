@@ -255,7 +255,7 @@ def test_a_run_that_was_broken_off_goes_on(
     after = {path.stem: path.stat().st_mtime_ns for path in (out / "answers").iterdir()}
     written_now = {name for name in after if after[name] != before.get(name)}
     assert written_now == {"class_8", "covers-scenario-04"}
-    assert "asked again, since a kept answer does not count" in capsys.readouterr().err
+    assert "a stored answer is invalid and is computed again" in capsys.readouterr().err
     again = json.loads((out / "index.json").read_text())
     for data in (whole, again):
         for entry in (data, *data["claims"]):
@@ -691,7 +691,7 @@ def test_a_specification_beside_evidence_may_only_add(
         (["--among", "4,9"], 2, "each road sector"),
         (["--among", "99"], 3, "no scenario '99'"),
         (["--timeout", "0"], 2, "greater than 0"),
-        (["--on", "/nowhere", "--no-shares"], 2, "leave out one of the two"),
+        (["--on", "/nowhere", "--no-shares"], 2, "contradict each other"),
         (["--on", "/nowhere"], 3, "/nowhere"),
         (["--set", "bas"], 3, "did you mean 'base'"),
     ],

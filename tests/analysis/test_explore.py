@@ -461,7 +461,7 @@ def test_the_command_writes_evidence_that_is_accepted(
             "at SV.a_lon.min=0, SV.a_lon",
         ),
         (("4", "--vary", "SV.a_lon.min=-6:-1", "--vary", "vehicle.a_lon.min=-6:-1"), 2, "both are a_lon.min"),
-        (("4", "--vary", "POV2.a_lon.min=-6:-1"), 2, "the formula speaks of POV, SV"),
+        (("4", "--vary", "POV2.a_lon.min=-6:-1"), 2, "the formula mentions POV, SV"),
         (("4", "--vary", "POV.a.min=-6:-1"), 2, "VEHICLE.LIMIT.min"),
         (("4", "--vary", "minSafe=0:3", "--param", "minSafe=1"), 2, "leave one out"),
         (("4", "--vary", "minSafe=0:3", "--steps", "1"), 2, "--steps 1"),

@@ -161,7 +161,7 @@ def test_what_was_altered_is_asked_again_and_said_so(
     capsys.readouterr()
     witness(tmp_path, "3", "4")
     assert asked.since() == [A4]
-    assert "asked again, since a kept answer does not count" in capsys.readouterr().err
+    assert "a stored answer is invalid and is computed again" in capsys.readouterr().err
     accepted(tmp_path)
 
 

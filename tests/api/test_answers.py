@@ -87,7 +87,7 @@ def test_verdicts_and_evidence(both: Both) -> None:
     elif len(answer.verdicts) == 1:
         assert answer.verdict is next(iter(answer.verdicts.values()))
     else:
-        with pytest.raises(rp.UsageError, match="things were asked: see verdicts"):
+        with pytest.raises(rp.UsageError, match=r"verdicts: use \.verdicts"):
             _ = answer.verdict
 
 
@@ -96,7 +96,7 @@ def test_what_is_saved_is_accepted(both: Both, tmp_path: Path) -> None:
     assert folder == tmp_path / "saved"
     if not [*folder.iterdir()]:
         assert not both.answer.evidence
-        with pytest.raises(rp.UsageError, match="there is no evidence to be checked: 1 NONE-WITHIN"):
+        with pytest.raises(rp.UsageError, match="there is no evidence to check: 1 NONE-WITHIN"):
             both.answer.check()
         return
     checked = rp.check(folder, jobs=1)

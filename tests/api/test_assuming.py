@@ -52,7 +52,7 @@ def test_limits_of_a_model_are_what_is_printed():
         (("P1",), {"assume": "motion"}, "claims of your own"),
         ((), {"assume": "motion"}, "claims of your own"),
         ((BEHIND,), {"vehicles": "car"}, "with motion only"),
-        ((BEHIND,), {"assume": "motion", "vehicles": {"POV2": "car"}}, "the claim speaks of POV, SV"),
+        ((BEHIND,), {"assume": "motion", "vehicles": {"POV2": "car"}}, "the claim mentions POV, SV"),
         ((BEHIND,), {"assume": "motion", "engine": "smt"}, "is about drives anyway"),
         ((f"assuming motion: {BEHIND}",), {"engine": "smt"}, "is about drives anyway"),
         ((f"assuming motion, s(SV) < s(POV): {BEHIND}",), {}, "is no limit"),

@@ -89,7 +89,9 @@ def test_names_that_are_not_there() -> None:
     with pytest.raises(rp.InputError, match="there is no scenario '99'"):
         rp.load().among("99")
     for what in (True, None, 1.5, ["danger(SV,POV)"]):
-        with pytest.raises(rp.UsageError, match="is no formula: give a number, a text, or one that is built"):
+        with pytest.raises(
+            rp.UsageError, match="is not a formula: give a number, a text, or a formula built"
+        ):
             rp.load().read(what)  # type: ignore[arg-type]
 
 
@@ -102,7 +104,7 @@ def test_one_set_where_one_is_asked_about() -> None:
         lambda: rp.classify("1-8", two),
         lambda: rp.coverage(two),
     ):
-        with pytest.raises(rp.UsageError, match="base, ext: this is asked of one spec set; name one"):
+        with pytest.raises(rp.UsageError, match="base, ext: this question takes one spec set; name one"):
             ask()
 
 

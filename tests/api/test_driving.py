@@ -53,8 +53,8 @@ def test_the_first_lane_on_which_it_holds_is_taken() -> None:
     ("ask", "message"),
     [
         (lambda: motion(0, 3, 30, along=[(0, 1, 1)]), "duration=0 s: every duration is above 0"),
-        (lambda: motion(0, 3, 30, along=[(1, 1)]), r"along: \(1, 1\) is no entry: each has 3 numbers"),
-        (lambda: motion(0, 3, 30, across=["12"]), "across: '12' is no entry: each has 2 numbers"),
+        (lambda: motion(0, 3, 30, along=[(1, 1)]), r"along: \(1, 1\) is not an entry: each has 3 numbers"),
+        (lambda: motion(0, 3, 30, across=["12"]), "across: '12' is not an entry: each has 2 numbers"),
         (lambda: motion(0, 3, 30, along=[(1, 1, "2 m")]), "along=2 m"),
         (lambda: motion(0, 3, 30, length=0), "a box needs length=0 > 0"),
         (lambda: motion(0, 3, 30, kind="lorry"), "kind='lorry': write car, truck"),

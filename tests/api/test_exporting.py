@@ -79,7 +79,7 @@ NAMED = Drive({"SV": motion((None, "0", "0")), "a b": motion((None, "0", "0"), s
         (
             lambda: rp.export(spoiled(formula="false"), "csv", "no"),
             rp.InputError,
-            "drive: the drive is not exported, since it does not stand: the formula does not hold",
+            "drive: the drive fails its check and is not exported: the formula does not hold",
         ),
         (
             lambda: rp.export(spoiled(formula="true", horizon=Fraction(1, 100)), "csv", "no"),

@@ -225,7 +225,10 @@ def test_a_bound_name_captures_nothing() -> None:
         ),
         (lambda: SV.v_lon > "30 kmh", "'30 kmh' is no term"),
         (lambda: SV.v_lon > None, "None is no term"),  # type: ignore[operator]
-        (lambda: rp.some(SV.v_lon > 3, lambda K: K), "is no domain: give lanes, lanelets(L), zone('main')"),
+        (
+            lambda: rp.some(SV.v_lon > 3, lambda K: K),
+            "is not a domain: give lanes, lanelets(L), zone('main')",
+        ),
     ],
 )
 def test_mistakes_come_with_advice(make: Callable[[], object], told: str) -> None:

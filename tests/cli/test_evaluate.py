@@ -169,7 +169,7 @@ def test_a_bad_recording(folder: Path, tmp_path: Path, capsys: pytest.CaptureFix
     assert main([*command, "--keep-going"]) == 0
     printed = capsys.readouterr()
     assert "WARNING: 1 recordings could not be used and are left out: 02." in printed.out
-    assert "left out: recording 02" in printed.err
+    assert "skipped recording 02" in printed.err
     for name in ("results.txt", "comparison.md", "results.tex", "answers.md"):
         assert "WARNING" in (tmp_path / "out" / name).read_text()
 
@@ -246,7 +246,7 @@ def test_simulate_is_what_its_seed_says(tmp_path: Path) -> None:
         (["--lanes", "7"], 2, "lanes=7"),
         (["--recordings", "0"], 2, "--recordings 0: write a whole number greater than 0"),
         (["--seed", "-3"], 2, "--seed -3"),
-        (["--plant", "9"], 2, "scenarios 1 to 8"),
+        (["--plant", "9"], 2, "scenarios from 1 to 8"),
         (["--plant", "nowhere.json"], 3, "cannot read nowhere.json"),
     ],
 )

@@ -113,7 +113,7 @@ def test_json_to_what_names_no_file(
     command: list[str], target: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main([*command, "--json", target]) == 2
-    assert f"argument --json: '{target}' names no file" in capsys.readouterr().err
+    assert f"argument --json: '{target}' is not a file name" in capsys.readouterr().err
 
 
 def test_a_target_that_cannot_be_written_ends_a_run_before_its_work(

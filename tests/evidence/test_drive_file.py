@@ -101,7 +101,7 @@ def test_a_drive_without_jerk_is_of_the_first_version_whatever_it_was_read_from(
         (0, "j_lon", 1, "no rational as text"),
         (0, "j_lon", "1/0", "divides by zero"),
         (0, "j_lon", None, "no rational as text"),
-        (1, "j_lat", "0", "nobody reads 'j_lat'"),
+        (1, "j_lat", "0", "unknown field 'j_lat'"),
     ],
 )
 def test_damaged_jerks_are_refused(place, field, value, message):
@@ -128,7 +128,7 @@ def changed(path, value):
     [
         (("schema",), "roadproof/drive/3", "schema="),
         (("schema",), "roadproof/drive/2", "'j_lon' is missing"),
-        (("vehicles", "SV", "pieces", 0, "j_lon"), "0", "nobody reads 'j_lon'"),
+        (("vehicles", "SV", "pieces", 0, "j_lon"), "0", "unknown field 'j_lon'"),
         (("horizon",), 6, "no rational as text"),
         (("horizon",), "1/0", "divides by zero"),
         (("horizon",), "-1", "negative"),
@@ -140,7 +140,7 @@ def changed(path, value):
         (("road", "lanelets", 0, "zone"), "x", "zone="),
         (("road", "lanelets", 0, "d"), ["1", "1"], "empty lanelet"),
         (("road", "adjacent"), [["a"]], "no pair"),
-        (("scenario",), "4", "no whole number"),
+        (("scenario",), "4", "not a whole number"),
     ],
 )
 def test_damaged_files_are_refused(path, value, message):

@@ -16,7 +16,7 @@ MATRIX = """\
    3  .     .  #
    9  #  .     ?
   11  .  #  ?
-  # WITNESSED: they hold together on a judged drive
+  # WITNESSED: compatible: both hold on a judged drive
 """
 
 CLASSES = """\

@@ -296,7 +296,10 @@ def test_recordings_are_put_to_no_driver_that_is_not_worked_out():
     ("words", "told"),
     [
         (["--param", "aeb_braking=5"], "aeb_braking=5 m/s^2: AEB brakes at least as hard as the driver"),
-        (["--option", "cc_gate=before_delay"], "cc_aeb=add, cc_gate=before_delay: when a gate opens while"),
+        (
+            ["--option", "cc_gate=before_delay"],
+            "cc_aeb=add, cc_gate=before_delay: this combination is not supported",
+        ),
         (["--option", "cc_aeb=both"], "cc_aeb"),
         (["--param", "aeb_braking=0"], "aeb_braking"),
     ],

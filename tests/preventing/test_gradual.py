@@ -172,10 +172,10 @@ def test_gentle_braking_is_never_perceived_under_the_letter():
         (["--at", "dGdt=-1"], "dGdt=-1 (SI)"),
         (["--at", "dGdt=3m/s^2"], "dGdt"),
         (["--at", "dGdt=inf"], "dGdt"),
-        (["--at", "dGdt=5", "--model", "fsm"], "model=fsm: it is not worked out with a finite dGdt"),
+        (["--at", "dGdt=5", "--model", "fsm"], "model=fsm does not support a finite dGdt"),
         (
             ["--at", "dGdt=5", "--at", "Ve0=2"],
-            "SV would stand before it brakes fully, which is not worked out",
+            "SV would stop before it brakes fully, which is not supported",
         ),
     ],
 )

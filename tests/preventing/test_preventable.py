@@ -179,7 +179,7 @@ def test_manoeuvres_by_name_and_by_scenario():
         ("cut-out", 6),
         ("cut-in", None),
     ]
-    with pytest.raises(rp.UsageError, match=r"'3' is no manoeuvre .* cut-in \(scenarios 1, 5\)"):
+    with pytest.raises(rp.UsageError, match=r"'3' is not a manoeuvre .* cut-in \(scenarios 1, 5\)"):
         manoeuvre_of("3")
 
 
@@ -190,9 +190,9 @@ def test_manoeuvres_by_name_and_by_scenario():
         (["cut-out", "--model", "r157"], "says nothing of a cut-out; these do: careful"),
         (["cut-in", "--at", "Vy=0"], "Vy=0 (SI): the lateral speed of POV has to be > 0"),
         (["cut-in", "--at", "dx=3"], "there is no initial value of a cut-in 'dx'"),
-        (["cut-in", "--at", "dx0=3"], "dx0 varies over the plane"),
+        (["cut-in", "--at", "dx0=3"], "dx0 varies on the plate"),
         (["cut-in", "--along", "dx0=-3:5"], "the gap along the road has to be >= 0"),
-        (["cut-in", "--along", "dx0=5:5"], "the range ends where it begins"),
+        (["cut-in", "--along", "dx0=5:5"], "the range is empty"),
         (["cut-in", "--along", "Vy=1:5"], "here it is dx0 that varies"),
         (["cut-in", "--at", "Ve0"], "write NAME=VALUE"),
         (["deceleration", "--at", "dV0=200km/h"], "SV cannot be more than Ve0"),

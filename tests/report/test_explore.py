@@ -40,7 +40,7 @@ def test_a_strip_and_both_sides_of_its_boundary() -> None:
         "scenario 4: deceleration ahead, lane keep, main road, set base",
         "  minSafe  0 ##?- 3 s",
         "  # WITNESSED: a drive, judged at this value, at 2 of 4 values",
-        "  - NONE-WITHIN: none within the limits that are printed, at 1 of 4 values [1]",
+        "  - NONE-WITHIN: no drive within the printed limits, at 1 of 4 values [1]",
         "  ? UNKNOWN: not decided, at 1 of 4 values [2]",
         "  least minSafe with a drive: 0 s, the end of the range",
         "  greatest minSafe with a drive: 1.5 s; at 2 s UNKNOWN [2], at 3 s NONE-WITHIN [1]",

@@ -349,7 +349,7 @@ def test_a_hostile_text_stays_text_in_every_section(tmp_path, drives):
         (None, "does not exist"),
         ("{", "is no JSON"),
         ("[]", ""),
-        ('{"schema": "other/1"}', "no schema that begins with roadproof/"),
+        ('{"schema": "other/1"}', "its schema does not begin with roadproof/"),
         ('{"schema": "roadproof/overlap/1", "verdicts": [{"a": []}]}', "'set' is missing"),
         ('{"schema": "roadproof/classify/1", "classes": 3}', "'set' is missing"),
         ('{"schema": "roadproof/traffic-results/3", "table": 3}', "'settings' is missing"),

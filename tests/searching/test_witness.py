@@ -149,7 +149,7 @@ def test_both_engines_answer_alike():
             search_options = replace(MEANS, engine=engine, effort=Effort(240))
             assert ask_for(what, search_options=search_options, **short).verdict is verdict
     cubic = "F v_lon(SV)^3 > 20000 * 1 m/s * 1 m/s * 1 m/s"
-    with pytest.raises(UsageError, match="the engine smt can"):
+    with pytest.raises(UsageError, match="use the engine smt"):
         ask_for(cubic)
     assert ask_for(cubic, search_options=replace(MEANS, engine="smt"), **short).verdict is Verdict.WITNESSED
 

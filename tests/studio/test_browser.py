@@ -366,5 +366,7 @@ def test_a_page_without_the_token_says_what_to_do(browser: Any, address: str) ->
     context = browser.new_context()
     page = context.new_page()
     page.goto(address.partition("#")[0] + "#token=wrong")
-    page.wait_for_function("() => document.body.textContent.includes('open the address that was printed')")
+    page.wait_for_function(
+        "() => document.body.textContent.includes('open the address that this start of the studio printed')"
+    )
     context.close()

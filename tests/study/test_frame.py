@@ -133,6 +133,6 @@ def test_a_folder_that_goes_away_ends_the_run_before_an_index_names_what_is_lost
         if name == "square-2" and folder.exists():
             shutil.rmtree(folder)
 
-    with pytest.raises(InputError, match="was there when the run began, and is gone"):
+    with pytest.raises(InputError, match="was removed during the run"):
         conduct(Kept((1, 2, 3)), folder, hands=1, each=remove)
     assert not list(folder.rglob("*.json"))

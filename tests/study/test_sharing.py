@@ -65,7 +65,7 @@ def test_shares_make_up_the_whole(study: Counted, tmp_path: Path) -> None:
     whole, folder = conduct(some(), hands=1).answers, tmp_path / "out"
     for number in (2, 1, 2):
         with pytest.raises(
-            SharedError, match=f"shard {number}/3 is done: . answers are kept; . claims are left"
+            SharedError, match=f"shard {number}/3 is done: . answers are stored; other runs process . claims"
         ):
             conduct(study, folder, Executor(1, shard=Shard(number, 3)), what="claims")
     assert 0 < len(study.asked) < len(whole)
@@ -90,7 +90,7 @@ def test_a_doubt_is_told_and_left_to_the_last_run(study: Counted, tmp_path: Path
     study = replace(study, doubtful=doubtful)
     with pytest.raises(SharedError) as raised:
         conduct(study, tmp_path / "out", Executor(1, shard=first))
-    assert "1 in doubt, which are asked again" in str(raised.value)
+    assert "1 in doubt, to be computed again" in str(raised.value)
     conduct(study, tmp_path / "out", 1)
     assert [x for x in study.asked if study.asked.count(x) > 1] == [doubtful] * 2
 
@@ -99,12 +99,12 @@ def test_what_no_share_is(capsys: pytest.CaptureFixture[str]) -> None:
     for text in ("0/3", "4/3", "1", "1/0", "a/b", "1/2/3", "-1/2", ""):
         with pytest.raises(UsageError, match="write K/N with K from 1 to N"):
             Shard.read(text)
-    with pytest.raises(UsageError, match="needs a folder"):
+    with pytest.raises(UsageError, match="the folder that the runs share"):
         conduct(some(), hands=Executor(shard=Shard(1, 2)))
     for line, told in (
-        ("--shard 1/2 --json -", "leave --json"),
+        ("--shard 1/2 --json -", "use --json in the run without --shard"),
         ("--tls-ca ca.pem", "--tls-ca is for a cluster"),
-        ("--cluster local:2 --jobs 2", "or for --cluster"),
+        ("--cluster local:2 --jobs 2", "--jobs and --cluster exclude each other"),
         ("--cluster somewhere", "write the address of a scheduler"),
     ):
         assert main(["overlap", "--among", "3,4", "--out", "never", *line.split()]) == 2

@@ -292,7 +292,7 @@ def test_from_python(folder: Path) -> None:
     [
         ("fsm", "1", "fsm is a controller and has no formula; these have: careful, r157, eu1426, rss"),
         ("carful", "1-8", "'carful'"),
-        ("r157", "4", "r157 says nothing of any scenario that is asked for (4); it speaks of 1, 9, 17"),
+        ("r157", "4", "r157 does not apply to the selected scenarios (4); it applies to 1, 9, 17"),
         ("careful,careful", "1", "one is named twice"),
         ("careful,,r157", "1", "write names separated by commas"),
     ],

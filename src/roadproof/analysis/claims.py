@@ -251,10 +251,10 @@ def former_claims(folder: Path, claims: Claims) -> Entries:
         return {}
     data = index_fields(read_json(path, LARGEST_INDEX), str(path))
     if data.text("schema") != SCHEMA:
-        raise UsageError(f"{path} is of another command: name another folder with --out")
+        raise UsageError(f"{path} belongs to another command: name another folder with --out")
     if not _read_alike(data, folder, claims):
         raise UsageError(
-            f"{folder} holds claims that were read with other options or specification files, or under "
+            f"{folder} holds claims for other options, specification files or "
             "another library: name another folder with --out"
         )
     known = read(Index, data.content, data.where).claims

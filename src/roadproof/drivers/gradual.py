@@ -34,15 +34,13 @@ _Coefficients = list[Fraction]
 def check_gradual(model: str, values: Values, reading: DriverSettings) -> None:
     """Raises ``UsageError`` for models and speeds of which nothing is worked out with a finite rate."""
     if MODELS[model].is_stepped:
-        raise UsageError(
-            f"model={model}: it is not worked out with a finite {RATE}; leave out one of the two"
-        )
+        raise UsageError(f"model={model} does not support a finite {RATE}; omit one of the two")
     least = reading.values["cc_braking"] * reading.values["cc_ramp"] / 2
     if model == "careful" and values["Ve0"] < least:
         raise UsageError(
-            f"Ve0={float(values['Ve0']):g} m/s with {RATE}: SV would stand before it brakes fully, which is "
-            f"not worked out; Ve0 has to be at least cc_braking*cc_ramp/2 = {float(least):g} m/s, or leave "
-            f"{RATE} out"
+            f"Ve0={float(values['Ve0']):g} m/s with {RATE}: SV would stop before it brakes fully, which is "
+            f"not supported; use Ve0 of at least cc_braking*cc_ramp/2 = {float(least):g} m/s, or omit "
+            f"{RATE}"
         )
 
 

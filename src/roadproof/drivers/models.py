@@ -125,9 +125,9 @@ def check_courses(name: str, numbers: Collection[int], said: str) -> None:
     known = courses_of(name)
     if not {*known} & {*numbers}:
         raise UsageError(
-            f"{said}: {name} says nothing of any scenario that is asked for "
-            f"({', '.join(map(str, numbers)) or 'none'}); it speaks of {', '.join(map(str, known))}: "
-            "ask for one of these, or leave the model out"
+            f"{said}: {name} does not apply to the selected scenarios "
+            f"({', '.join(map(str, numbers)) or 'none'}); it applies to {', '.join(map(str, known))}: "
+            "select one of these, or omit the model"
         )
 
 
@@ -141,7 +141,7 @@ def manoeuvre_of(name: str) -> tuple[ManoeuvreName, int | None]:
     found = next((x for x in SCENARIOS if x == name), None) if number is None else numbers.get(number)
     if found is None:
         known = ", ".join(f"{x} (scenarios {SCENARIOS[x]}, {_CHANGING[x]})" for x in SCENARIOS)
-        raise UsageError(f"'{name}' is no manoeuvre that driver models speak of; these are: {known}")
+        raise UsageError(f"'{name}' is not a manoeuvre of driver models; known are {known}")
     return found, number
 
 
@@ -211,6 +211,6 @@ def require(specification: Specification, values: Mapping[str, Fraction]) -> Non
         )
     if options["cc_aeb"] == "add" and options["cc_gate"] != "none":
         raise UsageError(
-            f"cc_aeb=add, cc_gate={options['cc_gate']}: when a gate opens while AEB brakes is not worked "
-            "out; choose cc_gate=none, or cc_aeb=replace or max, where the driver does not matter then"
+            f"cc_aeb=add, cc_gate={options['cc_gate']}: this combination is not supported, as a gate may "
+            "open while AEB brakes; choose cc_gate=none, cc_aeb=replace or cc_aeb=max"
         )

@@ -197,6 +197,6 @@ def check_library(library: Library) -> None:
         changed = library.definitions[name] != bundled_library().definitions[name]
         if changed or any(name == x.name for block in blocks for x in block):
             raise InputError(
-                f"{name}: a specification file of yours defines it, and {PREVENTION}.spec puts its own in "
-                "place; call yours otherwise, or ask for a formula with the conditions of driver.spec"
+                f"{name}: your specification file and {PREVENTION}.spec both define it; "
+                "rename your definition, or use a formula with the conditions of driver.spec"
             )

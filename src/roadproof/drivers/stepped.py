@@ -134,7 +134,10 @@ def course_of(manoeuvre: Manoeuvre, values: Values, to_the_end: bool = True) -> 
         gone += TICKS * (count * speed - braking)
         speed -= TICKS * braking
     told = ", ".join(f"{name}={value}" for name, value in values.items())
-    raise InputError(f"{told} (SI): SV's drive is not over after {_MOST_LOOKS} looks; take other values")
+    raise InputError(
+        f"{told} (SI): SV's drive is not over after {_MOST_LOOKS} steps of the controller; "
+        "choose other values"
+    )
 
 
 @dataclass(frozen=True)

@@ -364,7 +364,7 @@ def _flag(content: object, where: str) -> bool:
 
 def _whole(content: object, where: str) -> int:
     if type(content) is not int:
-        raise InputError(f"{where}: {_shown(content)} is no whole number")
+        raise InputError(f"{where}: {_shown(content)} is not a whole number")
     return content
 
 

@@ -85,7 +85,7 @@ def read_kept(folder: Path, but: Container[str] = ()) -> Journal | None:
 
 def read_journal(path: Path) -> Journal:
     """A journal, each line with its seal checked. Raises ``InputError`` where it is none."""
-    data = read_limited(path, LARGEST_INDEX, "journals of that size are not read")
+    data = read_limited(path, LARGEST_INDEX, "roadproof reads no larger journals")
     try:
         first, *lines = data.decode("utf-8").split("\n")
     except UnicodeDecodeError as error:

@@ -26,7 +26,7 @@ _FORBIDDEN = re.compile("[\x00\ud800-\udfff]")
 
 def read_json(path: Path, most: int = LARGEST_EVIDENCE) -> object:
     """What a file says. Raises ``InputError`` naming the file and the rule."""
-    data = read_limited(path, most, "evidence of that size is not read")
+    data = read_limited(path, most, "roadproof reads no larger evidence")
     try:
         text = data.decode("utf-8")
     except UnicodeDecodeError as error:
@@ -106,7 +106,7 @@ class Fields:
             raise InputError(f"{where}: a JSON object is expected here")
         strangers = [] if known is None else [key for key in content if key not in known]
         if strangers:
-            raise InputError(f"{where}: nobody reads '{strangers[0][:60]}': remove it, or correct its name")
+            raise InputError(f"{where}: unknown field '{strangers[0][:60]}': remove it, or correct its name")
         self.content: dict[str, Any] = content
         self.where = where
 
@@ -134,7 +134,7 @@ class Fields:
     def whole(self, field: str) -> int:
         value = self.get(field)
         if type(value) is not int:
-            raise InputError(f"{self.where}: {field}={_shown(value)} is no whole number")
+            raise InputError(f"{self.where}: {field}={_shown(value)} is not a whole number")
         return value
 
     def mapping(self, field: str) -> dict[str, Any]:

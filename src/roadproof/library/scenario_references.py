@@ -34,7 +34,7 @@ def read_numbers(specification: Specification, text: str) -> tuple[int, ...]:
         elif found := numbers_called(specification, piece):
             numbers |= set(found)
         else:
-            raise UsageError(f"'{piece[:40]}' is no range of scenarios; write 1-8 or 1,3-8")
+            raise UsageError(f"'{piece[:40]}' is not a range of scenarios; write 1-8 or 1,3-8")
     known = numbers_of(specification)
     for number in sorted(numbers - set(known)):
         raise InputError(unknown("scenario", str(number), map(str, known)))

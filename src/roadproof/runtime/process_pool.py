@@ -93,7 +93,7 @@ def _free(team: "list[_Worker]", processes: int, start: "Callable[[], _Worker]")
     except OSError as error:
         if team:
             return None
-        raise UsageError(f"no process can be started: {error.strerror}; ask for fewer with --jobs") from None
+        raise UsageError(f"cannot start processes: {error.strerror}; use fewer with --jobs") from None
     return team[-1]
 
 

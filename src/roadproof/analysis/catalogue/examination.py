@@ -105,11 +105,11 @@ def _divided(basis: Basis, numbers: tuple[int, ...], jobs: Jobs, progress: Progr
     try:
         plan = plan_of(basis.specification, numbers)
     except RoadproofError as error:
-        raise UsageError(f"{error}; or ask for scenarios without classes: --no-classes") from None
+        raise UsageError(f"{error}; or leave out classes with --no-classes") from None
     division = divide(basis, plan, jobs, progress, in_few_words=False)
     if division.cut_off:
         told = "; ".join(x.reason for x in division.doubts)
-        raise UsageError(f"which classes there are is in doubt ({told}): give more time, or --no-classes")
+        raise UsageError(f"the classes are in doubt ({told}): give more work, or use --no-classes")
     return division.classes
 
 

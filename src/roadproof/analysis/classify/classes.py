@@ -176,9 +176,9 @@ def plan_of(specification: Specification, numbers: Sequence[int]) -> Plan:
     Every disturbance of a group has to be there for each of the same road sectors, as in the paper's table.
     """
     if specification.set_name == SET_NAME or SET_NAME in specification.library.sets:
-        raise UsageError(f"there is a set '{SET_NAME}' already: classify the set that it extends, without it")
+        raise UsageError(f"there is a set '{SET_NAME}' already: classify the set that it extends")
     if FILE_NAME in specification_names(specification.library):
-        raise UsageError(f"--spec: the classes are written to a file {FILE_NAME}: rename that of yours")
+        raise UsageError(f"--spec: the output file for classes is {FILE_NAME}: rename your file")
     likes = likes_of(specification)
     disturbances: dict[int, int] = {}
     sectors: dict[Formula, int] = {}

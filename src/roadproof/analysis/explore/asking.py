@@ -112,7 +112,7 @@ def _limit(text: str, name: str, low: Number, high: Number, query: Query) -> Var
         )
     if read[1] not in (*query.vehicles, EVERY_VEHICLE):
         raise UsageError(
-            f"--vary {text}: the formula speaks of {', '.join(query.vehicles)}; {EVERY_VEHICLE} means all"
+            f"--vary {text}: the formula mentions {', '.join(query.vehicles)}; {EVERY_VEHICLE} means all"
         )
     unit, limit = LIMITS[read[2]], f"{read[2]}.{read[3]}"
     ends = [exact(f"--vary {name}", end, unit) for end in (low, high)]

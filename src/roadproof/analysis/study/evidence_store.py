@@ -136,7 +136,7 @@ class EvidenceStore:
             raise UsageError(self._foreign("to this one under another library"))
         for line in answers_of(kept, self.library, self.find_label):
             if line.fault and say is not None:
-                say(f"asked again, since a kept answer does not count: {line.fault}")
+                say(f"a stored answer is invalid and is computed again: {line.fault}")
             elif not line.fault and line.record is not None:
                 self.names |= set(line.record.texts("evidence"))
                 bare = {k: v for k, v in line.record.content.items() if k not in ("evidence", "seal")}
@@ -174,8 +174,8 @@ def refuse_vanished(folder: Path) -> None:
     """Raises ``InputError`` where a folder of answers has gone since they were begun, and their evidence."""
     if not (folder / HEAD).is_file():
         raise InputError(
-            f"{folder} was there when the run began, and is gone or has lost {HEAD}, and with it evidence "
-            "that the answers name; run the command again, which asks anew what is lost"
+            f"{folder} or its {HEAD} was removed during the run, and with it evidence "
+            "of answers; run the command again to compute the lost answers"
         )
 
 

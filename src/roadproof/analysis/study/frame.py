@@ -109,7 +109,7 @@ def conduct(
     """
     shard = hands_of(hands).shard
     if shard is not None and folder is None:
-        raise UsageError(f"--shard {shard} needs a folder in which the runs keep their answers: name --out")
+        raise UsageError(f"--shard {shard} requires --out, the folder that the runs share")
     shelf = EvidenceStore(folder, study.question)
     records: dict[str, Record] = {}
     known: dict[str, Answer] = {}
@@ -156,7 +156,7 @@ def _kept(
                 raise InputError(f"the answer '{file}' is that of '{name}'")
         except InputError as error:
             if say is not None:
-                say(f"asked again, since a kept answer does not count: {error}")
+                say(f"a stored answer is invalid and is computed again: {error}")
             continue
         yield name, record, answer
 
@@ -168,8 +168,8 @@ def _name(study: Study[Piece, Answer, Record], piece: Piece) -> str:
 
 def _told(shard: Shard | None, sure: int, unsure: int, left: int, what: str) -> str:
     """How far a run that has its share done is."""
-    doubts = f", {unsure} in doubt, which are asked again" if unsure else ""
+    doubts = f", {unsure} in doubt, to be computed again" if unsure else ""
     return (
-        f"shard {shard} is done: {sure} answers are kept{doubts}; {left} {what} are left to other runs. When "
-        "they are done, ask once more without --shard for the whole"
+        f"shard {shard} is done: {sure} answers are stored{doubts}; other runs process {left} {what}. When "
+        "all runs are done, run once without --shard to merge"
     )

@@ -27,7 +27,7 @@ def refuse_unknown(formula: Formula, vehicle: str, model: Vehicle) -> None:
     """Raise ``UsageError`` where a formula speaks of a kind that the model does not tell."""
     if model.kind is None and vehicle in vehicles_with_kind(formula):
         raise UsageError(
-            f"vehicle {vehicle}={model.name}: the formula speaks of its kind, and the model does not say it: "
+            f"vehicle {vehicle}={model.name}: the formula mentions its kind, and the model does not say it: "
             f'write kind = "{KINDS[1]}" in its file (or {", ".join(x for x in KINDS if x != KINDS[1])})'
         )
 

@@ -156,9 +156,9 @@ def pose(library: Library, query: Query, setting: Setting) -> SearchProblem:
     for name in (*setting.vehicles, *setting.limits):
         if name and name not in query.vehicles:
             known = ", ".join(query.vehicles)
-            raise UsageError(f"vehicle {name}: the formula speaks of {known or 'no vehicle'}")
+            raise UsageError(f"vehicle {name}: the formula mentions {known or 'no vehicle'}")
     if not query.vehicles:
-        raise UsageError("the formula speaks of no vehicle, so no drive can show anything about it")
+        raise UsageError("the formula mentions no vehicle, so drives cannot decide it")
     models = {
         name: setting.vehicles.get(name) or setting.vehicles.get("") or usual_model(query.formula, name)
         for name in query.vehicles
@@ -187,7 +187,7 @@ def assignments(query: Query, road: Road, chosen: Mapping[str, str]) -> tuple[di
             raise UsageError(f"lane {name}={lane}: road '{road.name}' has the lanes {', '.join(road.lanes)}")
         if name not in query.lanes:
             known = ", ".join(query.lanes) or "no lane"
-            raise UsageError(f"lane {name}={lane}: the formula speaks of {known}")
+            raise UsageError(f"lane {name}={lane}: the formula mentions {known}")
     options = [[chosen[name]] if name in chosen else list(road.lanes) for name in query.lanes]
     return tuple(dict(zip(query.lanes, lanes, strict=True)) for lanes in product(*options))
 

@@ -249,7 +249,7 @@ class _Search:
         except TooNonlinearError:
             raise UsageError(
                 "the formula has a comparison of degree above 2, which the engine milp cannot bound: "
-                "the engine smt can"
+                "use the engine smt"
             ) from None
 
     def _drives(

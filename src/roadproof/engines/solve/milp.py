@@ -140,7 +140,7 @@ class Solution:
 def find_solver(name: str) -> SolverFacts:
     """Raises ``UsageError`` for an unknown name, ``MissingSolverError`` where it is not installed."""
     if name not in SOLVERS:
-        raise UsageError(f"solver={name}: there is no such solver; there are {', '.join(sorted(SOLVERS))}")
+        raise UsageError(f"solver={name}: unknown solver; choose one of {', '.join(sorted(SOLVERS))}")
     for module in ("cvxpy", SOLVERS[name].module):
         if find_spec(module) is None:
             raise MissingSolverError(

@@ -55,7 +55,7 @@ class Answer(ABC):
     def verdict(self) -> Verdict:
         """The verdict where one thing was asked. Raises ``UsageError`` where it were several."""
         if len(self.verdicts) != 1:
-            raise UsageError(f"{len(self.verdicts)} things were asked: see verdicts, or ask for one")
+            raise UsageError(f"{len(self.verdicts)} verdicts: use .verdicts, or ask one question")
         return next(iter(self.verdicts.values()))
 
     @property
@@ -138,7 +138,7 @@ class Answer(ABC):
             folder = self.save(place, pictures=False)
             if not any(folder.iterdir()):
                 raise UsageError(
-                    f"there is no evidence to be checked: {self._counts() or 'nothing was asked'}"
+                    f"there is no evidence to check: {self._counts() or 'no question was asked'}"
                 )
             return check(folder, solver=solver, specs=self._specs(folder), jobs=jobs)
 

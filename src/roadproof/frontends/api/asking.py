@@ -116,5 +116,5 @@ def ask(
     numbers = home.among(among) or numbers_of(home.specification)
     study = about(basis_of(home, given, given.vehicles), numbers)
     if not study.names:
-        raise UsageError(f"--among {among} leaves nothing to ask: name other scenarios")
+        raise UsageError(f"--among {among} selects no scenario: select others")
     return Answers[A, R].asked(study, given)

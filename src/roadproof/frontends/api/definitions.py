@@ -67,7 +67,7 @@ class Definitions:
     def alone(self) -> Specification:
         """The one set that is named. Raises ``UsageError`` where there are several."""
         if len(self.sets) > 1:
-            raise UsageError(f"{', '.join(self.sets)}: this is asked of one spec set; name one")
+            raise UsageError(f"{', '.join(self.sets)}: this question takes one spec set; name one")
         return self.specification
 
     def words(self, number: int) -> Words:
@@ -94,7 +94,7 @@ class Definitions:
                 return read_query(self.specification, str(what))
             case _:
                 raise UsageError(
-                    f"{what!r} is no formula: give a number, a text, or one that is built with operators"
+                    f"{what!r} is not a formula: give a number, a text, or a formula built with operators"
                 )
 
     def among(self, numbers: Among) -> tuple[int, ...] | None:

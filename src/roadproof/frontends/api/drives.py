@@ -170,7 +170,7 @@ def witness_all(
 ) -> Witnesses:
     """As ``witness``, with searches as values; ``each`` is told of every outcome under its name."""
     if not searches:
-        raise UsageError("there is no scenario in the spec set: name formulas")
+        raise UsageError("the spec set has no scenario: name formulas")
     if pool.are_forked(searches, given.jobs):
         from roadproof.engines.solve.milp import prepare
 

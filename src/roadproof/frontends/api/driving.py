@@ -64,7 +64,7 @@ def _read(name: str, entries: Iterable[Sequence[Number]], units: Sequence[str]) 
     for entry in entries:
         if isinstance(entry, str) or len(entry) != len(units):
             raise UsageError(
-                f"{name}: {entry!r} is no entry: each has {len(units)} numbers, {', '.join(units)}"
+                f"{name}: {entry!r} is not an entry: each has {len(units)} numbers, {', '.join(units)}"
             )
         found.append([exact(name, value, unit) for value, unit in zip(entry, units, strict=True)])
     return found

@@ -155,7 +155,7 @@ def _stands(file: DriveFile, where: str, library: Library) -> DriveFile:
     try:
         return JudgedDrive(file, library).file
     except RejectedError as error:
-        raise InputError(f"{where}: the drive is not exported, since it does not stand: {error}") from None
+        raise InputError(f"{where}: the drive fails its check and is not exported: {error}") from None
 
 
 def _paths(path: Path) -> list[Path]:
@@ -183,7 +183,9 @@ def _named(drives: Iterable[tuple[str, DriveFile, Path | None]]) -> dict[str, Dr
     found: dict[str, DriveFile] = {}
     for name, file, path in drives:
         if name in found and path is not None:
-            raise UsageError(f"{path}: there is another drive called {name}; export one of them elsewhere")
+            raise UsageError(
+                f"{path}: another drive has the name {name}; export one of them to another folder"
+            )
         count = 1
         while (told := name if count == 1 else f"{name}-{count}") in found:
             count += 1

@@ -265,7 +265,9 @@ def _temporal(
 def _quantified(kind: Any, domain: Phrase, body: Callable[[Phrase], Phrase], name: str) -> Phrase:
     over = domain.expression
     if not isinstance(over, syntax.Name | syntax.Call):
-        raise UsageError(f"{domain} is no domain: give lanes, lanelets(L), zone('main'), adjacent_lanes(L)")
+        raise UsageError(
+            f"{domain} is not a domain: give lanes, lanelets(L), zone('main'), adjacent_lanes(L)"
+        )
     words = {*_WORD.findall(str(_lift(body(Phrase(syntax.Name(_HELD))))))}
     wanted = name or next(iter(inspect.signature(body).parameters), "K")
     free = next(x for x in (wanted, *(f"{wanted}{k}" for k in range(2, len(words) + 3))) if x not in words)

@@ -143,7 +143,7 @@ def _values(kind: Manoeuvre, name: str, given: Number | Sequence[Number]) -> tup
     if name not in kind.quantities:
         raise UsageError(f"{name}: {unknown('initial value of a ' + kind.name, name, kind.quantities)}")
     if name in (kind.line, kind.across):
-        raise UsageError(f"{name} varies over the plane: give its range, or leave it out")
+        raise UsageError(f"{name} varies on the plate: give a range, or omit it")
     quantity = kind.quantities[name]
     several = [given] if isinstance(given, str) or not isinstance(given, Sequence) else given
     values = tuple(dict.fromkeys(exact(name, x, quantity.unit) for x in several))
@@ -162,5 +162,5 @@ def _range(
     low, high = (exact(name, x, quantity.unit) for x in given)
     quantity.check(low)
     if low >= high:
-        raise UsageError(f"{name}={given[0]}:{given[1]}: the range ends where it begins, or before")
+        raise UsageError(f"{name}={given[0]}:{given[1]}: the range is empty; write the smaller value first")
     return low, high

@@ -202,7 +202,7 @@ def claims_asked(
     """
     dense = given.engine == "dense"
     if dense and given.vehicles and given.assume is None:
-        raise UsageError("limits of vehicles are assumed with motion only: ask with assume motion")
+        raise UsageError("limits of vehicles require assume=motion")
     values = home.all_values() if given.declared else dict(home.values)
     limits = (models_of(given.vehicles), values) if dense else ()
     said = Assumptions(given.assume is not None, *limits)
@@ -210,9 +210,7 @@ def claims_asked(
     asked = replace(asked, effort=work_of(given), seek_drive=given.drive)
     if given.engine != "dense":
         if given.kernel is not None:
-            raise UsageError(
-                f"engine={given.engine!r} makes no certificates that could be put to Coq: ask without kernel"
-            )
+            raise UsageError(f"engine={given.engine!r} makes no certificates for Coq: omit kernel")
         return _within_limits(asked, home, given.engine, given)
     if given.kernel is not None:
         coq.find()
@@ -239,7 +237,7 @@ class Assumptions:
         for name in self.vehicles:
             if name and name not in query.vehicles:
                 known = ", ".join(query.vehicles) or "no vehicle"
-                raise UsageError(f"vehicle {name}: the claim speaks of {known}")
+                raise UsageError(f"vehicle {name}: the claim mentions {known}")
         models = {x: self.vehicles.get(x, self.vehicles.get("")) for x in query.vehicles}
         limits = [x for name, y in models.items() if y is not None for x in limits_of(query, name, y)]
         said = claim.said if is_moving(claim.said) else ((MOTION,) * self.motion + claim.said)
@@ -280,9 +278,11 @@ def claims_of(
         else:
             own.append(assumed.of(home, _read(home, x)))
     if own and (named or numbers):
-        raise UsageError("ask for properties or for claims of your own, not for both at once")
+        raise UsageError("name template properties or claims of your own, not both")
     if not own and assumed.motion:
-        raise UsageError("motion is assumed of claims of your own: the list is about all traces")
+        raise UsageError(
+            "assume=motion requires claims of your own: template properties are about all traces"
+        )
     listed = [x for x in template_properties() if not (assumed.values and x.of_all_values)]
     tasks = _own(home, own, expected) or choose(listed, named, set_name, sorted(numbers))
     if not tasks:
@@ -320,7 +320,9 @@ def _within_limits(asked: Claims, home: Definitions, engine: Engine, given: Prov
     from roadproof.engines.search.question import SearchOptions
 
     if not asked.are_own:
-        raise UsageError(f"engine={engine!r} is for claims of your own: the list is about all time")
+        raise UsageError(
+            f"engine={engine!r} requires claims of your own: template properties are about all time"
+        )
     if any(task.assuming for task in asked.tasks):
         raise UsageError(
             f"engine={engine!r} is about drives anyway, at the values of params: assume nothing, or ask "

@@ -206,7 +206,7 @@ def evaluate(
     if out is not None:
         return _evaluate(Path(path), Path(out), settings, given)
     if hands_of(given.jobs).shard is not None:
-        raise UsageError("a shard needs a folder in which the runs keep what they find: name out")
+        raise UsageError("a shard requires out, the folder that the runs share")
     with tempfile.TemporaryDirectory() as folder:
         found = _evaluate(Path(path), Path(folder), settings, replace(given, pictures=False))
         return replace(found, folder=None, kept=found.findings)

@@ -64,7 +64,7 @@ def page(*results: str | Path, out: str | Path, **options: Unpack[PageKeywords])
     """
     asked = evidence.Page.of(options)
     if not results:
-        raise UsageError("name results: folders and JSON answers that commands have written, or evidence")
+        raise UsageError("name at least one result: a folder, a JSON answer, or evidence")
     paths = [Path(x) for x in results]
     target = Path(out)
     if target.suffix.lower() not in (".html", ".htm"):

@@ -35,7 +35,7 @@ def restricted(
         return home
     if preventable is not None and unpreventable is not None:
         raise UsageError(
-            f"preventable={preventable}, unpreventable={unpreventable}: no drive begins as both; ask for one"
+            f"preventable={preventable}, unpreventable={unpreventable}: no drive satisfies both; omit one"
         )
     wanted = _restriction(preventable, unpreventable, about)
     said = f"{wanted.side}={wanted.model}"

@@ -103,7 +103,7 @@ def basis_of(home: Definitions, given: Budget, vehicles: Vehicles = None) -> "Ba
     known = {name for count in (2, 3) for name in roles(count)}
     for name in models:
         if name and name not in known:
-            raise UsageError(f"vehicle {name}: scenarios speak of {', '.join(sorted(known))}")
+            raise UsageError(f"vehicle {name}: scenarios mention {', '.join(sorted(known))}")
     return Basis(
         home.specification,
         home.sets,

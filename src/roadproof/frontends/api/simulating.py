@@ -66,11 +66,9 @@ def simulate(out: str | Path, **options: Unpack[SimulateKeywords]) -> Simulation
     if given.seed < 0:
         raise UsageError(f"seed={given.seed}: a seed is 0 or more")
     if not 1 <= given.recordings <= 999:
-        raise UsageError(f"recordings={given.recordings}: between 1 and 999 can be made")
+        raise UsageError(f"recordings={given.recordings}: write 1 to 999")
     if drives and given.ramp != "none":
-        raise UsageError(
-            f"ramp={given.ramp}: drives are planted on main roads only; simulate without one of the two"
-        )
+        raise UsageError(f"ramp={given.ramp}: drives are planted on main roads only; omit ramp or plant")
     if drives:
         traffic = replace(traffic, lane_width=lane_width(drives))
     folder = Path(out)

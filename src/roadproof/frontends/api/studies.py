@@ -110,7 +110,7 @@ def overlap(
     basis = replace(basis_of(home, given, given.vehicles), horizon=horizon)
     pairs = pairs_of(basis, home.among(among))
     if not pairs:
-        raise UsageError(f"--among {among} leaves no pair: name at least two scenarios")
+        raise UsageError(f"--among {among} selects no pair: select at least two scenarios")
     if pool.are_forked(pairs, given.jobs):
         from roadproof.engines.solve.milp import prepare
 

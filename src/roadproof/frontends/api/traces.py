@@ -162,7 +162,7 @@ def monitor(
     if isinstance(on, JudgedDrive | DriveFile):
         return _on_drive(what, on.file if isinstance(on, JudgedDrive) else on, "drive", using, given)
     if given.view == "dense":
-        raise UsageError("--view dense: only a drive file says what is true between samples")
+        raise UsageError("--view dense requires a drive file: other traces have samples only")
     home = using or load()
     return _on_trace(what, _read(on, given.road, given.frames), home, home.all_values(), {}, given)
 
@@ -178,7 +178,7 @@ def _read(
         return trace(on, road or "main-2")
     if is_pair(str(on)):
         if road is not None:
-            raise UsageError(f"--road: {on} is on the road of its recording; leave --road out")
+            raise UsageError(f"--road: {on} has the road of its recording; omit --road")
         return read_pair(str(on), frames)
     if Path(on).suffix in (".csv", ".parquet", ".xosc") and not TRACK_FILES.fullmatch(Path(on).name):
         return read_samples(Path(on), None if road is None else as_road(road))
@@ -266,7 +266,7 @@ def _lanes(
     missing = [name for name in query.vehicles if name not in samples.lanes]
     if missing:
         raise InputError(
-            f"{query.text}: speaks of {', '.join(missing)}, but {samples.source} has "
+            f"{query.text}: mentions {', '.join(missing)}, but {samples.source} has "
             f"{', '.join(samples.lanes)}; name other vehicles or another formula"
         )
     asked = given.lanes or {}
@@ -277,5 +277,5 @@ def _lanes(
         if not lanes.get(name):
             lanes[name] = samples.lanes.get(usual, "")
         if not lanes[name]:
-            raise InputError(f"lane {name}: {usual} is in no lane at the start; say --lane {name}=LANE")
+            raise InputError(f"lane {name}: {usual} is in no lane at the start; add --lane {name}=LANE")
     return {name: lanes[name] for name in query.lanes}

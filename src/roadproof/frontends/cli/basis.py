@@ -30,7 +30,7 @@ def read_definitions(args: argparse.Namespace, sets: Sequence[str]) -> "Definiti
         args.specs = names_for(args.specs)
     library, options = load_library_of(args), chosen_options(args)
     if len({*sets}) < len(sets):
-        raise UsageError(f"--set {','.join(sets)}: one is named twice; name one spec set, or different ones")
+        raise UsageError(f"--set {','.join(sets)}: a spec set is repeated; name each once")
     for name in sets:
         library.select(name, options)
     values = given_values(args, library) if "params" in args else {}

@@ -65,7 +65,7 @@ def run(args: argparse.Namespace) -> int:
 
     for name in ("objective", "spread", "formats"):
         if getattr(args, name) and args.complete is None:
-            raise UsageError(f"--{name.removesuffix('s')} is for drives that are made: add --complete DIR")
+            raise UsageError(f"--{name.removesuffix('s')} requires --complete DIR")
     formats_in(args.formats or "csv")
     home = read_definitions(args, chosen_sets(args))
     given = study_keywords(args, Catalogue, evidence_folder(args.out, args.json))

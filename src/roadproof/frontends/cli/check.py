@@ -47,7 +47,7 @@ def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.checking import check
 
     if args.kernel is not None and args.solver != "z3":
-        raise UsageError(f"--kernel {args.kernel} asks no solver: ask without --solver, or without --kernel")
+        raise UsageError(f"--kernel {args.kernel} uses no solver: omit --solver or --kernel")
     if args.write is not None:
         return _write(args)
     checked = check(*args.paths, **read_keywords(args, Check) | {"progress": Counter()})
@@ -62,9 +62,7 @@ def _write(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.checking import write_sources
 
     if args.kernel is None or args.json:
-        raise UsageError(
-            "--write DIR writes files for Coq and checks nothing: ask with --kernel, without --json"
-        )
+        raise UsageError("--write DIR only writes files for Coq: add --kernel, and omit --json")
     reasons = write_sources(*args.paths, folder=args.write, specs=args.specs or (), jobs=args.jobs)
     for path, reason in reasons.items():
         print(f"no file for {path}: {reason}")

@@ -38,7 +38,7 @@ def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.classifying import classify
 
     if args.on is not None and not args.shares:
-        raise UsageError("--on and --no-shares: shares are counted on recordings; leave out one of the two")
+        raise UsageError("--on and --no-shares contradict each other: omit one of them")
     folder = evidence_folder(args.out, args.json)
     home = read_definitions(args, [args.set_name])
     found = classify(args.among, home, **study_keywords(args, Classify, folder))

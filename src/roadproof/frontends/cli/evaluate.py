@@ -54,11 +54,11 @@ def run(args: argparse.Namespace) -> int:
 
     if args.list_roads:
         if args.out or args.json:
-            raise UsageError("--list: nothing is evaluated, so leave --out and --json out")
+            raise UsageError("--list evaluates nothing: omit --out and --json")
         print("\n".join(map(str, roads(args.path))))
         return ExitCode.AS_EXPECTED
     if not args.out:
-        raise UsageError("--out is missing: name the folder where results go, or ask for --list")
+        raise UsageError("--out is missing: name the folder for the results, or use --list")
     asked = read_keywords(args, Evaluate) | {"jobs": read_hands(args), "tell": note}
     found = evaluate(args.path, args.out, _definitions(args), **asked)
     if args.json:
@@ -67,7 +67,7 @@ def run(args: argparse.Namespace) -> int:
         print(found)
     _tell_notes(args.out, found.totals)
     for name, reason in found.failed.items():
-        print(f"left out: recording {name}: {reason}", file=sys.stderr)
+        print(f"skipped recording {name}: {reason}", file=sys.stderr)
     note(f"written to {args.out}: " + ", ".join(sorted(x.name for x in args.out.iterdir())))
     return found.exit_code
 

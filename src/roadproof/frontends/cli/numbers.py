@@ -22,10 +22,10 @@ def read_hands(args: argparse.Namespace) -> "Executor":
     address, share = said.get("cluster"), said.get("shard")
     named = [f"--tls-{name}" for name, file in files.items() if file is not None]
     if named and address is None:
-        raise UsageError(f"{named[0]} is for a cluster: name its scheduler with --cluster")
+        raise UsageError(f"{named[0]} requires --cluster SCHEDULER")
     if address is not None and args.jobs is not None:
-        raise UsageError("--jobs says how many processes work here: ask for it or for --cluster")
+        raise UsageError("--jobs and --cluster exclude each other: omit one of them")
     if share is not None and args.json is not None:
-        raise UsageError("--shard has no answer to the whole: leave --json to the run without it")
+        raise UsageError("--shard gives a part of the answer: use --json in the run without --shard")
     cluster = None if address is None else Cluster(address, files["ca"], files["cert"], files["key"], note)
     return Executor(args.jobs, cluster, None if share is None else Shard.read(share))

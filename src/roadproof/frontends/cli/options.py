@@ -90,7 +90,7 @@ def add_json_option(parser: argparse.ArgumentParser) -> None:
 
 def _file_name(text: str) -> str:
     if not Path(text).name:
-        raise argparse.ArgumentTypeError(f"'{text}' names no file")
+        raise argparse.ArgumentTypeError(f"'{text}' is not a file name")
     return text
 
 

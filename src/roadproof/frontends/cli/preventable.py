@@ -65,5 +65,5 @@ def _range(option: str, text: str | None, name: str) -> tuple[str, str] | None:
     if not equals or not colon:
         raise UsageError(f"{option} {text}: write {name}=LOW:HIGH")
     if said.strip() != name:
-        raise UsageError(f"{option} {text}: here it is {name} that varies, so write {name}=LOW:HIGH")
+        raise UsageError(f"{option} {text}: this plate varies {name}; write {name}=LOW:HIGH")
     return low.strip(), high.strip()

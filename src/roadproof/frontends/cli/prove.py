@@ -89,6 +89,6 @@ def _asked(args: argparse.Namespace, given: Prove) -> "Claims":
     home = read_definitions(args, [args.set_name or "base"])
     written = [] if args.file is None else read_claims(args.file)
     if args.file is not None and not (written or args.claims):
-        raise UsageError(f"{args.file} holds no claim: write one a paragraph")
+        raise UsageError(f"{args.file} contains no claim: write one per paragraph")
     what = [*args.claims, *(read_under(home.specification, claim) for claim in written)]
     return claims_asked(home, what, args.set_name, given)

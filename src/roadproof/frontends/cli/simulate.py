@@ -44,7 +44,9 @@ def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.simulating import simulate
 
     if args.plant and args.ramp != "none":
-        raise UsageError(f"--plant with --ramp {args.ramp}: drives are planted on main roads only; drop one")
+        raise UsageError(
+            f"--plant with --ramp {args.ramp}: drives are planted on main roads only; omit one of them"
+        )
     drives = tuple(_drives(args.plant or (), args.plant_set))
     if args.plant and not drives:
         raise InputError(f"--plant {' '.join(args.plant)}: no drive that can be planted")
@@ -115,7 +117,9 @@ def _found(text: str, set_name: str) -> "Iterator[DriveFile]":
         low, _, high = item.partition("-")
         for number in range(int(low), int(high or low) + 1):
             if not 1 <= number <= 8:
-                raise UsageError(f"--plant {text}: recordings show a main road, so scenarios 1 to 8")
+                raise UsageError(
+                    f"--plant {text}: recordings have a main road only; write scenarios from 1 to 8"
+                )
             scenario, setting = s.Scenario(number, set_name), Setting(load_road("main-2"))
             claim, vehicles = s.applied(specification, scenario), s.vehicles_of(specification, scenario)
             latest = setting.horizon - default_values(bundled_library())[s.MIN_DANGER]

@@ -18,5 +18,5 @@ def add_what_arguments(parser: argparse.ArgumentParser, every: str) -> None:
 def some_or_all(args: argparse.Namespace) -> list[str]:
     """What is named; nothing with --all. Raises ``UsageError``."""
     if args.all == bool(args.what):
-        raise UsageError("name scenarios or formulas, or ask for --all: one of the two")
+        raise UsageError("name scenarios or formulas, or use --all, but not both")
     return list(args.what)

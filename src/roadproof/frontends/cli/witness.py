@@ -68,7 +68,7 @@ def run(args: argparse.Namespace) -> int:
     with listening(tell_stage if len(named) == 1 else None):
         found = witness_all(searches, given, each)
     if args.out is not None and not written and plain:
-        print(f"nothing is written to {args.out}, as there is no drive")
+        print(f"no drive was found, so nothing was written to {args.out}")
     if args.json:
         write_json(found.as_data(), args.json)
     if plain and len(found.outcomes) > 1:

@@ -31,7 +31,7 @@ def as_text(surveyed: Survey, name: str, seconds: float, words: Called) -> str:
     if surveyed.verdict is Verdict.COVERED:
         lines.append(f"set {name} misses no danger that arises from safety between two vehicles")
     if surveyed.verdict is Verdict.CROSSCHECK_FAILED:
-        lines.append("traffic shows what is proved not to be, which is our fault: please report it")
+        lines.append("traffic contradicts a proof, which is a fault of roadproof: please report it")
     return "\n".join(lines)
 
 

@@ -23,8 +23,8 @@ MOST_NOTES = 2  # for one verdict on a map or strip; JSON has them all
 Notes: TypeAlias = dict[str, int]
 _MEANING = {
     Verdict.WITNESSED: "a drive, judged at this value",
-    Verdict.IMPOSSIBLE: "proved for all values that there is none",
-    Verdict.NONE_WITHIN: "none within the limits that are printed",
+    Verdict.IMPOSSIBLE: "no drive exists: proved for all values",
+    Verdict.NONE_WITHIN: "no drive within the printed limits",
     Verdict.UNKNOWN: "not decided",
 }
 

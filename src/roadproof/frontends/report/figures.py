@@ -37,9 +37,7 @@ def _matplotlib() -> tuple[Any, Any]:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
     except ImportError:
-        raise MissingSolverError(
-            "pictures need matplotlib: install matplotlib, or go without pictures"
-        ) from None
+        raise MissingSolverError("pictures need matplotlib: install it, or omit pictures") from None
     return Figure, FigureCanvasAgg
 
 

@@ -19,8 +19,8 @@ COLOURS = {
     Verdict.UNKNOWN: "#b5473c",
 }
 _MEANING = {
-    Verdict.WITNESSED: "they hold together on a judged drive",
-    Verdict.IMPOSSIBLE: "proved for all time that they never do",
+    Verdict.WITNESSED: "compatible: both hold on a judged drive",
+    Verdict.IMPOSSIBLE: "incompatible: proved for all time",
     Verdict.NONE_WITHIN: "no drive within the limits",
     Verdict.UNKNOWN: "not decided",
 }

@@ -177,7 +177,7 @@ def bound_on(asked: ShownFormula, file: DriveFile, home: Specification) -> tuple
     absent = [name for name in query.vehicles if name not in file.drive.vehicles]
     if absent:
         raise InputError(
-            f"{query.text}: speaks of {', '.join(absent)}, but the drive has {', '.join(file.drive.vehicles)}"
+            f"{query.text}: mentions {', '.join(absent)}, but the drive has {', '.join(file.drive.vehicles)}"
         )
     lanes = {name: file.lanes.get(name) or _lane_of(file, SUBJECT) for name in query.lanes}
     values = values_with(home.library, {**file.values, **asked.values})

@@ -23,12 +23,12 @@ MOST_DRIVES = 12
 FILE = "edit.spec"
 _STAGES = {
     "prove": "looking for a proof",
-    "encode": "writing it down for a solver",
+    "encode": "encoding the formula",
     "solve": "looking for a drive",
     "shape": "shaping the drive",
-    "judge": "judging it",
-    "refute": "showing that there is none on the grid",
-    "explain": "looking for a proof that there is none",
+    "judge": "judging the drive",
+    "refute": "proving that no drive exists on the grid",
+    "explain": "looking for a proof that no drive exists",
 }
 
 
@@ -64,7 +64,7 @@ def find(ask: Mapping[str, Any], say: Say) -> dict[str, Any]:
     if len(outcome.drives) == count:
         judged = outcome.drives[-1]
         answer["drive"] = judged.as_data()
-        say("judging it")
+        say("judging the drive")
         answer["view"] = view(draft, judged.file, ask)
     return answer
 

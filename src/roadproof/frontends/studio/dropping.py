@@ -35,7 +35,7 @@ def drop(ask: Mapping[str, Any], say: Any) -> dict[str, Any]:
     with _laid_out(ask) as folder:
         if len(names) == 1 and names[0].endswith((".csv", ".xosc")) and "_tracks" not in names[0]:
             return {"view": _monitored(ask, read_samples(folder / names[0]))}
-        say("looking for danger in it")
+        say("searching for danger")
         draft = draft_of(ask)
         found = rp.evaluate(folder, using=draft.definitions(set_of(ask)), detectors=False, jobs=1)
         pairs, matches = found.pairs().to_dicts(), found.matches().to_dicts()
@@ -63,7 +63,7 @@ def _evidence(ask: Mapping[str, Any], say: Any) -> dict[str, Any]:
     if isinstance(data, dict) and data.get("schema") in DRIVES:
         file = read_drive(data, name)
         return {"drive": data, "view": view(draft_of(ask), file, {**ask, "formula": file.formula})}
-    say("checking it")
+    say("checking the file")
     draft = draft_of(ask)
     with _laid_out(ask) as folder:
         specs = []

@@ -67,13 +67,13 @@ class Guard:
         if method in ("GET", "HEAD"):
             return
         if method != "POST":
-            raise RefusedError(405, "ask with GET or POST")
+            raise RefusedError(405, "use GET or POST")
         if origin != f"http://{headers['host']}":
-            raise RefusedError(403, "a question comes from the page of this server")
+            raise RefusedError(403, "requests must come from the page of this server")
         if headers.get("content-type", "").partition(";")[0].strip() != "application/json":
-            raise RefusedError(415, "a question is application/json")
+            raise RefusedError(415, "a request must have the content type application/json")
         if not hmac.compare_digest(headers.get(TOKEN, "").encode(), self.token.encode()):
-            raise RefusedError(401, "the token is not that of this start: open the address that was printed")
+            raise RefusedError(401, "invalid token: open the address that this start of the studio printed")
 
 
 def headers_of(scope: Message) -> dict[str, str]:
@@ -128,21 +128,21 @@ async def read_json(receive: Receive, announced: str, most: int) -> dict[str, An
     Raises ``RefusedError``.
     """
     if announced.isdecimal() and int(announced) > most:
-        raise RefusedError(413, f"the question is larger than {most} bytes")
+        raise RefusedError(413, f"the request is larger than {most} bytes")
     body = bytearray()
     while True:
         message = await receive()
         if message["type"] == "http.disconnect":
-            raise RefusedError(400, "the question broke off")
+            raise RefusedError(400, "the request ended too early")
         body += message.get("body", b"")
         if len(body) > most:
-            raise RefusedError(413, f"the question is larger than {most} bytes")
+            raise RefusedError(413, f"the request is larger than {most} bytes")
         if not message.get("more_body", False):
             break
     try:
         data = json.loads(body)
     except (ValueError, RecursionError):
-        raise RefusedError(400, "the question is no JSON") from None
+        raise RefusedError(400, "the request is not JSON") from None
     if not isinstance(data, dict):
-        raise RefusedError(400, "the question is no JSON object")
+        raise RefusedError(400, "the request is not a JSON object")
     return data

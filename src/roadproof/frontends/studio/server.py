@@ -91,7 +91,7 @@ class Studio:
             return self.crews["live"], kind
         if isinstance(kind, str) and kind in long:
             return self.crews["long"], kind
-        raise RefusedError(400, "there is no question of that kind")
+        raise RefusedError(400, "unknown kind of request")
 
 
 async def _told(

@@ -94,7 +94,7 @@ def run_experiment(
     if shard is not None:
         raise SharedError(
             f"shard {shard} is done: {len(sources) - len(failed)} of {len(sources)} recordings evaluated. "
-            "When the other runs are done, ask once more without --shard for the whole"
+            "When all runs are done, run once without --shard to merge"
         )
     if len(failed) == len(sources):
         raise InputError(

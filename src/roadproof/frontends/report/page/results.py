@@ -99,5 +99,5 @@ def _read(file: Path) -> tuple[str, Mapping[str, Any]]:
     data = Fields(read_json(file, LARGEST_INDEX), str(file))
     schema = data.text("schema") if "schema" in data.content else ""
     if not schema.startswith("roadproof/"):
-        raise InputError(f"{file} is no result of roadproof: it has no schema that begins with roadproof/")
+        raise InputError(f"{file} is not a result of roadproof: its schema does not begin with roadproof/")
     return schema, data.content
