@@ -51,7 +51,7 @@ def test_limits_of_a_model_are_what_is_printed():
         ((BEHIND,), {"assume": "rest"}, "write 'motion'"),
         (("P1",), {"assume": "motion"}, "claims of your own"),
         ((), {"assume": "motion"}, "claims of your own"),
-        ((BEHIND,), {"vehicles": "car"}, "with motion only"),
+        ((BEHIND,), {"vehicles": "car"}, "limits of vehicles require assume=motion"),
         ((BEHIND,), {"assume": "motion", "vehicles": {"POV2": "car"}}, "the claim mentions POV, SV"),
         ((BEHIND,), {"assume": "motion", "engine": "smt"}, "is about drives anyway"),
         ((f"assuming motion: {BEHIND}",), {"engine": "smt"}, "is about drives anyway"),

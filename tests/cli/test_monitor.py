@@ -225,7 +225,7 @@ def test_order_of_rows_does_not_matter(tmp_path: Path, capsys: pytest.CaptureFix
         (["4", "{folder}/01_tracks.csv:1,2,3,4"], 3, "a trace is a drive"),
         (["4", "{folder}/01_tracks.csv:1,99999"], 3, "has no vehicle 99999"),
         (["4", "{folder}/01_tracks.csv:1,1"], 3, "each vehicle may be named once"),
-        (["2", "{drive}"], 3, "speaks of POV1, POV2"),
+        (["2", "{drive}"], 3, "mentions POV1, POV2"),
         (["25", "{drive}"], 3, "scenario_25"),
         (["4", "{drive}", "--dt", "0"], 2, "--dt 0"),
         (["4", "{drive}", "--lane", "main-9"], 3, "lane L=main-9"),

@@ -63,8 +63,8 @@ def test_none_within_prints_its_limits(capsys):
     ("arguments", "code", "message"),
     [
         (("witness",), 2, "name scenarios or formulas"),
-        (("witness", "4", "--all"), 2, "one of the two"),
-        (("witness", "4", "--solver", "magic"), 2, "there is no such solver"),
+        (("witness", "4", "--all"), 2, "but not both"),
+        (("witness", "4", "--solver", "magic"), 2, "unknown solver; choose one of"),
         (("witness", "4", "--solver", "gurobi"), 4, "gurobipy"),
         (("witness", "4", "--dt", "0"), 2, "greater than 0"),
         (("witness", "4", "--dt", "1e9"), 2, "greater than 0"),

@@ -193,7 +193,7 @@ def test_manoeuvres_by_name_and_by_scenario():
         (["cut-in", "--at", "dx0=3"], "dx0 varies on the plate"),
         (["cut-in", "--along", "dx0=-3:5"], "the gap along the road has to be >= 0"),
         (["cut-in", "--along", "dx0=5:5"], "the range is empty"),
-        (["cut-in", "--along", "Vy=1:5"], "here it is dx0 that varies"),
+        (["cut-in", "--along", "Vy=1:5"], "this plate varies dx0"),
         (["cut-in", "--at", "Ve0"], "write NAME=VALUE"),
         (["deceleration", "--at", "dV0=200km/h"], "SV cannot be more than Ve0"),
         (["cut-in", "--param", "cc_delay=-1"], "cc_delay"),

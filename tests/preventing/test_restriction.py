@@ -135,17 +135,17 @@ def test_what_is_proved_of_scenarios_stays_proved_and_no_more() -> None:
 @pytest.mark.parametrize(
     ("given", "told"),
     [
-        (["witness", "3", "--unpreventable", "careful"], "speaks of 1, 2, 4, 9, 10, 12, 17, 18, 20"),
+        (["witness", "3", "--unpreventable", "careful"], "applies to 1, 2, 4, 9, 10, 12, 17, 18, 20"),
         (
             ["witness", "4", "--unpreventable", "r157"],
             "does not apply to the selected scenarios (4)",
         ),
-        (["overlap", "--among", "3,5", "--preventable", "rss"], "ask for one of these"),
+        (["overlap", "--among", "3,5", "--preventable", "rss"], "select one of these"),
         (["witness", "1", "--preventable", "fsm"], "fsm is a controller and has no formula"),
         (["coverage", "--preventable", "fsm"], "fsm is a controller and has no formula"),
         (["classify", "--unpreventable", "carefull"], "did you mean 'careful'"),
         (["witness", "1", "--preventable", "rss", "--unpreventable", "rss"], "no drive satisfies both"),
-        (["witness", "G v_lon(SV) > 0 m/s", "--preventable", "rss"], "asked for (none)"),
+        (["witness", "G v_lon(SV) > 0 m/s", "--preventable", "rss"], "the selected scenarios (none)"),
         (["coverage", "--spec", "driver", "--spec", "prevention"], "prevention_of=drives"),
         (["catalogue", "examples/catalogue/tests", "--gaps", "--preventable", "rss"], "coverage asks"),
     ],

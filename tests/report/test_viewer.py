@@ -68,7 +68,7 @@ def test_a_formula_that_cannot_be_judged_says_why_and_leaves_the_others() -> Non
         ShownFormula("watch", "("),
     ]
     wrong, right, broken = viewer_data(FILE, LIBRARY, asked)["formulas"]
-    assert "speaks of POV2" in wrong["error"]
+    assert "mentions POV2" in wrong["error"]
     assert right["holds"] is True
     assert "ends too early" in broken["error"]
 

@@ -183,8 +183,8 @@ def test_what_fails_between_the_samples_is_looked_at_more_closely():
         ({"horizon": Fraction(7), "dt": Fraction(3, 5)}, "no multiple of dt"),
         ({"horizon": Fraction(6000)}, "at most"),
         ({"lanes": {"L": "main-9"}}, "has the lanes main-1, main-2"),
-        ({"lanes": {"M": "main-1"}}, "speaks of L"),
-        ({"vehicles": {"POV7": "car"}}, "speaks of"),
+        ({"lanes": {"M": "main-1"}}, "the formula mentions L"),
+        ({"vehicles": {"POV7": "car"}}, "the formula mentions"),
         ({"values": {"minDanger": Fraction(1, 2)}, "dt": Fraction(3, 5)}, "no multiple of dt"),
     ],
 )

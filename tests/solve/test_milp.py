@@ -112,7 +112,7 @@ def test_degree_three_is_refused():
 
 
 def test_unknown_and_missing_solvers_are_told_apart(monkeypatch):
-    with pytest.raises(UsageError, match="there are cbc"):
+    with pytest.raises(UsageError, match="choose one of cbc"):
         find_solver("nothing")
     monkeypatch.setattr(milp, "find_spec", lambda name: None)
     with pytest.raises(MissingSolverError, match="pip install cvxpy, or choose the engine smt"):

@@ -103,7 +103,7 @@ def test_what_no_share_is(capsys: pytest.CaptureFixture[str]) -> None:
         conduct(some(), hands=Executor(shard=Shard(1, 2)))
     for line, told in (
         ("--shard 1/2 --json -", "use --json in the run without --shard"),
-        ("--tls-ca ca.pem", "--tls-ca is for a cluster"),
+        ("--tls-ca ca.pem", "--tls-ca requires --cluster"),
         ("--cluster local:2 --jobs 2", "--jobs and --cluster exclude each other"),
         ("--cluster somewhere", "write the address of a scheduler"),
     ):

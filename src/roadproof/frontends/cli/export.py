@@ -7,7 +7,7 @@ from roadproof.frontends.settings.flags import add_flags, read_keywords
 from roadproof.frontends.settings.recordings import Export
 from roadproof.verdict import ExitCode
 
-SUMMARY = "write drives as OpenSCENARIO, OpenDRIVE, CommonRoad, highD, CSV, or as moving pictures"
+SUMMARY = "write drives for other tools, or as moving pictures"
 
 _EXAMPLES = """\
 formats:
