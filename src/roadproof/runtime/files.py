@@ -78,8 +78,6 @@ def make_folder(folder: Path) -> None:
 
 LETTING_GO = 5.0
 """Seconds that the processes of a run which was ended from outside are given to let go of its folder."""
-DYING = 1.0
-"""Seconds that the process which holds a folder is given, since one that is killed lives for a moment."""
 
 
 @contextmanager
@@ -87,9 +85,9 @@ def hold_folder(folder: Path | None, shared: bool = False) -> Iterator[None]:
     """Keep other runs out of a folder, which is made where there is none; the system lets go of it with us.
 
     ``shared``: but not runs that share it with this one. Raises ``InputError`` where another process holds
-    it: after DYING where that process lives, and after LETTING_GO where it is gone and others that it began
-    are still there. Nothing is kept out where the system or the disk knows no such locks, or where there is
-    no folder.
+    it: at once where that process lives, and after LETTING_GO where it is gone and others that it began are
+    still there. Nothing is kept out where the system or the disk knows no such locks, or where there is no
+    folder.
     """
     if folder is None:
         yield
@@ -102,14 +100,14 @@ def hold_folder(folder: Path | None, shared: bool = False) -> Iterator[None]:
     except (ImportError, OSError):
         yield
         return
-    begin = time.monotonic()
+    latest = time.monotonic() + LETTING_GO
     try:
         while True:
             try:
                 fcntl.flock(handle, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
                 break
             except BlockingIOError:
-                if time.monotonic() > begin + (DYING if _holder_lives(handle) else LETTING_GO):
+                if time.monotonic() > latest or _holder_lives(handle):
                     raise
                 time.sleep(0.05)
     except BlockingIOError:
