@@ -1,6 +1,7 @@
 """The moving picture of a drive, tested on what is drawn at each instant, not on pixels."""
 
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 from fractions import Fraction as F
 
 import pytest
@@ -109,3 +110,24 @@ def test_text_of_a_drive_cannot_become_markup() -> None:
 
 def test_the_same_drive_gives_the_same_file() -> None:
     assert draw_moving(file_of(4, FOUR), LIBRARY) == draw_moving(file_of(4, FOUR), LIBRARY)
+
+
+def test_a_drive_of_one_vehicle_speaks_of_no_distances() -> None:
+    shown = draw_moving(file_of(None, "v_lon(SV) > 0 m/s", SV=driving(0, 30)), LIBRARY).decode()
+    assert "the view follows SV<" in shown
+    assert "RSS" not in shown
+    assert "danger" not in shown
+
+
+def test_danger_that_no_definition_speaks_of_has_no_row(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("roadproof.frontends.report.moving.danger_spans", lambda *_: None)
+    shown = draw_moving(file_of(), LIBRARY).decode()
+    assert "danger between" not in shown
+    assert "danger begins" not in shown
+
+
+@pytest.mark.parametrize(("horizon", "ticks"), [(6, 7), (40, 9), (4000, 9)])
+def test_ticks_of_a_long_drive_do_not_run_into_each_other(horizon: int, ticks: int) -> None:
+    root = ElementTree.fromstring(draw_moving(replace(file_of(), horizon=F(horizon)), LIBRARY))
+    told = [x.text or "" for x in root.iter(f"{SVG}text")]
+    assert sum(x.removesuffix(" s").isdecimal() for x in told) == ticks

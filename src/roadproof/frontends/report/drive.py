@@ -17,6 +17,7 @@ from roadproof.frontends.report.drive_data import (
     Strip,
     dangers_of,
     distances_of,
+    heading_of,
     place_names,
     road_in,
     strips_of,
@@ -26,7 +27,6 @@ from roadproof.frontends.report.drive_data import (
 )
 from roadproof.frontends.report.figures import as_bytes, draw_box, legend_beside, make_figure, name_rows
 from roadproof.library.specification import Library
-from roadproof.library.words import words_of
 from roadproof.world.motion import State, state_at
 from roadproof.world.road import Zone
 
@@ -73,11 +73,7 @@ def compose_drive(file: DriveFile, library: Library, title: str = "") -> Any:
 
 def _title(file: DriveFile, library: Library, title: str, dangers: Sequence[Danger]) -> str:
     """What is shown in words, on which road, and when danger begins."""
-    lines = title.splitlines()
-    if not title and file.scenario is not None:
-        words = words_of(library.select(file.set_name, file.options), file.scenario)
-        lines = [f"S{str(words)[1:]}", words.sentence]
-    lines = lines or [file.formula]
+    lines = title.splitlines() or heading_of(file, library)
     lanes = "".join(f", {name} = {lane}" for name, lane in file.lanes.items())
     lines.append(f"set {file.set_name}, road {file.road.name}{lanes}")
     lines[-1] += "".join(f"; {x}" for x in dangers)

@@ -16,6 +16,7 @@ from roadproof.library.bind import bind, values_with
 from roadproof.library.query import Query
 from roadproof.library.scenarios import SUBJECT, danger, too_near_ahead, too_near_left
 from roadproof.library.specification import Library, Specification
+from roadproof.library.words import words_of
 from roadproof.logic.formula import Compare, Formula, nesting, subformulas
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.exact import Judgement, judge
@@ -97,6 +98,14 @@ def vehicles_of(file: DriveFile) -> list[str]:
     return sorted(file.drive.vehicles, key=lambda name: (name != SUBJECT, name))
 
 
+def heading_of(file: DriveFile, library: Library) -> list[str]:
+    """The scenario of a drive in words and in a sentence, or its formula."""
+    if file.scenario is None:
+        return [file.formula]
+    words = words_of(library.select(file.set_name, file.options), file.scenario)
+    return [f"S{str(words)[1:]}", words.sentence]
+
+
 def times_of(file: DriveFile) -> list[Fraction]:
     """The instants at which curves are drawn."""
     return [k * GRAIN for k in range(int(file.horizon / GRAIN) + 1)]
@@ -126,16 +135,16 @@ def _spans(truth: TruthSet, horizon: float) -> Iterator[Span]:
 def dangers_of(file: DriveFile, library: Library) -> tuple[Danger, ...]:
     """The first danger of the first vehicle with each other one, as the file's definitions have it."""
     first, *others = vehicles_of(file)
-    spans = {other: danger_spans(file, library, first, other) for other in others}
+    spans = {other: danger_spans(file, library, first, other) or () for other in others}
     found = [Danger(first, other, times[0][0]) for other, times in spans.items() if times]
     return tuple(sorted(found, key=lambda x: x.begins))
 
 
-def danger_spans(file: DriveFile, library: Library, one: str, other: str) -> tuple[Span, ...]:
-    """When two vehicles are in danger, in seconds; never where the library does not define danger."""
+def danger_spans(file: DriveFile, library: Library, one: str, other: str) -> tuple[Span, ...] | None:
+    """When two vehicles are in danger, in seconds; None where the library does not define danger."""
     formula = _bound(file, library, lambda home: danger(home, one, other))
     if formula is None:
-        return ()
+        return None
     return tuple(_spans(judge(formula, file.drive).truth(formula), float(file.horizon)))
 
 

@@ -22,6 +22,7 @@ from roadproof.frontends.report.drive_data import (
     Strip,
     danger_spans,
     distances_of,
+    heading_of,
     road_in,
     strips_of,
     times_of,
@@ -29,16 +30,16 @@ from roadproof.frontends.report.drive_data import (
     window_of,
 )
 from roadproof.library.specification import Library
-from roadproof.library.words import words_of
 from roadproof.recordings.export.xml import document, element
 from roadproof.world.motion import State, states_at
 
-WIDTH, EDGE, NAMES = 860.0, 12.0, 230.0  # pixels: the picture, its margin, the column of names
+WIDTH, EDGE, NAMES = 860.0, 14.0, 230.0  # pixels: the picture, its margin, the column of names
 ROW, TITLE, LETTER = 17.0, 44.0, 12
 LANE_PIXELS = 7.0  # a metre across has at least that many
 DASH = (3, 9)  # metres of paint and of a gap between lanes
 PAUSE = Fraction(1)  # how long the last state stands, in s
 MOST_STRIPS, DEEPEST = 9, 2
+STEPS, MOST_TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000), 12  # whole seconds between ticks
 
 
 @dataclass(frozen=True)
@@ -89,9 +90,10 @@ class Scene:
 
     @cached_property
     def dangers(self) -> dict[str, tuple[Span, ...]]:
-        """When the subject is in danger with each other vehicle, in s."""
+        """When the subject is in danger with each other vehicle, in s, where the library defines that."""
         others = [name for name in self.states if name != self.subject]
-        return {name: danger_spans(self.file, self.library, self.subject, name) for name in others}
+        spans = {name: danger_spans(self.file, self.library, self.subject, name) for name in others}
+        return {name: x for name, x in spans.items() if x is not None}
 
     @property
     def begins(self) -> float | None:
@@ -134,7 +136,7 @@ def draw_moving(file: DriveFile, library: Library, title: str = "") -> bytes:
     root = element(
         "svg",
         element("rect", width="100%", height="100%", fill="white"),
-        _text(title or _title(file, library), EDGE, 20, size=14),
+        _text(title or heading_of(file, library)[0], EDGE, 20, size=14),
         _text(_legend(scene), EDGE, 37, fill="#555555"),
         *_road(scene),
         *_vehicles(scene),
@@ -148,15 +150,13 @@ def draw_moving(file: DriveFile, library: Library, title: str = "") -> bytes:
     return document(root)
 
 
-def _title(file: DriveFile, library: Library) -> str:
-    if file.scenario is None:
-        return file.formula
-    return f"S{str(words_of(library.select(file.set_name, file.options), file.scenario))[1:]}"
-
-
 def _legend(scene: Scene) -> str:
-    told = "danger never begins" if scene.begins is None else f"danger begins at {scene.begins:.1f} s"
-    return f"the view follows {scene.subject}; shaded: within RSS distances, red if violated; {told}"
+    told = [f"the view follows {scene.subject}"]
+    if len(scene.states) > 1:
+        told.append("shaded: within RSS distances, red if violated")
+    if scene.begins is not None:
+        told.append(f"danger begins at {scene.begins:.1f} s")
+    return "; ".join(told)
 
 
 # --- the road from above ------------------------------------------------------------------------
@@ -177,7 +177,7 @@ def _road(scene: Scene) -> Iterator[Element]:
         pieces.append(element("rect", x=_n(x), y=_n(y), width=_n(wide), height=_n(high_), fill=SHADES[zone]))
         for edge in (y, y + high_):
             line = element("line", x1=_n(x), x2=_n(x + wide), y1=_n(edge), y2=_n(edge), stroke="#888888")
-            if top < edge < top + height:
+            if top + 1 < edge < top + height - 1:
                 line.attrib["stroke-dasharray"] = " ".join(_n(x * scene.scale[0]) for x in DASH)
             pieces.append(line)
     shift = [-x * scene.scale[0] for x in travel]
@@ -189,16 +189,14 @@ def _road(scene: Scene) -> Iterator[Element]:
 
 
 def _vehicles(scene: Scene) -> Iterator[Element]:
+    """The boxes, each with its name inside, or above where it is too short for that."""
     for name, colour in scene.colours.items():
         boxes = [scene.pixels(scene.box(name, k)) for k in range(len(scene.times))]
         yield _moving_box(scene, boxes, colour)
-        middles = [(x + w / 2, y + h / 2 + 4) for x, y, w, h in boxes]
-        label = _text(name, *middles[scene.still], fill="white", size=11)
-        label.attrib["text-anchor"] = "middle"
-        if boxes[0][2] < 9 * len(name):
-            label = _text(name, middles[scene.still][0], middles[scene.still][1] - 12, fill=colour, size=11)
-            middles = [(x, y - 12) for x, y in middles]
-        label.extend(_animated(scene, {"x": [x for x, _ in middles], "y": [y for _, y in middles]}))
+        fits = boxes[0][2] >= 9 * len(name)
+        places = [(x + w / 2, y + h / 2 + (4 if fits else -8)) for x, y, w, h in boxes]
+        label = _text(name, *places[scene.still], "white" if fits else colour, size=11, middle=True)
+        label.extend(_animated(scene, {"x": [x for x, _ in places], "y": [y for _, y in places]}))
         yield label
 
 
@@ -253,13 +251,12 @@ def _over_time(scene: Scene, strips: Sequence[Strip], top: float) -> Iterator[El
         for since, until in spans:
             x, width = begin + since * pixels, max(1.5, (until - since) * pixels)
             yield element("rect", x=_n(x), y=_n(y + 3), width=_n(width), height="10", fill=colour)
-    for second in range(int(scene.file.horizon) + 1):
-        yield _text(f"{second} s", begin + second * pixels - 6, bottom + 14, fill="#555555", size=10)
+    step = next((x for x in STEPS if scene.file.horizon <= MOST_TICKS * x), STEPS[-1])
+    for second in range(0, int(scene.file.horizon) + 1, step):
+        yield _text(f"{second} s", begin + second * pixels, bottom + 14, fill="#555555", size=10, middle=True)
     if scene.begins is not None:
         yield _line_at(begin + scene.begins * pixels, top - 8, bottom, DANGER, dashed=True)
-        told = _text("danger begins", begin + scene.begins * pixels, top - 11, fill=DANGER, size=11)
-        told.attrib["text-anchor"] = "middle"
-        yield told
+        yield _text("danger begins", begin + scene.begins * pixels, top - 11, DANGER, size=11, middle=True)
     places = [begin + float(time) * pixels for time in scene.times]
     cursor = _line_at(places[scene.still], top - 4, bottom, "#222222")
     cursor.extend(_animated(scene, {"x1": places, "x2": places}))
@@ -278,9 +275,14 @@ def _n(value: float) -> str:
     return f"{value:.1f}".removesuffix(".0")
 
 
-def _text(text: str, x: float, y: float, fill: str = "#111111", size: int = LETTER) -> Element:
+def _text(
+    text: str, x: float, y: float, fill: str = "#111111", size: int = LETTER, middle: bool = False
+) -> Element:
+    """A text that begins at ``x``, or has its middle there."""
     made = element("text", text=text, x=_n(x), y=_n(y), fill=fill)
     made.attrib["font-size"] = str(size)
+    if middle:
+        made.attrib["text-anchor"] = "middle"
     return made
 
 
