@@ -208,6 +208,15 @@ def test_mistakes_are_named(words, told, capsys):
     assert told in " ".join(capsys.readouterr().err.split())
 
 
+def test_a_boundary_of_what_no_initial_value_says_is_a_mistake_of_usage(tmp_path, capsys):
+    text = 'signal wet(a: vehicle): m in [0, 5] "water"\n'
+    text += "def unpreventable_cutIn_careful(SV, POV: vehicle) := wet(SV) > 1 m\n"
+    (tmp_path / "wet.spec").write_text(text)
+    files = ["--spec", "driver", "--spec", str(tmp_path / "wet.spec")]
+    assert main(["preventable", "cut-in", *files, "--model", "careful", "--no-lemmas"]) == 2
+    assert "the initial values do not define wet(SV)" in capsys.readouterr().err
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory) -> Path:
     out = tmp_path_factory.mktemp("plates")

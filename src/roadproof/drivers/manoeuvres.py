@@ -174,7 +174,12 @@ def along_line(manoeuvre: Manoeuvre, values: Values) -> LineSignals:
         Signal(*key): polynomial(value, one[key] - value) for key, value in begin.items()
     }
     box: tuple[SizeName, ...] = ("length", "width")
-    return LineSignals(signals, {Size(x, name): values[x] for name in manoeuvre.vehicles for x in box})
+    sizes = {Size(x, name): values[x] for name in manoeuvre.vehicles for x in box}
+    return LineSignals(signals, sizes, _undefined)
+
+
+def _undefined(what: str) -> UsageError:
+    return UsageError(f"the initial values do not define {what}")
 
 
 def signals_of(manoeuvre: Manoeuvre, values: Mapping[str, Any]) -> dict[tuple[SignalName, str], Any]:

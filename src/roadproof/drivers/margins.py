@@ -28,7 +28,7 @@ from roadproof.logic.terms import (
 )
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.polynomial import Polynomial, polynomial
-from roadproof.semantics.exact.signals import LineSignals
+from roadproof.semantics.exact.signals import LineSignals, unknown_at_instant
 from roadproof.semantics.exact.truth import TruthSet
 from roadproof.semantics.exact.within import truth_within
 
@@ -59,7 +59,7 @@ class State:
         courses |= {Signal(*key): polynomial(x) for key, x in self.signals.items()}
         courses |= {Signal("s", moved): polynomial(begin, Fraction(1))} if moved else {}
         courses |= {x: polynomial(Fraction(0), Fraction(1)) for x in own}
-        return LineSignals(courses, {Size(*key): x for key, x in self.sizes.items()})
+        return LineSignals(courses, {Size(*key): x for key, x in self.sizes.items()}, unknown_at_instant)
 
     def gap(self, behind: str, ahead: str) -> Fraction:
         """From the front of one vehicle to the rear of the other, along the road."""

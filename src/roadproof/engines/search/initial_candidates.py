@@ -29,7 +29,7 @@ from roadproof.logic.terms import Own, Signal, Size
 from roadproof.semantics.exact.algebraic import bounds
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.polynomial import Polynomial, polynomial
-from roadproof.semantics.exact.signals import LineSignals
+from roadproof.semantics.exact.signals import LineSignals, unknown_at_instant
 from roadproof.semantics.exact.truth import Span
 from roadproof.world.signals import FIXED
 from roadproof.world.vehicle import Range
@@ -186,7 +186,7 @@ def _free(parts: Formula, signal: Signal, state: State, space: Space) -> Range:
     value = state[signal]
     courses: dict[Signal | Own, Polynomial] = {x: polynomial(known) for x, known in state.items()}
     courses[signal] = polynomial(low, Fraction(1))
-    truth = judge(parts, LineSignals(courses, space.sizes)).truth(parts)
+    truth = judge(parts, LineSignals(courses, space.sizes, unknown_at_instant)).truth(parts)
     span = next((x for x in truth.spans() if _has(x, value - low)), None)
     if span is None:
         return value, value

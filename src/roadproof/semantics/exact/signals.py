@@ -1,12 +1,12 @@
 """Terms as functions of time: what a comparison compares, on a drive or on an abstract trace."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import reduce
 from typing import Protocol, assert_never
 
-from roadproof.errors import InputError, UsageError
+from roadproof.errors import InputError, RoadproofError, UsageError
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import code_of, refuse_value
 from roadproof.logic.terms import Own, Signal, Size, Term
@@ -105,20 +105,29 @@ class AbstractSignals:
 
 @dataclass(frozen=True)
 class LineSignals:
-    """States along a line: what the judge takes for time is a value that runs, and signals depend on it."""
+    """States along a line: what the judge takes for time is a value that runs, and signals depend on it.
+
+    ``refuse`` makes the error for a signal or a size, such as ``v_lon(SV)``, that no state has.
+    """
 
     courses: Mapping[Signal | Own, Polynomial]
     sizes: Mapping[Size, Fraction]
+    refuse: Callable[[str], RoadproofError]
 
     def signal(self, signal: Signal | Own) -> Pieces:
         if signal not in self.courses:
-            raise InputError(f"nothing is said of {signal.name}({signal.vehicle}) at this instant")
+            raise self.refuse(f"{signal.name}({signal.vehicle})")
         return piecewise.constant(self.courses[signal])
 
     def size(self, size: Size) -> Fraction:
         if size not in self.sizes:
-            raise InputError(f"nothing is said of {size.name}({size.vehicle}) at this instant")
+            raise self.refuse(f"{size.name}({size.vehicle})")
         return self.sizes[size]
+
+
+def unknown_at_instant(what: str) -> InputError:
+    """The error of states that were observed at an instant."""
+    return InputError(f"nothing is known of {what} at this instant")
 
 
 @dataclass(frozen=True)
