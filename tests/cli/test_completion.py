@@ -62,6 +62,7 @@ def completed(shell: str, line: str, folder: Path) -> list[str]:
         ("roadproof overlap --among 1,2", ["1,2", "1,20", "1,21", "1,22", "1,23", "1,24"]),
         ("roadproof prove --spec dri", ["driver", "drives/"]),
         ("roadproof witness 4 --param minD", ["minDanger="]),
+        ("roadproof export drives --to highd,a", ["highd,animation"]),
     ],
 )
 def test_a_shell_completes(shell: str, line: str, words: list[str], tmp_path: Path) -> None:

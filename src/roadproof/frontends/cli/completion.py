@@ -122,10 +122,10 @@ def _drivers(prefix: str) -> Values:
 
 
 def _formats(prefix: str) -> Values:
-    from roadproof.recordings.export.registry import FORMATS
+    from roadproof.frontends.api.exporting import NAMES
 
     head = prefix[: prefix.rfind(",") + 1]
-    return dict.fromkeys((f"{head}{name}" for name in FORMATS), "")
+    return dict.fromkeys((f"{head}{name}" for name in NAMES), "")
 
 
 def _models(kind: str) -> Callable[[str], Values]:

@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from roadproof.semantics.sampled.answers import Convention
 
 
+OBJECTIVES = ("any", "smooth", "margin", "mild", "severe", "short")
+"""What a drive can be like (``engines.search.question.Objective``)."""
+
+
 def effort_for(what: str, units: float) -> Any:
     """``effort`` of a question that gives so many units of work to each ``what``."""
     text = f"about N solver seconds for {what} (default: {units:g}); counted, so the answer is the same on "

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.frontends.settings.groups import (
+    OBJECTIVES,
     Budget,
     Models,
     Prevention,
@@ -49,7 +50,7 @@ class Witness(SearchPlace, Solver, Prevention, Budget, Sharing, Run):
         "smooth",
         "--objective KIND",
         help="any, smooth (default), margin, mild, severe or short",
-        choices=("any", "smooth", "margin", "mild", "severe", "short"),
+        choices=OBJECTIVES,
     )
     count: int = option(
         1, "--count K", help="find K clearly different drives (default: 1)", read=whole(1), least=1

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.frontends.settings.groups import (
+    OBJECTIVES,
     Budget,
     Models,
     Prevention,
@@ -203,7 +204,7 @@ class Catalogue(Models, Budget, Run, Prevention):
     objective: Objective | None = with_complete(
         "--objective",
         "what the drives should be like (default: smooth)",
-        choices=("any", "smooth", "margin", "mild", "severe", "short"),
+        choices=OBJECTIVES,
     )
     spread: int | None = with_complete(
         "--spread K", "write drives far from the tests until each class has K tests", read=whole(1)
