@@ -278,7 +278,7 @@ def gaps_of_no_condition(outcome: Outcome) -> int:
 def beside_the_lane_in_traffic(outcome: Outcome) -> int:
     """Disturbances that scenario 1 misses because SV and POV are in no lane together."""
     part = outcome.printed.partition("\nbehaviourPOV_1: ")[2]
-    found = re.search(r"^  danger\(SV, POV\) in cutIn .*?(\d+) in traffic", part, re.M)
+    found = re.search(r"^  F\[0, minDanger\] sameLane\(SV, POV, L\) in cutIn .*?(\d+) in traffic", part, re.M)
     return int(found[1]) if found else 0
 
 
@@ -291,7 +291,7 @@ def picture_of_a_gap_beside_the_lane(outcome: Outcome) -> str:
         if x["component"] == "behaviourPOV_1" and x["condition"] == "danger(SV, POV) in cutIn"
     ]
     drive: str = index["gaps"][entry["gaps"][0] - 1]["drive"]
-    return drive.removesuffix(".json") + ".png"
+    return f"gaps/{drive.removesuffix('.json')}.png"
 
 
 def edges_of_a_sector(outcome: Outcome) -> str:

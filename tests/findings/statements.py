@@ -184,7 +184,7 @@ CLASSIFIED = (
     Statement(
         FINDINGS,
         ("roadproof classify --among 1-8 --out classes",),
-        (Figures("{} pairwise compatible choice does not occur", "do not occur: {} PROVED"),),
+        (Figures("**{} pairwise compatible choice does not occur", "do not occur: {} PROVED"),),
     ),
     Statement(
         FINDINGS,
@@ -246,7 +246,7 @@ LEFT_OUT = (
                 "drive refutes {}, and a judged trace over points in time refutes {};",
                 "{} changes: {} redundant, {} more for motion, {} told apart by a drive, {} by a trace, 0 in doubt",
             ),
-            Figures("refutes 9; {} is in doubt", "by a trace, {} in doubt"),
+            Figures("refutes 3; {} is in doubt", "by a trace, {} in doubt"),
         ),
     ),
     Statement(
@@ -347,7 +347,7 @@ IMPLIED = (
                 ),
             ),
             Figures(
-                "other {} are refuted by {} drives, and {} is in doubt",
+                "other {} are refuted by {} drives, and {} are in doubt",
                 "{} implications refuted by {} drives, {} in doubt",
             ),
             Figures("edges are proved, {} in each road sector", r.edges_of_a_sector),
@@ -360,9 +360,9 @@ IMPLIED = (
         FINDINGS,
         (
             "roadproof witness 'scenario_4@ext(SV,POV,L) and not scenario_4@extA(SV,POV,L)' --road main-2 "
-            "--effort 150",
+            "--effort 400",
         ),
-        (Figures("is the hardest of these drives", "WITNESSED road main-2"),),
+        (Figures("its drive takes more work", "WITNESSED road main-2"),),
     ),
     Statement(
         FINDINGS,
@@ -462,7 +462,12 @@ VALUES = (
     Statement(
         FINDINGS,
         ("roadproof explore 4 --vary rho=0:3 --reach 200",),
-        (Figures("Within 200 m there are drives at all {} values up to 3 s", "at {} of 11 values\n"),),
+        (
+            Figures(
+                "Within 200 m there are drives at all {} values up to 3 s",
+                "judged at this value, at {} of 11 values\n",
+            ),
+        ),
     ),
 )
 
@@ -570,9 +575,10 @@ TIMED = (
         (ORDER,),
         (
             Figures(
-                "order`: {} formulas, {} proofs, {} implications refuted",
+                "order` (exit 20): {} formulas, {} proofs, {} implications refuted, {} in doubt",
                 lambda x: tuple(
-                    len(r.read(x, "order/index.json")[key]) for key in ("kinds", "proved", "missing")
+                    len(r.read(x, "order/index.json")[key])
+                    for key in ("kinds", "proved", "missing", "doubts")
                 ),
             ),
         ),
