@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -60,6 +61,40 @@ def test_processes_that_a_dead_run_leaves_are_waited_for(tmp_path: Path) -> None
     assert holder.wait() == 0
     with hold_folder(tmp_path):
         pass
+
+
+@linux
+@pytest.mark.parametrize(
+    ("state", "flags", "pending"),
+    [("Z", 0, (0, 0)), ("R", 4, (0, 0)), ("S", 0, (1 << 8, 0)), ("D", 0, (0, 1 << 8)), ("S", 0, (0, 0))],
+)
+def test_a_dying_run_is_waited_for(
+    state: str, flags: int, pending: tuple[int, int], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A zombie, one that exits, one with SIGKILL pending; a run that lives refuses others at once."""
+    import fcntl
+
+    proc, folder = tmp_path / "proc", tmp_path / "out"
+    (proc / "77").mkdir(parents=True)
+    folder.mkdir()
+    (proc / "locks").write_text(f"1: FLOCK  ADVISORY  WRITE 77 fe:00:{folder.stat().st_ino} 0 EOF\n")
+    (proc / "77" / "stat").write_text(f"77 (a (b) c) {state} 1 77 77 0 -1 {flags} 0 0\n")
+    masks = "".join(
+        f"{name}:\t{mask:016x}\n" for name, mask in zip(("SigPnd", "ShdPnd"), pending, strict=True)
+    )
+    (proc / "77" / "status").write_text(f"Name:\ta\n{masks}")
+    monkeypatch.setattr("roadproof.runtime.files._PROC", proc)
+    other = os.open(folder, os.O_RDONLY)
+    fcntl.flock(other, fcntl.LOCK_EX)
+    threading.Timer(0.3, os.close, (other,)).start()
+    begin = time.monotonic()
+    if (state, flags, pending) == ("S", 0, (0, 0)):
+        with pytest.raises(InputError, match="another run is writing"), hold_folder(folder):
+            pass
+        assert time.monotonic() - begin < 0.3
+    else:
+        with hold_folder(folder):
+            assert time.monotonic() - begin >= 0.25
 
 
 @linux

@@ -123,6 +123,11 @@ def hold_folder(folder: Path | None, shared: bool = False) -> Iterator[None]:
         os.close(handle)
 
 
+_PROC = Path("/proc")
+_KILLED = 1 << (9 - 1)  # SIGKILL in the masks of pending signals
+_EXITING = 0x4  # PF_EXITING of Linux
+
+
 def _holder_lives(handle: int) -> bool:
     """Whether a process that has locked a file, ours is ``handle``, lives; False where nothing tells.
 
@@ -130,20 +135,22 @@ def _holder_lives(handle: int) -> bool:
     """
     try:
         inode = os.fstat(handle).st_ino
-        rows = [line.split() for line in Path("/proc/locks").read_text().splitlines()]
+        rows = [line.split() for line in (_PROC / "locks").read_text().splitlines()]
         holders = [row[4] for row in rows if row[1] == "FLOCK" and row[5].endswith(f":{inode}")]
-        states = [_state_of(pid) for pid in holders]
     except (OSError, IndexError):
         return False
-    return any(state not in "ZX" for state in states if state)
+    return any(map(_lives, holders))
 
 
-def _state_of(pid: str) -> str:
-    """The letter that Linux has for the state of a process; empty for one that is gone."""
+def _lives(pid: str) -> bool:
+    """False for a process that is gone, or about to be: a zombie, killed, or exiting."""
     try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+        state, *numbers = (_PROC / pid / "stat").read_text().rpartition(")")[2].split()
+        lines = (_PROC / pid / "status").read_text().splitlines()
     except OSError:
-        return ""
+        return False
+    pending = [int(line.split()[1], 16) for line in lines if line.startswith(("SigPnd:", "ShdPnd:"))]
+    return state not in "ZX" and not int(numbers[5]) & _EXITING and not any(x & _KILLED for x in pending)
 
 
 def write_whole(path: Path, content: bytes) -> None:
