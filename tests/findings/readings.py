@@ -74,6 +74,32 @@ def all_witnessed(outcome: Outcome) -> str:
     return found[1] if found[2] == f"{found[1]} WITNESSED" else found[0]
 
 
+def classes_of_set(outcome: Outcome) -> tuple[str, ...]:
+    """Classes, if each has a drive; situations with a scenario, if each is in one class; traces without."""
+    return all_witnessed(outcome), *_figures(
+        outcome, r"(\d+) situations with a scenario, each in exactly one", r"traces, (\d+) \("
+    )
+
+
+def gaps_of_set(outcome: Outcome) -> tuple[str, ...]:
+    """Classes of gaps, those with a drive, those proved empty, if none is in doubt; missed disturbances."""
+    return _figures(
+        outcome,
+        r"of (\d+) classes (\d+) have a judged drive, (\d+) are proved empty, 0 are undecided",
+        r"disturbances in traffic (\d+) are missed",
+    )
+
+
+def _figures(outcome: Outcome, *patterns: str) -> tuple[str, ...]:
+    """The groups of patterns that each have one match in the printed text."""
+    found: list[str] = []
+    for pattern in patterns:
+        matches = list(re.finditer(pattern, outcome.printed))
+        assert len(matches) == 1, (pattern, outcome.printed)
+        found += matches[0].groups()
+    return tuple(found)
+
+
 def happenings(outcome: Outcome) -> tuple[int, str, str]:
     """What happens between two vehicles: how many, scenarios alone, scenarios together."""
     names = [name.split("_")[1:] for name in re.findall(r"^(class_\S+)", outcome.printed, re.M)]

@@ -6,6 +6,8 @@ from findings.figures import Figures, Picture, Statement
 from findings.results import ROOT
 
 FINDINGS, PERFORMANCE = "docs/explanation/findings.md", "docs/data/performance/analyses.csv"
+CLASSES_OF_SETS, GAPS_OF_SETS = "docs/data/findings/classes.csv", "docs/data/findings/gaps.csv"
+EXTREMES = "docs/data/findings/values.csv"
 
 SESSIONS = (
     Sessions("README.md"),
@@ -136,11 +138,7 @@ CLASSIFIED = (
                 lambda x: len(r.read(x, "classes/index.json")["claims"]),
             ),
             Figures("The behaviour is one of {}**: {} alone, {}.\n", r.happenings),
-            Figures(
-                "names its scenarios**: {} situations", "{} situations with a scenario, each in exactly one"
-            ),
             Figures("recording of {} s with {} traces", "recording of {} s, seed 1: {} traces,"),
-            Figures("Traces in no scenario: {}, ", "traces, {} ("),
             Figures(
                 "In `base` classes 3 and 4 have {} % each, 1 has {} %, 7 has {} %, 6 has {} %; the other {} have "
                 "{} % or less, and {} do not occur there",
@@ -152,16 +150,20 @@ CLASSIFIED = (
         Statement(
             FINDINGS,
             (f"roadproof classify --set {name}",),
-            (
-                Figures("`extA` and `ext` have the same {} classes**", r.all_witnessed),
-                Figures("The behaviour is one of {}**: {} alone, {}.\n", r.happenings),
-                Figures(situations, "{} situations with a scenario, each in exactly one"),
-                Figures(traces, "traces, {} ("),
-            ),
+            (Figures("The behaviour is one of {}**: {} alone, {}.\n", r.happenings),),
         )
-        for name, situations, traces in (
-            ("extA", "situations with a scenario in `base`, {} in `extA`", "in no scenario: 122, {}, "),
-            ("ext", "in `extA`, {} in `ext`", "in no scenario: 122, 101, {} and "),
+        for name in ("extA", "ext")
+    ),
+    *(
+        Statement(
+            FINDINGS,
+            (command,),
+            (Figures(f"`{name}`,{{}},{{}},{{}}", r.classes_of_set),),
+            data=CLASSES_OF_SETS,
+        )
+        for name, command in (
+            ("base", CLASSES),
+            *((name, f"roadproof classify --set {name}") for name in ("extA", "ext", "complete")),
         )
     ),
     Statement(
@@ -170,9 +172,7 @@ CLASSIFIED = (
         (
             Figures("`complete` has {}**", r.all_witnessed),
             Figures("**, {} kinds of behaviour of two vehicles", lambda x: r.happenings(x)[0]),
-            Figures("in `ext`, {} in `complete`", "{} situations with a scenario, each in exactly one"),
             Figures("{} choices do not occur: if 6", "do not occur: {} PROVED"),
-            Figures("75 and {}. The same four commands", "traces, {} ("),
         ),
     ),
     Statement(
@@ -271,10 +271,6 @@ LEFT_OUT = (
     ),
 )
 
-EMPTY = Figures(
-    "in `base` and `extA`, of {} classes {} have a drive and {} are proved empty",
-    "of {} classes {} have a judged drive, {} are proved empty, 0 are undecided",
-)
 NO_SINGLE = "in every scenario two or more are false {}"
 
 MISSED = (
@@ -282,39 +278,46 @@ MISSED = (
         Statement(
             FINDINGS,
             (RECORDINGS, COVERAGE[name]),
+            (Figures(f"`{name}`,{{}},{{}},{{}},{{}}", r.gaps_of_set),),
+            data=GAPS_OF_SETS,
+        )
+        for name in ("base", "extA", "ext")
+    ),
+    *(
+        Statement(
+            FINDINGS,
+            (RECORDINGS, COVERAGE[name]),
             (
-                EMPTY,
                 Figures(
-                    "In `base` and `extA` there is {}: two vehicles with fronts level", r.gaps_of_no_condition
+                    "In `base` and `extA` there is {} exception: two vehicles with fronts level",
+                    r.gaps_of_no_condition,
                 ),
-                Figures(missed, "disturbances in traffic {} are missed"),
-                Figures("of {} disturbances in 120 s", "of {} disturbances in traffic"),
+                Figures("and {} disturbances in 120 s", "of {} disturbances in traffic"),
             ),
         )
-        for name, missed in (("base", "three lanes `base` misses {}, `extA`"), ("extA", ", `extA` {}, `ext`"))
+        for name in ("base", "extA")
     ),
     Statement(
         FINDINGS,
         (RECORDINGS, COVERAGE["ext"]),
         (
-            Figures(
-                "in `ext`, of {} classes {} have a drive and {} are proved empty",
-                "of {} classes {} have a judged drive, {} are proved empty, 0 are undecided",
-            ),
             Figures("one condition of one scenario is missing", NO_SINGLE.format("IMPOSSIBLE")),
-            Figures("`ext` {} and `complete`", "disturbances in traffic {} are missed"),
             Figures(
-                "In {} of the nine that `ext` misses scenario 1 would hold", r.beside_the_lane_in_traffic
+                "In {} of the nine** simulated disturbances that `ext` misses, scenario 1 would hold",
+                r.beside_the_lane_in_traffic,
             ),
         ),
     ),
     Statement(
         FINDINGS,
         (RECORDINGS, COVERAGE["complete"]),
-        (
-            Figures("and `complete` {}. Every missed one", "disturbances in traffic {} are missed"),
-            Figures("Complete coverage is possible", "set complete misses no danger that arises from safety"),
-        ),
+        (Figures("`complete`,,,,{}", "disturbances in traffic {} are missed"),),
+        data=GAPS_OF_SETS,
+    ),
+    Statement(
+        FINDINGS,
+        (RECORDINGS, COVERAGE["complete"]),
+        (Figures("Complete coverage is possible", "set complete misses no danger that arises from safety"),),
     ),
     Statement(
         FINDINGS,
@@ -373,18 +376,18 @@ IMPLIED = (
 
 VALUES = (
     Statement(
-        FINDINGS,
+        EXTREMES,
         ("roadproof explore --all --vary minDanger=0:60",),
         (
             Figures(
-                "in all {} scenarios of `base`**: each has a drive at every one of {} values of `minDanger` up to 60 "
-                "s, and {} drives serve all of them",
+                "in all {} scenarios of `base`: each has a drive at every one of {} values of `minDanger` up to 60 s, "
+                "and {} drives serve all of them",
                 r.drives_that_serve,
             ),
         ),
     ),
     Statement(
-        FINDINGS,
+        EXTREMES,
         ("roadproof explore 1 3 4 5 6 7 8 --vary minSafe=0:6",),
         (
             Figures("scenario 4 has drives up to `minSafe` = {} s", lambda x: r.boundaries(x)[4]),
@@ -395,7 +398,7 @@ VALUES = (
         ),
     ),
     Statement(
-        FINDINGS,
+        EXTREMES,
         ("roadproof explore 4 --vary minSafe=0:6 --horizon 12 --steps 6",),
         (
             Figures(
@@ -406,11 +409,11 @@ VALUES = (
     ),
     *(
         Statement(
-            FINDINGS,
+            EXTREMES,
             (f"roadproof explore {a} {b} --least '{measure}'",),
             (
                 Figures(said, lambda x, a=a, b=b: (r.measures(x)[a, "least"], r.measures(x)[b, "least"])),
-                Figures("proved that it is never 0", "at 0 m/s IMPOSSIBLE"),
+                Figures(f"proved that it is never 0 for {a} and {b}", "at 0 m/s IMPOSSIBLE"),
             ),
         )
         for a, b, measure, said in (
@@ -419,23 +422,23 @@ VALUES = (
         )
     ),
     Statement(
-        FINDINGS,
+        EXTREMES,
         ("roadproof explore 1 6 --least 'v_lon(SV) - v_lon(POV)' --greatest 'v_lon(SV) - v_lon(POV)'",),
         (Figures("SV starts from {} m/s slower to {} m/s faster", r.range_of_both),),
     ),
     Statement(
-        FINDINGS,
+        EXTREMES,
         ("roadproof explore 4 --vary POV.a_lon.min=-6:0",),
         (Figures("drives remain if POV never decelerates", "at 11 of 11 values"),),
         quick=True,
     ),
     Statement(
-        FINDINGS,
+        EXTREMES,
         ("roadproof explore 3 --vary vehicle.a_lon.max=0:3",),
         (Figures("No vehicle must accelerate for scenario 3", "at 11 of 11 values"),),
     ),
     Statement(
-        FINDINGS,
+        EXTREMES,
         ("roadproof explore 4 --least 's(POV) - s(SV) - length(POV)'",),
         (
             Figures(
@@ -445,26 +448,26 @@ VALUES = (
         ),
     ),
     Statement(
-        FINDINGS,
+        EXTREMES,
         (
             "roadproof explore 4 --greatest 's(POV) - s(SV)' --when 'danger(SV,POV)' --reach 200 --precision 2",
         ),
         (
-            Figures("Danger in scenario 4 lasts up to {} m", "when danger(SV,POV): {} m on a judged drive"),
+            Figures('danger in scenario 4 last?,"up to {} m,', "when danger(SV,POV): {} m on a judged drive"),
             Figures("judged drive; at {} m no drive exists within 6 s", "{} m NONE-WITHIN ["),
         ),
     ),
     Statement(
-        FINDINGS,
+        EXTREMES,
         ("roadproof explore 4 --vary rho=0:3",),
-        (Figures("A response time `rho` of more than {} s", "greatest rho with a drive: {} s; at"),),
+        (Figures("no known one above {} s", "greatest rho with a drive: {} s; at"),),
     ),
     Statement(
-        FINDINGS,
+        EXTREMES,
         ("roadproof explore 4 --vary rho=0:3 --reach 200",),
         (
             Figures(
-                "Within 200 m there are drives at all {} values up to 3 s",
+                "Within 200 m?,there are drives at all {} values up to 3 s",
                 "judged at this value, at {} of 11 values\n",
             ),
         ),
@@ -473,11 +476,11 @@ VALUES = (
 
 LIMITS = (
     Statement(
-        FINDINGS,
+        EXTREMES,
         ("roadproof witness 'scenario_1(SV,POV,L) and F scenario_3(SV,POV,L)' --horizon 9 --effort 400",),
         (Figures("1 and then 3 is a drive of {} s", "horizon {} s"),),
     ),
-    *(Statement(FINDINGS, (f"roadproof overlap --among {pair} --start any",)) for pair in ("3,4", "2,3")),
+    *(Statement(EXTREMES, (f"roadproof overlap --among {pair} --start any",)) for pair in ("3,4", "2,3")),
 )
 
 EVALUATE = "roadproof evaluate ../shared/data/us101 --out out/us101 --no-pictures"

@@ -10,10 +10,10 @@ from findings import checking
 from findings.checking import check_statement
 from findings.figures import Difference, Figures, Outcome, Statement, commands_named, compare, covered
 from findings.results import ROOT, Results
-from findings.statements import PICTURES, STATEMENTS
+from findings.statements import EXTREMES, FINDINGS, PICTURES, STATEMENTS, US101
 
 QUICK = [statement for statement in STATEMENTS if statement.quick]
-PAGES = ("docs/explanation/findings.md", "docs/explanation/us101.md")
+PAGES = (FINDINGS, EXTREMES, US101)
 
 
 @pytest.fixture(scope="module")

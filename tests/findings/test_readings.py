@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import pytest
+
 from findings import readings as r
 from findings.figures import Outcome
 
@@ -71,6 +73,16 @@ def test_classes_are_read_from_the_table() -> None:
     assert r.all_witnessed(outcome) == "5"
     doubtful = CLASSES.replace("5 WITNESSED", "4 WITNESSED, 1 UNKNOWN")
     assert r.all_witnessed(printed(doubtful)) == "5 classes: 4 WITNESSED, 1 UNKNOWN"
+
+
+def test_a_set_is_read_from_its_answer() -> None:
+    text = f"{CLASSES}10 situations with a scenario, each in exactly one\nOf 12 traces, 2 (17 %) in none\n"
+    assert r.classes_of_set(printed(text)) == ("5", "10", "2")
+    gaps = "of 52 classes 43 have a judged drive, 9 are proved empty, {} are undecided\n"
+    gaps += "of 34 disturbances in traffic 20 are missed\n"
+    assert r.gaps_of_set(printed(gaps.format(0))) == ("52", "43", "9", "20")
+    with pytest.raises(AssertionError):
+        r.gaps_of_set(printed(gaps.format(1)))
 
 
 def test_boundaries_and_drives_are_those_of_each_scenario() -> None:
