@@ -172,7 +172,9 @@ def test_a_drive_is_decided_when_its_manoeuvre_begins(model: str, gap: int, side
     kind = MANOEUVRES["cut-in"]
     at = kind.values({"Ve0": 90 * KMH, "dV0": 30 * KMH, "dx0": Fraction(gap)})
     drive = drive_of(kind, "r157", at, DriverSettings(values(), specification().options))
-    file = DriveFile(None, "base", "true", Fraction(6), {"L": OWN_LANE}, {}, {}, road_of(at), drive, True)
+    file = DriveFile(
+        None, "base", "true", Fraction(6), {"L": OWN_LANE}, {}, {}, road_of(kind, at), drive, True
+    )
     [found] = [x for x in decide_drive(file, DRIVERS, "scenario_1", kind.vehicles, 0.0) if x.driver == model]
     assert (found.side, found.at, found.start["dx0"], found.reason) == (side, 0.0, gap, "")
     late = decide_drive(file, DRIVERS, "scenario_1", kind.vehicles, 5.0)
@@ -188,7 +190,9 @@ def test_a_formula_about_drivers_is_judged_too(said: str, tmp_path: Path) -> Non
     drive = drive_of(kind, "r157", at, DriverSettings(values(), home.options))
     formula = f"{said}unpreventable_cutIn_careful(SV, POV)"
     reading = values(), dict(home.options)
-    file = DriveFile(None, "base", formula, Fraction(6), {"L": OWN_LANE}, *reading, road_of(at), drive, True)
+    file = DriveFile(
+        None, "base", formula, Fraction(6), {"L": OWN_LANE}, *reading, road_of(kind, at), drive, True
+    )
     path = tmp_path / "hit.json"
     path.write_text(json.dumps(drive_data(file, {})), "utf-8")
     made = rp.catalogue(path, among="1", classes=False, drivers=["careful"], jobs=1)
@@ -209,7 +213,7 @@ def braking(gap: int, *pieces: tuple[int, int]) -> DriveFile:
         "SV": replace(drive.vehicles["SV"], pieces=last),
         "POV": replace(drive.vehicles["POV"], pieces=(*steps, *last)),
     }
-    road = road_of(at)
+    road = road_of(kind, at)
     return DriveFile(None, "base", "true", Fraction(6), {"L": OWN_LANE}, {}, {}, road, Drive(motions), True)
 
 
@@ -257,7 +261,7 @@ def test_danger_before_a_cut_out_is_that_of_the_vehicle_behind_which_it_opens() 
         "POV1": replace(drive.vehicles["POV1"], v_lat=Fraction(0), pieces=steps),
         "POV2": drive.vehicles["POV2"],
     }
-    road = road_of(at)
+    road = road_of(kind, at)
     file = DriveFile(None, "base", "true", Fraction(6), {"L": OWN_LANE}, {}, {}, road, Drive(motions), True)
     found = [*decide_drive(file, DRIVERS, "scenario_2", kind.vehicles, 0.0)]
     assert {x.at for x in found} == {2.0}

@@ -18,7 +18,7 @@ from roadproof.drivers.braking import AssistedBraking, Ramp
 from roadproof.drivers.claims import Side
 from roadproof.drivers.driving import DriverSettings, drive_of
 from roadproof.drivers.lemmas import lemmas_for
-from roadproof.drivers.manoeuvres import CUT_IN, along_line
+from roadproof.drivers.manoeuvres import CUT_IN, along_line, start_of
 from roadproof.drivers.models import models_for
 from roadproof.errors import InputError
 from roadproof.evidence.judged import judge_file
@@ -207,7 +207,7 @@ def test_braking_at_another_instant_is_not_followed(joined, speed, late, monkeyp
     home = specification(cc_aeb=joined)
     reading, at = DriverSettings(values(), home.options), CUT_IN.values(given)
     judged_drive(CUT_IN, "careful", at, "preventable", home, reading)
-    aeb = plain(at, reading)
+    aeb = plain(start_of(CUT_IN, at), reading)
     matters = late == "aeb" or joined == "add" or aeb.driver.onset < aeb.aeb.onset
     for by in (Fraction(-1, 100), Fraction(1, 100)):
         monkeypatch.setattr(driving, "_aided", lambda x, y, by=by: shifted(x, y, by))

@@ -17,7 +17,7 @@ from roadproof.drivers import gradual
 from roadproof.drivers.boundary import Plane, line
 from roadproof.drivers.claims import SIDES
 from roadproof.drivers.driving import DriverSettings, drive_of, motion_in_deceleration
-from roadproof.drivers.manoeuvres import DECELERATION, KMH
+from roadproof.drivers.manoeuvres import DECELERATION, KMH, start_of
 from roadproof.evidence.judged import judge_file
 from roadproof.frontends.cli.main import main
 from roadproof.semantics.exact.algebraic import Root, approximate
@@ -69,8 +69,9 @@ def stepped(cases: list[dict[str, Fraction]], at: str, seconds: int) -> np.ndarr
 def exactly(cases: list[dict[str, Fraction]], model: str, reading: DriverSettings) -> np.ndarray:
     found = []
     for case in cases:
-        motion = motion_in_deceleration(model, case, reading)
-        found.append(approximate(gradual.most_gained(motion, case)) if motion else np.inf)
+        start = start_of(DECELERATION, DECELERATION.values(case))
+        motion = motion_in_deceleration(model, start, reading)
+        found.append(approximate(gradual.most_gained(motion, start)) if motion else np.inf)
     return np.array(found)
 
 
@@ -121,7 +122,8 @@ def test_a_very_large_rate_is_the_formula_without_one():
 
 def test_ends_where_pov_stands_in_its_ramp_are_roots():
     case = {"Ve0": Fraction(20), "dV0": Fraction(15), "Gx": Fraction(9), "dGdt": Fraction(1)}
-    most = gradual.most_gained(motion_in_deceleration("careful", case, SOFT), case)
+    start = start_of(DECELERATION, DECELERATION.values(case))
+    most = gradual.most_gained(motion_in_deceleration("careful", start, SOFT), start)
     assert isinstance(most, Root)
     way = np.sqrt(8 * 5.0**3 / 9)
     full = float(values()["cc_braking"])

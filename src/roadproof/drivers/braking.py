@@ -8,11 +8,14 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 from math import isqrt
+from typing import Literal, TypeAlias
 
 from roadproof.errors import InputError
 from roadproof.world.pieces import Along
 
 _NONE = Fraction(0)
+Joined: TypeAlias = Literal["none", "replace", "max", "add"]
+"""What AEB makes of the braking of a driver: the option ``cc_aeb``."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +45,7 @@ class AssistedBraking:
 
     driver: Ramp
     aeb: Ramp | None = None
-    joined: str = "none"
+    joined: Joined = "none"
 
     def at(self, time: Fraction) -> Fraction:
         """The braking at a time, and from it on."""

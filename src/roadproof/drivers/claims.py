@@ -1,10 +1,10 @@
 """What a drive on a side of a boundary has to show, as a formula."""
 
 from fractions import Fraction
-from typing import Literal, TypeAlias, assert_never
+from typing import Literal, TypeAlias
 
-from roadproof.drivers.driving import DriverSettings, is_aided, speeds_of
-from roadproof.drivers.manoeuvres import Manoeuvre, Values, lane_width
+from roadproof.drivers.driving import DriverSettings, speeds_of
+from roadproof.drivers.manoeuvres import CutIn, CutOut, Deceleration, Manoeuvre, Start, Values, start_of
 from roadproof.drivers.models import GRADUAL, MODELS, follows, foreseen, touched, unpreventable, untouched
 
 Side: TypeAlias = Literal["unpreventable", "preventable"]
@@ -17,40 +17,36 @@ def claim_of(manoeuvre: Manoeuvre, model: str, values: Values, side: Side, readi
     Of a controller that is stepped: only how the drive begins, and what comes of it. Where POV's braking
     grows at a finite rate: that SV follows its model, and what comes of it.
     """
-    vehicles = manoeuvre.vehicles
+    vehicles, start = manoeuvre.vehicles, start_of(manoeuvre, values)
     met = touched(vehicles) if side == "unpreventable" else untouched(vehicles)
-    if "dGdt" in values:
-        driven = follows(GRADUAL, model, vehicles, _numbers(manoeuvre, values))
+    numbers = _numbers(start, reading, reading.has_aeb(model))
+    if isinstance(start, Deceleration) and start.dGdt is not None:
+        driven = follows(GRADUAL, model, vehicles, numbers)
         return f"{foreseen(GRADUAL, vehicles)} and {driven} and {met}"
     begins = foreseen(manoeuvre.name, vehicles)
     if MODELS[model].is_stepped:
         return f"{begins} and {met}"
     boundary = unpreventable(manoeuvre.name, model, vehicles)
-    numbers = _numbers(manoeuvre, values)
-    if manoeuvre.name == "cut-in" and is_aided(model, reading):
-        numbers += tuple(_number(speed, "m/s") for speed in speeds_of(values, reading))
     driven = follows(manoeuvre.name, model, vehicles, numbers)
     if side == "unpreventable":
         return f"{boundary} and {driven} and {met}"
     return f"{begins} and not {boundary} and {driven} and {met}"
 
 
-def _numbers(manoeuvre: Manoeuvre, values: Values) -> tuple[str, ...]:
-    lane, speed = lane_width(values), _number(values["Ve0"], "m/s")
-    beside = (lane + values["width"]) / 2
-    match manoeuvre.name:
-        case "cut-in":
-            return (_number(beside + lane, "m"), _number(values["dy0"], "m"), speed)
-        case "cut-out":
-            return (_number(beside, "m"), speed)
-        case "deceleration":
-            numbers = (speed, _number(values["Gx"], "m/s^2"))
-            if "dGdt" not in values:
-                return numbers
-            other = _number(values["Ve0"] - values["dV0"], "m/s")
-            return (speed, other, numbers[1], _number(values["dGdt"], "m/s^3"))
-        case _:
-            assert_never(manoeuvre.name)
+def _numbers(start: Start, reading: DriverSettings, has_aeb: bool) -> tuple[str, ...]:
+    speed = _number(start.Ve0, "m/s")
+    match start:
+        case CutIn():
+            aided = speeds_of(start, reading) if has_aeb else ()
+            place = _number(start.middle + start.lane, "m")
+            return (place, _number(start.dy0, "m"), speed, *(_number(x, "m/s") for x in aided))
+        case CutOut():
+            return (_number(start.middle, "m"), speed)
+        case Deceleration():
+            braking = _number(start.Gx, "m/s^2")
+            if start.dGdt is None:
+                return (speed, braking)
+            return (speed, _number(start.Ve0 - start.dV0, "m/s"), braking, _number(start.dGdt, "m/s^3"))
 
 
 def _number(value: Fraction, unit: str) -> str:

@@ -4,12 +4,23 @@ It is worked out from times, apart from the formulas of ``driver.spec``; the jud
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from fractions import Fraction
-from functools import partial
+from functools import cached_property, partial
+from typing import Literal
 
-from roadproof.drivers.braking import AssistedBraking, Ramp
-from roadproof.drivers.manoeuvres import FIRST, OTHER, SECOND, Manoeuvre, Values, lane_width
+from roadproof.drivers.braking import AssistedBraking, Joined, Ramp
+from roadproof.drivers.manoeuvres import (
+    FIRST,
+    OTHER,
+    SECOND,
+    CutIn,
+    CutOut,
+    Deceleration,
+    Manoeuvre,
+    Values,
+    start_of,
+)
 from roadproof.drivers.models import MODELS
 from roadproof.drivers.stepped import course_of
 from roadproof.library.scenarios import SUBJECT
@@ -25,47 +36,88 @@ _BOTH_LANES = (OWN_LANE, "left")
 
 
 @dataclass(frozen=True)
+class _Parameters:
+    """Parameters of driver models that have a formula, as ``driver.spec`` declares them (SI)."""
+
+    cc_wander: Fraction
+    cc_evaluation: Fraction
+    cc_drift: Fraction
+    cc_delay: Fraction
+    cc_ramp: Fraction
+    cc_braking: Fraction
+    aeb_braking: Fraction
+    cc_ttc: Fraction
+    cc_hard: Fraction
+    r157_delay: Fraction
+    r157_braking: Fraction
+    r157_past: Fraction
+    eu1426_ramp: Fraction
+    eu1426_delay: Fraction
+    eu1426_braking: Fraction
+    rho: Fraction
+    a_max: Fraction
+    b_min: Fraction
+
+    @property
+    def reaction(self) -> Fraction:
+        """How long the careful driver takes from perception to braking."""
+        return self.cc_evaluation + self.cc_delay
+
+
+@dataclass(frozen=True)
+class _Options:
+    """Options of the careful driver, as ``driver.spec`` declares them."""
+
+    cc_perception: Literal["time", "distance", "overlap"]
+    cc_gate: Literal["none", "before_perception", "before_delay"]
+    cc_threshold: Literal["any", "hard"]
+    cc_aeb: Joined
+
+
+@dataclass(frozen=True)
 class DriverSettings:
     """Values of parameters (SI) and options, as the specification at hand has them."""
 
     values: Mapping[str, Fraction]
     options: Mapping[str, str]
 
+    @cached_property
+    def parameters(self) -> _Parameters:
+        """Those of driver models."""
+        return _Parameters(**{x.name: self.values[x.name] for x in fields(_Parameters)})
+
+    @cached_property
+    def choices(self) -> _Options:
+        """The options of driver models."""
+        return _Options(**{x.name: self.options[x.name] for x in fields(_Options)})  # type: ignore[arg-type]
+
+    def has_aeb(self, model: str) -> bool:
+        """Whether there is AEB in a cut-in of the model."""
+        return model == "careful" and self.choices.cc_aeb != "none"
+
 
 def drive_of(manoeuvre: Manoeuvre, model: str, values: Values, reading: DriverSettings) -> Drive:
     """The drive from these initial values on. Raises ``InputError`` where an instant of it is irrational."""
-    lane, width = lane_width(values), values["width"]
-    middle, apart, speed = (lane + width) / 2, values["length"], values["Ve0"]
-    motion = partial(motion_of, (apart, width))
-    ego = motion((_STILL, middle), (speed, _STILL), _driven(manoeuvre, model, values, reading))
-    match manoeuvre.name:
-        case "cut-in":
-            w = values["Vy"]
-            across = _across(lane, -w, width / 4 if is_aided(model, reading) else _STILL)
-            place = (values["dx0"] + apart, middle + lane)
-            return Drive({SUBJECT: ego, OTHER: motion(place, (speed - values["dV0"], -w), (), across)})
-        case "cut-out":
-            first = values["headway"] * speed + apart
-            second = (first + values["dx0_f"] + apart, middle)
-            leaves = motion((first, middle), (speed, values["Vy"]), (), _across(lane, values["Vy"]))
-            return Drive({SUBJECT: ego, FIRST: leaves, SECOND: motion(second, (values["Vf0"], _STILL), ())})
-        case "deceleration":
-            other, place = speed - values["dV0"], (values["dx0"] + apart, middle)
-            return Drive({SUBJECT: ego, OTHER: motion(place, (other, _STILL), _braking(other, values))})
-
-
-def _driven(manoeuvre: Manoeuvre, model: str, values: Values, reading: DriverSettings) -> list[Along]:
-    """How SV moves."""
-    if MODELS[model].is_stepped:
-        return course_of(manoeuvre, values).along
-    match manoeuvre.name:
-        case "cut-in":
-            return _cut_in(model, values, reading)
-        case "cut-out":
-            onset = reading.values["cc_wander"] / values["Vy"] + _reaction(reading)
-            return _along(model, values["Ve0"], onset, reading)
-        case "deceleration":
-            return motion_in_deceleration(model, values, reading)
+    start = start_of(manoeuvre, values)
+    middle, speed = start.middle, start.Ve0
+    motion = partial(motion_of, (start.length, start.width))
+    stepped = course_of(manoeuvre, values).along if MODELS[model].is_stepped else None
+    match start:
+        case CutIn(dV0=slower, Vy=w):
+            driven = _cut_in(model, start, reading) if stepped is None else stepped
+            across = _across(start.lane, -w, start.width / 4 if reading.has_aeb(model) else _STILL)
+            place = (start.dx0 + start.length, middle + start.lane)
+            others = {OTHER: motion(place, (speed - slower, -w), (), across)}
+        case CutOut(Vy=w):
+            onset = reading.parameters.cc_wander / w + reading.parameters.reaction
+            driven = _along(model, speed, onset, reading) if stepped is None else stepped
+            leaves = motion((start.first, middle), (speed, w), (), _across(start.lane, w))
+            others = {FIRST: leaves, SECOND: motion((start.second, middle), (start.Vf0, _STILL), ())}
+        case Deceleration():
+            driven = motion_in_deceleration(model, start, reading) if stepped is None else stepped
+            place, slow = (start.dx0 + start.length, middle), speed - start.dV0
+            others = {OTHER: motion(place, (slow, _STILL), _braking(slow, start))}
+    return Drive({SUBJECT: motion((_STILL, middle), (speed, _STILL), driven), **others})
 
 
 def rest_of(drive: Drive) -> Fraction:
@@ -75,9 +127,9 @@ def rest_of(drive: Drive) -> Fraction:
     return max(lasting, default=_STILL)
 
 
-def road_of(values: Values) -> Road:
+def road_of(manoeuvre: Manoeuvre, values: Values) -> Road:
     """Two lanes without end, in the middle of which the vehicles begin."""
-    lane = lane_width(values)
+    lane = start_of(manoeuvre, values).lane
     lanelets = tuple(
         Lanelet(name, name, "main", "main", (None, None), (lane * k, lane * (k + 1)))
         for k, name in enumerate(_BOTH_LANES)
@@ -96,71 +148,62 @@ def _across(lane: Fraction, w: Fraction, past: Fraction = _STILL) -> list[Across
     return [*before, (steering, -w / steering)]
 
 
-def _reaction(reading: DriverSettings) -> Fraction:
-    return reading.values["cc_evaluation"] + reading.values["cc_delay"]
-
-
-def _onset(model: str, values: Values, reading: DriverSettings) -> Fraction | None:
+def _onset(model: str, start: CutIn, reading: DriverSettings) -> Fraction | None:
     """When SV begins to brake, or to respond, in a cut-in; None is never."""
-    w, known = values["Vy"], reading.values
-    intrusion = (values["dy0"] / 2 + known["r157_past"]) / w
+    known = reading.parameters
+    intrusion = (start.dy0 / 2 + known.r157_past) / start.Vy
     match model:
         case "r157":
-            return intrusion + known["r157_delay"]
+            return intrusion + known.r157_delay
         case "eu1426":
-            return intrusion + known["eu1426_delay"] + known["eu1426_ramp"] / 2
+            return intrusion + known.eu1426_delay + known.eu1426_ramp / 2
         case "rss":
-            return values["dy0"] / w
+            return start.dy0 / start.Vy
         case _:
-            return _careful_onset(values, reading)
+            return _careful_onset(start, reading)
 
 
-def _careful_onset(values: Values, reading: DriverSettings) -> Fraction | None:
-    w, known, options = values["Vy"], reading.values, reading.options
-    weighed = known["cc_evaluation"] if options["cc_perception"] == "time" else _STILL
-    match options["cc_perception"]:
+def _careful_onset(start: CutIn, reading: DriverSettings) -> Fraction | None:
+    known, options = reading.parameters, reading.choices
+    weighed = known.cc_evaluation if options.cc_perception == "time" else _STILL
+    match options.cc_perception:
         case "distance":
-            seen = (known["cc_wander"] + known["cc_drift"]) / w
+            seen = (known.cc_wander + known.cc_drift) / start.Vy
         case "overlap":
-            seen = values["dy0"] / w
-        case _:
-            seen = known["cc_wander"] / w
-    if options["cc_gate"] == "none":
-        return seen + weighed + known["cc_delay"]
-    if values["dV0"] <= 0:
+            seen = start.dy0 / start.Vy
+        case "time":
+            seen = known.cc_wander / start.Vy
+    if options.cc_gate == "none":
+        return seen + weighed + known.cc_delay
+    if start.dV0 <= 0:
         return None
-    opens = values["dx0"] / values["dV0"] - known["cc_ttc"]
-    if options["cc_gate"] == "before_perception":
-        return max(seen, opens) + weighed + known["cc_delay"]
-    return max(seen + weighed, opens) + known["cc_delay"]
+    opens = start.dx0 / start.dV0 - known.cc_ttc
+    if options.cc_gate == "before_perception":
+        return max(seen, opens) + weighed + known.cc_delay
+    return max(seen + weighed, opens) + known.cc_delay
 
 
-def is_aided(model: str, reading: DriverSettings) -> bool:
-    """Whether there is AEB in a cut-in of the model."""
-    return model == "careful" and reading.options["cc_aeb"] != "none"
+def _cut_in(model: str, start: CutIn, reading: DriverSettings) -> list[Along]:
+    if reading.has_aeb(model):
+        return _aided(start, reading).pieces(start.Ve0)
+    return _along(model, start.Ve0, _onset(model, start, reading), reading)
 
 
-def _cut_in(model: str, values: Values, reading: DriverSettings) -> list[Along]:
-    if is_aided(model, reading):
-        return _aided(values, reading).pieces(values["Ve0"])
-    return _along(model, values["Ve0"], _onset(model, values, reading), reading)
-
-
-def _aided(values: Values, reading: DriverSettings) -> AssistedBraking:
+def _aided(start: CutIn, reading: DriverSettings) -> AssistedBraking:
     """The braking of the careful driver, who may never brake, and of AEB from full wrap on."""
-    known, wrap = reading.values, (values["dy0"] + values["width"]) / values["Vy"]
-    onset, ramp = _careful_onset(values, reading), known["cc_ramp"]
-    driver = Ramp(wrap, ramp, _STILL) if onset is None else Ramp(onset, ramp, known["cc_braking"])
-    return AssistedBraking(driver, Ramp(wrap, ramp, known["aeb_braking"]), reading.options["cc_aeb"])
+    known, wrap = reading.parameters, (start.dy0 + start.width) / start.Vy
+    onset, ramp = _careful_onset(start, reading), known.cc_ramp
+    driver = Ramp(wrap, ramp, _STILL) if onset is None else Ramp(onset, ramp, known.cc_braking)
+    return AssistedBraking(driver, Ramp(wrap, ramp, known.aeb_braking), reading.choices.cc_aeb)
 
 
-def speeds_of(values: Values, reading: DriverSettings) -> tuple[Fraction, ...]:
+def speeds_of(start: CutIn, reading: DriverSettings) -> tuple[Fraction, ...]:
     """What ``follows_cutIn_careful`` takes of AEB (m/s): the speeds from which the ramps would have begun.
 
     Where a ramp has no part in the motion it is a speed from which the braking would be full by then.
     Raises ``InputError`` as ``drive_of``.
     """
-    aided, speed = _aided(values, reading), values["Ve0"]
+    aided, speed = _aided(start, reading), start.Ve0
     driver, aeb = aided.driver, aided.aeb
     assert aeb is not None
     full = speed + aeb.full * aeb.duration
@@ -175,54 +218,44 @@ def speeds_of(values: Values, reading: DriverSettings) -> tuple[Fraction, ...]:
         case "max":
             moves = aided.state(speed, aeb.onset)[0] > 0
             return (begun(aeb.end, aeb.full) if moves else full,)
-        case _:
-            both = driver.full + aeb.full
-            first = max(driver.onset, min(aeb.onset, driver.end))
-            second = max(driver.end, aeb.onset)
-            by_then = [
-                begun(time, growing) if aided.at(time) < aeb.full else full
-                for time, growing in ((first, both), (second, aeb.full))
-            ]
-            return tuple(by_then)
+        case "add" | "none":
+            first = max(driver.onset, min(aeb.onset, driver.end)), driver.full + aeb.full
+            second = max(driver.end, aeb.onset), aeb.full
+            return tuple(begun(*x) if aided.at(x[0]) < aeb.full else full for x in (first, second))
 
 
-def motion_in_deceleration(model: str, values: Values, reading: DriverSettings) -> list[Along]:
+def motion_in_deceleration(model: str, start: Deceleration, reading: DriverSettings) -> list[Along]:
     """How SV moves until it stands; nothing where it never brakes. Raises ``InputError`` as ``drive_of``."""
-    hard = reading.values["cc_hard"]
+    known, rate = reading.parameters, start.dGdt
     if model == "rss":
-        return _along(model, values["Ve0"], _STILL, reading)
+        return _along(model, start.Ve0, _STILL, reading)
     seen: Fraction | None = _STILL
-    if reading.options["cc_threshold"] == "hard":
-        rate = values.get("dGdt")
-        seen = None if values["Gx"] < hard else hard / rate if rate else _STILL
-        if seen and rate and values["Ve0"] - values["dV0"] <= rate * seen**2 / 2:
+    if reading.choices.cc_threshold == "hard":
+        seen = None if start.Gx < known.cc_hard else known.cc_hard / rate if rate else _STILL
+        if seen and rate and start.Ve0 - start.dV0 <= rate * seen**2 / 2:
             seen = None  # POV stands before it brakes so hard
-    return _along(model, values["Ve0"], None if seen is None else seen + _reaction(reading), reading)
+    return _along(model, start.Ve0, None if seen is None else seen + known.reaction, reading)
 
 
-def _braking(speed: Fraction, values: Values) -> list[Along]:
+def _braking(speed: Fraction, start: Deceleration) -> list[Along]:
     """POV brakes, at once or harder and harder, until it stands."""
-    braking, rate = values["Gx"], values.get("dGdt")
-    if rate is None:
-        return _brakes(speed, braking)
-    return AssistedBraking(Ramp(_STILL, braking / rate, braking)).pieces(speed)
+    if start.dGdt is None:
+        return _brakes(speed, start.Gx)
+    return AssistedBraking(Ramp(_STILL, start.Gx / start.dGdt, start.Gx)).pieces(speed)
 
 
 def _along(model: str, speed: Fraction, onset: Fraction | None, reading: DriverSettings) -> list[Along]:
     """SV goes on to its onset, and brakes until it stands."""
-    known = reading.values
+    known = reading.parameters
     if onset is None:
         return []
     before: list[Along] = [(onset, _STILL, _STILL)] if onset > 0 else []
+    if model == "careful":
+        return AssistedBraking(Ramp(onset, known.cc_ramp, known.cc_braking)).pieces(speed)
     if model == "rss":
-        rho, faster = known["rho"], speed + known["a_max"] * known["rho"]
-        response: list[Along] = [(rho, known["a_max"], _STILL)] if rho > 0 else []
-        return [*before, *response, *_brakes(faster, known["b_min"])]
-    if model != "careful":
-        braking = known["r157_braking"] if model == "r157" else known["eu1426_braking"]
-        return [*before, *_brakes(speed, braking)]
-    braking, ramp = known["cc_braking"], known["cc_ramp"]
-    return AssistedBraking(Ramp(onset, ramp, braking)).pieces(speed)
+        response: list[Along] = [(known.rho, known.a_max, _STILL)] if known.rho > 0 else []
+        return [*before, *response, *_brakes(speed + known.a_max * known.rho, known.b_min)]
+    return [*before, *_brakes(speed, known.r157_braking if model == "r157" else known.eu1426_braking)]
 
 
 def _brakes(speed: Fraction, braking: Fraction) -> list[Along]:

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 from roadproof.drivers.boundary import Plane
 from roadproof.drivers.driving import DriverSettings, motion_in_deceleration
-from roadproof.drivers.manoeuvres import Values, is_possible
+from roadproof.drivers.manoeuvres import Deceleration, Values, is_possible, start_of
 from roadproof.drivers.models import MODELS
 from roadproof.errors import UsageError
 from roadproof.semantics.exact.algebraic import Point, Root, compare, real_roots
@@ -27,6 +27,7 @@ TOLD = (
     "and no lemma, and the drives say what POV and SV do"
 )
 
+_NONE = Fraction(0)
 # Coefficients, lowest power first.
 _Coefficients = list[Fraction]
 
@@ -35,10 +36,11 @@ def check_gradual(model: str, values: Values, reading: DriverSettings) -> None:
     """Raises ``UsageError`` for models and speeds of which nothing is worked out with a finite rate."""
     if MODELS[model].is_stepped:
         raise UsageError(f"model={model} does not support a finite {RATE}; omit one of the two")
-    least = reading.values["cc_braking"] * reading.values["cc_ramp"] / 2
-    if model == "careful" and values["Ve0"] < least:
+    least = reading.parameters.cc_braking * reading.parameters.cc_ramp / 2
+    speed = values.get("Ve0", _NONE)
+    if model == "careful" and speed < least:
         raise UsageError(
-            f"Ve0={float(values['Ve0']):g} m/s with {RATE}: SV would stop before it brakes fully, which is "
+            f"Ve0={float(speed):g} m/s with {RATE}: SV would stop before it brakes fully, which is "
             f"not supported; use Ve0 of at least cc_braking*cc_ramp/2 = {float(least):g} m/s, or omit "
             f"{RATE}"
         )
@@ -49,19 +51,22 @@ def line(plane: Plane, model: str, reading: DriverSettings, row: Fraction) -> Tr
     values = plane.values(row)
     if not is_possible(values):
         return NEVER
-    motion = motion_in_deceleration(model, values, reading)
-    if not motion and values["Ve0"] > 0:
+    start = start_of(plane.manoeuvre, values)
+    assert isinstance(start, Deceleration)
+    motion = motion_in_deceleration(model, start, reading)
+    if not motion and start.Ve0 > 0:
         return interval(*plane.along)
-    most = most_gained(motion, values)
-    if compare(most, Fraction(0)) <= 0:
+    most = most_gained(motion, start)
+    if compare(most, _NONE) <= 0:
         return NEVER
-    return intersection([interval(Fraction(0), most, "[)"), interval(*plane.along)])
+    return intersection([interval(_NONE, most, "[)"), interval(*plane.along)])
 
 
-def most_gained(motion: Sequence[Along], values: Values) -> Point:
+def most_gained(motion: Sequence[Along], start: Deceleration) -> Point:
     """The most that SV, which moves so until it stands, ever gains on POV (m)."""
-    speed, rate, braking = values["Ve0"], values[RATE], values["Gx"]
-    other = speed - values["dV0"]
+    speed, rate, braking = start.Ve0, start.dGdt, start.Gx
+    assert rate is not None
+    other = speed - start.dV0
     full = braking / rate
     slow = other - rate * full**2 / 2  # how fast POV is once it brakes fully
     way: Point
@@ -69,19 +74,19 @@ def most_gained(motion: Sequence[Along], values: Values) -> Point:
         stands: Point = full + slow / braking
         way = other * full - rate * full**3 / 6 + slow**2 / (2 * braking)
     else:
-        stands = _upper(-2 * other, Fraction(0), rate)
-        way = _upper(-8 * other**3, Fraction(0), 9 * rate)
-    found: list[Point] = [Fraction(0)]
-    place, time = Fraction(0), Fraction(0)
+        stands = _upper(-2 * other, _NONE, rate)
+        way = _upper(-8 * other**3, _NONE, 9 * rate)
+    found: list[Point] = [_NONE]
+    place, time = _NONE, _NONE
     for duration, acceleration, jerk in motion:
         end = time + duration
         cuts = sorted({time, end, *([full] if time < full < end else [])})
         for low, high in pairwise(cuts):
             mine = _moved([place, speed, acceleration / 2, jerk / 6], time)
-            ahead = [Fraction(0), other, Fraction(0), -rate / 6]
+            ahead = [_NONE, other, _NONE, -rate / 6]
             if low >= full:
                 gone = other * full - rate * full**3 / 6
-                ahead = _moved([gone, slow, -braking / 2, Fraction(0)], full)
+                ahead = _moved([gone, slow, -braking / 2, _NONE], full)
             found += _turns([x - y for x, y in zip(mine, ahead, strict=True)], low, high, stands)
         place += speed * duration + acceleration * duration**2 / 2 + jerk * duration**3 / 6
         speed += acceleration * duration + jerk * duration**2 / 2

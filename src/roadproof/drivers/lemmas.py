@@ -2,9 +2,8 @@
 
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import resources
-from typing import Any
 
 from roadproof.drivers.manoeuvres import ManoeuvreName
 from roadproof.drivers.models import Model
@@ -37,46 +36,47 @@ class Lemma:
     parameters: tuple[str, ...]
 
 
+@dataclass(frozen=True)
+class _Entry:
+    """A lemma of ``lemmas.toml``: for whom, and with {T} and {A} for the ramp and the full braking."""
+
+    id: str
+    title: str
+    claim: str
+    manoeuvres: tuple[ManoeuvreName, ...] = ()
+    readings: tuple[str, ...] = ()
+    ramp: bool = False
+
+    def lemma(self, prefix: str, parameters: Sequence[str] = (), ramp: str = "", full: str = "") -> Lemma:
+        """It at a ramp and a full braking; of the ``parameters`` those that it names."""
+        claim = self.claim.replace("{T}", ramp).replace("{A}", full)
+        return Lemma(f"{prefix}-{self.id}", self.title, claim, tuple(x for x in parameters if x in claim))
+
+
 def lemmas_for(manoeuvre: ManoeuvreName, models: Sequence[Model], aeb: str = "none") -> list[Lemma]:
     """The lemmas on which the boundaries of these models rest, each model with its own braking.
 
     ``aeb``: what AEB does in a cut-in of the careful driver, as the option ``cc_aeb``.
     """
-    content = resources.files("roadproof.drivers").joinpath("lemmas.toml").read_text("utf-8")
+    content = tomllib.loads(resources.files("roadproof.drivers").joinpath("lemmas.toml").read_text("utf-8"))
+    entries = {kind: [_Entry(**x) for x in said] for kind, said in content.items()}
+    names = {x.name for x in models}
     found: list[Lemma] = []
-    if manoeuvre == "cut-in" and aeb != "none" and any(x.name == "careful" for x in models):
-        found = _with_aeb(tomllib.loads(content), aeb)
+    if manoeuvre == "cut-in" and aeb != "none" and "careful" in names:
+        found = [x.lemma("aeb", _PARAMETERS) for x in entries["aeb"] if aeb in x.readings]
+        for name, (ramp, full) in _RAMPS.items() if aeb == "add" else [("aeb", _RAMPS["aeb"])]:
+            ever = [x for x in entries["lemma"] if x.id in _EVER]
+            found += [
+                replace(x, title=f"{name}: {x.title}").lemma(name, _PARAMETERS, ramp, full) for x in ever
+            ]
     for model in (x for x in models if not x.is_stepped):
         ramp, full = _BRAKING[model.name]
         gradual = ramp != AT_ONCE
-        parameters = (full, ramp) if gradual else (full,)
-        for entry in tomllib.loads(content)["lemma"]:
-            if manoeuvre in entry["manoeuvres"] and (gradual or not entry.get("ramp")):
-                claim = _filled(entry["claim"], ramp, full)
-                found.append(Lemma(f"{model.name}-{entry['id']}", entry["title"], claim, parameters))
-    if manoeuvre == "cut-in" and any(x.name == "rss" for x in models):
         found += [
-            Lemma(f"rss-{x['id']}", x["title"], x["claim"], _spoken(x["claim"], _RESPONSE))
-            for x in tomllib.loads(content)["rss"]
+            replace(x.lemma(model.name, (), ramp, full), parameters=(full, ramp) if gradual else (full,))
+            for x in entries["lemma"]
+            if manoeuvre in x.manoeuvres and (gradual or not x.ramp)
         ]
+    if manoeuvre == "cut-in" and "rss" in names:
+        found += [x.lemma("rss", _RESPONSE) for x in entries["rss"]]
     return found
-
-
-def _with_aeb(content: Mapping[str, Any], aeb: str) -> list[Lemma]:
-    """That AEB takes over as is said, and what is true of each ramp that it takes over with."""
-    said = [(f"aeb-{x['id']}", x["title"], x["claim"]) for x in content["aeb"] if aeb in x["readings"]]
-    for name, (ramp, full) in _RAMPS.items() if aeb == "add" else [("aeb", _RAMPS["aeb"])]:
-        said += [
-            (f"{name}-{x['id']}", f"{name}: {x['title']}", _filled(x["claim"], ramp, full))
-            for x in content["lemma"]
-            if x["id"] in _EVER
-        ]
-    return [Lemma(name, title, claim, _spoken(claim, _PARAMETERS)) for name, title, claim in said]
-
-
-def _spoken(claim: str, parameters: tuple[str, ...]) -> tuple[str, ...]:
-    return tuple(x for x in parameters if x in claim)
-
-
-def _filled(claim: str, ramp: str, full: str) -> str:
-    return claim.replace("{T}", ramp).replace("{A}", full)

@@ -3,10 +3,10 @@ of vehicles that they say.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from fractions import Fraction
 from types import MappingProxyType
-from typing import Any, Literal, TypeAlias, assert_never
+from typing import Literal, TypeAlias
 
 from roadproof.errors import UsageError
 from roadproof.library.scenarios import PAIR, SUBJECT, TRIPLE
@@ -18,6 +18,7 @@ from roadproof.world.signals import SIGNALS, STARTING
 
 KMH = Fraction(5, 18)
 OTHER, FIRST, SECOND = PAIR[1], *TRIPLE[1:]
+_NONE = Fraction(0)
 BESIDE = Fraction("1.6")  # m between vehicles in the middles of lanes beside each other
 
 ManoeuvreName: TypeAlias = Literal["cut-in", "cut-out", "deceleration"]
@@ -161,6 +162,81 @@ MANOEUVRES: Mapping[ManoeuvreName, Manoeuvre] = MappingProxyType(
 )
 
 
+@dataclass(frozen=True)
+class _Start:
+    """Initial values of any manoeuvre (SI)."""
+
+    Ve0: Fraction
+    length: Fraction
+    width: Fraction
+
+    @property
+    def lane(self) -> Fraction:
+        """Lanes as wide as puts the vehicles into their middles."""
+        return self.width + BESIDE
+
+    @property
+    def middle(self) -> Fraction:
+        """Where the left side of a vehicle in the middle of the lane of SV is."""
+        return (self.lane + self.width) / 2
+
+
+@dataclass(frozen=True)
+class CutIn(_Start):
+    """Initial values of a cut-in."""
+
+    dV0: Fraction
+    Vy: Fraction
+    dx0: Fraction
+    dy0: Fraction
+
+    @property
+    def lane(self) -> Fraction:
+        return self.width + self.dy0
+
+
+@dataclass(frozen=True)
+class CutOut(_Start):
+    """Initial values of a cut-out."""
+
+    Vf0: Fraction
+    Vy: Fraction
+    headway: Fraction
+    dx0_f: Fraction
+
+    @property
+    def first(self) -> Fraction:
+        """Where the front of the vehicle that cuts out is, from that of SV."""
+        return self.headway * self.Ve0 + self.length
+
+    @property
+    def second(self) -> Fraction:
+        """Where the front of the vehicle is that the cut-out reveals."""
+        return self.first + self.dx0_f + self.length
+
+
+@dataclass(frozen=True)
+class Deceleration(_Start):
+    """Initial values of a deceleration."""
+
+    Gx: Fraction
+    dx0: Fraction
+    dV0: Fraction
+    dGdt: Fraction | None = None
+
+
+Start: TypeAlias = CutIn | CutOut | Deceleration
+_STARTS: Mapping[ManoeuvreName, type[Start]] = MappingProxyType(
+    {"cut-in": CutIn, "cut-out": CutOut, "deceleration": Deceleration}
+)
+
+
+def start_of(manoeuvre: Manoeuvre, values: Values) -> Start:
+    """All initial values of a manoeuvre, typed."""
+    kind = _STARTS[manoeuvre.name]
+    return kind(**{x.name: values[x.name] for x in fields(kind) if x.name in values})
+
+
 def is_possible(values: Values) -> bool:
     """Whether no vehicle would have to go backwards."""
     return "dV0" not in values or values["dV0"] <= values["Ve0"]
@@ -182,45 +258,38 @@ def _undefined(what: str) -> UsageError:
     return UsageError(f"the initial values do not define {what}")
 
 
-def signals_of(manoeuvre: Manoeuvre, values: Mapping[str, Any]) -> dict[tuple[SignalName, str], Any]:
-    """The state at time 0, of numbers or arrays of them.
+def signals_of(manoeuvre: Manoeuvre, values: Values) -> dict[tuple[SignalName, str], Fraction]:
+    """The state at time 0.
 
     The front of SV is at s = 0, SV in the middle of its lane, POV ahead of it or in the lane to its left.
     """
-    ego, length = values["Ve0"], values["length"]
-    lane = lane_width(values)
-    left = (lane + values["width"]) / 2
-    still = 0 * ego
-    signals = _vehicle(SUBJECT, still, still + left, ego, still, still)
-    match manoeuvre.name:
-        case "cut-in":
-            place, speed = values["dx0"] + length, ego - values["dV0"]
-            signals |= _vehicle(OTHER, place, still + left + lane, speed, -values["Vy"], still)
-        case "cut-out":
-            first = values["headway"] * ego + length
-            second = first + values["dx0_f"] + length
-            signals |= _vehicle(FIRST, first, still + left, ego, values["Vy"], still)
-            signals |= _vehicle(SECOND, second, still + left, values["Vf0"], still, still)
-        case "deceleration":
-            place, speed = values["dx0"] + length, ego - values["dV0"]
-            signals |= _vehicle(OTHER, place, still + left, speed, still, -values["Gx"])
-        case _:
-            assert_never(manoeuvre.name)
-    return signals
-
-
-def lane_width(values: Mapping[str, Any]) -> Any:
-    """Lanes as wide as puts the vehicles into their middles."""
-    return values["width"] + values.get("dy0", BESIDE)
+    start = start_of(manoeuvre, values)
+    ego, still = start.Ve0, 0 * start.Ve0
+    middle = still + start.middle
+    signals = _vehicle(SUBJECT, still, middle, ego)
+    match start:
+        case CutIn():
+            place, speed = start.dx0 + start.length, ego - start.dV0
+            return signals | _vehicle(OTHER, place, middle + start.lane, speed, -start.Vy)
+        case CutOut():
+            signals |= _vehicle(FIRST, start.first, middle, ego, start.Vy)
+            return signals | _vehicle(SECOND, start.second, middle, start.Vf0)
+        case Deceleration():
+            place, speed = start.dx0 + start.length, ego - start.dV0
+            return signals | _vehicle(OTHER, place, middle, speed, braking=start.Gx)
 
 
 def _vehicle(
-    name: str, place: Any, left: Any, speed: Any, lateral: Any, acceleration: Any
-) -> dict[tuple[SignalName, str], Any]:
-    begins = zip(STARTING, (place, left, speed, lateral), strict=True)
-    known: dict[str, Any] = {**dict(begins), "a_lon": acceleration}
-    nothing = 0 * speed
-    return {(signal, name): known.get(signal, nothing) + nothing for signal in SIGNALS}
+    name: str,
+    place: Fraction,
+    left: Fraction,
+    speed: Fraction,
+    lateral: Fraction = _NONE,
+    braking: Fraction = _NONE,
+) -> dict[tuple[SignalName, str], Fraction]:
+    known: dict[str, Fraction] = dict(zip(STARTING, (place, left, speed, lateral), strict=True))
+    known["a_lon"] = -braking
+    return {(signal, name): known.get(signal, _NONE) + 0 * speed for signal in SIGNALS}
 
 
 def spread(low: Fraction, high: Fraction, count: int) -> Sequence[Fraction]:

@@ -10,11 +10,20 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import groupby
 from math import ceil
-from typing import assert_never
 
 from roadproof.drivers.boundary import Plane
 from roadproof.drivers.fuzzy import HERTZ, TICKS, Controller, Scale, scale_of
-from roadproof.drivers.manoeuvres import Manoeuvre, Values, is_possible, spread
+from roadproof.drivers.manoeuvres import (
+    CutIn,
+    CutOut,
+    Deceleration,
+    Manoeuvre,
+    Start,
+    Values,
+    is_possible,
+    spread,
+    start_of,
+)
 from roadproof.errors import InputError
 from roadproof.world.pieces import Along
 
@@ -73,24 +82,20 @@ class _Other:
         return self.speed * self.speed // (2 * self.braking), 0
 
 
-def _other(manoeuvre: Manoeuvre, values: Values) -> tuple[_Other, int]:
+def _other(start: Start) -> tuple[_Other, int]:
     """The other vehicle, and SV's speed, in units."""
-    speed, lateral, seen = values["Ve0"], Fraction(0), 0
+    speed, lateral, seen = start.Ve0, Fraction(0), 0
     beside, braking = Fraction(0), Fraction(0)
-    match manoeuvre.name:
-        case "cut-in":
-            gap, other = values["dx0"], speed - values["dV0"]
-            beside, lateral = values["dy0"], values["Vy"]
-        case "cut-out":
-            gap = values["headway"] * speed + values["length"] + values["dx0_f"]
-            other = values["Vf0"]
-            seen = int(_WANDER / values["Vy"] * HERTZ) + 1
-        case "deceleration":
-            gap, other, braking = values["dx0"], speed - values["dV0"], values["Gx"]
-        case _:
-            assert_never(manoeuvre.name)
+    match start:
+        case CutIn():
+            gap, other, beside, lateral = start.dx0, speed - start.dV0, start.dy0, start.Vy
+        case CutOut():
+            gap, other = start.second - start.length, start.Vf0
+            seen = int(_WANDER / start.Vy * HERTZ) + 1
+        case Deceleration():
+            gap, other, braking = start.dx0, speed - start.dV0, start.Gx
     stops = other**2 / (2 * braking) if braking else Fraction(0)
-    lengths = 2 * values["length"]
+    lengths = 2 * start.length
     scale = scale_of(gap, speed, other, lateral, beside, braking, stops, lengths)
     units = _Other(
         scale,
@@ -110,7 +115,7 @@ def course_of(manoeuvre: Manoeuvre, values: Values, to_the_end: bool = True) -> 
 
     Raises ``InputError`` where SV would have to look too often.
     """
-    other, speed = _other(manoeuvre, values)
+    other, speed = _other(start_of(manoeuvre, values))
     controller = Controller(other.scale)
     brakings: list[tuple[int, int]] = []
     gone, time, touches = 0, 0, False

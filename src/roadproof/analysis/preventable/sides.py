@@ -46,7 +46,7 @@ def judged_drive(
         {LANE: OWN_LANE} if also else {},
         reading.values,
         reading.options,
-        road_of(values),
+        road_of(manoeuvre, values),
         drive,
         overlaps_allowed=True,
     )
