@@ -21,7 +21,7 @@ READERS_OF_NODES = {
         "semantics/exact/exact.py",
         "semantics/exact/blame.py",
         "semantics/exact/robust.py",
-        "logic/fixed_parameters.py",
+        "logic/initial_conditions.py",
         "frontends/report/viewer_data.py",
         "semantics/sampled/recursive.py",
         "semantics/sampled/semantics.py",

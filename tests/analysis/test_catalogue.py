@@ -30,8 +30,8 @@ from roadproof.frontends.cli.main import main
 from roadproof.frontends.report.catalogue import as_text
 from roadproof.frontends.settings.groups import Budget
 from roadproof.library.bind import bind
-from roadproof.library.query import Query
 from roadproof.library.scenarios import Scenario, applied, name_of, vehicles_of
+from roadproof.library.specification import Query
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.exact import judge
 

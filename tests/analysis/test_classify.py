@@ -39,9 +39,8 @@ from roadproof.frontends.cli.main import main
 from roadproof.library.bind import default_values
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import build_library, bundled_library, load_library
-from roadproof.library.query import Query
 from roadproof.library.scenarios import components
-from roadproof.library.specification import Source, Specification
+from roadproof.library.specification import Query, Source, Specification
 from roadproof.library.words import spans
 from roadproof.logic.rewrite import with_values, without_names
 from roadproof.recordings.simulate.synthetic import simulate

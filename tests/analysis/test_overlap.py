@@ -31,9 +31,9 @@ from roadproof.frontends.report.sheet import as_csv
 from roadproof.library.compose import negation, of_parts
 from roadproof.library.elaborate import apply_definition, read_claim
 from roadproof.library.loading import bundled_library
-from roadproof.library.query import Query
 from roadproof.library.scenario_references import read_numbers
 from roadproof.library.scenarios import Scenario, without_sectors
+from roadproof.library.specification import Query
 from roadproof.library.words import Words, called
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict

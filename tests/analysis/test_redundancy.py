@@ -20,9 +20,8 @@ from roadproof.frontends.cli.main import main
 from roadproof.library.bind import bind
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
-from roadproof.library.query import Query
 from roadproof.library.scenarios import Scenario, without_sectors
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict

@@ -20,8 +20,7 @@ from roadproof.frontends.api import covering
 from roadproof.frontends.cli.main import main
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
-from roadproof.library.query import Query
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.verdict import ExitCode, Verdict
 from roadproof.world.models import load_road
 from roadproof.world.road import Road

@@ -23,8 +23,7 @@ from roadproof.evidence.schemas import as_text, schemas
 from roadproof.frontends.cli.main import COMMANDS, main
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
-from roadproof.library.query import Query
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.recordings.formats.write_highd import write_highd
 from roadproof.recordings.simulate.synthetic import simulate
 from roadproof.recordings.simulate.traffic import Traffic

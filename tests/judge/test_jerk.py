@@ -12,7 +12,7 @@ from judge.test_exact import bound, motion, truth
 from planting import plant
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.box_overlap import boxes_overlap
+from roadproof.logic.formula import boxes_overlap
 from roadproof.semantics.exact import algebraic, exact, piecewise, signals
 from roadproof.semantics.exact.algebraic import bounds, real_roots
 from roadproof.semantics.exact.robust import robustness

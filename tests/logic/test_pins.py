@@ -8,7 +8,7 @@ import pytest
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
-from roadproof.logic.fixed_parameters import pins
+from roadproof.logic.initial_conditions import pins
 from roadproof.logic.rewrite import with_values
 
 specification = bundled_library().select()

@@ -19,7 +19,7 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.library.motion import Axiom, axiom_formula
 from roadproof.logic import formula as f
-from roadproof.logic import induction
+from roadproof.logic import motion
 from roadproof.logic import terms as t
 from roadproof.semantics.exact import judge
 from roadproof.semantics.exact.truth import from_switches
@@ -126,9 +126,9 @@ def holds_on_all(formula: f.Formula) -> bool:
 
 
 def test_the_schemas_hold_on_every_trace():
-    assert holds_on_all(induction.steps(SIGNAL, ONE, ONE))
-    assert holds_on_all(induction.steps(SIGNAL, ONE, TWO))
-    assert holds_on_all(induction.lasts(SIGNAL, ONE))
+    assert holds_on_all(motion.steps(SIGNAL, ONE, ONE))
+    assert holds_on_all(motion.steps(SIGNAL, ONE, TWO))
+    assert holds_on_all(motion.lasts(SIGNAL, ONE))
 
 
 @pytest.mark.parametrize(
@@ -167,7 +167,7 @@ def test_a_mutant_of_the_schema_is_noticed_by_who_has_the_right_one(monkeypatch)
     """Planted: steps may take no time."""
     claim = f"G ({P} -> F[0,1] {P}) and {P} -> G F {P}"
     with monkeypatch.context() as patch:
-        patch.setattr(induction, "_check", lambda time: None)
+        patch.setattr(motion, "_check", lambda time: None)
         _, certificate = certificate_of(claim)
     assert refusal(certificate, library, ask) is not None
 

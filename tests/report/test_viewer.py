@@ -16,8 +16,8 @@ from roadproof.frontends.report.viewer_page import json_in_html, viewer_page
 from roadproof.frontends.report.viewer_recorded import recorded_data
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library, load_library
-from roadproof.library.places import nearest, places_of
 from roadproof.library.specification import Source
+from roadproof.library.uses import nearest, places_of
 from roadproof.recordings.evaluate.one_trace import sample_drive
 from roadproof.world.motion import state_at
 

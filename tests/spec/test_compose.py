@@ -19,7 +19,7 @@ from roadproof.library.compose import (
 )
 from roadproof.library.elaborate import apply_definition, read_claim
 from roadproof.library.loading import bundled_library
-from roadproof.library.query import Query
+from roadproof.library.specification import Query
 from roadproof.logic import formula as f
 from roadproof.logic.rewrite import without_names
 

@@ -8,10 +8,8 @@ from roadproof.errors import TextError
 from roadproof.library.elaborate import apply_definition, read_claim, signature
 from roadproof.library.elaboration import Elaborator
 from roadproof.library.loading import build_library, bundled_library
-from roadproof.library.quantity import unit_name
-from roadproof.library.query import Query
-from roadproof.library.size import LARGEST_FORMULA, MOST_READ, Sizes
-from roadproof.library.specification import Source, Specification
+from roadproof.library.quantity import LARGEST_FORMULA, MOST_READ, Sizes, unit_name
+from roadproof.library.specification import Query, Source, Specification
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import FOREVER, Formula

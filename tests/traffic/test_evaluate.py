@@ -13,8 +13,7 @@ from roadproof.library import elaborate as elaborating
 from roadproof.library import scenarios
 from roadproof.library.elaboration import Elaborator
 from roadproof.library.loading import build_library, bundled_library
-from roadproof.library.query import Query
-from roadproof.library.specification import Source, Specification
+from roadproof.library.specification import Query, Source, Specification
 from roadproof.logic import show
 from roadproof.logic.formula import Compare
 from roadproof.logic.syntax import Claim

@@ -12,8 +12,7 @@ from roadproof.engines.search.ask import Search
 from roadproof.engines.search.question import Objective, SearchOptions, Setting
 from roadproof.evidence.certificate import Certificate
 from roadproof.library.bind import values_with
-from roadproof.library.query import Query
-from roadproof.library.specification import Library, Specification
+from roadproof.library.specification import Library, Query, Specification
 from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.verdict import ProofVerdict, Verdict
 from roadproof.world.road import Road

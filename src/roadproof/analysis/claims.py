@@ -29,8 +29,7 @@ from roadproof.evidence.refutation import trace_data
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
 from roadproof.evidence.traces import read_trace
 from roadproof.library.elaborate import read_claim
-from roadproof.library.query import Query
-from roadproof.library.specification import Library, Specification, read_specification
+from roadproof.library.specification import Library, Query, Specification, read_specification
 from roadproof.logic.custom_names import told_freedom
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.progress import about

@@ -23,9 +23,8 @@ from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import both, either, eventually, negation
 from roadproof.library.elaborate import read_claim
-from roadproof.library.query import Query
 from roadproof.library.scenarios import LANE, Scenario, applied, likes_of, numbers_of, vehicles_of
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
 from roadproof.runtime.budget import BudgetExceeded

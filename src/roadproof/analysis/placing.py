@@ -9,8 +9,7 @@ from roadproof.engines.search.question import zones_of
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.library.bind import bind, values_with
-from roadproof.library.query import Query
-from roadproof.library.specification import Library
+from roadproof.library.specification import Library, Query
 from roadproof.logic import formula as f
 from roadproof.logic.formula import is_state
 from roadproof.semantics.exact.exact import judge

@@ -24,7 +24,6 @@ from roadproof.evidence.traces import read_trace
 from roadproof.library.bind import bind
 from roadproof.library.compose import both, equivalence, implication, negation
 from roadproof.library.elaborate import elaborate, read_claim
-from roadproof.library.query import Query
 from roadproof.library.scenarios import (
     Scenario,
     applied,
@@ -34,7 +33,7 @@ from roadproof.library.scenarios import (
     vehicles_of,
     without_sectors,
 )
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, is_state, subformulas
 from roadproof.logic.restore import as_syntax

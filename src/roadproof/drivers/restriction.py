@@ -21,9 +21,8 @@ from roadproof.drivers.models import (
 from roadproof.errors import InputError, UsageError
 from roadproof.library.elaborate import elaborate
 from roadproof.library.loading import bundled_library
-from roadproof.library.query import Query
 from roadproof.library.scenarios import initial_condition_name
-from roadproof.library.specification import Library, Source, Specification, on_request
+from roadproof.library.specification import Library, Query, Source, Specification, on_request
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, subformulas
 from roadproof.logic.parse import parse_library

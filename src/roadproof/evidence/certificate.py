@@ -30,11 +30,10 @@ from roadproof.library.motion import (
     value_texts,
     values_said,
 )
-from roadproof.library.query import Query
-from roadproof.library.specification import Library, Specification, unknown
+from roadproof.library.specification import Library, Query, Specification, unknown
 from roadproof.logic import formula as f
-from roadproof.logic.fixed_parameters import pins
 from roadproof.logic.formula import Formula
+from roadproof.logic.initial_conditions import pins
 from roadproof.logic.rewrite import parameters_of, with_values
 
 SCHEMA = kept.SCHEMA

@@ -11,8 +11,7 @@ from roadproof.evidence.codec import write
 from roadproof.evidence.drive_file import DriveFile, drive_data
 from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim
-from roadproof.library.query import Query
-from roadproof.library.specification import Library, Specification
+from roadproof.library.specification import Library, Query, Specification
 from roadproof.semantics.exact.exact import Judgement, judge
 from roadproof.semantics.exact.replay import first_overlap
 

@@ -11,8 +11,7 @@ from typing import Literal
 
 from roadproof.errors import UsageError
 from roadproof.library.elaborate import elaborate
-from roadproof.library.query import Query
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic.formula import Formula

@@ -7,9 +7,8 @@ from dataclasses import replace
 from roadproof.errors import TextError, once_each, raise_all
 from roadproof.library import scopes
 from roadproof.library.elaboration import Elaborator, Note
-from roadproof.library.query import Query
 from roadproof.library.scopes import Value, Vehicles
-from roadproof.library.specification import Specification, unknown
+from roadproof.library.specification import Query, Specification, unknown
 from roadproof.logic import syntax
 from roadproof.logic import terms as t
 from roadproof.logic.parse import parse_claim

@@ -11,15 +11,14 @@ from typing import TypeAlias, TypeVar
 
 from roadproof.errors import Position, TextError
 from roadproof.library import arithmetic, scopes
-from roadproof.library.quantity import Quantity
+from roadproof.library.quantity import Quantity, Sizes
 from roadproof.library.scopes import SORTS, Free, Ref, Scope, Value, Vehicles
-from roadproof.library.size import Sizes
 from roadproof.library.specification import BUILT_IN, Specification, source_of, unknown
 from roadproof.logic import custom_names, syntax
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.foreign_syntax import instead_of
 from roadproof.logic.formula import Formula
+from roadproof.logic.parse import instead_of
 from roadproof.logic.syntax import Bounds, Definition, Expression, SignalDeclaration
 from roadproof.world.signals import KINDS
 from roadproof.world.units import UNITS

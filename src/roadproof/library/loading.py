@@ -20,7 +20,7 @@ from roadproof.library.specification import (
     read_specification,
     unknown,
 )
-from roadproof.logic.each import instances
+from roadproof.logic.build_syntax import instances
 from roadproof.logic.parse import parse_bundled, parse_library
 from roadproof.logic.recover import ParseResult, parse_pieces
 from roadproof.logic.syntax import (

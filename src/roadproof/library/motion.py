@@ -22,13 +22,12 @@ from roadproof.library.compose import always, both, implication
 from roadproof.library.elaborate import elaborate, read_claim
 from roadproof.library.elaboration import Elaborator
 from roadproof.library.quantity import Quantity
-from roadproof.library.query import Query
-from roadproof.library.specification import Specification, unknown
+from roadproof.library.specification import Query, Specification, unknown
 from roadproof.logic import formula as f
-from roadproof.logic import induction, motion, syntax
+from roadproof.logic import motion, syntax
 from roadproof.logic import terms as t
-from roadproof.logic.fixed_parameters import pins
 from roadproof.logic.formula import Formula
+from roadproof.logic.initial_conditions import pins
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.restore import as_syntax, term_as_syntax
 from roadproof.logic.rewrite import parameters_of, terms_of, vehicles_of
@@ -333,7 +332,7 @@ def axiom_formula(specification: Specification, query: Query, axiom: Axiom) -> F
 
 def _made(specification: Specification, query: Query, axiom: Axiom) -> Formula:
     maker = axiom.schema.replace("-", "_")
-    make: Callable[..., Formula] = getattr(induction if axiom.is_induction else motion, maker)
+    make: Callable[..., Formula] = getattr(motion, maker)
     if ALL_SCHEMAS[axiom.schema][0] == "inside":
         inside = _elaborated(specification, query, axiom.arguments[0]).formula
         return make(inside, *(_time(specification, query, x) for x in axiom.arguments[1:]))

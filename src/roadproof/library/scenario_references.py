@@ -10,9 +10,8 @@ from dataclasses import dataclass
 
 from roadproof.errors import InputError, UsageError
 from roadproof.library.elaborate import apply_definition, read_claim
-from roadproof.library.query import Query
 from roadproof.library.scenarios import Scenario, are_numbers, name_of, number_in, numbers_of
-from roadproof.library.specification import Specification, unknown
+from roadproof.library.specification import Query, Specification, unknown
 from roadproof.library.words import called
 from roadproof.logic import syntax
 

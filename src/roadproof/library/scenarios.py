@@ -16,8 +16,7 @@ from roadproof.errors import InputError
 from roadproof.library.compose import both, either, eventually
 from roadproof.library.elaborate import apply_definition, elaborate, read_claim, signature
 from roadproof.library.elaboration import Elaborator
-from roadproof.library.query import Query
-from roadproof.library.specification import Specification, source_of
+from roadproof.library.specification import Query, Specification, source_of
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic.formula import Formula, transform

@@ -1,4 +1,4 @@
-"""Definitions, spec sets and options: what a specification file says, before anybody meets anybody.
+"""Definitions, spec sets and options: what a specification file says, and queries in its terms.
 
 A set is a chain of overrides of named definitions; an option value is one more override. The
 definitions in force for a choice of set and options are a ``Specification``.
@@ -15,7 +15,10 @@ from pathlib import Path
 from typing import Any
 
 from roadproof.errors import InputError
+from roadproof.logic import syntax
 from roadproof.logic.custom_names import freedom_of, own_signal
+from roadproof.logic.formula import Formula
+from roadproof.logic.show import text
 from roadproof.logic.syntax import (
     Definition,
     LaneDeclaration,
@@ -203,3 +206,24 @@ def key_of(declared: Definition | ParameterDeclaration | SignalDeclaration) -> s
 def source_of(library: Library, declared: Definition | ParameterDeclaration | SignalDeclaration) -> Source:
     """Where a definition or a parameter was written."""
     return library.sources.get(key_of(declared), Source("", ""))
+
+
+@dataclass(frozen=True)
+class Query:
+    """A formula in the definitions of one specification, with the names that are free in it.
+
+    ``claim`` is what is said, as a tree, and ``formula`` what it means; ``written`` is how a user wrote
+    it, empty where it was put together. ``vehicles``: those that are declared, then others by name;
+    ``lanes``: free lanes by name.
+    """
+
+    claim: syntax.Claim
+    formula: Formula
+    vehicles: tuple[str, ...]
+    lanes: tuple[str, ...]
+    written: str = ""
+
+    @property
+    def text(self) -> str:
+        """The query as text, which reads as the same query."""
+        return self.written or text(self.claim)

@@ -1,10 +1,14 @@
-"""What a text speaks of: the definitions below it, and the parameters that occur in them."""
+"""What a text speaks of: definitions, parameters that occur in them, and where a part of it is said."""
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
-from roadproof.library.specification import Library, Specification
+from roadproof.errors import Position
+from roadproof.library.elaborate import notes_of
+from roadproof.library.specification import Library, Query, Specification, source_of
 from roadproof.logic import syntax
+from roadproof.logic.formula import Formula, subformulas
+from roadproof.logic.parse import parse_claim
 from roadproof.logic.syntax import Definition, Expression, ParameterDeclaration
 
 
@@ -49,3 +53,40 @@ def _free_names(expression: Expression, bound: Iterable[str]) -> set[str]:
     walked = list(syntax.walk(expression))
     names = {part.name for part in walked if isinstance(part, syntax.Name)}
     return names - set(bound) - {part.variable for part in walked if isinstance(part, syntax.Quantified)}
+
+
+@dataclass(frozen=True)
+class Place:
+    """An expression from ``at`` to its end in the text called ``source``, and what it means."""
+
+    source: str
+    at: Position
+    formula: Formula
+
+
+def places_of(specification: Specification, query: Query, source: str = "formula") -> list[Place]:
+    """Every formula in the text of ``query``, called ``source``, and of the definitions that it uses.
+
+    What has no place, as in a query that was put together, is left out. Raises ``TextError``.
+    """
+    claim = parse_claim(query.written) if query.written else query.claim
+    found: dict[tuple[str, Position, int, int, Formula], Place] = {}
+    for note in notes_of(specification, claim):
+        if note.at.line:
+            inside = note.definition
+            name = source if inside is None else source_of(specification.library, inside).name
+            key = (name, note.at, note.at.end_line, note.at.end_column, note.formula)
+            found[key] = Place(name, note.at, note.formula)
+    return list(found.values())
+
+
+def nearest(places: Iterable[Place], part: Formula) -> list[Place]:
+    """Where ``part`` is said; where it is only said in other texts, the shortest places that mean it too."""
+    known = list(places)
+    exactly = [x for x in known if x.formula == part]
+    if exactly:
+        return exactly
+    around = [x for x in known if part in subformulas(x.formula)]
+    least = {x.formula for x in around}
+    least -= {x for x in least if any(y != x and y in subformulas(x) for y in least)}
+    return [x for x in around if x.formula in least]

@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Literal, TypeAlias, assert_never
 
 from roadproof.logic.node import node, once
-from roadproof.logic.terms import Number, Term, number
+from roadproof.logic.terms import Number, Signal, Size, Term, number, subtract
 
 Comparison: TypeAlias = Literal["<", "<=", ">", ">="]
 DomainKind: TypeAlias = Literal["lanes", "adjacent", "lanelets", "zone"]
@@ -278,7 +278,6 @@ def nesting(formula: Formula) -> dict[Application, int]:
 
 
 @once
-@once
 def is_state(formula: Formula) -> bool:
     """Whether ``formula`` speaks about one instant only: no temporal operator inside."""
     return not isinstance(formula, Temporal) and all(map(is_state, children(formula)))
@@ -313,3 +312,12 @@ def transform(formula: Formula, change: Callable[[Formula], Formula]) -> Formula
         return done[current]
 
     return visit(formula)
+
+
+def boxes_overlap(a: str, b: str) -> Formula:
+    """The boxes [s-length, s] × [d-width, d] of ``a`` and ``b`` overlap with positive area."""
+    parts: list[Formula] = []
+    for one, other in ((a, b), (b, a)):
+        parts.append(Compare(subtract(Signal("s", one), Size("length", one)), "<", Signal("s", other)))
+        parts.append(Compare(subtract(Signal("d", one), Size("width", one)), "<", Signal("d", other)))
+    return conjunction(*parts)

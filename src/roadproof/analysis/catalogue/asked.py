@@ -17,7 +17,6 @@ from roadproof.analysis.classify.classes import Class, Classes, Group, Plan
 from roadproof.errors import UsageError
 from roadproof.library.bind import bind
 from roadproof.library.compose import both, negation
-from roadproof.library.query import Query
 from roadproof.library.scenarios import (
     LANE,
     PAIR,
@@ -34,7 +33,7 @@ from roadproof.library.scenarios import (
     sector,
     vehicles_of,
 )
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.world.road import Road

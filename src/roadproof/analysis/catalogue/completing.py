@@ -27,9 +27,8 @@ from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import both
 from roadproof.library.elaborate import read_claim, read_term
-from roadproof.library.query import Query
 from roadproof.library.scenarios import Scenario, applied, name_of, number_in
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.runtime.executors import Jobs
 from roadproof.world.units import unit_text

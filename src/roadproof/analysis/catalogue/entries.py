@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
-from roadproof.library.query import Query
+from roadproof.library.specification import Query
 from roadproof.world.road import Road
 from roadproof.world.vehicle import Vehicle
 

@@ -12,8 +12,7 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.strict import rational
 from roadproof.library.compose import both, implication, negation
 from roadproof.library.elaborate import read_claim
-from roadproof.library.query import Query
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.verdict import Verdict
 
 _VERDICTS: Mapping[Relation, FactVerdict] = {

@@ -19,9 +19,8 @@ from roadproof.errors import InputError, RoadproofError
 from roadproof.library.compose import always, both
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import split
-from roadproof.library.query import Query
 from roadproof.library.scenario_references import claimed
-from roadproof.library.specification import Specification, unknown
+from roadproof.library.specification import Query, Specification, unknown
 from roadproof.world.models import LARGEST_MODEL, load_road, load_vehicle, read_toml
 
 _BEGIN = re.compile(r"\s*\[\[|\s*\[\s*test\s*\]")

@@ -33,8 +33,8 @@ from roadproof.evidence.answers.catalogue_index import Relation
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.bind import bind
 from roadproof.library.compose import both
-from roadproof.library.query import Query
 from roadproof.library.scenarios import Scenario, applied, name_of, number_in
+from roadproof.library.specification import Query
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict

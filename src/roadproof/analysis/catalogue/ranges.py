@@ -21,8 +21,7 @@ from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import both
 from roadproof.library.elaborate import read_term
-from roadproof.library.query import Query
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.world.units import unit_text
 

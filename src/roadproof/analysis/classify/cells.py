@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from roadproof.analysis.basis import Basis
 from roadproof.library.compose import both, equivalence, implication, negation
-from roadproof.library.query import Query
+from roadproof.library.specification import Query
 
 REFINING = 2.0  # units of work for one proof
 

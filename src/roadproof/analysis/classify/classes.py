@@ -15,7 +15,6 @@ from roadproof.analysis.classify.cells import Axis, Cell
 from roadproof.analysis.study.evidence_store import specification_names
 from roadproof.errors import InputError, TextError, UsageError
 from roadproof.library.elaborate import apply_definition
-from roadproof.library.query import Query
 from roadproof.library.scenarios import (
     LANE,
     PAIR,
@@ -34,7 +33,7 @@ from roadproof.library.scenarios import (
     vehicles_of,
 )
 from roadproof.library.scenarios import name_of as scenario_name
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
 

@@ -15,7 +15,7 @@ from roadproof.analysis.classify.classes import Classes, Plan, what_axis, where_
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.pool import Progress
 from roadproof.evidence.answers.classify import Doubt
-from roadproof.library.query import Query
+from roadproof.library.specification import Query
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.runtime.executors import Jobs
 

@@ -15,8 +15,8 @@ from roadproof.engines.search.question import usual_road, zones_of
 from roadproof.evidence.answers.classify import Word
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import both
-from roadproof.library.query import Query
 from roadproof.library.scenarios import sector
+from roadproof.library.specification import Query
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive

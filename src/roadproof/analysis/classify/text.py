@@ -19,9 +19,8 @@ from roadproof.errors import InputError
 from roadproof.evidence.answers.classify import Kind
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import build_library
-from roadproof.library.query import Query
 from roadproof.library.scenarios import name_of
-from roadproof.library.specification import Source, Specification
+from roadproof.library.specification import Query, Source, Specification
 from roadproof.library.words import spans
 
 WIDTH = 110

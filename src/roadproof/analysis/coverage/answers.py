@@ -12,8 +12,7 @@ from roadproof.evidence.answers import coverage as kept
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.elaborate import read_claim
-from roadproof.library.query import Query
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.verdict import Verdict
 
 

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 
 from roadproof.engines.search.question import zones_of
 from roadproof.library.compose import both, either, eventually, implication, in_some_lane, negation
-from roadproof.library.query import Query
 from roadproof.library.scenarios import (
     LANE,
     PAIR,
@@ -24,7 +23,7 @@ from roadproof.library.scenarios import (
     sector,
     vehicles_of,
 )
-from roadproof.library.specification import Library, Specification
+from roadproof.library.specification import Library, Query, Specification
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
 from roadproof.world.road import Road

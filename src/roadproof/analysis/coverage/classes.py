@@ -16,8 +16,8 @@ from roadproof.analysis.coverage.parts import Part, parts_of
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.library.bind import bind
 from roadproof.library.compose import either, in_some_lane, with_vehicles
-from roadproof.library.query import Query
 from roadproof.library.scenarios import LANE, PAIR, likes_of
+from roadproof.library.specification import Query
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.semantics.exact.exact import judge

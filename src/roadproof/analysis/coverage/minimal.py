@@ -6,8 +6,7 @@ from fractions import Fraction
 
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.library.bind import bind, values_with
-from roadproof.library.query import Query
-from roadproof.library.specification import Library
+from roadproof.library.specification import Library, Query
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.world.drive import Motion, Piece

@@ -8,7 +8,7 @@ from roadproof.analysis.basis import ProofResult
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.analysis.coverage.needed import Need
 from roadproof.evidence.answers.coverage import MissedTrace, SetVerdict, Traffic
-from roadproof.library.query import Query
+from roadproof.library.specification import Query
 from roadproof.verdict import Verdict
 
 

@@ -7,7 +7,7 @@ from roadproof.analysis.basis import ProofResult
 from roadproof.analysis.coverage.answers import Answers
 from roadproof.analysis.coverage.found import FoundGap
 from roadproof.analysis.coverage.needed import Need
-from roadproof.library.query import Query
+from roadproof.library.specification import Query
 
 
 @dataclass(frozen=True)

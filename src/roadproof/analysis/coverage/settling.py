@@ -17,8 +17,8 @@ from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.bind import bind
 from roadproof.library.compose import both, conjuncts, either, eventually, implication, negation
-from roadproof.library.query import Query
 from roadproof.library.scenarios import LANE, PAIR, Scenario, applied, danger
+from roadproof.library.specification import Query
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict

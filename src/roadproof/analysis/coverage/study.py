@@ -32,7 +32,7 @@ from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.errors import InputError
 from roadproof.evidence.answers import coverage as kept
 from roadproof.evidence.answers.coverage import SCHEMA
-from roadproof.library.query import Query
+from roadproof.library.specification import Query
 from roadproof.verdict import Verdict
 
 CHUNKS = 7

@@ -9,7 +9,7 @@ from roadproof.analysis.explore.measure import Measure, with_parts
 from roadproof.engines.search.ask import Search
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.library.query import Query
+from roadproof.library.specification import Query
 from roadproof.verdict import DriveVerdict, Verdict
 
 

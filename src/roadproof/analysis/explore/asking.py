@@ -15,9 +15,8 @@ from roadproof.analysis.explore.measure import Sense, read_measure
 from roadproof.engines.search.ask import Search
 from roadproof.engines.search.question import Setting
 from roadproof.errors import UsageError
-from roadproof.library.query import Query
-from roadproof.library.specification import Library, unknown
-from roadproof.library.values import Number, exact
+from roadproof.library.bind import Number, exact
+from roadproof.library.specification import Library, Query, unknown
 from roadproof.logic.rewrite import parameters_of
 from roadproof.world.models import load_vehicle
 from roadproof.world.units import UNITS, unit_text

@@ -43,7 +43,7 @@ from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, judge_file
 from roadproof.library.bind import bind
-from roadproof.library.query import Query
+from roadproof.library.specification import Query
 from roadproof.logic import formula as f
 from roadproof.logic.fragment import is_cubic_state
 from roadproof.logic.terms import Term, number

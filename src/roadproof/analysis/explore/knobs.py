@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias
 from roadproof.analysis.explore.measure import compared
 from roadproof.engines.search.ask import Search
 from roadproof.library.compose import always
-from roadproof.library.query import Query
+from roadproof.library.specification import Query
 from roadproof.logic import syntax
 from roadproof.world.units import UNITS
 

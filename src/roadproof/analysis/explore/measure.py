@@ -9,8 +9,7 @@ from roadproof.engines.search.ask import Search
 from roadproof.errors import UsageError
 from roadproof.library.compose import both, comparison, eventually
 from roadproof.library.elaborate import read_claim, read_term
-from roadproof.library.query import Query
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.show import declared
 from roadproof.logic.syntax import BinaryOperator, Binding, Expression

@@ -6,7 +6,7 @@ from roadproof.engines.search.ask import Search
 from roadproof.evidence.certificate import Certificate
 from roadproof.library.compose import negation
 from roadproof.library.motion import Assumption, value_texts
-from roadproof.library.query import Query
+from roadproof.library.specification import Query
 from roadproof.logic.fragment import is_cubic_state
 from roadproof.logic.rewrite import parameters_of
 

@@ -10,7 +10,7 @@ from roadproof.analysis.study.evidence_store import EvidenceStore
 from roadproof.errors import InputError
 from roadproof.evidence.answers import explore as kept
 from roadproof.evidence.certificate import Certificate
-from roadproof.library.query import Query
+from roadproof.library.specification import Query
 from roadproof.world.units import unit_text
 
 _EXTREME = ("best", "missed", "surely")

@@ -20,8 +20,7 @@ from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.library.bind import values_with
-from roadproof.library.query import Query
-from roadproof.library.specification import Library
+from roadproof.library.specification import Library, Query
 from roadproof.logic.formula import Formula
 from roadproof.logic.fragment import intervals_of
 from roadproof.logic.terms import Parameter, leaves

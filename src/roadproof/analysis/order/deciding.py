@@ -21,9 +21,8 @@ from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.bind import bind
 from roadproof.library.compose import both, implication, negation
-from roadproof.library.query import Query
 from roadproof.library.scenarios import Scenario, applied, numbers_of, vehicles_of, without_sectors
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
 from roadproof.runtime.budget import BudgetExceeded

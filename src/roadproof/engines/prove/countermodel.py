@@ -21,7 +21,7 @@ from roadproof.evidence import state
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.periodic import Loop
 from roadproof.evidence.refutation import Countermodel, Held, Instant, fault_of, when_true
-from roadproof.library.query import Query
+from roadproof.library.specification import Query
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import code_of, kind_of
 from roadproof.logic.rewrite import terms_of, vehicles_of

@@ -11,7 +11,7 @@ from enum import StrEnum
 from roadproof.evidence.answers import proofs as kept
 from roadproof.evidence.codec import read
 from roadproof.library.motion import is_moving
-from roadproof.library.query import Query
+from roadproof.library.specification import Query
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import signals_of

@@ -3,8 +3,7 @@
 from roadproof.drivers.restriction import left_open
 from roadproof.engines.prove.prover import Result, prove
 from roadproof.library.elaborate import read_claim
-from roadproof.library.query import Query
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 

@@ -5,8 +5,7 @@ from collections.abc import Iterator, Sequence
 from roadproof.engines.prove.prover import Result, prove
 from roadproof.errors import InputError
 from roadproof.library.motion import Assumption, Axiom, axiom_formula
-from roadproof.library.query import Query
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.restore import as_syntax, term_as_syntax

@@ -18,7 +18,7 @@ from roadproof.engines.prove.states import StateChecker
 from roadproof.errors import RoadproofError
 from roadproof.evidence.periodic import Loop, judge_periodic
 from roadproof.evidence.refutation import Countermodel, Instant, without_empty_windows
-from roadproof.library.query import Query
+from roadproof.library.specification import Query
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.fragment import intervals_of

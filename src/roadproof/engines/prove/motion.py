@@ -15,8 +15,7 @@ from roadproof.engines.prove.prover import Result, prove
 from roadproof.errors import InputError
 from roadproof.evidence.atoms import is_atom, up_to_variables
 from roadproof.library.motion import Assumption, Axiom, axiom_formula, limits_said, under_limits
-from roadproof.library.query import Query
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic import motion
 from roadproof.logic import terms as t

@@ -30,12 +30,11 @@ from roadproof.library.motion import (
     value_texts,
     values_said,
 )
-from roadproof.library.query import Query
-from roadproof.library.specification import Specification, is_within
+from roadproof.library.specification import Query, Specification, is_within
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
-from roadproof.logic.fixed_parameters import pins
 from roadproof.logic.formula import Formula
+from roadproof.logic.initial_conditions import pins
 from roadproof.logic.rewrite import with_values
 from roadproof.runtime.budget import Budget, Effort
 from roadproof.runtime.progress import begin

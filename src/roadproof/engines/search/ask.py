@@ -20,8 +20,7 @@ from roadproof.evidence.answers import drives as kept
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.bind import default_values
-from roadproof.library.query import Query
-from roadproof.library.specification import Library, Specification
+from roadproof.library.specification import Library, Query, Specification
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import parameters_of
 from roadproof.runtime.budget import BudgetExceeded

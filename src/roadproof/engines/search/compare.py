@@ -15,7 +15,7 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.bind import values_with
 from roadproof.library.compose import both, implication, negation
 from roadproof.library.motion import Assumption, value_texts
-from roadproof.library.query import Query
+from roadproof.library.specification import Query
 from roadproof.logic.formula import is_state
 from roadproof.logic.fragment import is_cubic_state
 from roadproof.logic.rewrite import parameters_of

@@ -10,11 +10,10 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.refutation import NOWHERE, Countermodel
 from roadproof.library.bind import values_with
 from roadproof.library.compose import negation
-from roadproof.library.query import Query
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.logic.custom_names import kind_of
-from roadproof.logic.fixed_parameters import pins
 from roadproof.logic.formula import is_state
+from roadproof.logic.initial_conditions import pins
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.signals import FIXED, SIGNALS, STARTING
 

@@ -17,15 +17,13 @@ from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import negation
-from roadproof.library.query import Query
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import own_of
-from roadproof.logic.fixed_parameters import pins
 from roadproof.logic.formula import Formula
 from roadproof.logic.fragment import intervals_of
-from roadproof.logic.initial_conditions import conjuncts
+from roadproof.logic.initial_conditions import conjuncts, pins
 from roadproof.logic.rewrite import bounds_of, terms_of, with_values
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.replay import first_breach, first_overlap

@@ -10,8 +10,7 @@ from roadproof.engines.prove.prover import ProofHeuristic, Result, prove
 from roadproof.evidence.certificate import Certificate, certificate_data
 from roadproof.library.compose import negation, of_parts
 from roadproof.library.elaborate import read_claim
-from roadproof.library.query import Query
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.restore import as_syntax

@@ -20,9 +20,8 @@ from roadproof.engines.search.question import SearchProblem
 from roadproof.engines.search.sampling import Space, State, signals_in, states
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.box_overlap import boxes_overlap
 from roadproof.logic.custom_names import own_of
-from roadproof.logic.formula import Formula, is_state
+from roadproof.logic.formula import Formula, boxes_overlap, is_state
 from roadproof.logic.fragment import signal_degree
 from roadproof.logic.initial_conditions import compared, conjuncts, demands
 from roadproof.logic.terms import Own, Signal, Size

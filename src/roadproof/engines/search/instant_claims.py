@@ -12,8 +12,7 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.refutation import Countermodel, Instant
 from roadproof.library.bind import bind, values_with
 from roadproof.library.compose import negation
-from roadproof.library.query import Query
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.logic.fragment import is_cubic_state
 from roadproof.logic.terms import Signal
 from roadproof.world.vehicle import Range

@@ -17,8 +17,7 @@ from roadproof.engines.search.initial_conditions import Start
 from roadproof.engines.search.limits import Limits
 from roadproof.errors import UsageError
 from roadproof.library.bind import bind, values_with
-from roadproof.library.query import Query
-from roadproof.library.specification import Library
+from roadproof.library.specification import Library, Query
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import told_range

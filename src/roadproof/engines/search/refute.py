@@ -9,10 +9,9 @@ from roadproof.engines.search.enumeration import Within, small_drive
 from roadproof.engines.search.question import SearchOptions, Setting
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import negation
-from roadproof.library.query import Query
-from roadproof.library.specification import Specification
-from roadproof.logic.fixed_parameters import pins
+from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import is_state
+from roadproof.logic.initial_conditions import pins
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.world.vehicle import Vehicle

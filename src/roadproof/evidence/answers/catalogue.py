@@ -24,8 +24,8 @@ from roadproof.evidence.codec import read
 from roadproof.evidence.strict import Fields, rational
 from roadproof.library.compose import both, implication, negation
 from roadproof.library.elaborate import read_claim, read_term
-from roadproof.library.query import Query
 from roadproof.library.scenarios import Scenario, applied, number_in
+from roadproof.library.specification import Query
 from roadproof.logic.formula import Compare, Formula
 from roadproof.logic.terms import constant_value
 from roadproof.verdict import Verdict

@@ -31,8 +31,8 @@ from roadproof.library.bind import values_with
 from roadproof.library.compose import always, both, comparison, eventually
 from roadproof.library.elaborate import read_claim, read_term
 from roadproof.library.motion import values_said
-from roadproof.library.query import Query
 from roadproof.library.scenarios import Scenario, applied, name_of
+from roadproof.library.specification import Query
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic.formula import Formula

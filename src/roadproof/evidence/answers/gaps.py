@@ -4,7 +4,6 @@ from collections.abc import Sequence
 
 from roadproof.evidence.answers.entry import Common
 from roadproof.library.compose import both, either, eventually, implication, in_some_lane, negation
-from roadproof.library.query import Query
 from roadproof.library.scenarios import (
     LANE,
     PAIR,
@@ -20,7 +19,7 @@ from roadproof.library.scenarios import (
     sector,
     vehicles_of,
 )
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names

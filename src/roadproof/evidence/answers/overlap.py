@@ -29,8 +29,8 @@ from roadproof.evidence.codec import UNCHECKED, Doc, Rule, read
 from roadproof.evidence.json_schema import Shared
 from roadproof.evidence.strict import Fields
 from roadproof.library.compose import both, eventually
-from roadproof.library.query import Query
 from roadproof.library.scenarios import LANE, Scenario, applied, vehicles_of
+from roadproof.library.specification import Query
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.verdict import DriveVerdict, Verdict

@@ -26,8 +26,8 @@ from roadproof.evidence.codec import UNCHECKED, Doc, Key, read
 from roadproof.evidence.strict import Fields
 from roadproof.library.compose import both, equivalence, implication, negation
 from roadproof.library.elaborate import read_claim
-from roadproof.library.query import Query
 from roadproof.library.scenarios import Scenario, applied, leaves_at_once, vehicles_of
+from roadproof.library.specification import Query
 from roadproof.logic.formula import Formula
 from roadproof.verdict import Verdict
 

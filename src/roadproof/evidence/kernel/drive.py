@@ -19,8 +19,7 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.box_overlap import boxes_overlap
-from roadproof.logic.formula import Formula
+from roadproof.logic.formula import Formula, boxes_overlap
 from roadproof.logic.rewrite import parameters_of
 from roadproof.world.drive import Motion
 from roadproof.world.road import Lanelet, Road

@@ -15,8 +15,7 @@ from roadproof.evidence.kernel.printer import Formals
 from roadproof.evidence.times import bound_parameters
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import NOTHING, assumption, axiom_formula, value_texts, values_said
-from roadproof.library.query import Query
-from roadproof.library.specification import Library
+from roadproof.library.specification import Library, Query
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import parameters_of, with_values

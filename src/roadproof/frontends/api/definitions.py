@@ -8,13 +8,11 @@ from typing import TypeAlias
 
 from roadproof.errors import InputError, UsageError
 from roadproof.frontends.api.phrases import Phrase, Term, call
-from roadproof.library.bind import values_with
+from roadproof.library.bind import Number, exact, values_with
 from roadproof.library.diagnose import checked_library
 from roadproof.library.elaborate import read_claim
-from roadproof.library.query import Query
 from roadproof.library.scenario_references import read_numbers, read_query
-from roadproof.library.specification import Library, Source, Specification, unknown
-from roadproof.library.values import Number, exact
+from roadproof.library.specification import Library, Query, Source, Specification, unknown
 from roadproof.library.words import Words, words_of
 
 # A scenario by number, a formula as text or built with operators, or one that was read before.

@@ -13,12 +13,12 @@ from functools import lru_cache
 
 from roadproof.errors import Position, RoadproofError, TextError, UsageError, raise_all
 from roadproof.frontends.api.definitions import Definitions, values_of
+from roadproof.library.bind import Number
 from roadproof.library.diagnose import Lost, Proofreader, as_diagnostic, claim_errors
 from roadproof.library.loading import load_library
 from roadproof.library.scenario_references import read_query
 from roadproof.library.specification import Library, Source, Specification
-from roadproof.library.values import Number
-from roadproof.logic.each import instances
+from roadproof.logic.build_syntax import instances
 from roadproof.logic.parse import parse_library
 from roadproof.logic.syntax import EachBlock, WhenBlock
 

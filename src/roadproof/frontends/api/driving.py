@@ -9,8 +9,7 @@ from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.settings import as_road, positive
 from roadproof.frontends.settings.value_types import RoadLike
-from roadproof.library.bind import values_with
-from roadproof.library.values import Number, exact
+from roadproof.library.bind import Number, exact, values_with
 from roadproof.world.drive import Drive, Motion
 from roadproof.world.pieces import pieces_of
 from roadproof.world.signals import KINDS, Kind

@@ -14,8 +14,8 @@ from fractions import Fraction
 from typing import Any, TypeAlias
 
 from roadproof.errors import InputError, UsageError
+from roadproof.library.bind import Number, exact
 from roadproof.library.scenarios import LANE, PAIR, TRIPLE
-from roadproof.library.values import Number, exact
 from roadproof.logic import syntax
 from roadproof.logic.show import text
 from roadproof.logic.syntax import Binding, Claim, Expression

@@ -23,8 +23,8 @@ from roadproof.frontends.report.sheet import Sheet, as_csv
 from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import PreventableKeywords
 from roadproof.frontends.settings.signatures import takes
+from roadproof.library.bind import Number, exact
 from roadproof.library.specification import unknown
-from roadproof.library.values import Number, exact
 from roadproof.verdict import Verdict
 
 _MOST_LINES = 2000

@@ -22,8 +22,8 @@ from roadproof.frontends.report.write_traffic import remove_report, write_report
 from roadproof.frontends.settings.keywords import EvaluateKeywords
 from roadproof.frontends.settings.recordings import Evaluate
 from roadproof.frontends.settings.signatures import takes
+from roadproof.library.bind import exact
 from roadproof.library.scenarios import COMPARISON, MIN_DANGER
-from roadproof.library.values import exact
 from roadproof.recordings.evaluate.evaluate import Findings
 from roadproof.recordings.evaluate.experiment import (
     Experiment,

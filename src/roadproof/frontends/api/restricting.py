@@ -11,9 +11,8 @@ from roadproof.frontends.api.definitions import Among, Definitions, What
 from roadproof.library.bind import values_with
 from roadproof.library.diagnose import checked_library
 from roadproof.library.loading import load_library
-from roadproof.library.query import Query
 from roadproof.library.scenarios import number_in, numbers_of
-from roadproof.library.specification import on_request
+from roadproof.library.specification import Query, on_request
 from roadproof.logic import formula as f
 from roadproof.logic.formula import subformulas
 

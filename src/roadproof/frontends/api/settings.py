@@ -9,9 +9,8 @@ from roadproof.errors import UsageError
 from roadproof.frontends.api.definitions import Definitions, What
 from roadproof.frontends.settings.groups import Budget, SearchPlace
 from roadproof.frontends.settings.value_types import RoadLike, Vehicles
-from roadproof.library.bind import values_with
+from roadproof.library.bind import Number, exact, values_with
 from roadproof.library.scenarios import numbers_of, roles
-from roadproof.library.values import Number, exact
 from roadproof.runtime.budget import Effort
 from roadproof.world.models import load_road, load_vehicle
 from roadproof.world.road import Road

@@ -25,9 +25,8 @@ from roadproof.frontends.settings.recordings import Monitor
 from roadproof.frontends.settings.signatures import takes
 from roadproof.frontends.settings.value_types import RoadLike
 from roadproof.library.bind import bind, values_with
-from roadproof.library.query import Query
 from roadproof.library.scenarios import SUBJECT, Scenario, lane_owner
-from roadproof.library.specification import Library
+from roadproof.library.specification import Library, Query
 from roadproof.recordings.evaluate.observed import FirstAnswer, Spans, observe_drive, observe_samples
 from roadproof.recordings.evaluate.one_trace import (
     OneTrace,

@@ -4,9 +4,8 @@ from collections.abc import Iterator
 
 from roadproof.engines.search.compare import Comparison, Direction
 from roadproof.frontends.report.sheet import Column, Sheet
-from roadproof.library.query import Query
 from roadproof.library.scenarios import scenario_number
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.library.words import words_of
 from roadproof.logic.custom_names import told_freedom
 from roadproof.logic.formula import conjunction

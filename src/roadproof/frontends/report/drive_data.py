@@ -13,9 +13,8 @@ from roadproof.drivers.words import words_of_parts
 from roadproof.errors import RoadproofError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.library.bind import bind, values_with
-from roadproof.library.query import Query
 from roadproof.library.scenarios import SUBJECT, danger, too_near_ahead, too_near_left
-from roadproof.library.specification import Library, Specification
+from roadproof.library.specification import Library, Query, Specification
 from roadproof.library.words import words_of
 from roadproof.logic.formula import Compare, Formula, nesting, subformulas
 from roadproof.semantics.exact.algebraic import approximate

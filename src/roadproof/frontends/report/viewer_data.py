@@ -22,11 +22,10 @@ from roadproof.frontends.report.drive_data import (
     vehicles_of,
 )
 from roadproof.library.bind import bind, values_with
-from roadproof.library.places import Place, places_of
-from roadproof.library.query import Query
 from roadproof.library.scenario_references import read_query
 from roadproof.library.scenarios import SUBJECT, scenario_number
-from roadproof.library.specification import Library, Specification
+from roadproof.library.specification import Library, Query, Specification
+from roadproof.library.uses import Place, places_of
 from roadproof.library.words import words_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, subformulas

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from roadproof.analysis.study.pool import Progress, Say
     from roadproof.engines.search.question import Engine
     from roadproof.frontends.settings.value_types import RoadLike, Vehicles
-    from roadproof.library.values import Number
+    from roadproof.library.bind import Number
     from roadproof.runtime.executors import Jobs
     from roadproof.semantics.sampled.answers import Convention
 

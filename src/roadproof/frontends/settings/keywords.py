@@ -25,7 +25,7 @@ if TYPE_CHECKING:
         Same,
         Vehicles,
     )
-    from roadproof.library.values import Number
+    from roadproof.library.bind import Number
     from roadproof.recordings.simulate.traffic import Ramp
     from roadproof.runtime.executors import Jobs
     from roadproof.semantics.sampled.answers import Convention

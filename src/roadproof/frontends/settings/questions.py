@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from roadproof.frontends.api.definitions import What
     from roadproof.frontends.api.phrases import Term
     from roadproof.frontends.settings.value_types import Assumed, Expected, ProofEngine, RoadLike, Vehicles
-    from roadproof.library.values import Number
+    from roadproof.library.bind import Number
 
 
 @dataclass(frozen=True, kw_only=True)

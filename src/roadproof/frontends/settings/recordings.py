@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from roadproof.evidence.judged import JudgedDrive
     from roadproof.frontends.api.definitions import Among
     from roadproof.frontends.settings.value_types import RoadLike
-    from roadproof.library.values import Number
+    from roadproof.library.bind import Number
     from roadproof.recordings.simulate.traffic import Ramp
 
 

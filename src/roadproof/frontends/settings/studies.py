@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from roadproof.evidence.answers.catalogue_index import Look
     from roadproof.frontends.api.definitions import Among
     from roadproof.frontends.settings.value_types import RoadLike, Same
-    from roadproof.library.values import Number
+    from roadproof.library.bind import Number
 
 
 @dataclass(frozen=True, kw_only=True)

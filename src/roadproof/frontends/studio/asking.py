@@ -13,8 +13,8 @@ from roadproof.frontends.report.viewer_data import shown_place
 from roadproof.frontends.studio.requests import count_of, draft_of, set_of, text_of
 from roadproof.frontends.studio.showing import marks_of, view
 from roadproof.library.compose import negation
-from roadproof.library.places import nearest, places_of
-from roadproof.library.query import Query
+from roadproof.library.specification import Query
+from roadproof.library.uses import nearest, places_of
 from roadproof.logic.formula import Formula
 from roadproof.runtime.progress import Listener
 

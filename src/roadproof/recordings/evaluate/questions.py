@@ -16,7 +16,6 @@ from roadproof.library.bind import default_values
 from roadproof.library.elaborate import apply_definition
 from roadproof.library.elaboration import Elaborator
 from roadproof.library.loading import bundled_library
-from roadproof.library.query import Query
 from roadproof.library.scenarios import (
     COMPARISON,
     LANE,
@@ -36,7 +35,7 @@ from roadproof.library.scenarios import (
     vehicles_of,
     violation,
 )
-from roadproof.library.specification import Library, Specification, unknown
+from roadproof.library.specification import Library, Query, Specification, unknown
 from roadproof.logic.formula import Formula, disjunction, is_state
 from roadproof.logic.fragment import horizon
 from roadproof.logic.rewrite import all_with_values, with_values, without_names

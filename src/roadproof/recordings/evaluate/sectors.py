@@ -4,7 +4,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from roadproof.errors import TextError
-from roadproof.library.query import Query
 from roadproof.library.scenarios import (
     PAIR,
     TRIPLE,
@@ -14,7 +13,7 @@ from roadproof.library.scenarios import (
     sector_words,
     vehicles_of,
 )
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, conjunction, disjunction, negation, transform
 from roadproof.logic.rewrite import without_names

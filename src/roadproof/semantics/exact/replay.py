@@ -10,8 +10,7 @@ from itertools import combinations
 from typing import Protocol, TypeAlias
 
 from roadproof.errors import UsageError
-from roadproof.logic.box_overlap import boxes_overlap
-from roadproof.logic.formula import Compare, Comparison, Formula, conjunction
+from roadproof.logic.formula import Compare, Comparison, Formula, boxes_overlap, conjunction
 from roadproof.logic.terms import (
     SIGNAL_DIMENSIONS,
     Number,
