@@ -17,6 +17,8 @@ from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.folder import survey
 from roadproof.frontends.api import judging_again
 from roadproof.frontends.cli.main import main
+from roadproof.frontends.report.page.catalogues import as_settings
+from roadproof.frontends.settings.flags import command_line
 from roadproof.verdict import ExitCode
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "catalogue" / "tests"
@@ -199,4 +201,5 @@ def test_the_command_asks_the_same(home: Path) -> None:
     told = json.loads((home / "report" / "index.json").read_text("utf-8"))["request"]
     assert told["paths"] == [str(home / "tests")]
     request = judging_again.read_request(told, "request")
-    assert request.command() == f"roadproof catalogue {home / 'tests'} --no-classes --drivers careful,rss"
+    command = command_line("catalogue", request.paths, as_settings(request.kept))
+    assert command == f"roadproof catalogue {home / 'tests'} --no-classes --drivers careful,rss"

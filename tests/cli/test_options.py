@@ -2,6 +2,7 @@
 
 import argparse
 import os
+from collections.abc import Mapping
 from fractions import Fraction
 from pathlib import Path
 
@@ -10,18 +11,22 @@ import pytest
 from roadproof.analysis.claims import Claims
 from roadproof.errors import InputError, UsageError
 from roadproof.frontends.cli import options, prove
+from roadproof.frontends.cli.basis import read_definitions
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.settings.flags import read_keywords
+from roadproof.frontends.settings.flags import add_flags, read_keywords
+from roadproof.frontends.settings.groups import Definitions
 from roadproof.frontends.settings.questions import Prove
-from roadproof.library.loading import bundled_library
 
 
 def parsed(*arguments: str) -> argparse.Namespace:
     parser = argparse.ArgumentParser()
-    options.add_specification_options(parser)
-    options.add_parameter_option(parser)
+    add_flags(parser, Definitions)
     options.add_json_option(parser)
     return parser.parse_args(arguments)
+
+
+def values_given(*arguments: str) -> Mapping[str, Fraction]:
+    return read_definitions(parsed(*arguments), Definitions).values
 
 
 @pytest.mark.parametrize(
@@ -38,13 +43,12 @@ def parsed(*arguments: str) -> argparse.Namespace:
     ],
 )
 def test_parameters_are_rationals_with_units(given: str, name: str, value: Fraction) -> None:
-    assert options.given_values(parsed("--param", given), bundled_library()) == {name: value}
-    assert options.given_values(parsed(), bundled_library()) == {}
+    assert values_given("--param", given) == {name: value}
+    assert values_given() == {}
 
 
 def test_the_last_value_counts() -> None:
-    twice = parsed("--param", "rho=1", "--param", "rho=2")
-    assert options.given_values(twice, bundled_library()) == {"rho": 2}
+    assert values_given("--param", "rho=1", "--param", "rho=2") == {"rho": 2}
 
 
 @pytest.mark.parametrize(
@@ -63,21 +67,20 @@ def test_the_last_value_counts() -> None:
 )
 def test_parameters_that_make_no_sense(given: str, message: str) -> None:
     with pytest.raises(InputError, match=f"--param .*{message}"):
-        options.given_values(parsed("--param", given), bundled_library())
+        values_given("--param", given)
 
 
 @pytest.mark.parametrize("given", ["rho", "=1", "rho="])
 def test_assignments_need_two_sides(given: str) -> None:
     with pytest.raises(UsageError, match="NAME=VALUE"):
-        options.given_values(parsed("--param", given), bundled_library())
+        values_given("--param", given)
 
 
 def test_specification_is_selected(tmp_path: Path) -> None:
     mine = tmp_path / "mine.spec"
     mine.write_text("set mine extends ext {}\ndef p(a: vehicle) := true", "utf-8")
-    chosen = options.select_specification(
-        parsed("--spec", str(mine), "--set", "mine", "--option", "lateral_sign=literal")
-    )
+    words = ("--spec", str(mine), "--set", "mine", "--option", "lateral_sign=literal")
+    chosen = read_definitions(parsed(*words), Definitions).specification
     assert chosen.set_name == "mine"
     assert chosen.options["lateral_sign"] == "literal"
     assert "p" in chosen.definitions

@@ -2,15 +2,16 @@
 
 import argparse
 from collections import deque
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.numbers import read_hands
-from roadproof.frontends.cli.options import chosen_options, given_values, load_library_of, write_json
+from roadproof.frontends.cli.options import write_json
 from roadproof.frontends.cli.progress import Counter, warn
-from roadproof.frontends.settings.flags import read_keywords
+from roadproof.frontends.settings.flags import read_flag, read_keywords
+from roadproof.frontends.settings.groups import Readings
 from roadproof.frontends.settings.option import Settings
 
 if TYPE_CHECKING:
@@ -20,21 +21,32 @@ if TYPE_CHECKING:
 A = TypeVar("A")
 
 
-def read_definitions(args: argparse.Namespace, sets: Sequence[str]) -> "Definitions":
-    """The definitions of ``sets``, readings and values. Raises ``InputError``, ``UsageError``."""
-    from roadproof.frontends.api.definitions import Definitions
+def read_definitions(args: argparse.Namespace, settings: type[Readings]) -> "Definitions":
+    """The definitions that the flags of a question choose. Raises ``InputError``, ``UsageError``."""
+    from roadproof.frontends.api.definitions import Definitions, values_of
+    from roadproof.library.diagnose import checked_library
 
     if vars(args).get("preventable") or vars(args).get("unpreventable"):
         from roadproof.drivers.restriction import names_for
 
-        args.specs = names_for(args.specs)
-    library, options = load_library_of(args), chosen_options(args)
+        args.specs = names_for(args.specs or [])
+    sets = read_flag(args, settings, "sets") or ("base",)
+    library, readings = checked_library(args.specs or ()), read_flag(args, settings, "readings")
     if len({*sets}) < len(sets):
         raise UsageError(f"--set {','.join(sets)}: a spec set is repeated; name each once")
     for name in sets:
-        library.select(name, options)
-    values = given_values(args, library) if "params" in args else {}
-    return Definitions(library.select(sets[0], options), tuple(sets), values)
+        library.select(name, readings)
+    params = read_flag(args, settings, "params") if "params" in args else None
+    values = values_of(library, params or {}, "--param ")
+    return Definitions(library.select(sets[0], readings), sets, values)
+
+
+def add_drivers(args: argparse.Namespace) -> None:
+    """Add the definitions of driver models to the files of ``--spec``."""
+    from roadproof.drivers.models import DRIVERS
+
+    specs = args.specs or []
+    args.specs = specs if Path(DRIVERS) in specs else [Path(DRIVERS), *specs]
 
 
 def study_keywords(args: argparse.Namespace, settings: type[Settings], folder: Path | None) -> Any:

@@ -4,7 +4,7 @@ import argparse
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import evidence_folder, hand_over, read_definitions, study_keywords
-from roadproof.frontends.cli.options import add_definition_options, add_json_option, chosen_sets
+from roadproof.frontends.cli.options import add_json_option
 from roadproof.frontends.cli.progress import Counter
 from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.studies import Catalogue
@@ -54,7 +54,6 @@ with --gaps also whether a class of gaps is empty, with --explore how far drives
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     parser.add_argument("paths", metavar="DIR|FILE", nargs="+", help="folders of tests, or tests")
-    add_definition_options(parser, several=True)
     add_flags(parser, Catalogue)
     add_json_option(parser)
 
@@ -67,7 +66,7 @@ def run(args: argparse.Namespace) -> int:
         if getattr(args, name) and args.complete is None:
             raise UsageError(f"--{name.removesuffix('s')} requires --complete DIR")
     formats_in(args.formats or "csv")
-    home = read_definitions(args, chosen_sets(args))
+    home = read_definitions(args, Catalogue)
     given = study_keywords(args, Catalogue, evidence_folder(args.out, args.json))
     found = catalogue(*args.paths, using=home, **given)
     code = hand_over(args, found, args.pictures)

@@ -4,7 +4,7 @@ import argparse
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import evidence_folder, hand_over, read_definitions, study_keywords
-from roadproof.frontends.cli.options import add_definition_options, add_json_option
+from roadproof.frontends.cli.options import add_json_option
 from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.studies import Classify
 
@@ -29,7 +29,6 @@ class has no drive.
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
-    add_definition_options(parser)
     add_flags(parser, Classify)
     add_json_option(parser)
 
@@ -40,6 +39,6 @@ def run(args: argparse.Namespace) -> int:
     if args.on is not None and not args.shares:
         raise UsageError("--on and --no-shares contradict each other: omit one of them")
     folder = evidence_folder(args.out, args.json)
-    home = read_definitions(args, [args.set_name])
+    home = read_definitions(args, Classify)
     found = classify(args.among, home, **study_keywords(args, Classify, folder))
     return hand_over(args, found, args.pictures)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import read_definitions
-from roadproof.frontends.cli.options import add_definition_options, add_json_option, chosen_sets, write_json
+from roadproof.frontends.cli.options import add_json_option, write_json
 from roadproof.frontends.cli.progress import clear, note, tell_stage
 from roadproof.frontends.settings.flags import add_flags, read_keywords
 from roadproof.frontends.settings.questions import Compare
@@ -29,7 +29,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     parser.add_argument("first", metavar="F1", help="a scenario's number, or a formula")
     parser.add_argument("second", metavar="F2", help="another; in the second --set where two are given")
-    add_definition_options(parser, several=True)
     add_flags(parser, Compare)
     add_json_option(parser)
 
@@ -37,10 +36,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.comparing import compare
 
-    sets = chosen_sets(args)
-    if len(sets) > 2:
-        raise UsageError(f"--set is given {len(sets)} times: two formulas have at most two spec sets")
-    home = read_definitions(args, sets)
+    home = read_definitions(args, Compare)
+    if len(home.sets) > 2:
+        raise UsageError(f"--set is given {len(home.sets)} times: two formulas have at most two spec sets")
     begun = time.monotonic()
 
     def show(name: str, direction: "Direction") -> None:

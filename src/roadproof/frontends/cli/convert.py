@@ -4,8 +4,8 @@ import argparse
 from pathlib import Path
 
 from roadproof.frontends.cli.progress import Counter
+from roadproof.frontends.settings.commands import Convert
 from roadproof.frontends.settings.flags import add_flags
-from roadproof.frontends.settings.groups import Workers
 from roadproof.verdict import ExitCode
 
 SUMMARY = "convert recordings to Parquet, checked, for quicker reading"
@@ -25,8 +25,7 @@ examples:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     parser.add_argument("path", metavar="PATH", type=Path, help="the recordings")
-    parser.add_argument("--out", metavar="DIR", type=Path, required=True, help="where the data set goes")
-    add_flags(parser, Workers)
+    add_flags(parser, Convert)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -3,7 +3,7 @@
 import argparse
 
 from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
-from roadproof.frontends.cli.options import add_definition_options, add_json_option
+from roadproof.frontends.cli.options import add_json_option
 from roadproof.frontends.cli.progress import Counter, tell
 from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.studies import Coverage
@@ -31,7 +31,6 @@ Exit code 0 where coverage is proved, 10 where there are gaps, 20 where neither 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
-    add_definition_options(parser)
     add_flags(parser, Coverage)
     add_json_option(parser)
 
@@ -39,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.covering import coverage
 
-    home = read_definitions(args, [args.set_name])
+    home = read_definitions(args, Coverage)
     found = coverage(home, tell=tell, **study_keywords(args, Coverage, args.out))
     if args.out is not None and args.pictures:
         found.draw_beside(args.jobs, Counter())

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.errors import UsageError
-from roadproof.frontends.cli.basis import read_definitions
+from roadproof.frontends.cli.basis import add_drivers, read_definitions
 from roadproof.frontends.cli.numbers import read_hands
-from roadproof.frontends.cli.options import add_definition_options, add_json_option, chosen_sets, write_json
+from roadproof.frontends.cli.options import add_json_option, write_json
 from roadproof.frontends.cli.progress import note
 from roadproof.frontends.settings.flags import add_flags, read_keywords
 from roadproof.frontends.settings.recordings import Evaluate
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
 SUMMARY = "find disturbances in recordings and match them with scenarios"
 
-SETS = "base,extA,ext"
 MOST_NOTES = 12
 
 _EXAMPLES = """\
@@ -43,7 +42,6 @@ examples:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     parser.add_argument("path", metavar="PATH", type=Path, help="the recordings")
-    add_definition_options(parser, SETS, several=True)
     add_flags(parser, Evaluate)
     add_json_option(parser)
 
@@ -82,12 +80,11 @@ def _tell_notes(out: Path, totals: "Totals") -> None:
 
 
 def _definitions(args: argparse.Namespace) -> "Definitions":
-    from roadproof.drivers.models import DRIVERS
     from roadproof.library.scenarios import MIN_DANGER, MIN_SAFE
 
-    if args.drivers and Path(DRIVERS) not in args.specs:
-        args.specs = [Path(DRIVERS), *args.specs]
-    home = read_definitions(args, chosen_sets(args, SETS))
+    if args.drivers:
+        add_drivers(args)
+    home = read_definitions(args, Evaluate)
     if MIN_DANGER in home.values:
         raise UsageError(f"--param {MIN_DANGER}: evaluate takes several values of it; use --min-danger 0,0.6")
     if args.min_safe is None:

@@ -4,7 +4,7 @@ import argparse
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import evidence_folder, hand_over, read_definitions, study_keywords
-from roadproof.frontends.cli.options import add_definition_options, add_json_option, chosen_sets
+from roadproof.frontends.cli.options import add_json_option
 from roadproof.frontends.cli.progress import tell
 from roadproof.frontends.cli.what import add_what_arguments, some_or_all
 from roadproof.frontends.settings.flags import add_flags
@@ -40,7 +40,6 @@ A run with --out that was broken off goes on where it was, formula by formula.
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     add_what_arguments(parser, "all scenarios of each --set")
-    add_definition_options(parser, several=True)
     add_flags(parser, Explore)
     add_json_option(parser)
 
@@ -51,7 +50,7 @@ def run(args: argparse.Namespace) -> int:
 
     what, ranges = some_or_all(args), [_varied(text) for text in args.vary or ()]
     given = Explore.of(study_keywords(args, Explore, evidence_folder(args.out, args.json)))
-    home = read_definitions(args, chosen_sets(args))
+    home = read_definitions(args, Explore)
     home = restricted(home, given.preventable, given.unpreventable, what=what)
     for name, _, _ in ranges:
         if name in home.values:

@@ -5,12 +5,10 @@ from collections.abc import Iterable, Iterator
 from itertools import groupby
 from typing import Any
 
-from roadproof.frontends.cli.options import (
-    add_json_option,
-    add_specification_options,
-    select_specification,
-    write_json,
-)
+from roadproof.frontends.cli.basis import read_definitions
+from roadproof.frontends.cli.options import add_json_option, write_json
+from roadproof.frontends.settings.flags import add_flags
+from roadproof.frontends.settings.groups import Readings
 from roadproof.library.elaborate import signatures
 from roadproof.library.scenarios import number_in
 from roadproof.library.specification import Specification
@@ -31,12 +29,12 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
-    add_specification_options(parser)
+    add_flags(parser, Readings)
     add_json_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:
-    specification = select_specification(args)
+    specification = read_definitions(args, Readings).specification
     if args.json:
         write_json(take_inventory(specification), args.json)
     if args.json != "-":

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import read_definitions
-from roadproof.frontends.cli.options import add_definition_options, add_json_option, write_json
+from roadproof.frontends.cli.options import add_json_option, write_json
 from roadproof.frontends.settings.flags import add_flags, read_keywords
 from roadproof.frontends.settings.recordings import Monitor
 
@@ -37,7 +37,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     parser.add_argument("formula", metavar="FORMULA", help="a formula, or a scenario's number")
     parser.add_argument("trace", metavar="TRACE", help="a drive, samples, or vehicles of a recording")
-    add_definition_options(parser, None)
     add_flags(parser, Monitor)
     add_json_option(parser)
 
@@ -50,9 +49,9 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(f"--picture {args.picture}: name a file that ends in .png or .svg")
     file = load_drive(Path(args.trace)) if args.trace.endswith(".json") else None
     if file is not None:
-        args.set_name = args.set_name or file.set_name
-        args.options = [*(f"{name}={value}" for name, value in file.options.items()), *args.options]
-    home = read_definitions(args, [args.set_name or "base"])
+        args.sets = args.sets or (file.set_name,)
+        args.readings = [*file.options.items(), *(args.readings or ())]
+    home = read_definitions(args, Monitor)
     found = monitor(args.formula, args.trace, home, **read_keywords(args, Monitor))
     for line in found.notes:
         print(f"note: {line}", file=sys.stderr)

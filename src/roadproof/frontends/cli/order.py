@@ -3,7 +3,7 @@
 import argparse
 
 from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
-from roadproof.frontends.cli.options import add_definition_options, add_json_option, chosen_sets
+from roadproof.frontends.cli.options import add_json_option
 from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.studies import Order
 
@@ -22,7 +22,6 @@ A run with --out that was broken off goes on where it was.
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
-    add_definition_options(parser, "base, extA, ext", several=True)
     add_flags(parser, Order)
     add_json_option(parser)
 
@@ -30,6 +29,5 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.studies import order
 
-    sets = list(dict.fromkeys(chosen_sets(args, "base,extA,ext")))
-    found = order(args.among, read_definitions(args, sets), **study_keywords(args, Order, args.out))
+    found = order(args.among, read_definitions(args, Order), **study_keywords(args, Order, args.out))
     return hand_over(args, found, args.pictures)

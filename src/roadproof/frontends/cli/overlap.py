@@ -3,7 +3,7 @@
 import argparse
 
 from roadproof.frontends.cli.basis import evidence_folder, hand_over, read_definitions, study_keywords
-from roadproof.frontends.cli.options import add_definition_options, add_json_option, chosen_sets
+from roadproof.frontends.cli.options import add_json_option
 from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.studies import Overlap
 
@@ -26,7 +26,6 @@ A run that was broken off goes on where it was.
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
-    add_definition_options(parser, several=True)
     add_flags(parser, Overlap)
     add_json_option(parser)
 
@@ -35,6 +34,6 @@ def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.studies import overlap
 
     folder = evidence_folder(args.out, args.json)
-    home = read_definitions(args, chosen_sets(args))
+    home = read_definitions(args, Overlap)
     found = overlap(args.among, home, **study_keywords(args, Overlap, folder))
     return hand_over(args, found, args.pictures)

@@ -1,11 +1,10 @@
 """``roadproof preventable``: which initial values a driver prevents a collision from, exactly."""
 
 import argparse
-from pathlib import Path
 
 from roadproof.errors import UsageError
-from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
-from roadproof.frontends.cli.options import add_definition_options, add_json_option
+from roadproof.frontends.cli.basis import add_drivers, hand_over, read_definitions, study_keywords
+from roadproof.frontends.cli.options import add_json_option
 from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.readers import flat
 from roadproof.frontends.settings.studies import Preventable
@@ -36,23 +35,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "manoeuvre", metavar="MANOEUVRE", help="cut-in, cut-out, deceleration; or a scenario: 1, 2 or 4"
     )
-    add_definition_options(parser)
     add_flags(parser, Preventable)
     add_json_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     from roadproof.drivers.manoeuvres import MANOEUVRES
-    from roadproof.drivers.models import DRIVERS, manoeuvre_of
+    from roadproof.drivers.models import manoeuvre_of
     from roadproof.frontends.api.preventing import preventable
 
-    if Path(DRIVERS) not in args.specs:
-        args.specs = [Path(DRIVERS), *args.specs]
+    add_drivers(args)
     kind = MANOEUVRES[manoeuvre_of(args.manoeuvre)[0]]
     given = study_keywords(args, Preventable, args.out)
     given |= {"along": _range("--along", args.along, kind.line)}
     given |= {"across": _range("--across", args.across, kind.across)}
-    home = read_definitions(args, [args.set_name])
+    home = read_definitions(args, Preventable)
     return hand_over(args, preventable(args.manoeuvre, flat(args.models or ()), home, **given), args.pictures)
 
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import in_order, read_definitions, study_keywords
-from roadproof.frontends.cli.options import add_definition_options, add_json_option, write_json
+from roadproof.frontends.cli.options import add_json_option, write_json
 from roadproof.frontends.cli.progress import Counter, clear, tell_stage
 from roadproof.frontends.cli.streams import print_at_once
 from roadproof.frontends.settings.flags import add_flags
@@ -48,7 +48,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "claims", metavar="CLAIM", nargs="*", help="a formula, a property such as P1, or a scenario such as 4"
     )
-    add_definition_options(parser, None)
     add_flags(parser, Prove)
     add_json_option(parser)
 
@@ -86,9 +85,9 @@ def _asked(args: argparse.Namespace, given: Prove) -> "Claims":
     from roadproof.frontends.api.proofs import claims_asked
     from roadproof.library.motion import read_under
 
-    home = read_definitions(args, [args.set_name or "base"])
+    home = read_definitions(args, Prove)
     written = [] if args.file is None else read_claims(args.file)
     if args.file is not None and not (written or args.claims):
         raise UsageError(f"{args.file} contains no claim: write one per paragraph")
     what = [*args.claims, *(read_under(home.specification, claim) for claim in written)]
-    return claims_asked(home, what, args.set_name, given)
+    return claims_asked(home, what, args.sets[0] if args.sets else None, given)

@@ -3,7 +3,7 @@
 import argparse
 
 from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
-from roadproof.frontends.cli.options import add_definition_options, add_json_option
+from roadproof.frontends.cli.options import add_json_option
 from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.studies import Redundancy
 
@@ -25,7 +25,6 @@ A run with --out that was broken off goes on where it was.
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
-    add_definition_options(parser)
     add_flags(parser, Redundancy)
     add_json_option(parser)
 
@@ -33,5 +32,5 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.studies import redundancy
 
-    home = read_definitions(args, [args.set_name])
+    home = read_definitions(args, Redundancy)
     return hand_over(args, redundancy(args.among, home, **study_keywords(args, Redundancy, args.out)))

@@ -12,8 +12,11 @@ from roadproof.evidence.answers import show as kept
 from roadproof.evidence.answers.tree import claim_node, definition_node
 from roadproof.evidence.codec import write
 from roadproof.evidence.heading import heading
-from roadproof.frontends.cli.options import add_specification_options, select_specification, write_json
+from roadproof.frontends.cli.basis import read_definitions
+from roadproof.frontends.cli.options import write_json
 from roadproof.frontends.cli.terminal import width_of_terminal
+from roadproof.frontends.settings.commands import Show
+from roadproof.frontends.settings.flags import add_flags
 from roadproof.library.elaborate import read_claim, signature
 from roadproof.library.scenario_references import numbers_called, one_called
 from roadproof.library.scenarios import name_of, number_in
@@ -69,13 +72,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "what", metavar="WHAT", help="a scenario's number or name, a definition's name, or a formula"
     )
-    add_specification_options(parser)
-    parser.add_argument("--expand", action="store_true", help="write every definition out, as one formula")
-    parser.add_argument("--format", choices=("text", "latex", "json"), default="text", help="default: text")
+    add_flags(parser, Show)
 
 
 def run(args: argparse.Namespace) -> int:
-    specification, what = select_specification(args), args.what.strip()
+    specification, what = read_definitions(args, Show).specification, args.what.strip()
     if args.format == "json":
         one_called(specification, what)  # refuses a name of several: JSON shows one thing
     exhibits = [

@@ -3,6 +3,9 @@
 import argparse
 from pathlib import Path
 
+from roadproof.frontends.settings import commands as settings
+from roadproof.frontends.settings.flags import add_flags
+
 SUMMARY = "write and try formulas on a page in the browser"
 
 _EXAMPLES = """\
@@ -22,8 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "files", metavar="FILE", nargs="*", type=Path, help="a .spec file, or a drive (.json)"
     )
-    parser.add_argument("--port", type=int, metavar="N", help="default: 8642, or any that is free")
-    parser.add_argument("--no-browser", action="store_true", help="print the address, and open nothing")
+    add_flags(parser, settings.Studio)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -34,7 +36,7 @@ def run(args: argparse.Namespace) -> int:
 
     if args.port is not None and not 0 <= args.port < 65536:
         raise UsageError(f"--port {args.port}: write a number from 1 to 65535, or 0 for any that is free")
-    serve(Studio(begin_with(args.files)), args.port, not args.no_browser, _say)
+    serve(Studio(begin_with(args.files)), args.port, args.browser, _say)
     return ExitCode.AS_EXPECTED
 
 

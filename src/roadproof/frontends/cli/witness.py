@@ -4,7 +4,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from roadproof.frontends.cli.basis import in_order, read_definitions, study_keywords
-from roadproof.frontends.cli.options import add_definition_options, add_json_option, chosen_sets, write_json
+from roadproof.frontends.cli.options import add_json_option, write_json
 from roadproof.frontends.cli.progress import clear, tell_stage
 from roadproof.frontends.cli.streams import print_at_once
 from roadproof.frontends.cli.what import add_what_arguments, some_or_all
@@ -34,7 +34,6 @@ A run with --out that was broken off goes on where it was; what is there for the
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     add_what_arguments(parser, "all 24 scenarios, in each --set")
-    add_definition_options(parser, several=True)
     add_flags(parser, Witness)
     mark_rare(
         section(parser, "output").add_argument(
@@ -51,7 +50,7 @@ def run(args: argparse.Namespace) -> int:
 
     what = some_or_all(args)
     given = Witness.of(study_keywords(args, Witness, args.out))
-    searches = searches_for(what, read_definitions(args, chosen_sets(args)), given)
+    searches = searches_for(what, read_definitions(args, Witness), given)
     named = WitnessStudy(tuple(searches)).named
     plain = args.json != "-"
     written: list[str] = []

@@ -2,8 +2,9 @@
 
 import argparse
 import functools
-from collections.abc import Callable
-from typing import Any
+import shlex
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, TypeVar
 
 from roadproof.errors import UsageError
 from roadproof.frontends.settings.option import Group, Option, Settings
@@ -17,6 +18,7 @@ TITLES: dict[Group, str] = {
     "output": "output",
 }
 _RARE = "rare"
+A = TypeVar("A")
 
 
 def add_flags(parser: argparse.ArgumentParser, settings: type[Settings]) -> None:
@@ -66,14 +68,16 @@ def _rules(settings: type[Settings], name: str, option: Option) -> dict[str, Any
 
 def _reader(option: Option) -> Callable[[str], object] | None:
     """The reader of an option; its ``UsageError`` begins with the flag."""
-    if option.read is None:
-        return None
-    made = option.read
+    return None if option.read is None else _naming(option, option.read)
+
+
+def _naming(option: Option, made: Callable[[A], object]) -> Callable[[A], object]:
+    """As ``made``, whose ``UsageError`` then begins with the flag."""
 
     @functools.wraps(made)
-    def read(text: str) -> object:
+    def read(given: A) -> object:
         try:
-            return made(text)
+            return made(given)
         except UsageError as error:
             raise UsageError(f"{option.flag} {error}") from None
 
@@ -82,11 +86,47 @@ def _reader(option: Option) -> Callable[[str], object] | None:
 
 def read_keywords(args: argparse.Namespace, settings: type[Settings]) -> Any:
     """The keyword arguments that the flags of a question give."""
-    found = {}
+    named = (name for name, option in settings.options().items() if option.flag and option.keyword)
+    return {name: read_flag(args, settings, name) for name in named}
+
+
+def read_flag(args: argparse.Namespace, settings: type[Settings], name: str) -> Any:
+    """The value that a flag gives to the field ``name``."""
+    value, option = getattr(args, name), settings.options()[name]
+    if option.gather is None:
+        return value
+    return getattr(settings, name) if value is None else _naming(option, option.gather)(value)
+
+
+def flags_of(settings: Settings) -> list[str]:
+    """The words of a command line that give the same settings: every flag whose value is no default."""
+    words: list[str] = []
     for name, option in settings.options().items():
-        if option.flag and option.keyword:
-            value = getattr(args, name)
-            if option.gather is not None:
-                value = getattr(settings, name) if value is None else option.gather(value)
-            found[name] = value
-    return found
+        value = getattr(settings, name)
+        if option.flag is None or value == getattr(type(settings), name):
+            continue
+        if isinstance(value, bool):
+            words.append(option.flag)
+        elif option.gather is not None:
+            words += [word for text in _items(value) for word in (option.flag, text)]
+        else:
+            words += [option.flag, ",".join(_items(value)) or "none"]
+    return words
+
+
+def command_line(name: str, arguments: Iterable[str], *asked: Settings) -> str:
+    """The command line of a question: its arguments, then the flags of settings, one after the other."""
+    return shlex.join(["roadproof", name, *arguments, *(word for x in asked for word in flags_of(x))])
+
+
+def _items(value: object) -> list[str]:
+    """The texts behind a flag: several where it may be repeated, or has commas."""
+    match value:
+        case float():
+            return [f"{value:g}"]
+        case Mapping():
+            return [f"{name}={x}" if name else str(x) for name, x in value.items()]
+        case list() | tuple():
+            return [str(x) for x in value]
+        case _:
+            return [str(value)]

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from roadproof.frontends.settings.option import Settings, option
-from roadproof.frontends.settings.readers import decimal, named, seconds, whole
+from roadproof.frontends.settings.readers import assignment, decimal, named, seconds, set_names, whole
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from roadproof.analysis.study.pool import Progress, Say
     from roadproof.engines.search.question import Engine
@@ -80,6 +80,61 @@ def fixed_or_any(flag: str, what: str) -> Any:
 def with_complete(flag: str, what: str, **more: Any) -> Any:
     """An option of the drives that ``--complete`` writes."""
     return option(None, flag, help=f"with --complete: {what}", group="output", keyword=False, **more)
+
+
+def definition_option(default: object, flag: str, text: str, **rules: Any) -> Any:
+    """An option of the definitions; from Python they are given by ``using``."""
+    return option(default, flag, help=text, group="definitions", keyword=False, **rules)
+
+
+def one_set(*default: str) -> Any:
+    """``--set`` of a question about one spec set."""
+    told = f" (default: {default[0]})" if default else ""
+    return definition_option(default, "--set S", f"spec set{told}", read=lambda text: (text,))
+
+
+def several_sets(*default: str) -> Any:
+    """``--set`` of a question about several spec sets."""
+    text = f"spec set (default: {','.join(default)}); may be repeated"
+    return definition_option(default, "--set S", text, gather=set_names)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Readings(Settings):
+    """A spec set, files on top of the library, and readings."""
+
+    sets: tuple[str, ...] = one_set("base")
+    specs: Iterable[str | Path] = definition_option(
+        (), "--spec FILE", "specification file to add; may be repeated", read=Path, gather=list
+    )
+    readings: Mapping[str, str] | None = definition_option(
+        None,
+        "--option NAME=VALUE",
+        "choose a reading, such as lateral_sign=literal; may be repeated",
+        read=assignment("--option"),
+        gather=dict,
+        rare=True,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Definitions(Readings):
+    """The definitions that a question is asked in."""
+
+    params: Mapping[str, Number] | None = definition_option(
+        None,
+        "--param NAME=VALUE",
+        "set a parameter, such as rho=3/5; may be repeated",
+        read=assignment("--param"),
+        gather=dict,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class SeveralSets(Definitions):
+    """Definitions in several spec sets."""
+
+    sets: tuple[str, ...] = several_sets("base")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -259,5 +314,5 @@ class Prevention(Settings):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Survey(Models, Budget, Sharing, Run):
+class Survey(Definitions, Models, Budget, Sharing, Run):
     """Options of every question about several scenarios."""

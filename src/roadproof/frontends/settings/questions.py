@@ -10,15 +10,18 @@ from typing import TYPE_CHECKING
 from roadproof.frontends.settings.groups import (
     OBJECTIVES,
     Budget,
+    Definitions,
     Models,
     Prevention,
     Run,
     SearchPlace,
+    SeveralSets,
     Sharing,
     Solver,
     Workers,
     effort_for,
     folder_for,
+    one_set,
     pictures_of,
 )
 from roadproof.frontends.settings.option import option
@@ -36,14 +39,14 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Compare(SearchPlace, Solver, Budget, Workers):
+class Compare(SeveralSets, SearchPlace, Solver, Budget, Workers):
     """Options of ``compare``."""
 
     out: str | Path | None = folder_for("certificates and drive files", command_line_only=True)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Witness(SearchPlace, Solver, Prevention, Budget, Sharing, Run):
+class Witness(SeveralSets, SearchPlace, Solver, Prevention, Budget, Sharing, Run):
     """Options of ``witness``."""
 
     objective: Objective = option(
@@ -60,7 +63,7 @@ class Witness(SearchPlace, Solver, Prevention, Budget, Sharing, Run):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Explore(SearchPlace, Solver, Prevention, Budget, Sharing, Run):
+class Explore(SeveralSets, SearchPlace, Solver, Prevention, Budget, Sharing, Run):
     """Options of ``explore``."""
 
     vary: Mapping[str, tuple[Number, Number]] | None = option(
@@ -90,9 +93,10 @@ class Explore(SearchPlace, Solver, Prevention, Budget, Sharing, Run):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Prove(Models, Budget, Run):
+class Prove(Definitions, Models, Budget, Run):
     """Options of ``prove``."""
 
+    sets: tuple[str, ...] = one_set()
     file: Path | None = option(
         None, "--claims FILE", help="read claims from a file, one a paragraph", read=Path, keyword=False
     )

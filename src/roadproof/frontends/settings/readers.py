@@ -1,7 +1,7 @@
 """Readers of the texts behind flags; ``flags.py`` puts the flag before the ``UsageError`` that they raise."""
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -67,6 +67,26 @@ def named(usual: str) -> Callable[[str], tuple[str, str]]:
         return (name if equals else usual), value
 
     return read
+
+
+def assignment(flag: str) -> Callable[[str], tuple[str, str]]:
+    """A reader of ``NAME=VALUE`` as a pair, of which neither side is empty."""
+
+    def read(text: str) -> tuple[str, str]:
+        name, equals, value = (part.strip() for part in text.partition("="))
+        if not (name and equals and value):
+            raise UsageError(f"{text}: write {flag} NAME=VALUE")
+        return name, value
+
+    return read
+
+
+def set_names(texts: Sequence[str]) -> tuple[str, ...]:
+    """The spec sets of ``--set``, which may be repeated and have commas."""
+    names = tuple(name.strip() for text in texts for name in text.split(","))
+    if not all(names):
+        raise UsageError(f"{' '.join(texts)}: write names separated by commas, such as base,ext")
+    return names
 
 
 def items_of(

@@ -8,11 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.frontends.settings.groups import (
+    Definitions,
     Sharing,
     Traces,
     Workers,
     folder_for,
+    one_set,
     pictures_of,
+    several_sets,
     specifications_of,
 )
 from roadproof.frontends.settings.option import Settings, option
@@ -41,9 +44,10 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Monitor(Traces):
+class Monitor(Definitions, Traces):
     """Options of ``monitor``."""
 
+    sets: tuple[str, ...] = one_set()
     lanes: Mapping[str, str] | None = option(
         None,
         "--lane [L=]LANE",
@@ -81,9 +85,10 @@ class Monitor(Traces):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Evaluate(Sharing, Traces):
+class Evaluate(Definitions, Sharing, Traces):
     """Options of ``evaluate``."""
 
+    sets: tuple[str, ...] = several_sets("base", "extA", "ext")
     among: Among = option(
         None, "--among N-M", help="only these scenarios (default: all of two or three vehicles)"
     )

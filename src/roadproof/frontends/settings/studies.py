@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING
 from roadproof.frontends.settings.groups import (
     OBJECTIVES,
     Budget,
+    Definitions,
     Models,
     Prevention,
     Run,
+    SeveralSets,
     Sharing,
     Survey,
     driver_model,
@@ -21,6 +23,7 @@ from roadproof.frontends.settings.groups import (
     pictures_of,
     same_or_any,
     scenarios_such_as,
+    several_sets,
     with_complete,
 )
 from roadproof.frontends.settings.option import option
@@ -51,7 +54,7 @@ class Ask(Survey):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Overlap(Survey, Prevention):
+class Overlap(SeveralSets, Survey, Prevention):
     """Options of ``overlap``."""
 
     among: str | None = scenarios_such_as()
@@ -74,6 +77,7 @@ class Overlap(Survey, Prevention):
 class Order(Survey):
     """Options of ``order``."""
 
+    sets: tuple[str, ...] = several_sets("base", "extA", "ext")
     among: str | None = scenarios_such_as()
     effort: float = effort_for("a drive", 120.0)
     out: str | Path | None = folder_for("certificates, drives, DOT and SVG")
@@ -131,7 +135,7 @@ class Classify(Survey, Prevention):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Preventable(Budget, Sharing, Run):
+class Preventable(Definitions, Budget, Sharing, Run):
     """Options of ``preventable``."""
 
     models: Sequence[str] = option(
@@ -163,7 +167,7 @@ class Preventable(Budget, Sharing, Run):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Catalogue(Models, Budget, Run, Prevention):
+class Catalogue(SeveralSets, Models, Budget, Run, Prevention):
     """Options of ``catalogue``."""
 
     among: Among = scenarios_such_as("1-8", keyword=True)

@@ -1,19 +1,21 @@
 """Values of the section of a catalogue: what is tested, and what each test shows."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
-from roadproof.analysis.catalogue.request import Request, further_options
 from roadproof.drivers.manoeuvres import MANOEUVRES
 from roadproof.drivers.models import MODELS
+from roadproof.drivers.restriction import restriction_of
 from roadproof.evidence.answers.catalogue_index import (
     AbstractTest,
     ConcreteTest,
     Index,
     KeptDecision,
     KeptFact,
+    KeptRequest,
 )
 from roadproof.evidence.codec import read
 from roadproof.evidence.drive_file import DriveFile
@@ -21,8 +23,13 @@ from roadproof.frontends.report.catalogue import sheet_of
 from roadproof.frontends.report.page.page_context import PageContext, ShownDrive
 from roadproof.frontends.report.page.results import Result, Words
 from roadproof.frontends.report.viewer_data import ShownFormula
-from roadproof.library.scenarios import danger_comes, number_in, roles
+from roadproof.frontends.settings.flags import command_line
+from roadproof.frontends.settings.studies import Catalogue
+from roadproof.library.bind import values_with
+from roadproof.library.scenarios import danger_comes, number_in, numbers_of, roles
+from roadproof.library.specification import Specification, on_request
 from roadproof.verdict import Verdict
+from roadproof.world.units import UNITS
 
 MOST_FORMULAS = 6
 
@@ -111,10 +118,38 @@ def _provenance(data: Index, context: PageContext) -> dict[str, object]:
     digests = [x for x in data.tests if isinstance(x, ConcreteTest) and x.sha256]
     if data.request is None:
         return {"command": None, "digests": digests}
-    request = Request(**vars(data.request))
-    home = context.library.select(request.sets[0], data.options)
+    home = context.library.select(data.request.sets[0], data.options)
     values = {name: Fraction(value) for name, value in data.parameters.items()}
-    return {"command": request.command(further_options(home, values, data.scenarios)), "digests": digests}
+    asked = (as_settings(data.request), *_definitions(home, values, data.scenarios))
+    return {"command": command_line("catalogue", data.request.paths, *asked), "digests": digests}
+
+
+def as_settings(request: KeptRequest) -> Catalogue:
+    """A request as the options of the command that asks it."""
+    said: dict[str, Any] = {name: x for name, x in vars(request).items() if name != "paths"}
+    drivers = None if request.drivers == (*MODELS,) else request.drivers
+    return Catalogue(**said | {"sets": (",".join(request.sets),), "drivers": drivers})
+
+
+def _definitions(
+    home: Specification, values: Mapping[str, Fraction], numbers: Sequence[int]
+) -> Iterator[Catalogue]:
+    """The options that say in which definitions, and of which scenarios, a catalogue was asked."""
+    library, restriction = home.library, restriction_of(home.options)
+    if tuple(numbers) != numbers_of(home):
+        yield Catalogue(among=",".join(map(str, numbers)))
+    shipped, known = set[str](), dict[str, str]()
+    if restriction is not None:
+        shipped, known = {*map(str, on_request().values())}, dict(restriction.options)
+        yield Catalogue.of({restriction.side: restriction.model})
+    usual, declared = library.options, values_with(library, {})
+    told = {k: x for k, x in home.options.items() if k not in known and x != usual[k].values[0]}
+    units = {name: UNITS[x.unit][0] for name, x in library.parameters.items()}
+    yield Catalogue(
+        specs=tuple(x.name for x in library.files if x.name not in shipped),
+        readings=told or None,
+        params={name: x / units[name] for name, x in values.items() if x != declared[name]} or None,
+    )
 
 
 def _drives(data: Index, context: PageContext) -> Callable[[ConcreteTest], ShownDrive]:

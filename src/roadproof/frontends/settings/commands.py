@@ -1,0 +1,37 @@
+"""The options of commands that have no function of their own in Python."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from roadproof.frontends.settings.groups import Readings, Workers, folder_for
+from roadproof.frontends.settings.option import Settings, option
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@dataclass(frozen=True, kw_only=True)
+class Show(Readings):
+    """Options of ``roadproof show``."""
+
+    expand: bool = option(False, "--expand", help="write every definition out, as one formula")
+    format: str = option(
+        "text", "--format", help="default: text", group="output", choices=("text", "latex", "json")
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Convert(Workers):
+    """Options of ``roadproof convert``."""
+
+    out: str | Path | None = folder_for("the data set", required=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Studio(Settings):
+    """Options of ``roadproof studio``."""
+
+    port: int | None = option(None, "--port N", help="default: 8642, or any that is free", read=int)
+    browser: bool = option(True, "--no-browser", help="print the address, and open nothing")
