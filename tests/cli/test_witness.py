@@ -44,6 +44,25 @@ def test_json_has_verdicts_and_drives(tmp_path, capsys):
     assert all(v["seconds"]["all"] > 0 and v["sizes"]["inequalities"] > 0 for v in data["verdicts"])
 
 
+def test_a_list_of_scenarios_gives_a_drive_for_each(capsys):
+    code, out, _ = run(capsys, "witness", "3-4,7", "--jobs", "1")
+    assert code == 0
+    assert [line.split()[:2] for line in out.splitlines() if line.startswith("scenario")] == [
+        ["scenario", "3"],
+        ["scenario", "4"],
+        ["scenario", "7"],
+    ]
+    assert out.endswith("3 of 3 witnessed in " + out.rpartition("witnessed in ")[2])
+    assert run(capsys, "witness", "1,99")[::2] == (
+        3,
+        "roadproof: there is no scenario '99'; did you mean '9'?\n",
+    )
+    assert run(capsys, "witness", "1-")[::2] == (
+        2,
+        "roadproof: '1-' is not a range of scenarios; write 1-8 or 1,3-8\n",
+    )
+
+
 def test_impossible_names_its_core_and_is_unexpected(capsys):
     code, out, _ = run(capsys, "witness", "scenario_1(SV,POV,L) and scenario_4(SV,POV,L)")
     assert code == 10

@@ -12,6 +12,7 @@ from roadproof.library.bind import Number, exact, values_with
 from roadproof.library.diagnose import checked_library
 from roadproof.library.elaborate import read_claim
 from roadproof.library.scenario_references import read_numbers, read_query
+from roadproof.library.scenarios import are_numbers
 from roadproof.library.specification import Library, Query, Source, Specification, unknown
 from roadproof.library.words import Words, words_of
 
@@ -94,6 +95,14 @@ class Definitions:
                 raise UsageError(
                     f"{what!r} is not a formula: give a number, a text, or a formula built with operators"
                 )
+
+    def each(self, what: Iterable[What]) -> list[What]:
+        """Scenarios and formulas one by one, where a text may be a list of numbers such as ``"1,3-8"``."""
+        found: list[What] = []
+        for x in what:
+            is_list = isinstance(x, str) and are_numbers(x) and bool({",", "-"} & {*x})
+            found += read_numbers(self.specification, str(x)) if is_list else [x]
+        return found
 
     def among(self, numbers: Among) -> tuple[int, ...] | None:
         """Scenarios by number: ``"1-8,12"``, 4, or a sequence; None for all. Raises ``InputError``."""

@@ -139,7 +139,8 @@ def witness(
 ) -> Witnesses:
     """Find a drive for each of some scenarios or formulas, in each spec set; without any, for all scenarios.
 
-    Where, with whom and for how long: see ``setting``. ``count`` clearly different drives are looked for.
+    A text such as "1,3-8" stands for several scenarios. Where, with whom and for how long: see ``setting``.
+    ``count`` clearly different drives are looked for.
     ``objective``: what a drive should be like: any, smooth, margin, mild, severe or short. ``preventable``,
     ``unpreventable``: the name of a driver model, for scenarios that begin with a manoeuvre whose collision
     it prevents, or cannot prevent (``preventing.restriction``). ``effort``: units
@@ -159,10 +160,10 @@ def witness(
 
 def searches_for(what: Sequence[What], using: Definitions, given: Witness) -> list[Search]:
     """The searches that ``witness`` makes. Raises as that does."""
-    home = restricted(using, given.preventable, given.unpreventable, what=what)
-    work = work_of(given)
-    search_options = SearchOptions(given.objective, given.engine, given.solver, work)
-    return list(searches_of(home, what, setting(home, given), search_options, given.count))
+    each = using.each(what)
+    home = restricted(using, given.preventable, given.unpreventable, what=each)
+    search_options = SearchOptions(given.objective, given.engine, given.solver, work_of(given))
+    return list(searches_of(home, each, setting(home, given), search_options, given.count))
 
 
 def witness_all(

@@ -100,11 +100,13 @@ def explore(
     each; ``precision``: width of a bracket, SI units. The rest as for ``witness``. Raises as that does.
     """
     given = Explore.of(options)
-    home = restricted(using or load(), given.preventable, given.unpreventable, what=what)
+    plain = using or load()
+    each = plain.each(what)
+    home = restricted(plain, given.preventable, given.unpreventable, what=each)
     vary = given.vary or {}
     for name in {*vary} & {*home.values}:
         raise UsageError(f"{name} is given a value and varied: leave one out")
-    asked = explorables(home, what, given, [(name, *ends) for name, ends in vary.items()])
+    asked = explorables(home, each, given, [(name, *ends) for name, ends in vary.items()])
     return explore_all(asked, given)
 
 

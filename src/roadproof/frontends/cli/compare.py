@@ -8,7 +8,7 @@ from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import read_definitions
 from roadproof.frontends.cli.options import add_json_option, write_json
 from roadproof.frontends.cli.progress import clear, note, tell_stage
-from roadproof.frontends.settings.flags import add_flags, read_keywords
+from roadproof.frontends.settings.flags import add_flags, read_flag, read_keywords
 from roadproof.frontends.settings.questions import Compare
 from roadproof.runtime.progress import listening
 
@@ -36,9 +36,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.comparing import compare
 
+    sets = read_flag(args, Compare, "sets")
+    if len(sets) > 2:
+        raise UsageError(f"--set is given {len(sets)} times: two formulas have at most two spec sets")
     home = read_definitions(args, Compare)
-    if len(home.sets) > 2:
-        raise UsageError(f"--set is given {len(home.sets)} times: two formulas have at most two spec sets")
     begun = time.monotonic()
 
     def show(name: str, direction: "Direction") -> None:

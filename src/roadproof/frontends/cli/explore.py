@@ -48,9 +48,10 @@ def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.exploring import explorables, explore_all
     from roadproof.frontends.api.restricting import restricted
 
-    what, ranges = some_or_all(args), [_varied(text) for text in args.vary or ()]
+    named, ranges = some_or_all(args), [_varied(text) for text in args.vary or ()]
     given = Explore.of(study_keywords(args, Explore, evidence_folder(args.out, args.json)))
     home = read_definitions(args, Explore)
+    what = home.each(named)
     home = restricted(home, given.preventable, given.unpreventable, what=what)
     for name, _, _ in ranges:
         if name in home.values:

@@ -10,7 +10,10 @@ def add_what_arguments(parser: argparse.ArgumentParser, every: str) -> None:
     """Scenarios and formulas by position, and ``--all``, of which ``every`` is the help."""
     question = section(parser, "question")
     question.add_argument(
-        "what", metavar="N|FORMULA", nargs="*", help="number or name of a scenario, or a formula"
+        "what",
+        metavar="N|FORMULA",
+        nargs="*",
+        help="scenarios (4, 1,3-8 or a name) or formulas",
     )
     question.add_argument("--all", action="store_true", help=every)
 

@@ -21,6 +21,7 @@ _EXAMPLES = """\
 examples:
   roadproof witness 4                                 scenario 4, deceleration ahead, on its reference road
   roadproof witness 12 --set ext --out drives         drive file, CSV and picture
+  roadproof witness 1,3-8                             a drive for each of these scenarios
   roadproof witness --all --set base --set extA --set ext --out drives
   roadproof witness 'scenario_8(SV,POV,L) and not scenario_6(SV,POV,L)' --lane L=main-2 --road main-3
   roadproof witness 1 --objective severe --count 3
