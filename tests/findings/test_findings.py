@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from console import agree, cut_alike
+from documents.drawings import DRAWINGS
 from findings import checking
 from findings.checking import check_statement
 from findings.figures import Difference, Figures, Outcome, Statement, commands_named, compare, covered
@@ -51,7 +52,7 @@ def test_every_command_of_a_page_is_run(name: str) -> None:
     assert [command for command in named if command not in run and "DIR" not in command] == []
 
 
-BY_HAND = {"report.png", "studio.png", "studio-compare.png", "studio-explain.png", "trust.svg"}
+BY_HAND = {"report.png", "studio.png", "studio-compare.png", "studio-explain.png", "trust.svg", *DRAWINGS}
 """Pictures of a browser's window, and drawings."""
 
 
