@@ -105,6 +105,7 @@ LENGTHY = (
     "tests/evidence/test_exchanged.py::test_evidence_of_another_entry_is_rejected[classify",
     "tests/evidence/test_exchanged.py::test_evidence_of_another_entry_is_rejected[preventable",
     "tests/evidence/test_exchanged.py::test_evidence_of_another_entry_is_rejected[redundancy",
+    "tests/evidence/test_exchanged.py::test_evidence_of_any_index_under_an_entry_of_another_is_rejected",
     "tests/evidence/test_answers_jsonl.py::test_no_change_of_a_line_counts",
     "tests/evidence/test_forged_folders.py::test_no_change_is_accepted_that_changes_what_is_said",
     "tests/findings/test_findings.py::test_a_page_says_what_comes_out[roadproof overlap --among 1,4 --sta",

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 import roadproof as rp
-from evidence.folders import Place, check, read, write
+from evidence.folders import Place, check, read, reseal, write
 from evidence.kinds import MAKE, copy_of
 from roadproof.evidence.finding import Acceptance
 
@@ -19,7 +19,7 @@ MOST = 24  # pairs of entries of one kind
 EVIDENCE = ("certificate", "drive", "evidence", "trace")
 SAID = ("claim", "formula", "verdict", "premise", "conclusion", "gaps", "core")
 """What an entry says of its evidence, which an attacker exchanges with it."""
-KINDS = [kind for kind in MAKE if kind not in ("witness", "gaps")]  # without an index; with a single gap
+KINDS = [kind for kind in MAKE if kind not in ("witness", "gaps")]  # these are in the second test
 
 
 def holders(content: Any, at: Place = ()) -> Iterator[Place]:
@@ -89,3 +89,43 @@ def _alike(one: dict[str, Any], other: dict[str, Any]) -> bool:
 def _are_numbered(one: dict[str, Any], other: dict[str, Any]) -> bool:
     """Whether two claims have nothing but a running number beside what they say and its evidence."""
     return one.get("property") == other.get("property") == "claim" and one["set"] == other["set"]
+
+
+def files_of(folder: Path) -> list[Path]:
+    """The certificates and drive files of a folder."""
+    found = (x for x in sorted(folder.rglob("*.json")) if x.parent.name != "answers")
+    return [x for x in found if x.name not in ("index.json", "question.json")]
+
+
+def _shown(file: Path) -> tuple[object, ...]:
+    """What a file is evidence of; two files that say the same here may stand for each other."""
+    said = read(file)
+    road = said["road"]["name"] if "road" in said else ""
+    starts = {name: {**x, "pieces": 0} for name, x in said.get("vehicles", {}).items()}
+    claim = said.get("claim", said.get("formula"))
+    return claim, said["set"], said.get("assuming"), said.get("parameters"), road, starts
+
+
+@pytest.mark.parametrize("kind", MAKE)
+def test_evidence_of_any_index_under_an_entry_of_another_is_rejected(kind: str, tmp_path: Path) -> None:
+    """The files of an entry are those of an entry of each of the other kinds, and of its own kind."""
+    folder = copy_of(kind, tmp_path / "this")
+    if (folder / "index.json").exists():
+        shutil.rmtree(folder / "answers", ignore_errors=True)
+        (folder / "question.json").unlink(missing_ok=True)
+    assert {x.outcome for x in check(folder)} == {Acceptance.ACCEPTED}
+    chance, accepted = Random(kind), []
+    for other in MAKE:
+        theirs = files_of(copy_of(other, tmp_path / "other" / other))
+        pairs = [(a, b) for a in files_of(folder) for b in theirs if _shown(a) != _shown(b)]
+        assert pairs
+        for mine, foreign in chance.sample(pairs, min(len(pairs), 2 if other == kind else 1)):
+            before = mine.read_bytes()
+            mine.write_bytes(foreign.read_bytes())
+            for answer in folder.glob("answers/*.json"):
+                reseal(answer)
+            found = check(folder) if kind != "catalogue" else rp.check(folder, jobs=1).findings
+            if all(x.outcome is Acceptance.ACCEPTED for x in found):
+                accepted.append((mine.name, other, foreign.name))
+            mine.write_bytes(before)
+    assert accepted == []

@@ -7,8 +7,7 @@ import pytest
 
 from roadproof.errors import InputError
 from roadproof.evidence.answers.trace import MOST_INSTANTS
-from roadproof.evidence.refutation import Countermodel, Instant, fault_of, trace_data
-from roadproof.evidence.traces import read_trace
+from roadproof.evidence.refutation import Countermodel, Instant, fault_of, read_trace, trace_data
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.world.road import Lanelet, Road, pairs

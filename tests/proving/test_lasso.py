@@ -11,8 +11,7 @@ from asking import prove
 from roadproof.engines.prove import lasso
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.periodic import Loop
-from roadproof.evidence.refutation import Countermodel, Instant, fault_of, trace_data
-from roadproof.evidence.traces import judge_trace, read_trace
+from roadproof.evidence.refutation import Countermodel, Instant, fault_of, judge_trace, read_trace, trace_data
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.verdict import Verdict

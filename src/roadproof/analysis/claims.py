@@ -25,9 +25,8 @@ from roadproof.evidence.answers.read import index_fields
 from roadproof.evidence.codec import ABSENT, read, write
 from roadproof.evidence.heading import library_of
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.evidence.refutation import trace_data
+from roadproof.evidence.refutation import read_trace, trace_data
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
-from roadproof.evidence.traces import read_trace
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library, Query, Specification, read_specification
 from roadproof.logic.custom_names import told_freedom
@@ -285,4 +284,4 @@ def write_claims(folder: Path, claims: Claims, records: Mapping[str, Record]) ->
 
 
 def _files(entries: Entries) -> set[str]:
-    return {Path(x.evidence).name for x in entries.values() if x.evidence}
+    return {Path(str(x.evidence)).name for x in entries.values() if x.evidence}

@@ -19,8 +19,7 @@ from roadproof.errors import InputError
 from roadproof.evidence.answers.redundancy import SCHEMA, Finding, Index, Record, Word
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.evidence.refutation import Countermodel, trace_data
-from roadproof.evidence.traces import read_trace
+from roadproof.evidence.refutation import Countermodel, read_trace, trace_data
 from roadproof.library.bind import bind
 from roadproof.library.compose import both, equivalence, implication, negation
 from roadproof.library.elaborate import elaborate, read_claim

@@ -10,7 +10,6 @@ import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers import certificate as kept
@@ -19,7 +18,7 @@ from roadproof.evidence.codec import read, write
 from roadproof.evidence.derivation import derive_lemma_queries, derive_query
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.sites import Lemma, Site
-from roadproof.evidence.strict import Fields, read_json
+from roadproof.evidence.strict import Fields, JsonObject, read_json
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import (
     ALL_SCHEMAS,
@@ -213,15 +212,16 @@ def to_json(certificate: Certificate) -> str:
     return json.dumps(certificate_data(certificate), indent=1) + "\n"
 
 
-def certificate_data(certificate: Certificate) -> dict[str, Any]:
+def certificate_data(certificate: Certificate) -> JsonObject:
     """The certificate as plain data; sites share a table of formulas."""
     sites = [*certificate.names, *certificate.instances]
     table = list(dict.fromkeys(site.formula for site in sites))
     place = {text: number for number, text in enumerate(table)}
 
-    def said(site: Site) -> tuple[Any, ...]:
-        sign = "+" if site.positive else "-"
-        return (place[site.formula], sign, site.moment, *([site.instance] if site.instance else []))
+    def said(site: Site) -> tuple[int, kept.Sign, str] | tuple[int, kept.Sign, str, str]:
+        sign: kept.Sign = "+" if site.positive else "-"
+        where = place[site.formula], sign, site.moment
+        return (*where, site.instance) if site.instance else where
 
     tableau, assumed = certificate.tableau, certificate.assumed
     is_assumed = assumed.said or assumed.axioms
@@ -309,7 +309,7 @@ def _axiom(said: kept.Axiom, where: str) -> Axiom:
     return Axiom(schema, tuple(said.arguments.values()))
 
 
-def _site(row: Sequence[Any], table: Sequence[str], where: str) -> Site:
+def _site(row: tuple[int, str, str] | tuple[int, str, str, str], table: Sequence[str], where: str) -> Site:
     """``row``: place in the table, sign, moment, and instance where it is inside one."""
     number, sign, *moments = row
     if number >= len(table):

@@ -2,7 +2,7 @@
 
 A field is declared as ``name: Annotated[type, Doc("one sentence"), …]``. Types are ``str``, ``int``,
 ``float``, ``bool``, ``Fraction`` (a rational as text), ``Literal``, enumerations of texts,
-``tuple[T, ...]``, ``Mapping[str, T]``, other dataclasses, unions of these or with ``None``, and ``Any``
+``tuple[T, ...]``, ``Mapping[str, T]``, other dataclasses, unions of these or with ``None``, and ``object``
 (plain JSON). ``tuple[A, B]`` has one item of each type; a rule for the keys of a mapping stands at their
 type. A field with a default may be missing, as in evidence of earlier versions; it is written all the same,
 but where it is marked ``LEFT_OUT``.
@@ -17,22 +17,22 @@ from functools import cache
 from types import NoneType, UnionType
 from typing import (
     Annotated,
-    Any,
     Final,
     Literal,
     TypeAlias,
     TypeVar,
     Union,
+    cast,
     get_args,
     get_origin,
     get_type_hints,
 )
 
 from roadproof.errors import InputError
-from roadproof.evidence.strict import Fields, rational, text
+from roadproof.evidence.strict import Fields, Json, JsonObject, rational, text
 
 T = TypeVar("T")
-Read: TypeAlias = Callable[[object, str], Any]
+Read: TypeAlias = Callable[[object, str], object]
 Path: TypeAlias = tuple[str, ...]
 
 
@@ -102,9 +102,9 @@ class Field:
 
     name: str
     key: str
-    type: Any
+    type: object
     notes: tuple[object, ...]
-    default: Any
+    default: object
 
     @property
     def is_required(self) -> bool:
@@ -133,12 +133,13 @@ def fields_of(kind: type) -> tuple[Field, ...]:
     return tuple(found)
 
 
-def notes_of(kind: Any) -> tuple[object, ...]:
+def notes_of(kind: object) -> tuple[object, ...]:
     """What the annotation of a type says beside it."""
-    return kind.__metadata__ if get_origin(kind) is Annotated else ()
+    found: tuple[object, ...] = getattr(kind, "__metadata__", ())
+    return found
 
 
-def bare(kind: Any) -> Any:
+def bare(kind: object) -> object:
     """A type without its annotation."""
     return get_args(kind)[0] if get_origin(kind) is Annotated else kind
 
@@ -146,26 +147,27 @@ def bare(kind: Any) -> Any:
 # --- write ---------------------------------------------------------------------------------------
 
 
-def write(value: object) -> dict[str, Any]:
-    """The JSON object of a value of a definition."""
-    found: dict[str, Any] = _plain(value)
+def write(value: object) -> JsonObject:
+    """The JSON object of a value of a definition. Raises ``TypeError``."""
+    found = _plain(value)
+    assert isinstance(found, dict)
     return found
 
 
-def _plain(value: Any) -> Any:
-    if isinstance(value, StrEnum | Fraction):
-        return str(value)
-    if is_dataclass(value) and not isinstance(value, type):
-        return {
-            x.key: _plain(found)
-            for x in fields_of(type(value))
-            if not ((found := getattr(value, x.name)) == x.default and x.has(LEFT_OUT))
-        }
-    if isinstance(value, Mapping):
-        return {key: _plain(x) for key, x in value.items()}
-    if isinstance(value, tuple | list):
-        return [_plain(x) for x in value]
-    return value
+def _plain(value: object) -> Json:
+    match value:
+        case StrEnum() | Fraction():
+            return str(value)
+        case None | bool() | int() | float() | str():
+            return value
+        case Mapping():
+            return {key: _plain(x) for key, x in value.items()}
+        case tuple() | list():
+            return [_plain(x) for x in value]
+    if not is_dataclass(value) or isinstance(value, type):
+        raise TypeError(f"{type(value).__name__} has no place in JSON")
+    found = ((x, getattr(value, x.name)) for x in fields_of(type(value)))
+    return {x.key: _plain(y) for x, y in found if y != x.default or not x.has(LEFT_OUT)}
 
 
 # --- read ----------------------------------------------------------------------------------------
@@ -173,11 +175,10 @@ def _plain(value: Any) -> Any:
 
 def read(kind: type[T], content: object, where: str) -> T:
     """The value that JSON data say. Raises ``InputError`` for unknown, missing and mistaken fields."""
-    found: T = _reader(kind)(content, where)
-    return found
+    return cast(T, _reader(kind)(content, where))
 
 
-def _reader(kind: Any) -> Read:
+def _reader(kind: object) -> Read:
     """The function that reads a type from plain data and the place where they stand."""
     if kind not in _READERS:
         made = _unruled(bare(kind))
@@ -188,11 +189,11 @@ def _reader(kind: Any) -> Read:
     return _READERS[kind]
 
 
-_READERS: dict[Any, Read] = {}
+_READERS: dict[object, Read] = {}
 
 
 def _helped(inner: Read, remedy: Remedy) -> Read:
-    def make(content: object, where: str) -> Any:
+    def make(content: object, where: str) -> object:
         try:
             return inner(content, where)
         except InputError as error:
@@ -204,7 +205,7 @@ def _helped(inner: Read, remedy: Remedy) -> Read:
 def _ruled(inner: Read, rule: Rule) -> Read:
     pattern = re.compile(rule.pattern)
 
-    def make(content: object, where: str) -> Any:
+    def make(content: object, where: str) -> object:
         if rule.most is not None and isinstance(content, list | dict) and len(content) > rule.most:
             what = where.rpartition(", ")[2]
             raise InputError(f"{where}: {len(content)} {what}, at most {rule.most} are read")
@@ -217,15 +218,15 @@ def _ruled(inner: Read, rule: Rule) -> Read:
             raise InputError(f"{where}: {_shown(content)} is below {rule.minimum}")
         if isinstance(found, tuple | dict) and len(found) < rule.least:
             raise InputError(f"{where}: it has {len(found)} entries, and needs {rule.least}")
-        if rule.unique and len({*found}) < len(found):
+        if rule.unique and isinstance(found, tuple) and len({*found}) < len(found):
             raise InputError(f"{where}: {_shown(content)} names something twice")
         return found
 
     return make
 
 
-def _unruled(kind: Any) -> Read:
-    if is_dataclass(kind):
+def _unruled(kind: object) -> Read:
+    if is_dataclass(kind) and isinstance(kind, type):
         return _object(kind)
     origin, inside = get_origin(kind), get_args(kind)
     if origin in (Union, UnionType):
@@ -245,12 +246,12 @@ def _unruled(kind: Any) -> Read:
     return _SIMPLE[kind]
 
 
-def _object(kind: Any) -> Read:
+def _object(kind: type) -> Read:
     every = fields_of(kind)
     keys = tuple(x.key for x in every)
     readers: dict[str, Read] = {}
 
-    def make(content: object, where: str) -> Any:
+    def make(content: object, where: str) -> object:
         if not readers:
             readers.update((x.key, _reader(x.type)) for x in every)
         data = Fields(content, where, keys)
@@ -269,10 +270,10 @@ def _optional(inner: Read) -> Read:
     return lambda content, where: None if content is None else inner(content, where)
 
 
-def _either(kinds: list[Any]) -> Read:
+def _either(kinds: list[object]) -> Read:
     """``kinds``: definitions, of which the one is read that has most of the fields that there are."""
 
-    def make(content: object, where: str) -> Any:
+    def make(content: object, where: str) -> object:
         if not isinstance(content, dict):
             raise InputError(f"{where}: {_shown(content)} is no object")
         best = max(kinds, key=lambda kind: len(content.keys() & {x.key for x in fields_of(kind)}))
@@ -284,7 +285,7 @@ def _either(kinds: list[Any]) -> Read:
 def _by_length(readers: Mapping[int, Read]) -> Read:
     """``readers``: one for each number of items."""
 
-    def make(content: object, where: str) -> Any:
+    def make(content: object, where: str) -> object:
         if not isinstance(content, list) or len(content) not in readers:
             raise InputError(
                 f"{where}: {_shown(content)} is no list of {' or '.join(map(str, readers))} items"
@@ -294,8 +295,8 @@ def _by_length(readers: Mapping[int, Read]) -> Read:
     return make
 
 
-def _one_of(words: tuple[Any, ...]) -> Read:
-    def make(content: object, where: str) -> Any:
+def _one_of(words: tuple[object, ...]) -> Read:
+    def make(content: object, where: str) -> object:
         for word in words:
             if content == word and type(content) is (str if isinstance(word, str) else type(word)):
                 return word
@@ -305,7 +306,7 @@ def _one_of(words: tuple[Any, ...]) -> Read:
 
 
 def _word(kind: type[StrEnum]) -> Read:
-    def make(content: object, where: str) -> Any:
+    def make(content: object, where: str) -> object:
         try:
             return kind(text(content, where))
         except ValueError:
@@ -314,13 +315,13 @@ def _word(kind: type[StrEnum]) -> Read:
     return make
 
 
-def _items(kind: Any) -> Read:
+def _items(kind: object) -> Read:
     """``kind``: the type of the items; an item of a definition is called by its name."""
     inner = bare(kind)
     name = _told(inner) if is_dataclass(inner) and isinstance(inner, type) else "item"
     readers: list[Read] = []
 
-    def make(content: object, where: str) -> Any:
+    def make(content: object, where: str) -> object:
         if not isinstance(content, list):
             raise InputError(f"{where}: {_shown(content)} is no list")
         if not readers:
@@ -338,7 +339,7 @@ def _told(kind: type) -> str:
 def _each(readers: tuple[Read, ...]) -> Read:
     """``readers``: one for each item."""
 
-    def make(content: object, where: str) -> Any:
+    def make(content: object, where: str) -> object:
         if not isinstance(content, list) or len(content) != len(readers):
             raise InputError(f"{where}: {_shown(content)} is no list of {len(readers)} items")
         every = zip(readers, content, strict=True)
@@ -348,7 +349,7 @@ def _each(readers: tuple[Read, ...]) -> Read:
 
 
 def _named(key: Read, inner: Read) -> Read:
-    def make(content: object, where: str) -> Any:
+    def make(content: object, where: str) -> object:
         if not isinstance(content, dict):
             raise InputError(f"{where}: {_shown(content)} is no object")
         return {key(name, where): inner(x, f"{where}.{name}") for name, x in content.items()}
@@ -378,11 +379,11 @@ def _shown(value: object) -> str:
     return repr(value)[:60]
 
 
-_SIMPLE: Mapping[Any, Read] = {
+_SIMPLE: Mapping[object, Read] = {
     str: text,
     int: _whole,
     float: _number,
     bool: _flag,
     Fraction: rational,
-    Any: lambda content, where: content,
+    object: lambda content, where: content,
 }

@@ -15,7 +15,7 @@ from typing import Any
 from roadproof.errors import InputError
 from roadproof.evidence.answers import drive as kept
 from roadproof.evidence.codec import read, write
-from roadproof.evidence.strict import Fields, is_rational, rational, read_json
+from roadproof.evidence.strict import Fields, JsonObject, is_rational, rational, read_json
 from roadproof.library.scenarios import LANE
 from roadproof.world.drive import Course, Drive, Motion, Piece
 from roadproof.world.road import Lanelet, Road, pairs
@@ -46,7 +46,7 @@ class DriveFile:
     overlaps_allowed: bool = False
 
 
-def drive_data(file: DriveFile, said: object) -> dict[str, Any]:
+def drive_data(file: DriveFile, said: object) -> JsonObject:
     """The file as plain data, in the order in which a reader wants it; ``said``: what the judge said."""
     has_jerk = any(motion.has_jerk for motion in file.drive.vehicles.values())
     values = {name: str(value) for name, value in file.values.items()}

@@ -4,6 +4,7 @@ An index is a part of the evidence (ADR 0020). So every entry must be that of it
 there, and no file may be without an entry. What is in a folder is read from the folder: links are refused.
 """
 
+import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -28,10 +29,9 @@ from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
 from roadproof.evidence.heading import library_of
 from roadproof.evidence.journal import ANSWERS, HEAD, Journal, faults_of_line, read_kept
 from roadproof.evidence.journal import NAME as JOURNAL
-from roadproof.evidence.kept import IndexLines
+from roadproof.evidence.refutation import judge_trace
 from roadproof.evidence.specifications import read_beside
-from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
-from roadproof.evidence.traces import judge_trace
+from roadproof.evidence.strict import LARGEST_INDEX, Fields, Json, JsonObject, read_json
 from roadproof.library.motion import statement
 from roadproof.library.specification import Library
 
@@ -174,7 +174,7 @@ def _without_twins(told: FolderStatements, entries: Sequence[Entry]) -> Iterator
 
 def _add_journal(told: FolderStatements, journal: Journal, library: Library, find_label: FindLabel) -> None:
     """The answers of a journal that the index does not say in the same words; of one file each the last."""
-    index = None if told.index is None else IndexLines(told.index)
+    index = None if told.index is None else _IndexLines(told.index)
     try:
         for fault in () if told.index is None else faults_of_head(journal.head, told.index):
             told.problems.append(_rejected(journal.path, fault))
@@ -200,6 +200,50 @@ def _add_journal(told: FolderStatements, journal: Journal, library: Library, fin
             told.problems.append(_unreadable(line.path, str(error)))
     told.entries += kept.values()
     told.question, told.kept_in_index = journal.head, index is not None and not kept
+
+
+class _IndexLines:
+    """The objects of an index, each with its fields."""
+
+    def __init__(self, index: Fields) -> None:
+        self._objects = [*_objects(index.content)]
+        self._words = frozenset(map(_as_text, self._objects))
+        self._numbered = {n: x for x in self._objects if type(n := x.get("number")) is int}
+
+    def has(self, line: object) -> bool:
+        """Whether an object of the index has all fields of ``line``, with the same values."""
+        if not isinstance(line, dict):
+            return False
+        return _as_text(line) in self._words or any(self._is_like(x, line) for x in self._objects)
+
+    def _is_like(self, said: Mapping[str, Json], kept: Mapping[str, Json]) -> bool:
+        return all(name in said and self._is_same(said[name], value) for name, value in kept.items())
+
+    def _is_same(self, said: object, kept: object) -> bool:
+        """Whether two values are equal, or numbers in the index stand for objects that are kept."""
+        if _as_text(said) == _as_text(kept):
+            return True
+        if not isinstance(said, list) or not isinstance(kept, list) or len(said) != len(kept):
+            return False
+        return all(
+            type(number) is int
+            and number in self._numbered
+            and isinstance(line, dict)
+            and self._is_like(self._numbered[number], line)
+            for number, line in zip(said, kept, strict=True)
+        )
+
+
+def _objects(content: Json) -> Iterator[JsonObject]:
+    if isinstance(content, dict):
+        yield content
+        content = [*content.values()]
+    for value in content if isinstance(content, list) else ():
+        yield from _objects(value)
+
+
+def _as_text(content: object) -> str:
+    return json.dumps(content, sort_keys=True)
 
 
 def _rejected(path: Path, fault: str) -> Finding:

@@ -13,14 +13,13 @@ from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers.entry import Entry, evidence_name, mismatch, read_evidence, stray_evidence
 from roadproof.evidence.answers.read import faults_of_record, read_record, record_fields
 from roadproof.evidence.answers.reader import FindLabel, without_labels
-from roadproof.evidence.strict import LARGEST_INDEX, Fields, parse_json, read_json
-from roadproof.evidence.traces import judge_trace
+from roadproof.evidence.refutation import judge_trace
+from roadproof.evidence.strict import LARGEST_INDEX, Fields, Json, JsonObject, parse_json, read_json
 from roadproof.library.specification import Library
 from roadproof.runtime.files import read_limited
 
@@ -50,16 +49,16 @@ class Journal:
     torn: bool
 
 
-def head_of(schema: str, question: str, said: Mapping[str, Any]) -> dict[str, Any]:
+def head_of(schema: str, question: str, said: Mapping[str, Json]) -> JsonObject:
     """The first line of a journal."""
     return {"schema": SCHEMA, "of": schema, "question": question, "said": dict(said)}
 
 
-def seal_of(record: Mapping[str, Any], question: str, folder: Path) -> str:
+def seal_of(record: Mapping[str, Json], question: str, folder: Path) -> str:
     """A digest of an answer, of what was asked, and of the bytes of its evidence. Raises ``InputError``."""
     bare = {name: value for name, value in record.items() if name != "seal"}
     digest = hashlib.sha256(json.dumps([question, bare], sort_keys=True).encode())
-    for name in record["evidence"]:
+    for name in Fields(record, "a kept answer").texts("evidence"):
         digest.update(
             hashlib.sha256(read_limited(folder / name, LARGEST_INDEX, "it is no evidence")).digest()
         )

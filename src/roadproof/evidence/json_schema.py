@@ -1,17 +1,18 @@
 """JSON Schemas of answers, derived from their definitions (``evidence.codec``)."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, is_dataclass
+from dataclasses import dataclass, is_dataclass, replace
 from enum import StrEnum
 from fractions import Fraction
 from types import NoneType, UnionType
-from typing import Any, Literal, Union, get_args, get_origin
+from typing import Literal, Union, get_args, get_origin
 
 from roadproof.evidence.codec import ABSENT, LACKING, Doc, Field, Rule, bare, fields_of, notes_of
+from roadproof.evidence.strict import Json, JsonObject
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
 COMMON = "common.json"
-_NAMES: Mapping[Any, str] = {str: "string", int: "integer", float: "number", bool: "boolean"}
+_NAMES: Mapping[object, str] = {str: "string", int: "integer", float: "number", bool: "boolean"}
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,7 @@ class Shared:
 class Plain:
     """A value that Python holds as plain JSON: the type that describes it."""
 
-    kind: Any
+    kind: object
 
 
 @dataclass(frozen=True)
@@ -47,17 +48,43 @@ class Whole:
     schema: str
 
 
-def schema_of(kind: type, record: type, name: str, title: str) -> dict[str, Any]:
+@dataclass(frozen=True)
+class ObjectSchema:
+    """The schema of an object that has these properties and no others; ``required`` are always there."""
+
+    required: tuple[str, ...]
+    properties: JsonObject
+    title: str = ""
+    description: str = ""
+
+    @property
+    def json(self) -> JsonObject:
+        """As a schema stands in JSON."""
+        return {
+            **({"title": self.title} if self.title else {}),
+            "type": "object",
+            **_told(self.description),
+            "required": [*self.required],
+            "additionalProperties": False,
+            "properties": self.properties,
+        }
+
+    def with_those_of(self, other: "ObjectSchema", title: str) -> "ObjectSchema":
+        """The properties of this one, then those of another."""
+        properties = self.properties | other.properties
+        return ObjectSchema((*self.required, *other.required), properties, title, other.description)
+
+
+def schema_of(kind: type, record: type, name: str, title: str) -> JsonObject:
     """The schema of an answer, which the file ``name`` holds, with what a kept answer is made of."""
     every = (x for top in (kind, record) for x in _definitions(top, set()))
     below = {x.__name__: x for x in every if x not in (kind, record)}
-    made = {"$schema": DRAFT, "$id": name, "title": title, **_object(kind)}
-    if below:
-        made["$defs"] = {_called(x): _object(below[x]) for x in sorted(below)}
-    return made
+    definitions: JsonObject = {_called(x): _object(below[x]) for x in sorted(below)}
+    made: JsonObject = {"$schema": DRAFT, "$id": name, "title": title, **_object(kind)}
+    return made | ({"$defs": definitions} if below else {})
 
 
-def tagged_schema(kinds: tuple[type, ...], name: str, title: str) -> dict[str, Any]:
+def tagged_schema(kinds: tuple[type, ...], name: str, title: str) -> JsonObject:
     """The schema of a file of one of several kinds, of which ``schema`` says which."""
     below = {_called(x.__name__): x for kind in kinds for x in _definitions(kind, set())}
     words = [word for kind in kinds for word in get_args(fields_of(kind)[0].type)]
@@ -71,44 +98,37 @@ def tagged_schema(kinds: tuple[type, ...], name: str, title: str) -> dict[str, A
     }
 
 
-def joined_schema(name: str, title: str, beside: type, kinds: Mapping[str, Any]) -> dict[str, Any]:
+def joined_schema(name: str, title: str, beside: type, kinds: Mapping[str, ObjectSchema]) -> JsonObject:
     """The schema of a file that holds an object of one of several kinds, with the fields of ``beside`` too.
 
     ``kinds``: the schema of each, by its title.
     """
-    [told] = _alternatives(beside)
-    joined = {
-        word: {
-            **x,
-            "required": [*told["required"], *x["required"]],
-            "properties": {**told["properties"], **x["properties"]},
-        }
-        for word, x in kinds.items()
-    }
-    every = [{"title": word, **x} for word, x in joined.items()]
-    version = {x: told["properties"][x] for x in ("schema",) if x in told["properties"]}
-    head = {"properties": version} if version else {}
+    [first] = _alternatives(beside)
+    every: list[Json] = [first.with_those_of(x, word).json for word, x in kinds.items()]
+    version: JsonObject = {key: x for key, x in first.properties.items() if key == "schema"}
+    head: JsonObject = {"properties": version} if version else {}
     return {"$schema": DRAFT, "$id": name, "title": title, **head, "oneOf": every}
 
 
-def kinds_in(kind: type, file: str) -> list[dict[str, Any]]:
+def kinds_in(kind: type, file: str) -> list[ObjectSchema]:
     """The schemas of the kinds of a definition, for another file than ``file``, which defines it."""
-    return [_moved(x, file) for x in _alternatives(kind)]
+    moved = ((x, _moved(x.properties, file)) for x in _alternatives(kind))
+    return [replace(x, properties=properties) for x, properties in moved if isinstance(properties, dict)]
 
 
-def _moved(content: Any, file: str) -> Any:
+def _moved(content: Json, file: str) -> Json:
     """A schema with references as they are written in another file."""
     if isinstance(content, list):
         return [_moved(x, file) for x in content]
     if not isinstance(content, dict):
         return content
     return {
-        key: f"{file}{x}" if key == "$ref" and x.startswith("#") else _moved(x, file)
+        key: f"{file}{x}" if key == "$ref" and isinstance(x, str) and x.startswith("#") else _moved(x, file)
         for key, x in content.items()
     }
 
 
-def shared_schemas(kinds: Mapping[str, Any]) -> dict[str, Any]:
+def shared_schemas(kinds: Mapping[str, object]) -> JsonObject:
     """The definitions of common.json, of types by name, and those that they are made of."""
     every = [x for kind in kinds.values() for x in _definitions(kind, set())]
     shared = {_shape(kind) for kind in kinds.values() if is_dataclass(_shape(kind))}
@@ -117,12 +137,12 @@ def shared_schemas(kinds: Mapping[str, Any]) -> dict[str, Any]:
     return dict(sorted(made.items()))
 
 
-def _shape(kind: Any) -> Any:
+def _shape(kind: object) -> object:
     """The type that describes a value, without its annotation."""
     return next((bare(x.kind) for x in notes_of(kind) if isinstance(x, Plain)), bare(kind))
 
 
-def _shared_schema(kind: Any) -> dict[str, Any]:
+def _shared_schema(kind: object) -> JsonObject:
     inner = _shape(kind)
     if not (is_dataclass(inner) and isinstance(inner, type)):
         return _inline(kind, {})
@@ -130,7 +150,7 @@ def _shared_schema(kind: Any) -> dict[str, Any]:
     return _object(inner) | ({"description": told[-1]} if told else {})
 
 
-def _definitions(kind: Any, seen: set[Any]) -> Iterator[type]:
+def _definitions(kind: object, seen: set[object]) -> Iterator[type]:
     """A definition and those below it, each once; shared ones are left out."""
     inner = _shape(kind)
     if is_dataclass(inner) and isinstance(inner, type):
@@ -147,34 +167,32 @@ def _definitions(kind: Any, seen: set[Any]) -> Iterator[type]:
             yield from _definitions(x, seen)
 
 
-def _object(kind: type) -> dict[str, Any]:
+def _object(kind: type) -> JsonObject:
     """The schema of a definition; where it is one of several kinds, of any of these."""
-    several = _alternatives(kind)
-    return several[0] if len(several) == 1 else {**_told(kind.__doc__ or ""), "oneOf": several}
+    several = [x.json for x in _alternatives(kind)]
+    return several[0] if len(several) == 1 else {**_told(kind.__doc__ or ""), "oneOf": [*several]}
 
 
-def _alternatives(kind: type) -> list[dict[str, Any]]:
+def _alternatives(kind: type) -> list[ObjectSchema]:
     """The schemas of the kinds of a definition, which ``ALTERNATIVES`` tells by their fields."""
     every = fields_of(kind)
     required = tuple(x.key for x in every if x.is_written and not x.has(LACKING))
-    kinds = getattr(kind, "ALTERNATIVES", ())
+    kinds: tuple[tuple[str, ...], ...] = getattr(kind, "ALTERNATIVES", ())
     return [
-        {
-            "type": "object",
-            **({} if kinds else _told(kind.__doc__ or "")),
-            "required": [*needed],
-            "additionalProperties": False,
-            "properties": {x.key: _of_field(x) for x in every if not kinds or x.key in needed},
-        }
+        ObjectSchema(
+            needed,
+            {x.key: _of_field(x) for x in every if not kinds or x.key in needed},
+            description="" if kinds else kind.__doc__ or "",
+        )
         for needed in kinds or (required,)
     ]
 
 
-def _told(text: str) -> dict[str, str]:
+def _told(text: str) -> JsonObject:
     return {"description": " ".join(text.split())} if text else {}
 
 
-def _of_field(field: Field) -> dict[str, Any]:
+def _of_field(field: Field) -> JsonObject:
     """The schema of a field; one that is left out is never null."""
     inner = bare(field.type)
     if field.is_written or field.default is ABSENT or get_origin(inner) not in (Union, UnionType):
@@ -182,7 +200,7 @@ def _of_field(field: Field) -> dict[str, Any]:
     return _schema(next(x for x in get_args(inner) if x is not NoneType))
 
 
-def _schema(kind: Any) -> dict[str, Any]:
+def _schema(kind: object) -> JsonObject:
     """The schema of a type: a reference where it is shared, with what is said of it here."""
     notes = notes_of(kind)
     shared = _shared(notes)
@@ -197,7 +215,7 @@ def _shared(notes: tuple[object, ...]) -> Shared | None:
     return next((x for x in notes if isinstance(x, Shared)), None)
 
 
-def _inline(kind: Any, made: dict[str, Any]) -> dict[str, Any]:
+def _inline(kind: object, made: JsonObject) -> JsonObject:
     made |= _plain(_shape(kind))
     told = [y for x in notes_of(kind) for y in ((*notes_of(x.kind), x) if isinstance(x, Plain) else (x,))]
     for note in told:
@@ -211,26 +229,26 @@ def _inline(kind: Any, made: dict[str, Any]) -> dict[str, Any]:
             case File():
                 made = {"anyOf": [{"type": "null"}, {"$ref": f"{COMMON}#/$defs/file"}], **made}
             case Other(schema):
-                file = {"$ref": "#/$defs/file"}
+                file: Json = {"$ref": "#/$defs/file"}
                 made = {"anyOf": [{"type": "null"}, file, {"$ref": schema}], **made}
     return made
 
 
-def _facets(rule: Rule, kind: object) -> dict[str, Any]:
+def _facets(rule: Rule, kind: object) -> JsonObject:
     least = {"array": "minItems", "object": "minProperties"}.get(str(kind), "minLength")
-    found: dict[str, Any] = {"pattern": rule.pattern} if rule.pattern else {}
+    found: JsonObject = {"pattern": rule.pattern} if rule.pattern else {}
     found |= {"minimum": rule.minimum} if rule.minimum is not None else {}
     found |= {} if rule.most is None else {least.replace("min", "max"): rule.most}
     found |= {"uniqueItems": True} if rule.unique else {}
     return found | ({least: rule.least} if rule.least else {})
 
 
-def _plain(kind: Any) -> dict[str, Any]:
+def _plain(kind: object) -> JsonObject:
     if kind in _NAMES:
         return {"type": _NAMES[kind]}
     if kind is Fraction:
         return {"$ref": f"{COMMON}#/$defs/rational"}
-    if kind is Any:
+    if kind is object:
         return {}
     if is_dataclass(kind) and isinstance(kind, type):
         return {"$ref": f"#/$defs/{_called(kind.__name__)}"}
@@ -241,18 +259,18 @@ def _plain(kind: Any) -> dict[str, Any]:
         words = [str(x) if isinstance(x, StrEnum) else x for x in inside]
         return {"const": words[0]} if len(words) == 1 else {"enum": words}
     if origin is tuple and Ellipsis not in inside:
-        every = [_schema(x) for x in inside]
-        items = {"items": every[0]} if every == every[:1] * len(every) else {"prefixItems": every}
+        every: list[Json] = [_schema(x) for x in inside]
+        alike = every == every[:1] * len(every)
+        items: JsonObject = {"items": every[0]} if alike else {"prefixItems": every}
         return {"type": "array", **items, "minItems": len(every), "maxItems": len(every)}
     if origin is tuple:
         return {"type": "array", "items": _schema(inside[0])}
     if origin in (Union, UnionType):
-        several = [_schema(x) for x in inside if x is not NoneType]
-        if NoneType not in inside:
-            return {"oneOf": several}
-        return {"anyOf": [{"type": "null"}, *several]}
-    names = [{"propertyNames": {"pattern": x.pattern}} for x in notes_of(inside[0]) if isinstance(x, Rule)]
-    return {"type": "object", **(names[0] if names else {}), "additionalProperties": _schema(inside[1])}
+        several: list[Json] = [_schema(x) for x in inside if x is not NoneType]
+        return {"anyOf": [{"type": "null"}, *several]} if NoneType in inside else {"oneOf": several}
+    rules = [x.pattern for x in notes_of(inside[0]) if isinstance(x, Rule)]
+    names: JsonObject = {"propertyNames": {"pattern": rules[0]}} if rules else {}
+    return {"type": "object", **names, "additionalProperties": _schema(inside[1])}
 
 
 def _called(name: str) -> str:

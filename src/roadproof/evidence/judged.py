@@ -3,12 +3,12 @@ exact judge asked, no solver.
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers.drive import DriveSays, TrueTimes
 from roadproof.evidence.codec import write
 from roadproof.evidence.drive_file import DriveFile, drive_data
+from roadproof.evidence.strict import JsonObject
 from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library, Query, Specification
@@ -97,12 +97,12 @@ class JudgedDrive:
         object.__setattr__(self, "judgement", ruling.judgement)
         object.__setattr__(self, "natural", natural)
 
-    def as_data(self) -> dict[str, Any]:
+    def as_data(self) -> JsonObject:
         """The drive file as plain data, with the verdict and with what is true when."""
         return drive_data(self.file, DriveSays(natural=self.natural, times=times_said(self.judgement)))
 
 
-def times_data(judgement: Judgement) -> list[dict[str, Any]]:
+def times_data(judgement: Judgement) -> list[JsonObject]:
     """As ``times_said``, as plain data."""
     return [write(x) for x in times_said(judgement)]
 

@@ -8,14 +8,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
-from typing import Any, Literal, assert_never
+from typing import Literal, assert_never
 
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers import trace as kept
-from roadproof.evidence.codec import write
-from roadproof.evidence.drive_file import road_said
+from roadproof.evidence.codec import read, write
+from roadproof.evidence.drive_file import road_of, road_said
+from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.periodic import Loop, judge_periodic
-from roadproof.library.bind import bind
+from roadproof.evidence.strict import JsonObject
+from roadproof.library.bind import bind, values_with
+from roadproof.library.elaborate import read_claim
+from roadproof.library.motion import under_limits
+from roadproof.library.specification import Specification
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
@@ -214,7 +219,7 @@ def _sizes(values: Mapping[str, Fraction]) -> dict[str, Fraction]:
 # --- plain data ----------------------------------------------------------------------------------
 
 
-def trace_data(countermodel: Countermodel) -> dict[str, Any]:
+def trace_data(countermodel: Countermodel) -> JsonObject:
     """A countermodel: its road, and what holds at each instant; how it repeats itself, where it does."""
     road, loop = countermodel.road, countermodel.loop
     return write(
@@ -239,3 +244,34 @@ def trace_data(countermodel: Countermodel) -> dict[str, Any]:
 
 def _sorted(values: Mapping[str, Fraction]) -> dict[str, Fraction]:
     return dict(sorted(values.items()))
+
+
+def judge_trace(
+    content: object, specification: Specification, claim: str, where: str, said: Sequence[str] = ()
+) -> tuple[Acceptance, str]:
+    """Whether a trace refutes a claim under what is ``said``, judged; and why where it does not."""
+    try:
+        query = under_limits(specification, read_claim(specification, claim), said)
+        trace = read_trace(content, where)
+        values_with(specification.library, trace.parameters)
+        fault = fault_of(trace, query.formula, specification.library.bounds)
+    except RoadproofError as error:
+        return Acceptance.UNREADABLE, str(error)
+    return (
+        (Acceptance.REJECTED, f"its trace does not refute it: {fault}")
+        if fault
+        else (Acceptance.ACCEPTED, "")
+    )
+
+
+def read_trace(content: object, where: str) -> Countermodel:
+    """The inverse of ``trace_data``. Raises ``InputError``."""
+    place = f"{where}, trace"
+    said = read(kept.Trace, content, place)
+    return Countermodel(
+        tuple(Instant(x.time, x.values, dict.fromkeys(x.true, True), x.after) for x in said.instants),
+        said.parameters,
+        "before" if said.between == "the state of the instant before" else "after",
+        None if said.road is None else road_of(said.road, f"{place}, road"),
+        None if said.repeats is None else Loop(said.repeats.start, said.repeats.period),
+    )

@@ -5,7 +5,7 @@ import sys
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Literal, get_args
 
 from roadproof.evidence.answers import (
     catalogue_index,
@@ -35,6 +35,7 @@ from roadproof.evidence.codec import Doc, Rule, fields_of, notes_of
 from roadproof.evidence.json_schema import (
     COMMON,
     DRAFT,
+    ObjectSchema,
     Shared,
     joined_schema,
     kinds_in,
@@ -42,6 +43,7 @@ from roadproof.evidence.json_schema import (
     shared_schemas,
     tagged_schema,
 )
+from roadproof.evidence.strict import JsonObject
 from roadproof.library.motion import INDUCTIONS
 
 TITLES: Mapping[type, str] = {
@@ -79,7 +81,7 @@ TITLES: Mapping[type, str] = {
         "roadproof redundancy --json, and index.json of its folder: which parts could be left out"
     ),
 }
-WITHOUT_ASSUMPTION: Mapping[str, object] = {
+WITHOUT_ASSUMPTION: JsonObject = {
     "dependentRequired": {"assuming": ["axioms"], "unused": ["assuming"]},
     "if": {"not": {"required": ["assuming"]}},
     "then": {
@@ -101,13 +103,13 @@ RECORDS: Mapping[type, type] = {
 """Kept answers that are made of more than the index."""
 
 
-def shared_types() -> dict[str, Any]:
+def shared_types() -> JsonObject:
     """The types that several answers share, by their name among the definitions of common.json."""
     kinds = (x for module in (shared, overlap, drive, trace, tree) for x in vars(module).values())
     return {note.name: x for x in kinds for note in notes_of(x) if isinstance(note, Shared)}
 
 
-def schemas() -> Iterator[tuple[str, dict[str, Any]]]:
+def schemas() -> Iterator[tuple[str, JsonObject]]:
     """The name and the content of each schema."""
     for kind, title in TITLES.items():
         [schema] = get_args(next(x.type for x in fields_of(kind) if x.name == "schema"))
@@ -152,25 +154,19 @@ class Question:
     ]
 
 
-def kept_answers(name: str) -> dict[str, Any]:
+def kept_answers(name: str) -> JsonObject:
     """The schema of kept answers."""
     every = [(x.SCHEMA, kind) for x in KEEPING for kind in kinds_in(x.Record, file_of(x.SCHEMA))]
-    kinds = {" ".join((schema.split("/")[1], *kind["required"])): kind for schema, kind in every}
+    kinds = {" ".join((schema.split("/")[1], *kind.required)): kind for schema, kind in every}
     return joined_schema(name, "answers/NAME.json: one answer that a run has kept", KeptFile, kinds)
 
 
-def questions(name: str) -> dict[str, Any]:
+def questions(name: str) -> JsonObject:
     """The schema of what was asked; ``said`` is what the index says once for all answers."""
     kinds = {}
     for schema, preamble in ((x.SCHEMA, x.Preamble) for x in KEEPING):
         [said] = kinds_in(preamble, file_of(schema))
-        properties = {"of": {"const": schema}, "said": said}
-        kinds[schema] = {
-            "type": "object",
-            "required": [*properties],
-            "additionalProperties": False,
-            "properties": properties,
-        }
+        kinds[schema] = ObjectSchema(("of", "said"), {"of": {"const": schema}, "said": said.json})
     title = "question.json: what the answers of a folder are answers to"
     return joined_schema(name, title, Question, kinds)
 
@@ -185,7 +181,7 @@ def main(folder: Path) -> None:
         (folder / name).write_text(as_text(content), "utf-8")
 
 
-def as_text(content: dict[str, Any]) -> str:
+def as_text(content: JsonObject) -> str:
     """A schema as its file has it."""
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
 

@@ -11,10 +11,13 @@ import re
 from collections.abc import Collection
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import NoReturn, TypeAlias
 
 from roadproof.errors import InputError
 from roadproof.runtime.files import read_limited
+
+Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
+JsonObject: TypeAlias = dict[str, Json]
 
 LARGEST_EVIDENCE = 5_000_000  # bytes of a certificate or a drive file
 LARGEST_INDEX = 50_000_000  # bytes of an index, and of a journal
@@ -24,7 +27,7 @@ _RATIONAL = re.compile(r"-?[0-9]{1,40}(/[0-9]{1,40})?")
 _FORBIDDEN = re.compile("[\x00\ud800-\udfff]")
 
 
-def read_json(path: Path, most: int = LARGEST_EVIDENCE) -> object:
+def read_json(path: Path, most: int = LARGEST_EVIDENCE) -> Json:
     """What a file says. Raises ``InputError`` naming the file and the rule."""
     data = read_limited(path, most, "roadproof reads no larger evidence")
     try:
@@ -34,10 +37,10 @@ def read_json(path: Path, most: int = LARGEST_EVIDENCE) -> object:
     return parse_json(text, str(path))
 
 
-def parse_json(text: str, where: str) -> object:
+def parse_json(text: str, where: str) -> Json:
     """What a text says. Raises ``InputError`` with ``where`` in front."""
     try:
-        content = json.loads(
+        content: Json = json.loads(
             text,
             object_pairs_hook=lambda pairs: _object(pairs, where),
             parse_int=lambda digits: int(_short(digits, where)),
@@ -52,8 +55,8 @@ def parse_json(text: str, where: str) -> object:
     return content
 
 
-def _object(pairs: list[tuple[str, Any]], where: str) -> dict[str, Any]:
-    made: dict[str, Any] = {}
+def _object(pairs: list[tuple[str, Json]], where: str) -> JsonObject:
+    made: JsonObject = {}
     for key, value in pairs:
         if key in made:
             raise InputError(f"{where}: the key '{key[:60]}' is given twice in one object")
@@ -107,14 +110,14 @@ class Fields:
         strangers = [] if known is None else [key for key in content if key not in known]
         if strangers:
             raise InputError(f"{where}: unknown field '{strangers[0][:60]}': remove it, or correct its name")
-        self.content: dict[str, Any] = content
+        self.content: JsonObject = content
         self.where = where
 
     def has(self, field: str) -> bool:
         """Whether the field is there, and not null."""
         return self.content.get(field) is not None
 
-    def get(self, field: str) -> Any:
+    def get(self, field: str) -> Json:
         if field not in self.content:
             raise InputError(f"{self.where}: '{field}' is missing")
         return self.content[field]
@@ -137,7 +140,7 @@ class Fields:
             raise InputError(f"{self.where}: {field}={_shown(value)} is not a whole number")
         return value
 
-    def mapping(self, field: str) -> dict[str, Any]:
+    def mapping(self, field: str) -> JsonObject:
         value = self.get(field)
         if not isinstance(value, dict):
             raise InputError(f"{self.where}: '{field}' is no object")
@@ -147,7 +150,7 @@ class Fields:
         """An object whose values are texts."""
         return {k: text(v, f"{self.where}, {field}.{k}") for k, v in self.mapping(field).items()}
 
-    def items(self, field: str) -> list[Any]:
+    def items(self, field: str) -> list[Json]:
         value = self.get(field)
         if not isinstance(value, list):
             raise InputError(f"{self.where}: '{field}' is no list")

@@ -153,8 +153,11 @@ def _read_record(record: Fields, background: Background) -> Iterator[Entry]:
 def _lines(record: Fields) -> Iterator[object]:
     """The facts of a kept answer, and what it says of gaps."""
     yield from record.items("facts")
-    said = record.mapping("gaps") if record.has("gaps") else {}
-    yield from (said["claim"],) if "claim" in said else said.get("classes", ())
+    said = Fields(record.mapping("gaps") if record.has("gaps") else {}, record.where)
+    if "claim" in said.content:
+        yield said.get("claim")
+    elif "classes" in said.content:
+        yield from said.items("classes")
 
 
 def _record_faults(record: Fields, background: Background) -> Iterator[str]:

@@ -7,7 +7,7 @@ from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows_of, shows_of_claim
 from roadproof.evidence.answers.proofs import unchecked_of
-from roadproof.evidence.answers.reader import Background, Reader, read_kept
+from roadproof.evidence.answers.reader import Background, Reader, read_kept, unchecked
 from roadproof.evidence.answers.shared import (
     Count,
     Dense,
@@ -25,7 +25,6 @@ from roadproof.evidence.answers.shared import (
 from roadproof.evidence.answers.shared import Formula as FormulaText
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Key, Rule, read
 from roadproof.evidence.strict import Fields
-from roadproof.evidence.unchecked import unchecked
 from roadproof.library.compose import both, either, equivalence, implication, negation
 from roadproof.library.elaborate import apply_definition, signature
 from roadproof.library.scenarios import LANE, Scenario, applied, name_of, number_in, numbers_of, vehicles_of

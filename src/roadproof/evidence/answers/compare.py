@@ -1,7 +1,7 @@
 """The answer of ``roadproof compare``: which of two formulas implies the other."""
 
 from dataclasses import dataclass
-from typing import Annotated, Any, Final, Literal, TypeAlias
+from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers.shared import Formula, PlainHeading, Reason, SetName
 from roadproof.evidence.codec import Doc
@@ -28,11 +28,11 @@ class Direction:
     verdict: ClaimVerdict
     reason: Reason
     certificate: Annotated[
-        Annotated[Any, Whole("certificate.json")] | None,
+        Annotated[object, Whole("certificate.json")] | None,
         Doc("Of a PROVED: of the claim, or that the opposite never holds."),
     ]
     drive: Annotated[
-        Annotated[Any, Whole("drive.json")] | None,
+        Annotated[object, Whole("drive.json")] | None,
         Doc("Of a REFUTED: one formula holds on it, the other does not."),
     ]
 

@@ -9,7 +9,7 @@ from roadproof.errors import InputError
 from roadproof.evidence.answers.entry import PROOFS, Common, Entry, evidence_name, shows_of, shows_of_claim
 from roadproof.evidence.answers.gaps import claims_of, fault_of_gap
 from roadproof.evidence.answers.proofs import unchecked_of
-from roadproof.evidence.answers.reader import Background, Reader, read_kept
+from roadproof.evidence.answers.reader import Background, Reader, read_kept, unchecked
 from roadproof.evidence.answers.shared import (
     Count,
     Dense,
@@ -28,7 +28,6 @@ from roadproof.evidence.answers.shared import Formula as FormulaText
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule, read
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.strict import Fields
-from roadproof.evidence.unchecked import unchecked
 from roadproof.library.scenarios import numbers_of
 from roadproof.logic.formula import Formula
 from roadproof.verdict import ProofVerdict, Verdict

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
 from roadproof.evidence.answers.shared import Dense, Formula, OneScenario, SetName
 from roadproof.evidence.codec import LEFT_OUT, Doc, Key, Remedy, Rule
@@ -169,7 +169,7 @@ class AnyDrive:
         LEFT_OUT,
         Doc("Courses of own signals; left out where there are none."),
     ] = ()
-    verdict: Annotated[Any, Plain(DriveSays)] = None
+    verdict: Annotated[object, Plain(DriveSays)] = None
 
 
 _VEHICLES = (Rule(most=20), Doc("Motions by the name of the vehicle in the formula."))

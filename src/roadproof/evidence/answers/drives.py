@@ -3,11 +3,11 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Annotated, Any, Final, Literal, TypeAlias
+from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows_of
 from roadproof.evidence.answers.proofs import shown
-from roadproof.evidence.answers.reader import Background, Reader, read_kept
+from roadproof.evidence.answers.reader import Background, Reader, read_kept, unchecked
 from roadproof.evidence.answers.shared import Formula as FormulaText
 from roadproof.evidence.answers.shared import (
     Heading,
@@ -24,7 +24,6 @@ from roadproof.evidence.answers.shared import (
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
 from roadproof.evidence.json_schema import File, Whole
 from roadproof.evidence.strict import Fields, rational
-from roadproof.evidence.unchecked import unchecked
 from roadproof.library.scenarios import Scenario, applied, name_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
@@ -57,7 +56,7 @@ class OutcomeRecord:
     reason: Reason
     natural: Natural
     drives: tuple[KeptFile, ...]
-    certificate: Annotated[Any, File(), Doc("Of an IMPOSSIBLE only.")]
+    certificate: Annotated[object, File(), Doc("Of an IMPOSSIBLE only.")]
     core: Core
     minimal: Annotated[bool, UNCHECKED, Doc("Whether no part of the core can be left out.")]
     seconds: Stages
@@ -103,11 +102,14 @@ class Outcome:
     view: Annotated[Literal["dense", "grid"], Doc("grid: on samples up to a horizon, within the limits.")]
     reason: Reason
     natural: Natural
-    drives: tuple[Annotated[Any, Whole("drive.json")], ...]
+    drives: tuple[Annotated[object, Whole("drive.json")], ...]
     limits: Annotated[KeptLimits | None, LEFT_OUT, Doc("Of a NONE-WITHIN only.")] = None
     core: Annotated[Core, LEFT_OUT] = ()
     certificate: Annotated[
-        Any, LEFT_OUT, Whole("certificate.json"), Doc("Of an IMPOSSIBLE only: that the formula never holds.")
+        object,
+        LEFT_OUT,
+        Whole("certificate.json"),
+        Doc("Of an IMPOSSIBLE only: that the formula never holds."),
     ] = None
     seconds: Stages = field(default_factory=dict)
     sizes: Sizes = field(default_factory=dict)

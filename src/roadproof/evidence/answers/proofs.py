@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Annotated, Any, Final, Literal, TypeAlias
+from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows_of
 from roadproof.evidence.answers.reader import Background, Reader, read_kept
@@ -51,7 +51,7 @@ class Claim:
     claim: FormulaText
     assuming: Annotated[Assuming, LEFT_OUT] = ()
     verdict: ClaimVerdict
-    evidence: Annotated[Any, File(), Doc("Certificate or drive file beside the index.")]
+    evidence: Annotated[object, File(), Doc("Certificate or drive file beside the index.")]
     counterexample: Annotated[
         KeptTrace | None,
         LEFT_OUT,
@@ -66,7 +66,7 @@ class Claim:
         return [f.negation(under_limits(common.specification, claim, self.assuming).formula)]
 
 
-def trace_of(claim: Claim) -> Any:
+def _trace_of(claim: Claim) -> object:
     """The trace that refutes a claim, or None."""
     return None if claim.counterexample is ABSENT else claim.counterexample
 
@@ -123,7 +123,7 @@ def _entry(claim: Claim, where: str, background: Background) -> Entry:
     label = None if moving else background.find_label(claim.claim, claim.set)
     own = told[0] == OWN and claim.scenario is None and (not claim.part or claim.part.isdecimal())
     fault = "" if told == label or own else misnamed(where, told, label)
-    if moving and trace_of(claim) is not None:
+    if moving and _trace_of(claim) is not None:
         fault = f"{where} assumes motion, so that only a drive refutes it: a trace may jump"
     common = background.at(claim.set)
     return Entry(
@@ -135,7 +135,7 @@ def _entry(claim: Claim, where: str, background: Background) -> Entry:
         shows_of(claim.verdict, where),
         claim.claim,
         evidence_name(Fields({"evidence": claim.evidence}, where), "evidence"),
-        trace_of(claim),
+        _trace_of(claim),
         unchecked=unchecked_of(claim.verdict),
         fault=fault,
         assuming=claim.assuming,

@@ -1,16 +1,16 @@
 """What the reader of an index is: fields that there may be, and how entries are read from them."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
-from typing import Annotated, TypeAlias, TypeVar, get_args
+from dataclasses import dataclass, field, is_dataclass
+from types import NoneType
+from typing import Annotated, TypeAlias, TypeVar, get_args, get_origin
 
 from roadproof.errors import InputError
 from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.entry import Common, Entry, common_of
-from roadproof.evidence.codec import Doc, Rule, bare, fields_of, read
+from roadproof.evidence.codec import UNCHECKED, Doc, Rule, bare, fields_of, read
 from roadproof.evidence.heading import HEADING
 from roadproof.evidence.strict import Fields
-from roadproof.evidence.unchecked import unchecked
 from roadproof.library.specification import Library
 
 T = TypeVar("T")
@@ -115,6 +115,25 @@ def _without_record_faults(record: Fields, background: Background) -> Iterator[s
 def _depth(path: str) -> int:
     """In how many lists a field is."""
     return path.count("[]")
+
+
+def unchecked(kind: object) -> tuple[str, ...]:
+    """The paths of the fields that ``check`` compares with nothing, such as ``verdicts[].seconds``."""
+    kind = bare(kind)
+    if not (is_dataclass(kind) and isinstance(kind, type)):
+        return ()
+    every = ((x.key, [""] if x.has(UNCHECKED) else _below(x.type)) for x in fields_of(kind))
+    return tuple(f"{key}{path}" for key, paths in every for path in paths)
+
+
+def _below(kind: object) -> list[str]:
+    """Paths below a field, with what joins them to it."""
+    kind = bare(kind)
+    if is_dataclass(kind):
+        return [f".{path}" for path in unchecked(kind)]
+    listed = "[]" if get_origin(kind) is tuple else ""
+    inside = (x for x in get_args(kind) if x is not NoneType and x is not Ellipsis)
+    return [f"{listed}{path}" for x in inside for path in _below(x)]
 
 
 @dataclass(frozen=True)

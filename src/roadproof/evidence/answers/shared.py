@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
 from roadproof.evidence.json_schema import Other, Plain, Shared
@@ -16,7 +16,7 @@ Number: TypeAlias = Annotated[int, Rule(minimum=0), Doc("Number of a scenario.")
 Count: TypeAlias = Annotated[int, Rule(minimum=0)]
 SetName: TypeAlias = Annotated[str, Rule(least=1), Doc("Name of a spec set."), Shared("set")]
 KeptFile: TypeAlias = Annotated[
-    Any,
+    object,
     Plain(str),
     Rule(least=1),
     Doc("Path of a file of evidence; in an index as it is from the index's folder."),
@@ -101,13 +101,13 @@ Reason: TypeAlias = Annotated[
     Shared("reason"),
 ]
 KeptCertificate: TypeAlias = Annotated[
-    Any,
+    object,
     Other("certificate.json"),
     Doc("A certificate: its file where evidence goes to a folder, else itself; null where there is none."),
     Shared("kept_certificate"),
 ]
 KeptDrive: TypeAlias = Annotated[
-    Any,
+    object,
     Other("drive.json"),
     Doc("A judged drive: its file where evidence goes to a folder, else itself; null where there is none."),
     Shared("kept_drive"),
@@ -145,7 +145,7 @@ class Limits:
     ] = None
 
 
-KeptLimits: TypeAlias = Annotated[Any, Plain(Limits), Shared("limits")]
+KeptLimits: TypeAlias = Annotated[object, Plain(Limits), Shared("limits")]
 Version: TypeAlias = Annotated[
     str,
     Rule(pattern=r"^[0-9]+\.[0-9]+"),

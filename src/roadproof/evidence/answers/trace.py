@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
 from roadproof.evidence.answers.drive import KeptRoad
 from roadproof.evidence.codec import LACKING, LEFT_OUT, Doc, Key, Remedy, Rule
@@ -65,12 +65,12 @@ class RefutingDrive:
     """A judged drive on which the claim is false."""
 
     kind: Literal["drive"]
-    drive: Annotated[Any, Whole("drive.json")]
+    drive: Annotated[object, Whole("drive.json")]
 
 
-KeptTrace: TypeAlias = Annotated[Any, Plain(Trace), Shared("trace")]
+KeptTrace: TypeAlias = Annotated[object, Plain(Trace), Shared("trace")]
 KeptCounterexample: TypeAlias = Annotated[
-    Any,
+    object,
     Plain(KeptTrace | RefutingDrive | None),
     Doc("What refutes the claim, judged: a drive, or else a trace; null where nothing does."),
     Shared("counterexample"),

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Annotated, Any, Literal, TypeAlias, assert_never
+from typing import Annotated, Literal, TypeAlias, assert_never
 
 from roadproof.evidence.answers.shared import Binding, KeptBinding
 from roadproof.evidence.codec import Doc, Rule
@@ -193,20 +193,15 @@ def _call(of: syntax.Call) -> CallNode:
 
 
 def _temporal(of: syntax.Temporal) -> WithinNode | UntilNode:
-    interval, right = _interval(of.bounds), node(of.right)
+    bounds = of.bounds or Bounds(syntax.Literal_(Fraction(0)), None)
+    low, high = node(bounds.low), None if bounds.high is None else node(bounds.high)
     if of.left is None:
-        return WithinNode(node="G" if of.op == "G" else "F", **interval, body=right)
-    return UntilNode(node="U", **interval, left=node(of.left), right=right)
+        return WithinNode(node="G" if of.op == "G" else "F", low=low, high=high, body=node(of.right))
+    return UntilNode(node="U", low=low, high=high, left=node(of.left), right=node(of.right))
 
 
 def _bindings(bindings: tuple[syntax.Binding, ...]) -> tuple[Binding, ...]:
     return tuple(Binding(name=x.name, sort=x.sort) for x in bindings)
-
-
-def _interval(bounds: Bounds | None) -> dict[str, Any]:
-    if bounds is None:
-        return {"low": node(syntax.Literal_(Fraction(0))), "high": None}
-    return {"low": node(bounds.low), "high": None if bounds.high is None else node(bounds.high)}
 
 
 def _domain(domain: syntax.Name | syntax.Call | syntax.Group) -> NameNode | CallNode | GroupNode:

@@ -9,6 +9,7 @@ from roadproof.analysis.study.evidence_store import INDEX
 from roadproof.evidence.answers.proofs import ANSWER_SCHEMA, OWN, Answer, Claim, ClaimAnswer, Index
 from roadproof.evidence.codec import read
 from roadproof.evidence.finding import Acceptance, Finding
+from roadproof.evidence.strict import Fields
 from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.results import Result, Words
 from roadproof.library.motion import statement
@@ -76,5 +77,6 @@ def _drive_against(claim: Claim | ClaimAnswer, result: Result) -> Path | Mapping
     if claim.verdict is not Verdict.REFUTED:
         return None
     if isinstance(claim, ClaimAnswer):
-        return dict(claim.counterexample["drive"]) if claim.refuted_by == "drive" else None
-    return None if claim.evidence is None or result.folder is None else result.folder / claim.evidence
+        is_drive = claim.refuted_by == "drive"
+        return Fields(claim.counterexample, "its counterexample").mapping("drive") if is_drive else None
+    return None if claim.evidence is None or result.folder is None else result.folder / str(claim.evidence)
