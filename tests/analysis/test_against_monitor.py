@@ -5,22 +5,38 @@ Gaps of coverage, too: no class that is proved empty occurs, and no disturbance 
 
 import csv
 from collections import defaultdict
-from itertools import combinations
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
+from itertools import combinations, permutations
 from pathlib import Path
 
 import pytest
 
+import roadproof as rp
 from asking import prove
+from monitoring.cases import random_traffic
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.coverage.claims import in_either_role, sectors_of
 from roadproof.analysis.coverage.classes import GapClasses
 from roadproof.analysis.coverage.traffic import disturbances_in, recordings_in
 from roadproof.analysis.overlap import Meeting, conjunctions
+from roadproof.analysis.redundancy import changes_of
+from roadproof.errors import UsageError
+from roadproof.evidence.drive_file import load_drive
+from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.cli.main import main
+from roadproof.frontends.settings.groups import Budget
+from roadproof.library.bind import default_values
+from roadproof.library.compose import equivalence, implication
+from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
-from roadproof.library.scenarios import Scenario
+from roadproof.library.scenarios import Scenario, applied
+from roadproof.library.specification import Specification
+from roadproof.logic.rewrite import with_values
 from roadproof.runtime.budget import Effort
+from roadproof.semantics.sampled import compile
 from roadproof.verdict import Verdict
+from roadproof.world.models import load_vehicle
 
 pytest.importorskip("polars")
 
@@ -103,3 +119,90 @@ def test_the_proposed_set_misses_no_disturbance_in_traffic(recordings: Path) -> 
     found = list(disturbances_in(basis, recordings_in(recordings)))
     assert len(found) > 10
     assert not any(trace.missed for trace in found)
+
+
+# --- What analysis proves is never false on a random trace, as the monitor sees it ------------------
+
+LIBRARY = bundled_library()
+
+
+def exclusions(home: Specification) -> Iterator[tuple[str, bool]]:
+    """Claims that two scenarios never hold together, and whether they are provable."""
+    for a, b in combinations((1, 3, 4, 5, 6, 7, 8), 2):
+        (both,) = conjunctions(home, Scenario(a, home.set_name), Scenario(b, home.set_name), Meeting())
+        yield f"not ({both.text})", (a, b) not in {(1, 5), (3, 6), (4, 6), (4, 8), (6, 8)}
+
+
+def implications(home: Specification) -> Iterator[tuple[str, bool]]:
+    """A scenario implies itself in a wider set, and does not in a narrower one."""
+    sets = ("base", "extA", "ext")
+    for n in (4, 8):
+        for one, other in permutations(sets, 2):
+            above, below = (applied(home, Scenario(n, x)) for x in (one, other))
+            yield implication(above, below).text, sets.index(one) < sets.index(other)
+
+
+def redundancies(home: Specification) -> Iterator[tuple[str, bool]]:
+    """Of the condition on lanes in scenario 4, nothing is needed; of safety and the road, all."""
+    whole = applied(home, Scenario(4, home.set_name))
+    for change in changes_of(home, whole):
+        if (
+            change.part.startswith(("sameLane", "inAdjLanes", "initSafe", "roadSector", "laneKeep"))
+            and change.value
+        ):
+            yield equivalence(whole, change.changed).text, change.part.startswith(("sameLane", "inAdjLanes"))
+
+
+def false_somewhere(home: Specification, claims: Sequence[str]) -> set[str]:
+    """The claims that are false, however the trace goes on, on one of 6,000 random traces."""
+    values = {**default_values(LIBRARY), "minSafe": Fraction(2, 25), "minDanger": Fraction(2, 25)}
+    formulas = {claim: with_values(read_claim(home, claim).formula, values) for claim in claims}
+    batch = random_traffic(list(formulas.values()), traces=6000, longest=20, seed=11, noise=4.0)
+    answers = compile(formulas).evaluate(batch).answers
+    return {claim for claim in claims if answers[claim].false.any()}
+
+
+@pytest.mark.parametrize("kind", [exclusions, implications, redundancies])
+def test_what_is_proved_is_never_false(kind: Callable[[Specification], Iterator[tuple[str, bool]]]) -> None:
+    home = LIBRARY.select("base")
+    claims = dict(kind(home))
+    false = false_somewhere(home, tuple(claims))
+    assert false
+    for claim, provable in claims.items():
+        if provable:
+            assert prove(home, claim).verdict is Verdict.PROVED
+            assert claim not in false
+    assert all(prove(home, claim, Effort(0.2)).verdict is not Verdict.PROVED for claim in false)
+
+
+# --- Models of vehicles in long questions: who drives, and that another model is another question ---
+
+
+def test_models_go_to_the_vehicles_that_a_formula_has() -> None:
+    truck, home = load_vehicle("truck"), bundled_library().select()
+    basis = Basis(home, vehicles={"POV": truck, "": load_vehicle("bus")})
+    assert set(basis.search(applied(home, Scenario(4, "base"))).setting.vehicles) == {"POV", ""}
+    assert set(basis.search(applied(home, Scenario(2, "base"))).setting.vehicles) == {""}
+    assert basis.models != Basis(home, vehicles={"SV": truck}).models
+    assert Basis(home).models == {}
+
+
+def test_roles_that_no_scenario_has_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(UsageError, match="vehicle XV: scenarios mention POV, POV1, POV2, SV"):
+        basis_of(rp.load(), Budget(), {"XV": "truck"})
+    for command in ("overlap", "order", "redundancy", "coverage", "classify"):
+        assert main([command, "--vehicle", "XV=truck"]) == 2
+        assert "vehicle XV" in capsys.readouterr().err
+
+
+def test_a_truck_in_a_role(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    asked = ("overlap", "--among", "4,8", "--jobs", "1", "--no-pictures", "--out", str(tmp_path))
+    assert main([*asked, "--vehicle", "POV=truck"]) == 0
+    [path] = tmp_path.glob("drive-*.json")
+    found = rp.check(path)
+    assert found.accepted
+    sizes = {name: (x.length, x.width) for name, x in load_drive(path).drive.vehicles.items()}
+    truck, car = load_vehicle("truck"), load_vehicle("car")
+    assert sizes == {"SV": (car.length, car.width), "POV": (truck.length, truck.width)}
+    assert main([*asked]) == 2
+    assert "holds the answers to another question" in capsys.readouterr().err

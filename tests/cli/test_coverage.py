@@ -16,6 +16,7 @@ from roadproof.analysis.coverage.study import Coverage
 from roadproof.analysis.study.evidence_store import EvidenceStore
 from roadproof.analysis.study.frame import conduct
 from roadproof.errors import UsageError
+from roadproof.evidence.drive_file import SCHEMA, load_drive
 from roadproof.frontends.api import covering
 from roadproof.frontends.cli.main import main
 from roadproof.library.elaborate import read_claim
@@ -233,3 +234,205 @@ def test_a_folder_with_other_answers_is_left_alone(
 def test_mistakes(more: list[str], code: int, message: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["coverage", "--set", "ext", *more]) == code
     assert message in capsys.readouterr().err
+
+
+# --- roadproof witness and compare from the command line --------------------------------------------
+
+
+def witness(capsys, *arguments):
+    code = main(list(arguments))
+    captured = capsys.readouterr()
+    return code, captured.out, captured.err
+
+
+def test_a_drive_is_written_and_accepted(tmp_path, capsys):
+    code, out, _ = witness(capsys, "witness", "4", "--out", str(tmp_path))
+    assert code == 0
+    assert "WITNESSED" in out
+    assert {p.suffix for p in tmp_path.iterdir() if p.is_file()} == {".json", ".csv", ".png", ".svg"}
+    file = load_drive(tmp_path / "scenario-04-base.json")
+    assert file.scenario == 4
+    rows = (tmp_path / "scenario-04-base.csv").read_text("utf-8").splitlines()
+    assert rows[0] == "time,vehicle,s,d,v_lon,v_lat,a_lon,a_lat,length,width"
+    assert len(rows) == 1 + 2 * 151
+    assert (tmp_path / "scenario-04-base.png").read_bytes().startswith(b"\x89PNG")
+    assert b"<svg" in (tmp_path / "scenario-04-base.svg").read_bytes()
+    assert witness(capsys, "check", str(tmp_path))[0] == 0
+
+
+def test_json_has_verdicts_and_drives(tmp_path, capsys):
+    target = tmp_path / "answer.json"
+    sets = ("--set", "base", "--set", "ext")
+    code, _, _ = witness(capsys, "witness", "3", *sets, "--jobs", "1", "--json", str(target))
+    assert code == 0
+    data = json.loads(target.read_text("utf-8"))
+    assert data["schema"] == "roadproof/witness/1"
+    assert [(v["scenario"], v["set"], v["verdict"]) for v in data["verdicts"]] == [
+        (3, "base", "WITNESSED"),
+        (3, "ext", "WITNESSED"),
+    ]
+    assert all(v["drives"][0]["schema"] == SCHEMA for v in data["verdicts"])
+    assert all(v["seconds"]["all"] > 0 and v["sizes"]["inequalities"] > 0 for v in data["verdicts"])
+
+
+def test_a_list_of_scenarios_gives_a_drive_for_each(capsys):
+    code, out, _ = witness(capsys, "witness", "3-4,7", "--jobs", "1")
+    assert code == 0
+    assert [line.split()[:2] for line in out.splitlines() if line.startswith("scenario")] == [
+        ["scenario", "3"],
+        ["scenario", "4"],
+        ["scenario", "7"],
+    ]
+    assert out.endswith("3 of 3 witnessed in " + out.rpartition("witnessed in ")[2])
+    assert witness(capsys, "witness", "1,99")[::2] == (
+        3,
+        "roadproof: there is no scenario '99'; did you mean '9'?\n",
+    )
+    assert witness(capsys, "witness", "1-")[::2] == (
+        2,
+        "roadproof: '1-' is not a range of scenarios; write 1-8 or 1,3-8\n",
+    )
+
+
+def test_impossible_names_its_core_and_is_unexpected(capsys):
+    code, out, _ = witness(capsys, "witness", "scenario_1(SV,POV,L) and scenario_4(SV,POV,L)")
+    assert code == 10
+    assert "IMPOSSIBLE" in out
+    assert "minimal core" in out
+    assert "not sameLane(POV, SV, L)" in out
+
+
+def test_none_within_prints_its_limits(capsys):
+    code, out, _ = witness(capsys, "witness", "F v_lon(SV) > 41 m/s", "--road", "main-3")
+    assert code == 10
+    assert "NONE-WITHIN" in out
+    assert "road main-3" in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "message"),
+    [
+        (("witness",), 2, "name scenarios or formulas"),
+        (("witness", "4", "--all"), 2, "but not both"),
+        (("witness", "4", "--solver", "magic"), 2, "unknown solver; choose one of"),
+        (("witness", "4", "--solver", "gurobi"), 4, "gurobipy"),
+        (("witness", "4", "--dt", "0"), 2, "greater than 0"),
+        (("witness", "4", "--dt", "1e9"), 2, "greater than 0"),
+        (("witness", "4", "--horizon", "7", "--dt", "3/5"), 2, "no multiple of dt"),
+        (("witness", "4", "--param", "minDanger=0.5", "--dt", "3/5"), 2, "dt=1/10"),
+        (("witness", "4", "--count", "0"), 2, "--count"),
+        (("witness", "4", "--timeout", "-1"), 2, "--timeout"),
+        (("witness", "4", "--lane", "main-7"), 2, "has the lanes"),
+        (("witness", "4", "--road", "nowhere"), 3, "there is no road"),
+        (("witness", "4", "--vehicle", "SV=tank"), 3, "there is no vehicle"),
+        (("witness", "4", "--out", "/proc/none"), 3, "cannot write into /proc/none"),
+        (("witness", "99"), 3, "scenario_99"),
+        (("witness", "scenario_4(SV,POV"), 3, "ends too early"),
+        (("witness", "4", "--set", "extB"), 3, "extB"),
+        (("compare", "3", "4", "--set", "a", "--set", "b", "--set", "c"), 2, "at most two"),
+    ],
+)
+def test_mistakes_are_explained(capsys, arguments, code, message):
+    found, _, err = witness(capsys, *arguments)
+    assert found == code
+    assert message in err
+    assert "Traceback" not in err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "relation"),
+    [
+        (("scenario_3(SV,POV,L)", "scenario_4(POV,SV,L)"), "equivalent"),
+        (("scenario_3(SV,POV,L)", "scenario_4(POV,SV,L)", "--set", "extA"), "incomparable"),
+        (("4", "4", "--set", "base", "--set", "ext"), "stronger"),
+        (("dangerArises(SV,POV)", "scenario_3(SV,POV,L)"), "weaker"),
+    ],
+)
+def test_comparisons_come_with_evidence(capsys, tmp_path, arguments, relation):
+    target, folder = tmp_path / "answer.json", tmp_path / "out"
+    code, out, _ = witness(capsys, "compare", *arguments, "--json", str(target), "--out", str(folder))
+    assert code == 0
+    assert relation in out
+    data = json.loads(target.read_text("utf-8"))
+    assert data["relation"] == relation
+    for direction in (data["forward"], data["backward"]):
+        assert (direction["certificate"] is None) != (direction["drive"] is None)
+    assert len(list(folder.iterdir())) == 2
+    assert witness(capsys, "check", str(folder))[0] == 0
+
+
+# --- Work limits and the backstop on the command line: one meaning everywhere, and doubt where they end
+
+CLOCK = "cut off by the clock after 0.0001 s, not by the count of work"
+PROOF = str(Path(__file__).parents[2] / "proofs/P1-scenario-04-base.json")
+# Every command that searches, with the least that it has to be asked.
+SEARCHING = {
+    "prove": ["P1"],
+    "witness": ["4"],
+    "check": [PROOF],
+    "compare": ["1", "4"],
+    "overlap": ["--among", "3,4"],
+    "order": ["--set", "base", "--among", "3,4"],
+    "redundancy": ["--among", "3"],
+    "coverage": ["--set", "ext"],
+    "classify": ["--among", "4"],
+    "explore": ["4", "--vary", "rho=0:3"],
+}
+CUT_OFF = [
+    ("witness", "4"),
+    ("witness", "4", "--engine", "smt"),
+    ("prove", "scenario_4(SV,POV,L) -> dangerArises(SV,POV)"),
+    ("prove", "scenario_4(SV,POV,L) -> dangerArises(SV,POV)", "--engine", "milp"),
+    ("check", PROOF),
+    ("compare", "1", "4"),
+    ("overlap", "--among", "3,4", "--jobs", "1"),
+    ("redundancy", "--among", "3", "--jobs", "1"),
+    ("order", "--set", "base", "--among", "3,4", "--jobs", "1"),
+    ("explore", "4", "--vary", "rho=0:3", "--steps", "2", "--jobs", "1"),
+    ("classify", "--among", "4", "--no-shares", "--jobs", "1"),
+]
+
+
+@pytest.mark.parametrize("line", CUT_OFF, ids=" ".join)
+def test_what_the_clock_cuts_off_is_in_doubt_and_says_so(line, capfd):
+    assert main([*line, "--timeout", "0.0001"]) == 20
+    printed = capfd.readouterr()
+    assert CLOCK in printed.out + printed.err
+
+
+@pytest.mark.parametrize(
+    "line", [("witness", "4", "--engine", "smt"), ("prove", "P3", "--set", "base", "--no-drive")]
+)
+def test_what_work_cuts_off_does_not_speak_of_the_clock(line, capfd):
+    assert main([*line, "--effort", "0.0001", "--json", "-"]) == 20
+    verdicts = json.loads(capfd.readouterr().out)["verdicts"]
+    reasons = {x["reason"].partition(";")[0] for x in verdicts}
+    assert {x["verdict"] for x in verdicts} == {"UNKNOWN"}
+    assert reasons == {"no answer within 0.0001 units of work"}
+
+
+@pytest.mark.parametrize("option", ["--effort", "--timeout"])
+@pytest.mark.parametrize("text", ["nan", "inf", "1e300", "0", "-5", "0.0", "much", "", "1_000", "٣"])
+def test_limits_that_are_no_numbers_above_zero_are_refused_by_name(option, text, capsys):
+    for command, asked in SEARCHING.items():
+        assert main([command, *asked, f"{option}={text}"]) == 2
+        assert f"roadproof: {option} {text}: write a decimal number greater than 0" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("text", ["nan", "inf", "1e300", "0", "-5", "1.5", "many"])
+def test_numbers_of_processes_are_refused_by_name(text, capsys):
+    for command, asked in SEARCHING.items():
+        if command != "compare":
+            assert main([command, *asked, f"--jobs={text}"]) == 2
+            assert f"roadproof: --jobs {text}: write a whole number greater than 0" in capsys.readouterr().err
+
+
+def test_limits_are_explained_in_one_way(capsys):
+    explained = set()
+    for command in SEARCHING:
+        with pytest.raises(SystemExit):
+            main([command, "--help-all"])
+        words = " ".join(capsys.readouterr().out.split())
+        assert "counted, so the answer is the same on every machine" in words
+        explained.add(words[words.index("--timeout S seconds") :].split(")")[0])
+    assert len(explained) == 1

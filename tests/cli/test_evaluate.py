@@ -9,14 +9,22 @@ import sys
 import time
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from roadproof.evidence.drive_file import load_drive
+from roadproof.frontends.api import traces
 from roadproof.frontends.cli.main import main
 from roadproof.recordings.evaluate import results
+from roadproof.recordings.evaluate.evaluate import evaluate_recording
+from roadproof.recordings.evaluate.questions import ask, default_settings
+from roadproof.recordings.export.csv_table import csv_of
+from roadproof.recordings.formats.highd import read_highd
 from roadproof.recordings.formats.write_highd import write_highd
 from roadproof.recordings.simulate.synthetic import simulate
 from roadproof.recordings.simulate.traffic import Traffic
+from traffic.faults import plant_fault
 
 ROADPROOF = Path(sys.executable).parent / "roadproof"
 TABLES = {f"{x}.{e}" for x in ("results", "comparison") for e in ("txt", "md", "csv", "tex")}
@@ -265,3 +273,298 @@ def test_drives_that_cannot_be_planted(tmp_path: Path, capsys: pytest.CaptureFix
     (tmp_path / "none" / "x.json").write_text("{}")
     assert main([*command, str(tmp_path / "none")]) == 3
     assert "'schema' is missing" in capsys.readouterr().err
+
+
+# --- roadproof monitor: drives, samples and vehicles of recordings; verdicts, parts, exit codes, refusals
+
+ROAD = {
+    "name": "main-2",
+    "lanelets": [
+        {"id": f"m{k}", "lane": f"main-{k}", "zone": "main", "attribute": "main", "s": [None, None], "d": d}
+        for k, d in ((1, ["0", "7/2"]), (2, ["7/2", "7"]))
+    ],
+    "adjacent": [["main-1", "main-2"]],
+}
+
+
+def vehicle(s: str, d: str, v: str, *pieces: tuple[str | None, str]) -> dict[str, Any]:
+    made = [{"duration": t, "a_lon": a, "a_lat": "0"} for t, a in pieces]
+    box = {"length": "9/2", "width": "9/5", "s": s, "d": d, "v_lon": v, "v_lat": "0"}
+    return {**box, "pieces": made}
+
+
+@pytest.fixture
+def drive(tmp_path: Path) -> Path:
+    """POV brakes from 28 to 20 m/s ahead of SV at 29 m/s, in one lane: scenario 4."""
+    data = {
+        "schema": "roadproof/drive/1",
+        "scenario": 4,
+        "set": "base",
+        "formula": "scenario_4(SV, POV, L)",
+        "horizon": "4",
+        "lane": "main-1",
+        "parameters": {"minDanger": "3/5"},
+        "road": ROAD,
+        "vehicles": {
+            "SV": vehicle("5", "13/5", "29", (None, "0")),
+            "POV": vehicle("80", "14/5", "28", ("2", "-4"), (None, "0")),
+        },
+    }
+    path = tmp_path / "drive.json"
+    path.write_text(json.dumps(data))
+    return path
+
+
+def asked(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> tuple[int, dict[str, Any]]:
+    code = main(["monitor", *arguments, "--json", "-"])
+    return code, json.loads(capsys.readouterr().out)
+
+
+def test_a_drive_is_judged_in_dense_time(drive: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    code, told = asked(["4", str(drive)], capsys)
+    assert (code, told["verdict"], told["view"], told["lanes"]["L"]) == (0, "true", "dense", "main-1")
+    assert told["schema"] == "roadproof/monitor/2"
+    assert told["robustness"] == [pytest.approx(0.2), pytest.approx(0.2)]  # POV is 0.2 m left of SV
+    parts = {part["formula"]: part for part in told["parts"]}
+    assert parts["laneKeep(SV, main-1)"]["true"] == [[0.0, None]]
+    [[begin, end]] = parts["rssViolation(SV, POV)"]["true"]
+    assert 0.6 < begin < 4
+    assert parts["instSafe(SV, POV)"]["true"][0][1] == pytest.approx(begin)
+    assert end is None or end > begin
+
+
+@pytest.mark.parametrize(
+    ("formula", "code", "verdict"),
+    [
+        ("v_lon(POV) >= 20 m/s", 0, "true"),
+        ("G v_lon(SV) > 28 m/s", 0, "true"),
+        ("scenario_3(SV, POV, L)", 10, "false"),
+        ("F v_lon(POV) < 20 m/s", 10, "false"),
+    ],
+)
+def test_verdicts_and_exit_codes_on_a_drive(
+    formula: str, code: int, verdict: str, drive: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found, told = asked([formula, str(drive)], capsys)
+    assert (found, told["verdict"]) == (code, verdict)
+
+
+@pytest.mark.parametrize(
+    ("formula", "code", "verdict", "clipped"),
+    [
+        ("scenario_4(SV, POV, L)", 0, "true", "true"),
+        ("G v_lon(SV) > 28 m/s", 20, "undecided", "true"),
+        ("F v_lon(SV) > 30 m/s", 20, "undecided", "false"),
+        ("F[0,2] v_lon(SV) > 30 m/s", 10, "false", "false"),
+        ("initSafe(POV, SV)", 0, "true", "true"),
+    ],
+)
+def test_samples_end(
+    formula: str, code: int, verdict: str, clipped: str, drive: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The same trace by --view recorded and from CSV: three answers, and clip beside them."""
+    samples = drive.with_suffix(".csv")
+    samples.write_text(csv_of(load_drive(drive)))
+    for trace in ([str(drive), "--view", "recorded"], [str(samples)]):
+        found, told = asked([formula, *trace], capsys)
+        assert (found, told["verdict"], told["under_the_other_end"]) == (code, verdict, clipped)
+        _, told = asked([formula, *trace, "--end", "clip"], capsys)
+        assert (told["verdict"], told["under_the_other_end"]) == (clipped, verdict)
+
+
+def test_parts_of_samples(drive: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    _, told = asked(["initSafe(SV, POV)", str(drive), "--view", "recorded"], capsys)
+    parts = {part["formula"]: part for part in told["parts"]}
+    last = parts["instSafe(SV, POV)"]["true"][0][1]
+    assert parts["initSafe(SV, POV)"]["true"] == [[0.0, pytest.approx(last - 0.6)]]
+    _, told = asked(["G[0,1] v_lon(SV) > 28 m/s", str(drive), "--view", "recorded"], capsys)
+    assert told["parts"][0]["true"] == [[0.0, 3.0]]
+    assert told["parts"][0]["undecided"] == [[3.04, 4.0]]
+
+
+def test_pictures(drive: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, start in (("a.png", b"\x89PNG"), ("b.svg", b"<?xml")):
+        assert main(["monitor", "4", str(drive), "--picture", str(tmp_path / name)]) == 0
+        assert (tmp_path / name).read_bytes().startswith(start)
+    assert main(["monitor", "4", str(drive), "--picture", str(tmp_path / "c.gif")]) == 2
+
+
+@pytest.fixture(scope="module")
+def recordings(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("recordings")
+    write_highd(simulate(Traffic(seconds=30, lane_width=3.5), seed=6), path)
+    return path
+
+
+def test_a_pair_is_answered_as_in_an_evaluation(recordings: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Every match of base and ext, one by one; and the other scenarios are not true there."""
+    settings = default_settings()
+    found = evaluate_recording(read_highd(recordings, "01"), ask(settings, 25))
+    matches = [m for m in found.matches if m.set_name in ("base", "ext") and m.min_danger == 0][:10]
+    assert len(matches) > 3
+    for match in matches:
+        who = ",".join(str(x) for x in (match.sv, match.pov, match.pov2) if x is not None)
+        trace = [f"{recordings}/01_tracks.csv:{who}", "--frames", f"{match.start_frame}-{match.end_frame}"]
+        options = ["--set", match.set_name, "--param", "minDanger=0"]
+        code, told = asked([str(match.scenario), *trace, *options], capsys)
+        assert (code, told["verdict"], told["lanes"]["L"]) == (0, "true", match.lane)
+        if match.pov2 is None and match.scenario in (1, 4):
+            other = 5 - match.scenario  # 1 and 4 exclude each other with one L and one start (semantics §6)
+            code, told = asked([str(other), *trace, *options], capsys)
+            assert code != 0
+
+
+def test_lanes_by_name_and_by_vehicle(recordings: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = list(csv.DictReader((recordings / "01_tracks.csv").open()))
+    ids = sorted({int(row["id"]) for row in rows if row["laneId"] in ("6", "7", "8")})
+    first = next(row for row in rows if row["id"] == str(ids[0]))
+    trace = f"{recordings}/01_tracks.csv:{ids[0]}"
+    code, told = asked(["atLane(SV, L)", trace, "--lane", first["laneId"]], capsys)
+    assert (code, told["verdict"], told["lanes"]["L"]) == (0, "true", first["laneId"])
+    code, told = asked(["atLane(SV, L)", trace, "--lane", "L=SV"], capsys)
+    assert told["lanes"]["L"] == first["laneId"]
+    other = next(x for x in ("6", "8") if x != first["laneId"])
+    assert main(["monitor", "atLane(SV, L)", trace, "--lane", other]) == 10
+
+
+HEADER = "time,vehicle,s,d,v_lon,v_lat,a_lon,a_lat,length,width"
+
+
+@pytest.mark.parametrize(
+    ("lines", "said"),
+    [
+        ([], "the file is empty"),
+        (["time,s"], "row 1: missing columns vehicle, d, v_lon"),
+        ([f"{HEADER},its colour"], "row 1: columns 'its colour' are not part of the format"),
+        ([HEADER], "a header but no rows"),
+        ([HEADER, "0,SV,1,2,3,0,0,0,4,2"], "at least two samples"),
+        ([HEADER, "0,SV,1,2"], "row 2: the row has 4 fields"),
+        (
+            [HEADER, "0,SV,1,2,3,0,0,0,4,2", "0.1,SV,nan,2,3,0,0,0,4,2"],
+            "row 3, column s=nan: a number must be finite",
+        ),
+        ([HEADER, "0,SV,1,2,3,0,0,0,4,2", "0.1,SV,1,2,3,0,0,0,5,2"], "length of SV changes"),
+        ([HEADER, "0,SV,1,2,3,0,0,0,4,2", "x,SV,1,2,3,0,0,0,4,2"], "time='x'"),
+        ([HEADER, "0,SV,1,2,3,0,0,0,4,2", "0,SV,1,2,3,0,0,0,4,2"], "at least two samples"),
+        (
+            [HEADER, *(f"{t},SV,1,2,3,0,0,0,4,2" for t in ("0", "0.1", "0.3"))],
+            "time=0.3 breaks the step of 0.1 s",
+        ),
+        (
+            [HEADER, "0,SV,1,2,3,0,0,0,4,2", "0,POV,1,2,3,0,0,0,4,2", "0.1,SV,1,2,3,0,0,0,4,2"],
+            "every vehicle needs exactly one row",
+        ),
+        ([HEADER, *(f"{t},SV,1,2,3,0,0,0,0,2" for t in ("0", "0.1"))], "size must be greater than zero"),
+    ],
+)
+def test_bad_samples(lines: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "x.csv"
+    path.write_text("".join(f"{line}\n" for line in lines))
+    assert main(["monitor", "v_lon(SV) > 0", str(path)]) == 3
+    message = capsys.readouterr().err
+    assert said in message
+    assert "Traceback" not in message
+
+
+def test_order_of_rows_does_not_matter(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    rows = [f"{t},SV,{10 * t},2,{v},0,0,0,4,2" for t, v in ((0, 1), (1, 5), (2, 9))]
+    path = tmp_path / "x.csv"
+    path.write_text("\n".join([HEADER, rows[2], rows[0], rows[1]]) + "\n")
+    assert main(["monitor", "v_lon(SV) < 2 m/s", str(path)]) == 3  # times must ascend
+    assert "breaks the step" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "said"),
+    [
+        (["4", "trace.txt"], 3, "a trace is a drive"),
+        (["4", "nowhere.json"], 3, "cannot read nowhere.json"),
+        (["4", "nowhere.csv"], 3, "nowhere.csv: the file cannot be read"),
+        (["4", "{folder}/01_tracks.csv:1,2,3,4"], 3, "a trace is a drive"),
+        (["4", "{folder}/01_tracks.csv:1,99999"], 3, "has no vehicle 99999"),
+        (["4", "{folder}/01_tracks.csv:1,1"], 3, "each vehicle may be named once"),
+        (["2", "{drive}"], 3, "mentions POV1, POV2"),
+        (["25", "{drive}"], 3, "scenario_25"),
+        (["4", "{drive}", "--dt", "0"], 2, "--dt 0"),
+        (["4", "{drive}", "--lane", "main-9"], 3, "lane L=main-9"),
+        (["4", "{folder}/01_tracks.csv:1,2", "--frames", "5"], 2, "--frames 5"),
+        (["4", "{folder}/01_tracks.csv:1,2", "--view", "dense"], 2, "requires a drive file"),
+        (["F[0,1/3] v_lon(SV) > 0", "{drive}", "--view", "recorded"], 3, "no multiple of the time step"),
+        (["v_lon(SV) >", "{drive}"], 3, "claim, line 1"),
+    ],
+)
+def test_monitor_refuses(
+    arguments: list[str],
+    code: int,
+    said: str,
+    recordings: Path,
+    drive: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    filled = [x.replace("{folder}", str(recordings)).replace("{drive}", str(drive)) for x in arguments]
+    assert main(["monitor", *filled]) == code
+    message = capsys.readouterr().err
+    assert said in message
+    assert "Traceback" not in message
+
+
+@pytest.mark.parametrize("view", ["dense", "recorded"])
+def test_the_command_line_overrules_the_file_and_says_so(
+    view: str, drive: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The file says minDanger = 3/5; a formula that holds for values from 1 s on tells which is used."""
+    data = json.loads(drive.read_text())
+    data["parameters"] |= {"rho": "1/2", "minSafe": "2/5"}
+    drive.write_text(json.dumps(data))
+    command = ["rho >= 1 s and v_lon(SV) > 0 m/s", str(drive), "--view", view]
+    code, told = asked(command, capsys)
+    assert (code, told["verdict"]) == (10, "false")
+    assert told["overruled"] == []
+    code, told = asked([*command, "--param", "rho=1"], capsys)
+    assert (code, told["verdict"]) == (0, "true")
+    assert told["overruled"] == [{"what": "parameter rho", "asked": "1", "said": "1/2"}]
+    assert main(["monitor", *command, "--param", "rho=1"]) == 0
+    assert "parameter rho: 1 (the file says 1/2)" in capsys.readouterr().out
+    # What is not given stays as in the file, also where the library says otherwise (minSafe 0.6).
+    both = "minSafe <= 0.4 s and rho >= 1 s and v_lon(SV) > 0 m/s"
+    code, told = asked([both, *command[1:], "--param", "rho=1"], capsys)
+    assert (code, told["verdict"]) == (0, "true")
+
+
+def test_set_and_option_overrule_the_file_and_say_so(drive: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    _, told = asked(["4", str(drive)], capsys)
+    assert told["overruled"] == []
+    _, told = asked(["4", str(drive), "--set", "ext"], capsys)
+    assert told["set"] == "ext"
+    assert told["overruled"] == [{"what": "set", "asked": "ext", "said": "base"}]
+    data = json.loads(drive.read_text())
+    drive.write_text(json.dumps(data | {"parameters": {"minDanger": "3/5", "lateral_sign": "literal"}}))
+    _, told = asked(["4", str(drive), "--option", "lateral_sign=rss"], capsys)
+    assert told["overruled"] == [{"what": "option lateral_sign", "asked": "rss", "said": "literal"}]
+
+
+def test_a_file_that_overrules_the_command_line_is_caught(
+    drive: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Planted fault: the file's values come last."""
+    data = json.loads(drive.read_text())
+    data["parameters"] |= {"rho": "1/2"}
+    drive.write_text(json.dumps(data))
+    command = ["rho >= 1 s and v_lon(SV) > 0 m/s", str(drive), "--param", "rho=1"]
+    with monkeypatch.context() as patch:
+        honest = "{**file.values, **home.values}"
+        plant_fault(patch, traces, honest, "{**home.values, **file.values}")
+        assert asked(command, capsys)[0] == 10
+    assert asked(command, capsys)[0] == 0
+
+
+def test_notes_on_the_recording_are_told(
+    recordings: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for path in recordings.glob("01_*"):
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+    lines = (tmp_path / "01_tracks.csv").read_text().splitlines()
+    lines[9] = lines[9].rpartition(",")[0] + ",1"
+    (tmp_path / "01_tracks.csv").write_text("\n".join(lines) + "\n")
+    main(["monitor", "v_lon(SV) > 0 m/s", f"{tmp_path}/01_tracks.csv:1"])
+    assert "note: 01_tracks.csv, row 10, column laneId=1: laneId is not" in capsys.readouterr().err

@@ -1,21 +1,44 @@
 """Options that sub-commands share."""
 
 import argparse
+import ast
+import inspect
 import os
-from collections.abc import Mapping
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
+from functools import cache
+from importlib import import_module
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
+import roadproof
+import roadproof as rp
 from roadproof.analysis.claims import Claims
+from roadproof.engines.search.question import Engine, Objective
 from roadproof.errors import InputError, UsageError
+from roadproof.evidence.answers.monitor import View
+from roadproof.frontends.api.checking import Kernel, Solver
 from roadproof.frontends.cli import options, prove
 from roadproof.frontends.cli.basis import read_definitions
+from roadproof.frontends.cli.completion import _VALUES
+from roadproof.frontends.cli.help import COMMANDS, command_parser, jobs
+from roadproof.frontends.cli.main import COMMANDS as SUB_COMMANDS
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.settings.flags import add_flags, read_keywords
+from roadproof.frontends.settings import keywords_file
+from roadproof.frontends.settings.evidence import Check
+from roadproof.frontends.settings.flags import add_flags, is_rare, read_keywords
 from roadproof.frontends.settings.groups import Definitions
-from roadproof.frontends.settings.questions import Prove
+from roadproof.frontends.settings.option import Settings
+from roadproof.frontends.settings.questions import Prove, Witness
+from roadproof.frontends.settings.recordings import Evaluate, Monitor, Simulate
+from roadproof.recordings.simulate.traffic import Ramp
+from roadproof.semantics.sampled.answers import Convention
 
 
 def parsed(*arguments: str) -> argparse.Namespace:
@@ -148,3 +171,294 @@ def asked_of_prove(words: list[str]) -> Claims:
     prove.add_arguments(parser)
     args = parser.parse_args(words)
     return prove._asked(args, Prove.of(read_keywords(args, Prove)))
+
+
+# --- Options are defined once: flags, keyword arguments and signatures follow the definitions -------
+
+
+def test_the_file_of_keyword_arguments_follows_the_definitions() -> None:
+    remake = "run: python -m roadproof.frontends.settings.keywords_file"
+    assert keywords_file.FILE.read_text("utf-8") == keywords_file.text(), remake
+
+
+@pytest.mark.parametrize("question", keywords_file.all_questions(), ids=lambda x: x.__name__)
+def test_a_function_shows_its_options(question: type) -> None:
+    parameters = inspect.signature(getattr(rp, question.__name__.lower())).parameters
+    shown = {name: x for name, x in parameters.items() if x.kind is x.KEYWORD_ONLY}
+    for name, option in question.options().items():
+        assert (name in shown) == option.keyword
+        if option.keyword:
+            assert shown[name].default == getattr(question, name)
+
+
+def test_an_unknown_keyword_is_a_type_error() -> None:
+    with pytest.raises(TypeError, match="unexpected keyword argument 'horizn'"):
+        rp.witness(4, horizn=6)
+    with pytest.raises(TypeError, match="unexpected keyword argument 'tls_ca'"):
+        rp.witness(4, tls_ca="x")
+
+
+@pytest.mark.parametrize(
+    ("question", "name", "kind"),
+    [
+        (Witness, "engine", Engine),
+        (Witness, "objective", Objective),
+        (Monitor, "view", View),
+        (Monitor, "end", Convention),
+        (Evaluate, "end", Convention),
+        (Simulate, "ramp", Ramp),
+        (Check, "solver", Solver),
+        (Check, "kernel", Kernel),
+    ],
+)
+def test_choices_are_those_of_the_types(question: type[Settings], name: str, kind: object) -> None:
+    assert question.options()[name].choices == get_args(kind)
+
+
+@pytest.mark.parametrize(
+    ("command", "code", "told"),
+    [
+        ("simulate --out x --recordings 1000", 2, "--recordings 1000: write a whole number greater than 0"),
+        ("simulate", 2, "required: --out"),
+        ("export x.json --out x", 2, "required: --to"),
+        ("monitor 4 x.json --frames 5-", 2, "--frames 5-: write the first and the last frame"),
+        ("evaluate x --out x --min-danger 0,", 2, "--min-danger 0,: write values separated by commas"),
+        ("evaluate x --out x --min-safe -1", 2, "--min-safe -1: write seconds, 0 or more"),
+    ],
+)
+def test_values_that_are_none(command: str, code: int, told: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(command.split()) == code
+    assert told in capsys.readouterr().err
+
+
+def test_a_flag_that_is_repeated_replaces_the_default() -> None:
+    parser = argparse.ArgumentParser()
+    add_flags(parser, Evaluate)
+    assert read_keywords(parser.parse_args([]), Evaluate)["classes"] == ("Car",)
+    given = parser.parse_args(["--class", "Truck", "--class", "Car"])
+    assert read_keywords(given, Evaluate)["classes"] == ("Truck", "Car")
+
+
+# --- Help: commands by job, usual options first, all options on request -----------------------------
+
+
+def printed(capsys: pytest.CaptureFixture[str], *words: str) -> str:
+    with pytest.raises(SystemExit) as ended:
+        main([*words])
+    assert ended.value.code == 0
+    return capsys.readouterr().out
+
+
+def flags_in(text: str) -> set[str]:
+    """The flags that have a line of their own."""
+    return set(re.findall(r"^  (?:-\w(?: [A-Z]+)?, )?(--[a-z-]+)", text, re.MULTILINE))
+
+
+def flags_of(name: str, rare: bool) -> set[str]:
+    actions: list[argparse.Action] = command_parser(name)._actions
+    return {x.option_strings[-1] for x in actions if x.option_strings and is_rare(x) <= rare}
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_usual_options_are_shown_and_all_on_request(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    usual, every = printed(capsys, name, "--help"), printed(capsys, name, "--help-all")
+    assert flags_in(usual) == flags_of(name, rare=False)
+    assert flags_in(every) == flags_of(name, rare=True)
+    hidden = len(flags_of(name, True)) - len(flags_of(name, False))
+    last = usual.splitlines()[-1]
+    assert (last == f"{hidden} more option{'s' * (hidden > 1)}: roadproof {name} --help-all") == (hidden > 0)
+
+
+def test_the_usual_options_of_witness_fit_a_screen(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    assert len(printed(capsys, "witness", "--help").splitlines()) <= 48
+
+
+def test_every_command_stands_below_a_job_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    shown = printed(capsys, "--help")
+    for job, names in jobs().items():
+        assert f"\n{job}:\n  {names[0]} " in shown
+    for name, summary in COMMANDS.items():
+        assert len(re.findall(rf"^  {name} +{re.escape(summary)}$", shown, re.MULTILINE)) == 1
+        assert len(summary) <= 65
+    assert shown == printed(capsys, "-h") == printed(capsys, "--help", "witness")
+
+
+# --- No error message names an option which the command that raises it does not have ----------------
+
+SOURCE = Path(roadproof.__file__).parent
+# What is raised for an option is raised only by commands that have it: these read it, or what it made.
+READERS = {
+    "roadproof.frontends.cli.numbers": {"--cluster", "--jobs", "--json", "--shard"},
+    "roadproof.runtime.executors": {"--jobs"},
+    "roadproof.analysis.study.frame": {"--out", "--shard"},
+    "roadproof.frontends.cli.options": {"--option", "--param", "--set"},
+    "roadproof.analysis.study.pool": {"--jobs"},
+    "roadproof.runtime.process_pool": {"--jobs"},
+    "roadproof.analysis.explore.asking": {"--vary", "--steps", "--precision"},
+    # Raised for a catalogue that is asked for, and never for one that is judged again.
+    "roadproof.analysis.catalogue.examination": {"--no-classes"},
+    "roadproof.analysis.classify.classes": {"--among"},
+}
+OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]*")
+
+
+def file_of(module: str) -> Path | None:
+    path = SOURCE.joinpath(*module.split(".")[1:])
+    return next((p for p in (path.with_suffix(".py"), path / "__init__.py") if p.is_file()), None)
+
+
+@cache
+def tree_of(module: str) -> ast.Module:
+    path = file_of(module)
+    assert path is not None
+    return ast.parse(path.read_text("utf-8"))
+
+
+def statements(node: ast.AST) -> Iterator[ast.AST]:
+    """All below a node, but for what is imported for types only."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.If) and "TYPE_CHECKING" in ast.unparse(child.test):
+            continue
+        yield child
+        yield from statements(child)
+
+
+@cache
+def imported_by(module: str) -> frozenset[str]:
+    found: set[str] = set()
+    for node in statements(tree_of(module)):
+        if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("roadproof."):
+            found.add(node.module)
+            found |= {f"{node.module}.{alias.name}" for alias in node.names}
+    return frozenset(name for name in found if file_of(name) is not None)
+
+
+def reached_from(module: str) -> set[str]:
+    reached, waiting = {module}, [module]
+    while waiting:
+        new = imported_by(waiting.pop()) - reached
+        reached |= new
+        waiting += new
+    return reached
+
+
+@cache
+def hints_in(module: str) -> frozenset[str]:
+    """The options that the error messages of a module name."""
+    found: set[str] = set()
+    for node in statements(tree_of(module)):
+        if isinstance(node, ast.Call) and ast.unparse(node.func).endswith("Error"):
+            texts = [x.value for x in ast.walk(node) if isinstance(x, ast.Constant)]
+            found |= {option for text in texts for option in OPTION.findall(str(text))}
+    return frozenset(found)
+
+
+def options_of(command: str) -> set[str]:
+    parser = argparse.ArgumentParser()
+    import_module(f"roadproof.frontends.cli.{command}").add_arguments(parser)
+    return {text for option in parser._actions for text in option.option_strings}
+
+
+@pytest.mark.parametrize("command", SUB_COMMANDS)
+def test_errors_name_options_that_the_command_has(command: str) -> None:
+    known = options_of(command)
+    wrong = {
+        (module, option)
+        for module in reached_from(f"roadproof.frontends.cli.{command}")
+        for option in hints_in(module) - READERS.get(module, set())
+        if option not in known
+    }
+    assert not wrong
+
+
+def test_messages_are_found() -> None:
+    assert "--jobs" in hints_in("roadproof.runtime.process_pool")
+    assert "roadproof.engines.encode.unroll" in reached_from("roadproof.frontends.cli.witness")
+    assert len({option for command in SUB_COMMANDS for option in options_of(command)}) > 40
+
+
+# --- Completion on Tab, asked of each shell that is installed with the script that roadproof prints
+
+BASH = """
+eval "$(roadproof completion bash)"
+COMP_LINE=$1; COMP_POINT=${#COMP_LINE}; COMP_TYPE=9
+_python_argcomplete roadproof
+printf '%s\\n' "${COMPREPLY[@]}"
+"""
+ZSH = """
+autoload -Uz compinit; compinit -u -D
+eval "$(roadproof completion zsh)"
+_describe() { print -l -- "${(@P)2}" }
+BUFFER=$1; CURSOR=${#1}; words=(${(z)1})
+_python_argcomplete
+"""
+FISH = """
+roadproof completion fish | source
+complete -C $argv[1]
+"""
+SHELLS = {"bash": ("bash", "--norc"), "zsh": ("zsh", "-f"), "fish": ("fish", "--no-config")}
+SCRIPTS = {"bash": BASH, "zsh": ZSH, "fish": FISH}
+BETWEEN = {"bash": "\t", "zsh": ":", "fish": "\t"}
+"""What separates a word from its description."""
+
+
+def completed(shell: str, line: str, folder: Path) -> list[str]:
+    if shutil.which(shell) is None:
+        pytest.skip(f"{shell} is not installed")
+    script = folder / f"script.{shell}"
+    script.write_text(SCRIPTS[shell], "utf-8")
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    done = subprocess.run(
+        [*SHELLS[shell], str(script), line],
+        cwd=folder,
+        env={**os.environ, "PATH": path, "TERM": "dumb"},
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    return [x.split(BETWEEN[shell])[0].rstrip() for x in done.stdout.splitlines() if x.strip()]
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("roadproof wit", ["witness"]),
+        ("roadproof witness 4 --unprev", ["--unpreventable"]),
+        ("roadproof witness 4 --set b", ["base"]),
+        ("roadproof witness 2", ["2", "20", "21", "22", "23", "24"]),
+        ("roadproof overlap --among 1,2", ["1,2", "1,20", "1,21", "1,22", "1,23", "1,24"]),
+        ("roadproof prove --spec dri", ["driver", "drives/"]),
+        ("roadproof witness 4 --param minD", ["minDanger="]),
+        ("roadproof export drives --to highd,a", ["highd,animation"]),
+    ],
+)
+def test_a_shell_completes(shell: str, line: str, words: list[str], tmp_path: Path) -> None:
+    (tmp_path / "drives").mkdir()
+    assert sorted(completed(shell, line, tmp_path)) == words
+
+
+@pytest.mark.parametrize("shell", SHELLS)
+def test_a_shell_completes_names_of_scenarios(shell: str, tmp_path: Path) -> None:
+    found = [x.replace("\\", "") for x in completed(shell, "roadproof show cut-i", tmp_path)]
+    sectors = ("main road", "merge zone", "departure zone")
+    names = {f"cut-in, lane {x}, {sector}" for x in ("keep", "change") for sector in sectors}
+    assert {*found} == {"cut-in", *names}
+
+
+def test_completed_names_are_accepted(tmp_path: Path) -> None:
+    from roadproof.frontends.cli.completion import _scenarios
+    from roadproof.library.loading import bundled_library
+    from roadproof.library.scenario_references import numbers_called
+
+    names = _scenarios("c")
+    assert len(names) > 24
+    assert all(numbers_called(bundled_library().select(), name) for name in names)
+
+
+def test_every_list_of_values_belongs_to_an_option_or_argument() -> None:
+    actions = [x for name in COMMANDS for x in command_parser(name)._actions]
+    assert {*_VALUES} <= {word for x in actions for word in (*x.option_strings, x.metavar)}

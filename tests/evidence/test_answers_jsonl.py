@@ -1,20 +1,32 @@
 """Answers of earlier versions, lines of one file: only those count that are as they were written."""
 
 import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import pytest
+from jsonschema import Draft202012Validator
 
 from asking import prove
 from evidence.folders import changes, check, places
 from roadproof.analysis.overlap import SCHEMA
+from roadproof.errors import InputError
 from roadproof.evidence.certificate import to_json
-from roadproof.evidence.finding import Acceptance
-from roadproof.evidence.journal import NAME, answers_of, head_of, read_kept, seal_of
+from roadproof.evidence.codec import Rule, read
+from roadproof.evidence.codec import write as write_json
+from roadproof.evidence.finding import NO_EVIDENCE as MISSING_EVIDENCE
+from roadproof.evidence.finding import Acceptance, Finding, exit_code, summary
+from roadproof.evidence.journal import NAME, Journal, answers_of, head_of, read_journal, read_kept, seal_of
+from roadproof.evidence.json_schema import schema_of
+from roadproof.evidence.specifications import read_beside
+from roadproof.evidence.strict import Fields
 from roadproof.library.bind import default_values
 from roadproof.library.loading import bundled_library
+from roadproof.verdict import ExitCode
 
 LIBRARY = bundled_library()
 PAIRS = ((5, 6), (3, 4))
@@ -176,3 +188,201 @@ def test_the_seal_alone_and_the_evidence_alone_are_not_enough(
         assert answers(folder)[0] == list(PAIRS)
     write(folder, [head, sealed, second])
     assert answers(folder)[0] == [(3, 4)]
+
+
+# --- Answers as dataclasses: what is read and refused, and the JSON Schema that follows -------------
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sample:
+    """Tuples of a length, names by rule, lists without repetition."""
+
+    span: tuple[float, float | None]
+    both: tuple[int, int]
+    counts: Mapping[Annotated[str, Rule(pattern="^[0-9]+$")], int]
+    names: Annotated[tuple[str, ...], Rule(least=1, unique=True)]
+
+
+GOOD: Mapping[str, Any] = {"span": [0, None], "both": [1, 2], "counts": {"4": 1}, "names": ["a", "b"]}
+CODEC_SCHEMA = Draft202012Validator(schema_of(Sample, Sample, "sample.json", "a sample"))
+
+
+def test_what_is_read_is_written_again() -> None:
+    assert write_json(read(Sample, GOOD, "here")) == GOOD
+    assert CODEC_SCHEMA.is_valid(GOOD)
+
+
+@pytest.mark.parametrize(
+    ("field", "bad", "told"),
+    [
+        ("span", [0], "here, span: \\[0\\] is no list of 2 items"),
+        ("span", [0, 1, 2], "is no list of 2 items"),
+        ("span", [None, 0], "here, span, item 1: None is no number"),
+        ("span", "ab", "is no list of 2 items"),
+        ("both", [1, 2.5], "here, both, item 2: 2.5 is not a whole number"),
+        ("counts", {"four": 1}, "here, counts: 'four' is no text like"),
+        ("counts", {"4": "1"}, "here, counts.4: '1' is not a whole number"),
+        ("names", ["a", "a"], "here, names: \\['a', 'a'\\] names something twice"),
+        ("names", [], "it has 0 entries, and needs 1"),
+    ],
+)
+def test_reader_and_schema_refuse_the_same(field: str, bad: object, told: str) -> None:
+    with pytest.raises(InputError, match=told):
+        read(Sample, {**GOOD, field: bad}, "here")
+    assert not CODEC_SCHEMA.is_valid({**GOOD, field: bad})
+
+
+# --- Journals as they are read: lines with their numbers, a last line that was cut short, and their answers
+
+JOURNAL_SCHEMA = "roadproof/overlap/1"
+SAID: dict[str, Any] = {"set": "base", "lanes": "same", "roles": "same", "start": "same", "options": {}}
+SAID |= {"parameters": {}, "specs": []}
+NO_EVIDENCE = {"certificate": None, "drive": None}
+HEAD = head_of(JOURNAL_SCHEMA, "which?", SAID)
+
+
+def journal_answer(a: int, b: int, folder: Path) -> dict[str, Any]:
+    """An answer that promises nothing, so that no file is needed."""
+    pair = {"a": a, "b": b, "set_a": "base", "set_b": "base", "verdict": "UNKNOWN", "formula": "true"}
+    record: dict[str, Any] = {"evidence": [], "verdict": {**pair, "core": [], "cores": [], **NO_EVIDENCE}}
+    return {**record, "seal": seal_of(record, "which?", folder)}
+
+
+def written(folder: Path, end: str = "\n") -> Journal:
+    lines = [HEAD, journal_answer(1, 2, folder), journal_answer(3, 4, folder)]
+    (folder / NAME).write_text("\n".join(map(json.dumps, lines)) + end, "utf-8")
+    return read_journal(folder / NAME)
+
+
+def test_lines_are_numbered_as_in_the_file(tmp_path: Path) -> None:
+    journal = written(tmp_path)
+    assert [(int(x.name), x.fault) for x in journal.lines] == [(2, ""), (3, "")]
+    assert not journal.torn
+
+
+@pytest.mark.parametrize(
+    ("end", "numbers"),
+    [
+        ("", [2, 3]),  # whole, but for the end of its line
+        ('\n{"evidence": [], "ver', [2, 3]),
+        ("\n\n\n", [2, 3]),
+    ],
+)
+def test_a_last_line_that_was_cut_short_does_not_count(end: str, numbers: list[int], tmp_path: Path) -> None:
+    journal = written(tmp_path, end)
+    assert [int(x.name) for x in journal.lines] == numbers
+    assert journal.torn == (not end.endswith("\n"))
+    assert all(not x.fault for x in journal.lines)
+
+
+def test_a_line_that_is_damaged_in_the_middle_is_told(tmp_path: Path) -> None:
+    written(tmp_path)
+    head, first, second = (tmp_path / NAME).read_text("utf-8").splitlines()
+    (tmp_path / NAME).write_text(f"{head}\n{first[:-9]}\n{second}\n", "utf-8")
+    journal = read_journal(tmp_path / NAME)
+    assert [(int(x.name), bool(x.fault)) for x in journal.lines] == [(2, True), (3, False)]
+    assert "line 2" in journal.lines[0].fault
+
+
+def test_a_journal_of_one_line_has_no_answers(tmp_path: Path) -> None:
+    for end in ("", "\n"):
+        (tmp_path / NAME).write_text(json.dumps(HEAD) + end, "utf-8")
+        journal = read_journal(tmp_path / NAME)
+        assert (journal.lines, journal.torn) == ((), False)
+
+
+def test_a_seal_is_of_the_answer_and_the_question(tmp_path: Path) -> None:
+    written(tmp_path)
+    text = (tmp_path / NAME).read_text("utf-8")
+    for old, new in (('"a": 1', '"a": 5'), ("which?", "what?")):
+        (tmp_path / NAME).write_text(text.replace(old, new), "utf-8")
+        assert "not what its seal was made for" in read_journal(tmp_path / NAME).lines[0].fault
+
+
+def test_what_is_no_journal_is_refused(tmp_path: Path) -> None:
+    for head in ({**HEAD, "schema": "roadproof/journal/9"}, {**HEAD, "of": "roadproof/nothing/1"}):
+        (tmp_path / NAME).write_text(json.dumps(head) + "\n", "utf-8")
+        with pytest.raises(InputError, match=r"schema=|there are journals of"):
+            read_journal(tmp_path / NAME)
+
+
+def test_a_folder_with_a_journal_alone_is_what_the_journal_says(tmp_path: Path) -> None:
+    written(tmp_path)
+    found = check(tmp_path)
+    assert {x.outcome for x in found} == {Acceptance.ACCEPTED}
+    assert [x.label for x in found] == ["scenarios 1@base and 2@base", "scenarios 3@base and 4@base"]
+
+
+# --- What is said at the end of a check: how many claims came out how, and the exit code ------------
+
+
+def finding(outcome: Acceptance, kind: str = "certificate") -> Finding:
+    return Finding("x.json", kind, outcome)
+
+
+def test_the_summary_counts_each_outcome() -> None:
+    accepted, rejected = finding(Acceptance.ACCEPTED), finding(Acceptance.REJECTED)
+    assert summary([accepted] * 3, "z3") == "3 of 3 accepted by z3 and the exact judge"
+    assert summary([accepted, rejected, rejected], "z3").endswith(
+        "1 of 3 accepted by z3 and the exact judge, 2 rejected"
+    )
+    other = [finding(x) for x in (Acceptance.UNDECIDED, Acceptance.UNREADABLE, Acceptance.FAULT)]
+    assert summary(other, "cvc5").startswith("0 of 3 accepted by cvc5")
+    assert summary(other, "cvc5").endswith(", 1 unknown, 1 unreadable, 1 our fault")
+
+
+def test_answers_without_evidence_are_counted_apart() -> None:
+    found = [finding(Acceptance.ACCEPTED), finding(Acceptance.ACCEPTED, MISSING_EVIDENCE)]
+    assert summary(found, "z3") == "1 of 1 accepted by z3 and the exact judge; 1 without evidence"
+
+
+def test_the_exit_code_is_that_of_the_gravest() -> None:
+    assert exit_code([]) == ExitCode.UNKNOWN  # nothing was accepted
+    assert exit_code(map(finding, Acceptance)) == ExitCode.OUR_FAULT
+    assert exit_code([finding(Acceptance.UNDECIDED), finding(Acceptance.ACCEPTED)]) == ExitCode.UNKNOWN
+
+
+# --- Specification files beside evidence: what they may do, and where they may lie ------------------
+
+MORE = "def slower(a, b: vehicle) := v_lon(a) < v_lon(b)\n"
+OTHER = "def danger(a, b: vehicle) := true\n"
+
+
+def named(*names: str) -> Fields:
+    return Fields({"specs": list(names)}, "index.json")
+
+
+def test_a_file_that_adds_a_definition_is_read(tmp_path: Path) -> None:
+    (tmp_path / "more.spec").write_text(MORE, "utf-8")
+    library, paths = read_beside(named("more.spec"), tmp_path, ())
+    assert "slower" in library.select().definitions
+    assert paths == (tmp_path / "more.spec",)
+    library, _ = read_beside(named("more.spec"), tmp_path, paths)  # given on the command line too
+    assert "slower" in library.select().definitions
+
+
+def test_without_files_there_is_the_library_alone(tmp_path: Path) -> None:
+    for data in (None, Fields({}, "index.json"), named()):
+        library, paths = read_beside(data, tmp_path, ())
+        assert library.select().definitions.keys() == bundled_library().select().definitions.keys()
+        assert paths == ()
+
+
+def test_a_file_that_changes_a_definition_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "other.spec").write_text(OTHER, "utf-8")
+    with pytest.raises(InputError, match="changes 'danger' of the library"):
+        read_beside(named("other.spec"), tmp_path, ())
+
+
+@pytest.mark.parametrize(
+    "name", ["../more.spec", "below/more.spec", "below\\more.spec", ".", "..", "", "none", "link"]
+)
+def test_files_elsewhere_are_refused(name: str, tmp_path: Path) -> None:
+    folder = tmp_path / "folder"
+    for place in (tmp_path, folder / "below"):
+        place.mkdir(parents=True, exist_ok=True)
+        (place / "more.spec").write_text(MORE, "utf-8")
+    (folder / "below\\more.spec").write_text(MORE, "utf-8")
+    os.symlink(tmp_path / "more.spec", folder / "link")
+    with pytest.raises(InputError, match=r"specs: (.* is no file in the folder|there is no file)"):
+        read_beside(named(name), folder, ())

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from fuzz.case import Disagreement
 from proving.claims import PROVED, is_false_on, settle, specification
-from proving.test_random_claims import claims, is_true_on, traces
+from proving.test_claims import claims, is_true_on, traces
 from roadproof.engines.solve.smt import ask
 from roadproof.evidence.certificate import refusal
 from roadproof.verdict import Verdict

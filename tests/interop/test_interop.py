@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from exporting.kept import kept, motion, subject, subjects
-from exporting.test_openscenario import boxes, root_of
+from exporting.test_opendrive import boxes
+from exporting.test_opendrive import openscenario_root as root_of
 from interop.clients.asam_report import issues_in
 from interop.damage import DAMAGES
 from interop.environments import Client, clients, python_of

@@ -6,17 +6,34 @@ import sys
 from fractions import Fraction
 
 import pytest
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
 
+from judge.cases import (
+    comparisons,
+    drives,
+    every_small_case,
+    formulas,
+    jerk_comparisons,
+    jerk_drives,
+    opaque_cases,
+)
+from judge.pinning import disagreement_on_drive, disagreement_on_sets
+from planting import plant
+from preventing.read import boundary
+from roadproof.drivers.manoeuvres import CUT_IN, along_line
 from roadproof.errors import InputError, UsageError
 from roadproof.library.bind import bind, default_values
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
+from roadproof.semantics.exact import within
 from roadproof.semantics.exact.algebraic import real_roots
 from roadproof.semantics.exact.exact import judge
-from roadproof.semantics.exact.signals import AbstractSignals
-from roadproof.semantics.exact.truth import ALWAYS, NEVER, interval, union
+from roadproof.semantics.exact.signals import AbstractSignals, DriveSignals
+from roadproof.semantics.exact.truth import ALWAYS, NEVER, intersection, interval, union
+from roadproof.semantics.exact.within import truth_within
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.road import Lanelet, Road, pairs
 
@@ -290,3 +307,140 @@ def test_holds_is_the_truth_at_the_start():
     early, late = bound("given A: vehicle: v_lon(A) < 1 m/s"), bound("given A: vehicle: v_lon(A) >= 1 m/s")
     faster = alone(v_lon=0, last=(1, 0))
     assert (judge(early, faster).holds, judge(late, faster).holds) == (True, False)
+
+
+# --- The judge against a reading by definition, on random truth sets and random drives; and mutants
+
+quiet = settings(
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
+)
+
+
+def test_operators_on_all_small_truth_sets():
+    assert [case for case in every_small_case() if disagreement_on_sets(*case) is not None] == []
+
+
+@settings(quiet, max_examples=120)
+@given(opaque_cases())
+def test_operators_on_truth_sets(case):
+    assert disagreement_on_sets(*case) is None
+
+
+@settings(quiet, max_examples=250)
+@given(comparisons, drives)
+def test_comparisons_on_drives(comparison, drive):
+    found = disagreement_on_drive(comparison, drive)
+    assume(found != "doubtful")
+    assert found is None
+
+
+@settings(quiet, max_examples=150)
+@given(formulas(comparisons, leaves=4), drives)
+def test_formulas_on_drives(formula, drive):
+    found = disagreement_on_drive(formula, drive)
+    assume(found != "doubtful")
+    assert found is None
+
+
+@settings(quiet, max_examples=120)
+@given(jerk_comparisons, jerk_drives)
+def test_comparisons_on_drives_with_jerk(comparison, drive):
+    found = disagreement_on_drive(comparison, drive)
+    assume(found != "doubtful")
+    assert found is None
+
+
+@settings(quiet, max_examples=60)
+@given(formulas(jerk_comparisons, leaves=4), jerk_drives)
+def test_formulas_on_drives_with_jerk(formula, drive):
+    found = disagreement_on_drive(formula, drive)
+    assume(found != "doubtful")
+    assert found is None
+
+
+@pytest.mark.parametrize(("seed", "scenario"), [(0, 1), (2, 4), (3, 5), (4, 8)])
+def test_scenarios_on_drives(seed, scenario):
+    drive = random_drive(seed, ("SV", "POV"), count=3)
+    assert disagreement_on_drive(bound(f"scenario_{scenario}(SV, POV, L)"), drive, epsilon=1e-7) is None
+
+
+# --- The judge of formulas without temporal operators within an interval, against the judge of all formulas
+
+atoms = st.one_of(jerk_comparisons, st.sampled_from([f.Truth(True), f.Truth(False)]))
+cases = st.recursive(
+    atoms,
+    lambda inner: st.one_of(
+        inner.map(f.Not),
+        st.lists(inner, min_size=2, max_size=3).map(lambda parts: f.And(tuple(parts))),
+        st.lists(inner, min_size=2, max_size=3).map(lambda parts: f.Or(tuple(parts))),
+    ),
+    max_leaves=8,
+)
+ends = st.tuples(st.integers(0, 8), st.integers(0, 16)).map(
+    lambda pair: (Fraction(pair[0], 2), Fraction(pair[0] + pair[1], 2))
+)
+many = settings(max_examples=300, deadline=None, derandomize=True)
+
+
+def both(formula, drive, pair):
+    signals = DriveSignals(drive)
+    whole = judge(formula, signals).truth(formula)
+    return within.truth_within(formula, signals, *pair), intersection([whole, interval(*pair)])
+
+
+@many
+@given(cases, jerk_drives, ends)
+def test_within_an_interval_it_is_what_the_judge_says(formula, drive, pair):
+    found, expected = both(formula, drive, pair)
+    assert found == expected
+
+
+@pytest.mark.parametrize("speed", [5, 20, 36])
+@pytest.mark.parametrize("options", [{}, {"cc_gate": "before_delay"}, {"cc_aeb": "max"}])
+def test_along_lines_of_driver_models_it_is_what_the_judge_says(options, speed):
+    formula = boundary("cut-in", "careful", **options)
+    values = CUT_IN.values({"Ve0": Fraction(36), "dV0": Fraction(speed), "Vy": Fraction(1)})
+    signals = along_line(CUT_IN, values)
+    whole = judge(formula, signals).truth(formula)
+    for pair in ((Fraction(0), Fraction(60)), (Fraction(10), Fraction(41, 2))):
+        assert truth_within(formula, signals, *pair) == intersection([whole, interval(*pair)])
+
+
+@pytest.mark.parametrize(
+    ("name", "right", "wrong"),
+    [
+        ("_visit", "if kept == NEVER", "if kept != self.within"),
+        ("_visit", "if found == self.within", "if found != NEVER"),
+        (
+            "_visit",
+            "intersection([self.within, complement(self.visit(body))])",
+            "complement(self.visit(body))",
+        ),
+        ("_visit", "return self.within if value", "return NEVER if value"),
+        ("_visit", "union([found, self.visit(part)])", "self.visit(part)"),
+        ("signal", "if x[0] < self.end", "if x[0] < self.end - 1"),
+        ("signal", "(self.end, ZERO)", "(self.end - 1, ZERO)"),
+    ],
+)
+def test_planted_faults_are_noticed(monkeypatch, name, right, wrong):
+    owner = within._EndedSignals if name == "signal" else within._RestrictedTruth
+    found = []
+
+    @settings(max_examples=400, deadline=None, derandomize=True, database=None)
+    @given(cases, jerk_drives, ends)
+    def look(formula, drive, pair):
+        said, expected = both(formula, drive, pair)
+        if said != expected:
+            found.append(formula)
+
+    plant(monkeypatch, owner, name, right, wrong)
+    look()
+    assert found
+
+
+def test_temporal_operators_are_refused():
+    formula = f.And((f.Truth(True), f.Eventually(f.FOREVER, f.Truth(True))))
+    with pytest.raises(InputError, match="without temporal operators"):
+        truth_within(formula, along_line(CUT_IN, CUT_IN.values({})), Fraction(0), Fraction(1))

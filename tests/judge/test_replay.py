@@ -2,16 +2,54 @@
 
 from dataclasses import dataclass
 from fractions import Fraction
+from pathlib import Path
+from random import Random
 
+import numpy as np
 import pytest
 
 from judge.test_exact import motion
 from planting import plant
+from roadproof.engines.encode.build import NONE, ground
+from roadproof.engines.encode.circuit import evaluate
+from roadproof.engines.encode.custom_signals import own_columns
+from roadproof.engines.encode.motion import Layout
+from roadproof.engines.encode.unroll import Grid, unroll
+from roadproof.engines.prove.prover import prove
 from roadproof.errors import UsageError
+from roadproof.evidence.drive_file import DriveFile, load_drive
+from roadproof.evidence.refutation import Countermodel, Instant, when_true
+from roadproof.library.bind import bind, values_with
+from roadproof.library.elaborate import read_claim
+from roadproof.library.loading import bundled_library, load_library
+from roadproof.library.specification import Source
+from roadproof.logic import formula as f
+from roadproof.logic.custom_names import code_of
+from roadproof.logic.formula import Formula, subformulas
+from roadproof.logic.rewrite import without_names
+from roadproof.logic.show import as_syntax, text
+from roadproof.recordings.evaluate.recheck import trace_of
 from roadproof.semantics.exact import replay
 from roadproof.semantics.exact.algebraic import real_roots
+from roadproof.semantics.exact.blame import Blame, blame
+from roadproof.semantics.exact.exact import Judgement, judge, seconds
 from roadproof.semantics.exact.replay import first_breach, first_overlap, states_at
-from roadproof.world.drive import Drive
+from roadproof.semantics.exact.truth import (
+    NEVER,
+    TruthSet,
+    always,
+    complement,
+    eventually,
+    intersection,
+    union,
+    until,
+)
+from roadproof.semantics.sampled.batch import Batch
+from roadproof.semantics.sampled.compiled import compile
+from roadproof.semantics.sampled.recursive import TraceReader
+from roadproof.world.drive import Drive, Motion, Piece
+from roadproof.world.models import load_vehicle
+from roadproof.world.signals import KINDS, STARTING
 
 ONE, TEN = Fraction(1), Fraction(10)
 
@@ -168,3 +206,239 @@ def test_faults_at_the_horizon_are_caught(right, wrong, monkeypatch):
     assert horizon_is_kept()
     plant(monkeypatch, replay, "_first", right, wrong)
     assert not horizon_is_kept()
+
+
+# --- Why a formula is true or false: what is named is enough, whatever all else were ----------------
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+DRIVES = (
+    "traffic/drives/scenario-01-base.json",
+    "traffic/drives/scenario-04-base.json",
+    "catalogue/tests/drives/both-change-fast.json",
+)
+HOME = bundled_library().select()
+MOMENTS = (Fraction(0), Fraction(3, 2), Fraction(14, 5))
+
+
+def judged(file: DriveFile, text: str) -> Judgement:
+    formula = read_claim(HOME, text).formula
+    lanes = {"L": file.lanes["L"]}
+    return judge(bind(formula, file.road, lanes, values_with(HOME.library, {})), file.drive)
+
+
+def possible(judgement: Judgement, known: Blame, formula: Formula) -> tuple[TruthSet, TruthSet]:
+    """When a formula must, and when it may be true, where comparisons are known only at some instants."""
+    match formula:
+        case f.Truth():
+            return judgement.truth(formula), judgement.truth(formula)
+        case f.Compare():
+            truth, at = judgement.truth(formula), known.get(formula, NEVER)
+            return intersection([truth, at]), union([truth, complement(at)])
+        case f.Not(body):
+            least, most = possible(judgement, known, body)
+            return complement(most), complement(least)
+        case f.Application(_, _, body):
+            return possible(judgement, known, body)
+        case f.And(parts) | f.Or(parts):
+            join = intersection if isinstance(formula, f.And) else union
+            every = [possible(judgement, known, part) for part in parts]
+            return join([x for x, _ in every]), join([x for _, x in every])
+        case f.Eventually(interval, body) | f.Always(interval, body):
+            reach = eventually if isinstance(formula, f.Eventually) else always
+            least, most = possible(judgement, known, body)
+            return reach(*seconds(interval), least), reach(*seconds(interval), most)
+        case f.Until(left, interval, right):
+            first, then = possible(judgement, known, left), possible(judgement, known, right)
+            return (
+                until(first[0], *seconds(interval), then[0]),
+                until(first[1], *seconds(interval), then[1]),
+            )
+    raise AssertionError(formula)
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+@pytest.mark.parametrize(
+    "text",
+    [
+        *(f"scenario_{n}(SV,POV,L)" for n in (1, 3, 4, 6, 7)),
+        "(v_lon(SV) > 27 m/s or not danger(SV,POV)) U[1 s, 3 s] (danger(SV,POV) and F[0, 1 s] atLane(POV,L))",
+        "G (F[1 s, 2 s] rssViolation(SV,POV) or G[0, 1 s] not (aheadOf(SV,POV) U danger(SV,POV)))",
+    ],
+)
+def test_what_is_named_is_enough(drive: str, text: str) -> None:
+    judgement = judged(load_drive(EXAMPLES / drive), text)
+    asked = 0
+    for part in list(subformulas(judgement.formula))[:24]:
+        for at in MOMENTS:
+            found = blame(judgement, part, at)
+            known = {x: instants for x, instants in found.items() if isinstance(x, f.Compare)}
+            least, most = possible(judgement, known, part)
+            assert least.at(at) if judgement.truth(part).at(at) else not most.at(at), (part, at)
+            asked += 1
+    assert asked >= 24
+
+
+def test_one_reason_is_enough_for_one_instant() -> None:
+    """Of two parts that are false the first is named, and of a window its first false stretch."""
+    judgement = judged(load_drive(EXAMPLES / DRIVES[1]), "s(SV) < 0 m and v_lon(SV) < 0 m/s")
+    assert isinstance(judgement.formula, f.And)
+    first, second = judgement.formula.parts
+    fast = judged(load_drive(EXAMPLES / DRIVES[1]), "F[0, 2 s] not s(SV) < 0 m")
+    assert set(blame(judgement)) in ({judgement.formula, first}, {judgement.formula, second})
+    [instants] = [str(x) for part, x in blame(fast).items() if isinstance(part, f.Compare)]
+    assert instants.startswith(("[0", "(0"))
+
+
+def test_only_judged_parts_are_explained() -> None:
+    judgement = judged(load_drive(EXAMPLES / DRIVES[1]), "danger(SV,POV)")
+    with pytest.raises(UsageError, match="no judged part"):
+        blame(judgement, f.TRUE)
+
+
+# --- Own signals and kinds of vehicles: all readers agree, on random formulas and random courses ----
+
+DT, STEPS, TAIL = Fraction(1, 2), 5, 12
+VEHICLES = ("SV", "POV")
+OWN = load_library(
+    [
+        Source(
+            "own.spec",
+            """
+            signal red: bool
+            signal jerk(a: vehicle): m/s^3 in [-10, 10]
+            signal gap(a: vehicle): m
+            signal wild(a: vehicle): bool derived by jerk(a) > 3 m/s^3 and red
+            signal less(a: vehicle): m derived by gap(a) - 1 m
+            """,
+        )
+    ]
+).select()
+
+
+def written(dice: Random, depth: int) -> str:
+    """A random formula about own signals and kinds, without operators that never end."""
+    if depth == 0:
+        a = dice.choice(VEHICLES)
+        return dice.choice(
+            [
+                "red",
+                f"wild({a})",
+                f"jerk({a}) {dice.choice(['<', '<=', '>', '>='])} {dice.randint(-3, 3)} m/s^3",
+                f"less({a}) > gap(POV)",
+                f"jerk({a})*gap({a}) >= 2 m^2/s^3".replace("m^2/s^3", "m/s^3 * 1 m"),
+                f"max(gap(SV), gap(POV)) <= {dice.randint(0, 3)} m",
+                f"kind({a}) {dice.choice(['=', '!='])} {dice.choice(KINDS)}",
+                "kind(SV) = kind(POV)",
+            ]
+        )
+    low = dice.randint(0, 2)
+    window = f"[{low * DT}, {(low + dice.randint(0, 2)) * DT}]".replace("/2", "*0.5")
+    one, other = written(dice, depth - 1), written(dice, depth - 1)
+    return dice.choice(
+        [
+            f"not ({one})",
+            f"(({one}) and ({other}))",
+            f"(({one}) or ({other}))",
+            f"F{window} ({one})",
+            f"G{window} ({one})",
+            f"(({one}) U{window} ({other}))",
+        ]
+    )
+
+
+def random_drive(dice: Random) -> Drive:
+    """Two vehicles of some kind, own signals that are small whole numbers and change at samples."""
+    still = (Piece(None, Fraction(0), Fraction(0)),)
+    box = (Fraction(4), Fraction(2), Fraction(0), Fraction(3), Fraction(10), Fraction(0))
+    signals = {("red", ""): (0, 1), **{(name, v): (-4, 4) for name in ("jerk", "gap") for v in VEHICLES}}
+    return Drive(
+        {name: Motion(*box, still, dice.choice(KINDS)) for name in VEHICLES},
+        {
+            key: tuple((k * DT, Fraction(dice.randint(*ends))) for k in range(STEPS + 1))
+            for key, ends in signals.items()
+        },
+    )
+
+
+def values_at(drive: Drive, step: int) -> dict[tuple[str, str], Fraction]:
+    return {key: course[min(step, STEPS)][1] for key, course in drive.own.items()}
+
+
+def batch_of(drive: Drive) -> Batch:
+    samples = [values_at(drive, k) for k in range(STEPS + TAIL)]
+    signals = {key: np.array([float(x[key]) for x in samples])[:, None] for key in drive.own}
+    kinds = {("kind", v): np.array([float(code_of(m.kind))]) for v, m in drive.vehicles.items() if m.kind}
+    return Batch(DT, np.array([STEPS + TAIL]), signals, kinds)
+
+
+def encoded(formula: Formula, drive: Drive) -> bool:
+    vehicles = {v: load_vehicle("car") for v in VEHICLES}
+    vehicles = {v: type(x)(**{**vars(x), "kind": drive.vehicles[v].kind}) for v, x in vehicles.items()}
+    layout = Layout(VEHICLES, Grid(DT, STEPS), own_columns(formula))
+    columns = {}
+    for own in layout.own:
+        for k in range(STEPS + 1):
+            key = own.signal.name, own.signal.vehicle
+            columns[layout.own_column(key[1], key[0], k)] = values_at(drive, k)[key]
+    circuit = ground(unroll(formula, layout.grid), vehicles, layout, NONE, lasting=False)
+
+    def holds(inequality) -> bool:
+        value = inequality.polynomial.value(columns.__getitem__)
+        return value > 0 if inequality.strict else value >= 0
+
+    return evaluate(circuit, holds)
+
+
+def traced(formula: Formula, drive: Drive) -> bool:
+    fixed = {f"kind({v})": Fraction(code_of(m.kind)) for v, m in drive.vehicles.items() if m.kind}
+    instants = tuple(
+        Instant(
+            k * DT,
+            {**fixed, **{f"{n}({v})" if v else n: x for (n, v), x in values_at(drive, k).items()}},
+            {},
+        )
+        for k in range(STEPS + 1)
+    )
+    return when_true(formula, Countermodel(instants, {}, "before")).at(Fraction(0))
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_all_readers_agree(seed: int) -> None:
+    dice = Random(seed)
+    query = read_claim(OWN, written(dice, dice.randint(1, 3)))
+    formula, drive = query.formula, random_drive(dice)
+    exact = judge(formula, drive).holds
+    batch = batch_of(drive)
+    monitor = compile({"asked": formula})
+    answer = monitor.evaluate(batch).answers["asked"]
+    assert (bool(answer.true[0]), bool(answer.false[0])) == (exact, not exact)
+    assert TraceReader(trace_of(batch)).holds(formula, 0, "strong") == exact
+    margin = monitor.measure(batch).margins["asked"]
+    assert (margin.low[0] >= 0) if exact else (margin.high[0] <= 0)
+    assert encoded(formula, drive) == exact
+    assert traced(formula, drive) == exact
+    again = read_claim(OWN, text(as_syntax(formula, expand=True))).formula
+    assert without_names(again) == without_names(formula)
+
+
+@pytest.mark.parametrize("seed", [0, 3, 5, 11])
+def test_what_is_proved_is_true_on_drives_and_the_opposite_of_what_is_refuted(seed: int) -> None:
+    dice = Random(seed)
+    one = written(dice, 1)
+    for claim, holds in ((f"({one}) or not ({one})", True), (f"({one}) and not ({one})", False)):
+        query = read_claim(OWN, claim)
+        assert prove(OWN, query).holds is holds
+        assert judge(query.formula, random_drive(dice)).holds is holds
+
+
+def test_columns_are_looked_up_where_they_stand() -> None:
+    formula = read_claim(OWN, "red and jerk(SV) > 0 and gap(POV) < gap(SV)").formula
+    layout = Layout(VEHICLES, Grid(DT, STEPS), own_columns(formula))
+    first = len(VEHICLES) * len(STARTING) * (STEPS + 1)
+    columns = list(layout.own_unknowns())
+    for own in layout.own:
+        for k in range(STEPS + 1):
+            place = layout.own_column(own.signal.vehicle, own.signal.name, k) - first
+            of = columns[place].of
+            assert (of.vehicle, of.signal, of.step) == (own.signal.vehicle, own.signal.name, k)
+            assert (columns[place].low, columns[place].high) == own.range

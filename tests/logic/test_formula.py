@@ -1,12 +1,21 @@
 """Formula trees and terms: constructors, identity, walks and rewriting."""
 
 from fractions import Fraction
+from itertools import product
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
+from judge.cases import comparisons_of, drives, formulas
+from roadproof.library.bind import default_values
+from roadproof.library.elaborate import apply_definition, read_claim
+from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.formula import FALSE, TRUE, Formula
+from roadproof.logic.formula import FALSE, TRUE, Compare, Formula
+from roadproof.logic.fragment import Sizes, horizon, signal_degree, sizes
+from roadproof.logic.initial_conditions import compared, conjuncts, demands, narrowed, pins
 from roadproof.logic.rewrite import (
     bounds_of,
     map_terms,
@@ -16,6 +25,7 @@ from roadproof.logic.rewrite import (
     with_values,
     without_names,
 )
+from roadproof.semantics.exact.exact import judge
 
 SECONDS = (0, 1)
 SLOW = f.Compare(t.Signal("v_lon", "SV"), "<", t.Parameter("limit", (1, -1)))
@@ -165,3 +175,235 @@ def test_leaves_are_replaced_in_place() -> None:
     )
     assert [leaf.vehicle for leaf in t.leaves(renamed) if isinstance(leaf, t.Signal)] == ["POV", "POV"]
     assert t.replace_leaves(term, lambda leaf: leaf) == term
+
+
+# --- Horizon, boundedness, degree and size of formulas ----------------------------------------------
+
+BASE = bundled_library().select()
+SPEED: t.Term = t.Signal("v_lon", "SV")
+
+
+def formula(text: str) -> Formula:
+    return with_values(read_claim(BASE, text).formula, default_values(BASE.library))
+
+
+@pytest.mark.parametrize(
+    ("text", "seconds"),
+    [
+        ("v_lon(SV) > 0", Fraction(0)),
+        ("G[0, 2 s] v_lon(SV) > 0", Fraction(2)),
+        ("F[1, 2] G[0, 600 ms] v_lon(SV) > 0", Fraction(13, 5)),
+        ("(F[0, 1] v_lon(SV) > 0) and G[0, 3] v_lon(SV) > 0", Fraction(3)),
+        ("(F[0, 1] v_lon(SV) > 0) U[2, 4] G[0, 3] v_lon(SV) > 0", Fraction(7)),
+        ("danger(SV, POV)", Fraction(3, 5)),
+        ("F v_lon(SV) > 0", None),
+        ("G[0, 1] F v_lon(SV) > 0", None),
+        ("F[3, inf] v_lon(SV) > 0", None),
+        ("scenario_4(SV, POV, L)", None),
+    ],
+)
+def test_horizon(text: str, seconds: Fraction | None) -> None:
+    assert horizon(formula(text)) == seconds
+
+
+def test_a_horizon_needs_values() -> None:
+    symbolic = read_claim(BASE, "danger(SV, POV)").formula
+    with pytest.raises(ValueError, match="parameter"):
+        horizon(symbolic)
+
+
+@pytest.mark.parametrize(
+    ("term", "degree"),
+    [
+        (t.number(3), 0),
+        (t.Size("length", "SV"), 0),
+        (SPEED, 1),
+        (t.Sum((SPEED, t.number(1))), 1),
+        (t.Product((t.number(2), SPEED)), 1),
+        (t.Product((SPEED, SPEED)), 2),
+        (t.Power(SPEED, 2), 2),
+        (t.Power(SPEED, 0), 0),
+        (t.Quotient(t.Power(SPEED, 2), t.number(2)), 2),
+        (t.Maximum((t.number(1), t.number(2))), 0),
+        (t.Maximum((t.number(0), SPEED)), None),
+        (t.Inverse(SPEED), None),
+        (t.Sum((SPEED, t.Minimum((SPEED, t.number(0))))), None),
+        (t.Power(t.Maximum((t.number(0), SPEED)), 2), None),
+    ],
+)
+def test_degree(term: t.Term, degree: int | None) -> None:
+    assert signal_degree(term) == degree
+
+
+def test_sizes_count_distinct_parts_without_names() -> None:
+    atom = f.Compare(SPEED, ">", t.number(0, (1, -1)))
+    twice = f.Application("both", (), f.And((f.Always(f.FOREVER, atom), f.Not(f.Application("p", (), atom)))))
+    assert sizes(twice) == Sizes(subformulas=4, atoms=1, temporal=1, depth=3)
+    whole = sizes(apply_definition(BASE, "scenario_4").formula)
+    assert whole.temporal == 4  # initSafe, danger, and two untils
+
+
+# --- Which premises leave a parameter one value: tried against values that make the formula false ---
+
+specification = bundled_library().select()
+HERE = Fraction(3, 5)
+
+
+def pinned(claim: str) -> dict[str, Fraction]:
+    return pins(read_claim(specification, claim).formula)
+
+
+@pytest.mark.parametrize(
+    "claim",
+    [
+        "minDanger = 0.6 s -> danger(SV,POV)",
+        "initSafe(SV,POV) and (0.6 s = minDanger and rssViolation(SV,POV)) -> danger(SV,POV)",
+        "not (minDanger = 600 ms and danger(SV,POV))",
+        "not F (danger(SV,POV) and minDanger = 0.6 s)",
+        "not (danger(SV,POV) U (rssViolation(SV,POV) and minDanger = 0.6 s))",
+        "danger(SV,POV) or G (minDanger = 0.6 s -> rssViolation(SV,POV))",
+        "minDanger <= 0.6 s and minDanger >= 0.6 s -> danger(SV,POV)",
+        "(minDanger = 0.6 s -> danger(SV,POV)) and (rho = 1 s and minDanger = 0.6 s -> danger(POV,SV))",
+        "not ((minDanger = 0.6 s and danger(SV,POV)) or (danger(POV,SV) and minDanger = 0.6 s))",
+        "not (some M in lanes: atLane(SV,M) and minDanger = 0.6 s)",
+    ],
+)
+def test_a_premise_pins_a_parameter(claim):
+    assert pinned(claim) == {"minDanger": HERE}
+
+
+@pytest.mark.parametrize(
+    "claim",
+    [
+        "danger(SV,POV)",
+        "minDanger = 0.6 s and danger(SV,POV)",
+        "minDanger = 0.6 s or danger(POV,SV) -> danger(SV,POV)",
+        "minDanger <= 0.6 s -> danger(SV,POV)",
+        "minDanger < 0.6 s and minDanger > 0.6 s -> danger(SV,POV)",
+        "minDanger = rho -> danger(SV,POV)",
+        "2*minDanger = 1.2 s -> danger(SV,POV)",
+        "minDanger = 0.6 s and minDanger = 0.7 s -> danger(SV,POV)",
+        "not G (minDanger = 0.6 s and danger(SV,POV))",
+        "not (minDanger = 0.6 s U danger(SV,POV))",
+        "(minDanger = 0.6 s -> danger(SV,POV)) and danger(POV,SV)",
+        "minDanger = 0.6 s <-> danger(SV,POV)",
+    ],
+)
+def test_what_pins_nothing(claim):
+    assert pinned(claim) == {}
+
+
+def test_wherever_a_formula_is_false_its_pins_hold():
+    """All combinations of two parameters, two operators and three shapes, at all values nearby."""
+    texts = [f"{n} {op} {v} s" for n in ("rho", "minSafe") for op in ("=", "<=") for v in (0, 1)]
+    seen = 0
+    for one, other, last in product(texts, repeat=3):
+        for shape in ("{} and {} -> {}", "{} -> ({} -> {})", "not ({} or ({} and {}))"):
+            made = read_claim(specification, shape.format(one, other, last)).formula
+            found = pins(made)
+            for rho, safe in product((0, 1, 2), repeat=2) if found else ():
+                values = {"rho": Fraction(rho), "minSafe": Fraction(safe)}
+                if not truth(with_values(made, values)):
+                    seen += 1
+                    assert {n: values[n] for n in found} == found, made
+    assert seen > 300
+
+
+def truth(formula: f.Formula) -> bool:
+    match formula:
+        case f.Compare(left, "<=", right):
+            return left.value <= right.value
+        case f.Compare(left, ">=", right):
+            return left.value >= right.value
+        case f.Not(body):
+            return not truth(body)
+        case f.And(parts):
+            return all(map(truth, parts))
+        case f.Or(parts):
+            return any(map(truth, parts))
+        case _:
+            raise AssertionError(formula)
+
+
+# --- What a formula demands of its first instant: true there wherever the formula is ----------------
+
+ATOMS = comparisons_of(["s", "d", "v_lon", "v_lat"])
+P, Q = (f.Compare(t.Signal("s", name), ">", t.number(0)) for name in "AB")
+NOW = f.Interval(t.number(0), t.number(2))
+LATER = f.Interval(t.number(1), t.number(2))
+
+
+@settings(max_examples=300, deadline=None)
+@given(formulas(ATOMS), drives)
+def test_what_is_demanded_is_so_where_the_formula_is(formula, drive):
+    demanded = demands(formula)
+    assert f.is_state(demanded)
+    if judge(formula, drive).holds:
+        assert judge(demanded, drive).holds
+
+
+@settings(max_examples=100, deadline=None)
+@given(formulas(ATOMS).filter(f.is_state), drives)
+def test_all_of_a_formula_about_one_instant_is_demanded(formula, drive):
+    assert judge(demands(formula), drive).holds == judge(formula, drive).holds
+
+
+def test_no_more_than_the_first_instant_is_read():
+    no_q = f.Compare(Q.left, "<=", Q.right)
+    assert demands(f.Always(NOW, P)) == P
+    assert demands(f.Always(LATER, P)) == f.TRUE
+    assert demands(f.Eventually(NOW, P)) == f.TRUE
+    assert demands(f.Not(f.Eventually(NOW, Q))) == no_q
+    assert demands(f.Until(P, NOW, Q)) == f.Or((P, Q))
+    assert demands(f.Not(f.Until(P, NOW, Q))) == no_q
+    assert demands(f.And((f.Application("x", (), P), f.Eventually(NOW, Q)))) == P
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.booleans(), formulas(ATOMS), drives)
+def test_parts_together_are_the_formula(positive, formula, drive):
+    whole = f.conjunction(*conjuncts(formula, positive))
+    assert judge(whole, drive).holds == (judge(formula, drive).holds == positive)
+
+
+# --- What is let go of a formula leaves something that implies it -----------------------------------
+
+A, B, C = (Compare(t.Signal("s", x), ">", t.number(0, (1, 0))) for x in ("A", "B", "C"))
+AFTERWARDS = f.Application("later", (), f.Not(f.And((A, f.Or((B, f.Not(C)))))))
+FORMULAS: tuple[Formula, ...] = (
+    A,
+    f.Not(A),
+    f.Or((A, B)),
+    f.And((f.Not(A), f.Or((B, C)))),
+    AFTERWARDS,
+    f.Not(AFTERWARDS),
+)
+
+
+def holds(formula: Formula, true: dict[Formula, bool]) -> bool:
+    match formula:
+        case f.And(parts):
+            return all(holds(x, true) for x in parts)
+        case f.Or(parts):
+            return any(holds(x, true) for x in parts)
+        case f.Not(body) | f.Application(_, _, body):
+            return holds(body, true) != isinstance(formula, f.Not)
+        case f.Truth(value):
+            return value
+        case _:
+            return true[formula]
+
+
+def test_what_is_left_implies_the_formula_and_does_not_speak_of_it() -> None:
+    for formula, values in product(FORMULAS, product((False, True), repeat=3)):
+        true: dict[Formula, bool] = dict(zip((A, B, C), values, strict=True))
+        left = narrowed(formula, {A})
+        assert A not in set(compared(left))
+        assert not holds(left, true) or holds(formula, true)
+
+
+def test_what_need_not_be_let_go_stays() -> None:
+    true: dict[Formula, bool] = {A: True, B: True, C: False}
+    assert holds(narrowed(f.Or((A, B)), {A}), true)
+    assert not holds(narrowed(A, {A}), true)
+    assert narrowed(f.Or((A, B)), {C}) == f.Or((A, B))

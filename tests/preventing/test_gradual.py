@@ -3,7 +3,9 @@
 import json
 from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
 from pathlib import Path
+from random import Random
 
 import numpy as np
 import pytest
@@ -12,14 +14,25 @@ import roadproof as rp
 from preventing import stepping
 from preventing.read import boundary, specification, values
 from preventing.test_preventable import copy
-from roadproof.analysis.preventable.sides import beside_boundary, first_drive, judged_drive
+from roadproof.analysis.preventable.sides import beside_boundary, far_apart, first_drive, judged_drive
 from roadproof.drivers import gradual
 from roadproof.drivers.boundary import Plane, line
+from roadproof.drivers.braking import AssistedBraking, Ramp
 from roadproof.drivers.claims import SIDES
-from roadproof.drivers.driving import DriverSettings, drive_of, motion_in_deceleration
-from roadproof.drivers.manoeuvres import DECELERATION, KMH, start_of
+from roadproof.drivers.driving import DriverSettings, _along, drive_of, motion_in_deceleration
+from roadproof.drivers.lemmas import lemmas_for
+from roadproof.drivers.lines import Line, end_of, sides_in
+from roadproof.drivers.manoeuvres import DECELERATION, KMH, MANOEUVRES, start_of
+from roadproof.drivers.models import MODELS, unpreventable
+from roadproof.drivers.restriction import Restriction, check_drives
+from roadproof.drivers.words import _PARTS, legend, words_of_parts
+from roadproof.errors import UsageError
 from roadproof.evidence.judged import judge_file
+from roadproof.frontends.api.definitions import Definitions
 from roadproof.frontends.cli.main import main
+from roadproof.frontends.report.drive_data import strips_of
+from roadproof.frontends.report.preventable import as_text, shown_symbols
+from roadproof.logic.formula import And, Application, subformulas
 from roadproof.semantics.exact.algebraic import Root, approximate
 
 RATE = 1000
@@ -243,3 +256,142 @@ def test_rows_without_an_exact_drive_are_passed_over():
     (plate,) = found.plates
     assert str(plate.verdict) == "WITNESSED"
     assert {x.side for x in plate.shown if x.drive is not None} == {*SIDES}
+
+
+# --- Braking as a function of time, the motion that follows, and the places on plates that are looked at
+
+
+@pytest.mark.parametrize("joined", ["max", "add"])
+@pytest.mark.parametrize("seed", range(30))
+def test_braking_is_affine_between_knots(joined: str, seed: int) -> None:
+    """AEB brakes at least as hard as the driver, and begins before or after."""
+    random = Random(f"{joined} {seed}")
+    full = Fraction(random.randint(10, 80), 10)
+    duration = Fraction(random.randint(1, 20), 10)
+    onset, other = (Fraction(random.randint(0, 30), 10) for _ in range(2))
+    harder = full + Fraction(random.randint(0, 40), 10)
+    braking = AssistedBraking(Ramp(onset, duration, full), Ramp(other, duration, harder), joined)
+    knots = braking.knots
+    for begin, end in pairwise(knots):
+        middle, near = (begin + end) / 2, end - (end - begin) / 1000
+        slope = (braking.at(middle) - braking.at(begin)) / (middle - begin) if end > begin else 0
+        assert braking.at(near) == braking.at(begin) + slope * (near - begin)
+    assert braking.at(knots[-1]) == braking.at(knots[-1] + 10)
+
+
+@pytest.mark.parametrize("model", ["rss", "r157", "eu1426"])
+@pytest.mark.parametrize("onset", [Fraction(0), Fraction(1, 2), Fraction(3)])
+def test_nobody_brakes_before_the_onset(model: str, onset: Fraction) -> None:
+    pieces = _along(model, Fraction(20), onset, DriverSettings(values(), {}))
+    still = [(onset, Fraction(0), Fraction(0))] if onset else []
+    assert pieces[: len(still)] == still
+    _, *changes = pieces[len(still)]
+    assert any(changes)
+
+
+def test_lemmas_are_those_of_the_models() -> None:
+    careful = {x.name for x in lemmas_for("cut-in", [MODELS["careful"]])}
+    both = {x.name for x in lemmas_for("cut-in", [MODELS["careful"], MODELS["rss"]])}
+    assert careful < both
+    assert all(name.startswith("careful-") for name in careful)
+    assert all(name.startswith("rss-") for name in both - careful)
+    assert not [x for x in lemmas_for("deceleration", [MODELS["rss"]]) if not x.name.startswith("rss-")]
+
+
+def test_a_single_place_is_a_side_of_a_controller_only() -> None:
+    along = (Fraction(0), Fraction(10))
+    place = end_of(Fraction(4))
+    lines = [Line(Fraction(1), ((place, place),))]
+    assert sides_in(lines, along, is_stepped=True) == {"unpreventable", "preventable"}
+    assert sides_in(lines, along, is_stepped=False) == {"preventable"}
+    whole = [Line(Fraction(1), ((end_of(along[0]), end_of(along[1])),))]
+    assert sides_in(whole, along, is_stepped=False) == {"unpreventable"}
+
+
+def test_the_first_and_the_last_four_places_of_a_row_are_looked_at() -> None:
+    kind = MANOEUVRES["cut-in"]
+    plane = Plane(kind, {}, (Fraction(0), Fraction(60)), (Fraction(0), Fraction(20)))
+    candidates = [{kind.across: Fraction(row), kind.line: Fraction(k)} for row in range(6) for k in range(7)]
+    chosen = far_apart(plane, candidates, 3)
+    assert [(int(x[kind.across]), int(x[kind.line])) for x in chosen] == [
+        (row, k) for row in (0, 2, 4) for k in (0, 3, 4, 5, 6)
+    ]
+
+
+def test_drives_in_no_scenario_are_asked_for_as_drives() -> None:
+    check_drives({})
+    check_drives(Restriction("preventable", "careful", "drives").options)
+    with pytest.raises(UsageError, match="would all be gaps"):
+        check_drives(Restriction("preventable", "careful", "scenarios").options)
+
+
+# --- Words for symbols of initial values, and for parts of driver models in pictures ----------------
+
+
+@pytest.fixture(scope="module")
+def drivers() -> Definitions:
+    return rp.load(specs=["driver"])
+
+
+def test_all_words_are_of_definitions(drivers: Definitions) -> None:
+    for name in _PARTS:
+        assert name in drivers.specification.definitions
+
+
+@pytest.mark.parametrize("manoeuvre", MANOEUVRES)
+def test_the_side_of_each_model_has_words(manoeuvre: str, drivers: Definitions) -> None:
+    """The first vehicle is the one that is driven, whatever it is called."""
+    for model in (x for x in MODELS if manoeuvre in MODELS[x].manoeuvres and not MODELS[x].is_stepped):
+        for vehicles in (MANOEUVRES[manoeuvre].vehicles, MANOEUVRES[manoeuvre].vehicles[::-1]):
+            formula = drivers.read(unpreventable(manoeuvre, model, vehicles)).formula
+            told = words_of_parts(formula)[formula]
+            assert told.startswith(f"{vehicles[0]}, ")
+            assert "cannot prevent a collision (unpreventable_" in told
+
+
+def test_parts_speak_of_the_vehicles_around_them(drivers: Definitions) -> None:
+    for one, other in (("SV", "POV"), ("POV", "SV")):
+        formula = drivers.read(f"unpreventable_cutIn_careful({one}, {other})").formula
+        words = {x.name.partition("@")[0]: told for x, told in words_of_parts(formula).items()}
+        assert words["careful_hits"] == f"{one}, driven as the careful driver, hits {other} (careful_hits)"
+        assert words["comesIn"] == f"{other}, ahead of {one} and beside its way, comes into it (comesIn)"
+    both = drivers.read("unpreventable_cutIn_rss(SV, POV) or unpreventable_cutIn_rss(POV, SV)").formula
+    hits = {told for x, told in words_of_parts(both).items() if x.name.startswith("rss_hits")}
+    assert hits == {
+        f"{a}, which responds as RSS asks, hits {b} (rss_hits)" for a, b in (("SV", "POV"), ("POV", "SV"))
+    }
+
+
+def test_other_parts_keep_their_names() -> None:
+    formula = rp.load().read("scenario_4(SV,POV,L)").formula
+    assert any(isinstance(x, Application) for x in subformulas(formula))
+    assert words_of_parts(formula) == {}
+    assert words_of_parts(And(())) == {}
+
+
+def test_symbols_and_strips_of_a_plate() -> None:
+    """The text ends with all symbols that it shows; strips of its drives have words in place of numbers."""
+    found = rp.preventable(
+        "cut-in", models=["careful"], at={"Ve0": "60km/h", "Vy": "1"}, lines=3, lemmas=False, jobs=1
+    )
+    told = as_text(found.study, found.plates, ()).splitlines()[-1]
+    for symbol in (
+        "Ve0: the speed of SV (km/h)",
+        "dV0: how much faster SV is",
+        "dx0: the gap along the road (m)",
+    ):
+        assert symbol in told
+    assert {x.name for x in shown_symbols(found.study)} == {"Ve0", "dV0", "Vy", "dx0"}
+    drives = [x.drive for plate in found.plates for x in plate.shown if x.drive is not None]
+    assert len(drives) == 2
+    for drive in drives:
+        names = [x.name for x in strips_of(drive.judgement, Fraction(6))]
+        assert "SV, driven as the careful driver, hits POV (careful_hits)" in names
+        assert not any(name.startswith("careful_hits(") for name in names)
+
+
+@pytest.mark.parametrize("manoeuvre", MANOEUVRES)
+def test_every_symbol_has_words_and_a_unit(manoeuvre: str) -> None:
+    told = legend(MANOEUVRES[manoeuvre].quantities.values())
+    for name, x in MANOEUVRES[manoeuvre].quantities.items():
+        assert f"{name}: {x.doc} ({x.unit})" in told.split("; ")

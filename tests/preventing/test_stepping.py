@@ -1,12 +1,30 @@
 """The formulas of driver.spec against a simulation that steps: they differ within a step's band only."""
 
+import json
+import random
+from dataclasses import replace
+from fractions import Fraction as F
+
 import numpy as np
 import pytest
 
+import roadproof as rp
+from planting import plant
 from preventing import stepping
+from preventing.fuzzy_again import first_difference, motion
 from preventing.labels import labels
-from preventing.read import bound, boundary
-from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION
+from preventing.read import bound, boundary, specification, values
+from roadproof.analysis.preventable.sides import judged_drive
+from roadproof.drivers import stepped
+from roadproof.drivers.boundary import Plane
+from roadproof.drivers.claims import SIDES
+from roadproof.drivers.driving import DriverSettings, drive_of
+from roadproof.drivers.fuzzy import Controller, Scale, scale_of
+from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES
+from roadproof.drivers.models import models_for
+from roadproof.drivers.stepped import course_of, labels_of, places_of, spans_of
+from roadproof.evidence.judged import judge_file
+from roadproof.frontends.cli.main import main
 
 RATE = 1000
 CASES = 100_000
@@ -195,3 +213,240 @@ def test_a_planted_fault_shows():
     )
     _, outside = differing(found, outcome, 2 * (x["Ve0"] + stepping.FULL) / RATE)
     assert outside > 20
+
+
+# --- Drives of the fuzzy safety model: recomputed step by step, judged, and told as what they are ---
+
+
+def reading() -> DriverSettings:
+    home = specification()
+    return DriverSettings(values(), home.options)
+
+
+def some_values(manoeuvre: str, count: int, seed: int) -> list[dict[str, F]]:
+    rng = random.Random(seed)
+
+    def number(low: int, high: int) -> F:
+        return F(rng.randint(low * 100, high * 100), 100)
+
+    made = []
+    for _ in range(count):
+        v = number(3, 36)
+        match manoeuvre:
+            case "cut-in":
+                given = {"Vy": number(1, 3) / 2, "dx0": number(0, 60), "dy0": number(0, 2)}
+                given["dV0"] = v * number(0, 1)
+            case "cut-out":
+                given = {"Vy": number(1, 6) / 2, "dx0_f": number(0, 80)}
+            case _:
+                given = {"Gx": number(1, 10), "dx0": number(0, 60), "dV0": v * number(0, 1) / 3}
+        made.append(MANOEUVRES[manoeuvre].values({"Ve0": v, **given}))
+    return made
+
+
+def first_look(given: dict[str, F], manoeuvre: str) -> int:
+    """A cut-out is seen at the first look at which POV1 is more than 0.375 m off."""
+    if manoeuvre != "cut-out":
+        return 0
+    return next(k for k in range(1000) if given["Vy"] * k / 10 > F("0.375"))
+
+
+@pytest.mark.parametrize("manoeuvre", list(MANOEUVRES))
+def test_sv_does_what_the_model_written_again_does(manoeuvre):
+    """At every look of every drive, exactly."""
+    touched = set()
+    for given in some_values(manoeuvre, 12, 3):
+        kind = MANOEUVRES[manoeuvre]
+        drive = drive_of(kind, "fsm", given, reading())
+        assert first_difference(drive, first_look(given, manoeuvre), 150) is None
+        touched.add(course_of(kind, given).touches)
+    assert touched == {True, False}
+
+
+def test_an_acceleration_off_by_a_millionth_is_found():
+    drive = drive_of(CUT_IN, "fsm", CUT_IN.values({}), reading())
+    ego = drive.vehicles["SV"]
+    for k in (0, 2, len(ego.pieces) - 2):
+        pieces = list(ego.pieces)
+        pieces[k] = replace(pieces[k], a_lon=pieces[k].a_lon - F(1, 10**6))
+        other = replace(drive, vehicles={**drive.vehicles, "SV": replace(ego, pieces=tuple(pieces))})
+        assert first_difference(other) is not None
+    assert first_difference(drive) is None
+
+
+@pytest.mark.parametrize("manoeuvre", list(MANOEUVRES))
+def test_labels_are_what_the_judge_says_of_the_drive(manoeuvre):
+    """The judge reads the whole drive; a drive of the other side is rejected."""
+    kind, home = MANOEUVRES[manoeuvre], specification()
+    for given in some_values(manoeuvre, 10, 4):
+        is_hit = course_of(kind, given, to_the_end=False).touches
+        assert is_hit == course_of(kind, given).touches
+        side, other = SIDES if is_hit else SIDES[::-1]
+        judged = judged_drive(kind, "fsm", given, side, home, reading())
+        assert judge_file(judged.file, home.library).accepted
+        with pytest.raises(rp.InputError, match="does not hold on the drive"):
+            judged_drive(kind, "fsm", given, other, home, reading())
+
+
+def near_values(manoeuvre: str, count: int, seed: int) -> list[dict[str, F]]:
+    """Close behind a vehicle that is a little slower, or brakes a little, and stands in many cases."""
+    rng = random.Random(seed)
+    made = []
+    for _ in range(count):
+        gap, faster = F(rng.randint(1, 500), 100), F(rng.randint(0, 500), 100)
+        speed = faster + rng.choice([F(0), F(0), F(rng.randint(1, 1000), 100)])
+        given = {"Ve0": speed, "dV0": faster, "dx0": gap}
+        if manoeuvre == "cut-in":
+            given |= {"dy0": F(0), "Vy": F(1)}
+        else:
+            given["Gx"] = F(rng.randint(1, 80), 10)
+        made.append(MANOEUVRES[manoeuvre].values(given))
+    return made
+
+
+def differences(manoeuvre: str, cases: list[dict[str, F]]) -> tuple[int, int]:
+    """Labels that are otherwise where a drive is not stepped to its end; and how many touch."""
+    kind = MANOEUVRES[manoeuvre]
+    whole = [course_of(kind, x).touches for x in cases]
+    short = [course_of(kind, x, to_the_end=False).touches for x in cases]
+    return sum(a != b for a, b in zip(whole, short, strict=True)), sum(whole)
+
+
+@pytest.mark.parametrize("manoeuvre", list(MANOEUVRES))
+def test_labels_need_no_drive_to_its_end(manoeuvre):
+    cases = some_values(manoeuvre, 300, 5)
+    if manoeuvre != "cut-out":
+        cases += near_values(manoeuvre, 1_200, 6)
+    wrong, touching = differences(manoeuvre, cases)
+    assert wrong == 0
+    assert len(cases) // 20 < touching < len(cases) - len(cases) // 20
+
+
+@pytest.mark.parametrize(
+    ("owner", "name", "right", "wrong"),
+    [
+        (stepped, "_stays_clear", "min(now.gap, controller.margin)", "3 * controller.margin"),
+        (stepped, "_stays_clear", "(other.braking and now.its_speed)", "False"),
+        (Controller, "needs", "TICKS * looks * faster", "0"),
+        (Controller, "needs", "- self.waited", "- _WAITS"),
+        (Controller, "needs", "(-faster * faster // (2 * self.comfort))", "0"),
+    ],
+)
+def test_a_drive_that_is_left_too_early_shows(monkeypatch, owner, name, right, wrong):
+    plant(monkeypatch, owner, name, right, wrong)
+    found = [differences(x, near_values(x, 1_200, 6))[0] for x in ("cut-in", "deceleration")]
+    assert sum(found)
+
+
+def test_a_leader_far_away_is_reached_without_looking_at_each_tenth():
+    """dV0 = 1/1000 m/s from 120 m: 120 000 s."""
+    given = CUT_IN.values({"dx0": F(120), "dV0": F(1, 1000)})
+    course = course_of(CUT_IN, given)
+    assert not course.touches
+    assert sum(count for count, _ in course.brakings) > 500_000
+    assert len(course.brakings) < 300
+
+
+def test_a_vehicle_that_sv_has_passed_is_not_hit():
+    given = CUT_IN.values({"dx0": F(0), "dV0": 50 * KMH, "Vy": F(1, 2)})
+    course = course_of(CUT_IN, given)
+    assert not course.touches
+    assert not any(braking for _, braking in course.brakings)
+
+
+def test_a_scale_says_whole_numbers_only():
+    assert scale_of(F(1, 3)).length(F(1, 3)) * 3 == scale_of(F(1, 3)).metre
+    with pytest.raises(ValueError, match="is not whole in this scale"):
+        Scale(10).length(F(1, 3))
+
+
+def test_spans_join_neighbouring_places_only():
+    places = tuple(map(F, range(5)))
+    assert list(spans_of(places, (True, True, False, True, False))) == [(0, 1), (3, 3)]
+
+
+def test_labels_of_a_plane_are_those_of_its_places():
+    plane = Plane(DECELERATION, {}, (F(0), F(30)), (F(5), F(9)), 2)
+    found = labels_of(plane)
+    for row, labelled in zip(plane.rows, found, strict=True):
+        for k in (0, 40, 120):
+            given = plane.values(row, places_of(plane)[k])
+            assert labelled[k] == course_of(DECELERATION, given).touches
+    assert {x for labels in found for x in labels} == {True, False}
+
+
+def test_it_is_asked_for_by_name_only():
+    for manoeuvre in MANOEUVRES:
+        assert "fsm" not in {x.name for x in models_for(manoeuvre)}
+        assert models_for(manoeuvre, ("fsm",))[0].is_stepped
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    out = tmp_path_factory.mktemp("fsm")
+    found = rp.preventable("cut-out", ["fsm"], at={"Ve0": "60 km/h"}, along=(0, 40), lines=3, jobs=1, out=out)
+    found.add_files(False)
+    assert "between places looked at nothing is claimed" in str(found)
+    assert not found.lemmas
+    return out
+
+
+def test_the_evidence_says_that_it_is_stepped_and_what_is_not_checked(folder, capsys):
+    index = json.loads((folder / "index.json").read_text("utf-8"))
+    plate = index["plates"][0]
+    assert "stepped at 10 Hz" in plate["stepped"]
+    assert plate["formula"] == "F touches(SV, POV2)"
+    assert [x["verdict"] for x in plate["shown"]] == ["WITNESSED", "WITNESSED"]
+    table = (folder / "plates.csv").read_text("utf-8").splitlines()
+    assert "stepped at 10 Hz" in table[1]
+    assert ",,," not in table[0]
+    assert main(["check", str(folder)]) == 0
+    assert "what the controller of its model computes" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("word", ["formula", "drive"])
+def test_sides_exchanged_are_told(folder, tmp_path, word):
+    out = tmp_path / "forged"
+    for path in folder.rglob("*"):
+        if path.is_file():
+            (out / path.relative_to(folder)).parent.mkdir(parents=True, exist_ok=True)
+            (out / path.relative_to(folder)).write_bytes(path.read_bytes())
+    index = json.loads((out / "index.json").read_text("utf-8"))
+    a, b = index["plates"][0]["shown"]
+    a[word], b[word] = b[word], a[word]
+    (out / "index.json").write_text(json.dumps(index), "utf-8")
+    assert rp.check(out).exit_code != 0
+
+
+def test_a_stepped_plate_that_says_it_is_exact_is_told(folder, tmp_path):
+    out = tmp_path / "forged"
+    for path in folder.rglob("*"):
+        if path.is_file():
+            (out / path.relative_to(folder)).parent.mkdir(parents=True, exist_ok=True)
+            (out / path.relative_to(folder)).write_bytes(path.read_bytes())
+    index = json.loads((out / "index.json").read_text("utf-8"))
+    index["plates"][0]["stepped"] = ""
+    (out / "index.json").write_text(json.dumps(index), "utf-8")
+    assert rp.check(out).exit_code != 0
+
+
+def test_a_cut_out_is_seen_from_0375_m_on():
+    given = CUT_OUT.values({"Vy": F(3, 8), "dx0_f": F(5)})
+    first = next(count for count, braking in course_of(CUT_OUT, given).brakings if not braking)
+    assert first == 11 + 8  # at 1 s it is 0.375 m off, which is not more
+
+
+@pytest.mark.parametrize("gap", [110, 150, 230])
+def test_sv_creeps_into_a_standing_vehicle(gap):
+    """From 90 km/h and far away it brakes by about 4 m/s^2, and stops a few millimetres too late."""
+    given = CUT_IN.values({"Ve0": 90 * KMH, "dV0": 90 * KMH, "dx0": F(gap)})
+    course = course_of(CUT_IN, given)
+    ego = drive_of(CUT_IN, "fsm", given, reading()).vehicles["SV"]
+    looks = sum(count for count, _ in course.brakings)
+    gone = [motion(ego, F(k, 10)) for k in range(looks + 1)]
+    beyond = [x[0] - gone[0][0] - gap for x in gone]
+    contact = next(k for k, x in enumerate(beyond) if x >= 0)
+    assert course.touches
+    assert gone[contact - 1][1] < F(1, 2)
+    assert 0 <= beyond[-1] < F(1, 100)
+    assert gone[-1][1] == 0

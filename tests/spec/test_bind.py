@@ -1,19 +1,40 @@
 """Formulas meet a road and values."""
 
 from fractions import Fraction
+from fractions import Fraction as F
 
 import pytest
 
-from roadproof.errors import InputError
+from roadproof.errors import InputError, TextError, UsageError
+from roadproof.library import compose
 from roadproof.library.bind import bind, default_values, occupies
+from roadproof.library.compose import (
+    always,
+    both,
+    conjuncts,
+    either,
+    equivalence,
+    eventually,
+    implication,
+    in_some_lane,
+    negation,
+    with_lane,
+    with_vehicles,
+)
 from roadproof.library.elaborate import apply_definition, read_claim
-from roadproof.library.loading import bundled_library
+from roadproof.library.loading import bundled_library, load_library
+from roadproof.library.specification import Query, Source
 from roadproof.library.uses import definitions_used, parameters_used
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
+from roadproof.logic.custom_names import told_freedom
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import parameters_of
+from roadproof.logic.rewrite import parameters_of, vehicles_of, with_values, without_names
+from roadproof.logic.show import as_syntax, text
+from roadproof.semantics.exact import judge
+from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.road import Lanelet, Road, pairs
+from roadproof.world.signals import KINDS
 
 WIDTH = Fraction(7, 2)
 METRES = (1, 0)
@@ -153,3 +174,267 @@ def test_uses_come_once_and_in_reading_order() -> None:
     names = [d.name for d in definitions_used(BASE, other)]
     assert names[:3] == ["decel@ext", "fasterThan", "decelerates"]
     assert "danger" in names
+
+
+# --- Queries put together: what is said reads as what is meant --------------------------------------
+
+
+def read(text: str) -> Query:
+    return read_claim(BASE, text)
+
+
+ONE = read("scenario_1(SV, POV, L)")
+FOUR = read("given x: m/s: scenario_4(SV, POV, L) and v_lon(SV) > x")
+PLAIN = read("danger(SV, POV) or aheadOf(SV, POV)")
+LANES = read("some K in lanes: atLane(POV, K) and not (every l in lanelets(K): occ(SV, l))")
+NOT = read("not danger(SV, POV)")
+
+TOGETHER = {
+    "both": both(ONE, PLAIN, FOUR),
+    "both of one": both(ONE),
+    "none": both(),
+    "either": either(NOT, LANES, ONE),
+    "no either": either(),
+    "negation": negation(PLAIN),
+    "negation of a negation": negation(NOT),
+    "implication": implication(both(ONE, NOT), FOUR),
+    "equivalence": equivalence(PLAIN, negation(ONE)),
+    "eventually": eventually(PLAIN),
+    "always": always(implication(PLAIN, ONE)),
+    "roles exchanged": with_vehicles(both(FOUR, LANES), {"SV": "POV", "POV": "SV"}),
+    "another lane": with_lane(FOUR, "L", "L2"),
+    "some lane": in_some_lane(both(ONE, LANES), "L"),
+    "some lane, negated": both(PLAIN, negation(in_some_lane(FOUR, "L"))),
+}
+
+
+@pytest.mark.parametrize("name", TOGETHER)
+def test_what_is_said_reads_as_what_is_meant(name: str) -> None:
+    query = TOGETHER[name]
+    again = read(query.text)
+    assert without_names(again.formula) == without_names(query.formula)
+    assert again.formula == query.formula
+    assert again.lanes == query.lanes
+    assert set(again.vehicles) == set(query.vehicles)
+
+
+def test_what_came_out_is_said_as_a_reader_would() -> None:
+    assert negation(NOT).text == "danger(SV, POV)"
+    assert implication(ONE, PLAIN).text == "scenario_1(SV, POV, L) -> danger(SV, POV) or aheadOf(SV, POV)"
+    assert TOGETHER["roles exchanged"].text.startswith(
+        "given x: m/s: (scenario_4(POV, SV, L) and v_lon(POV) > x)"
+    )
+    assert in_some_lane(ONE, "L").text == "some M in lanes: scenario_1(SV, POV, M)"
+    assert ONE.text == "scenario_1(SV, POV, L)"
+
+
+def test_definitions_of_other_sets_keep_their_set() -> None:
+    ext = apply_definition(BASE, "scenario_4@ext")
+    assert ext.text == "scenario_4@ext(SV, POV, L)"
+    assert read(both(ext, PLAIN).text).formula == both(ext, PLAIN).formula
+    assert ext.formula != apply_definition(BASE, "scenario_4").formula
+
+
+def test_names_that_would_mean_two_things_are_refused() -> None:
+    with pytest.raises(UsageError, match=r"'x' is a m/s in one formula and a m in another"):
+        both(FOUR, read("given x: m: s(SV) > x"))
+    with pytest.raises(UsageError, match=r"'K' is a variable of a quantifier inside"):
+        with_lane(read("atLane(SV, L) and (some K in lanes: atLane(POV, K) and atLane(SV, L))"), "L", "K")
+
+
+@pytest.mark.parametrize(
+    "text", ["scenario_4(SV, POV, L)", "scenario_2(SV, POV1, POV2, L)", "danger(SV, POV)"]
+)
+def test_definitions_are_taken_from_another_set(text: str) -> None:
+    query = read(text)
+    taken = compose.taken_from(BASE, query, "ext")
+    name, rest = text.split("(")
+    assert taken.text == f"{name}@ext({rest}"
+    assert taken.formula == read(taken.text).formula
+    assert compose.taken_from(BASE, query, "base") == query
+
+
+def test_parts_of_a_formula_are_said_by_name() -> None:
+    query = read("aheadOf(SV, POV) and F danger(SV, POV) and atLane(POV1, L)")
+    assert isinstance(query.formula, f.And)
+    first, second, third = query.formula.parts
+    two = compose.of_parts(query, [first, second])
+    assert (two.text, two.vehicles, two.lanes) == (
+        "aheadOf(SV, POV) and F danger(SV, POV)",
+        ("POV", "SV"),
+        (),
+    )
+    assert read(two.text).formula == two.formula
+    assert compose.of_parts(query, [third]).lanes == ("L",)
+    assert compose.of_parts(query, []).text == "true"
+
+
+def test_conjuncts_are_what_is_joined() -> None:
+    parts = conjuncts(FOUR)
+    assert [part.text for part in parts] == [
+        "given x: m/s: scenario_4(SV, POV, L)",
+        "given x: m/s: v_lon(SV) > x",
+    ]
+    assert [(part.vehicles, part.lanes) for part in parts] == [(("POV", "SV"), ("L",)), (("SV",), ())]
+    assert both(*parts).formula == FOUR.formula
+    assert read(both(ONE, *parts).text).formula == f.conjunction(ONE.formula, *FOUR.formula.parts)  # type: ignore[union-attr]
+    assert conjuncts(PLAIN) == (PLAIN,)
+
+
+# --- Own signals and kinds of vehicles in the language: what is read, what is refused, what is printed
+
+OWN = """
+signal jerk(a: vehicle): m/s^3 in [-10, 10 m/s^3] "how fast its acceleration changes"
+signal red: bool "the light is red"
+signal gap(a: vehicle): m in [0, inf]
+signal speed(a: vehicle): km/h in [0, 36]
+signal braking: bool derived by red
+signal ahead(a: vehicle): m derived by s(a) + gap(a)
+"""
+
+
+def home(more: str = ""):
+    return load_library([Source("own.spec", OWN + more)]).select()
+
+
+@pytest.mark.parametrize(
+    ("claim", "expanded"),
+    [
+        ("red and jerk(SV) > 2 m/s^3", "red and jerk(SV) > 2 m/s^3"),
+        ("F braking", "F red"),
+        ("ahead(SV) < s(POV)", "s(SV) + gap(SV) < s(POV)"),
+        ("not red", "not red"),
+        ("kind(SV) = truck", "kind(SV) = truck"),
+        ("not kind(SV) = car", "not kind(SV) = car"),
+        ("bus = kind(SV)", "kind(SV) = bus"),
+        ("kind(SV) != motorcycle", "kind(SV) != motorcycle"),
+        ("given truck: vehicle: kind(truck) = truck", "kind(truck) = truck"),
+    ],
+)
+def test_what_is_written_is_printed(claim: str, expanded: str) -> None:
+    assert text(as_syntax(read_claim(home(), claim).formula, expand=True)) == expanded
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("op", ["=", "!=", ">=", "<"])
+def test_all_that_compares_kinds_reads_back(kind: str, op: str) -> None:
+    if kind == KINDS[0] and op in (">=", "<"):
+        return  # nothing comes before the first
+    made = read_claim(home(), f"kind(SV) {op} {kind}").formula
+    for part in (made, *getattr(made, "parts", ())):
+        assert read_claim(home(), text(as_syntax(part))).formula == part
+
+
+def test_bounds_are_in_si_and_said() -> None:
+    formula = read_claim(home(), "speed(SV) > 1 m/s and jerk(SV) > 0 and red and gap(SV) < 1 m").formula
+    assert told_freedom(formula) == (
+        "gap is any function of time within [0, inf] m",
+        "jerk is any function of time within [-10, 10] m/s^3",
+        "red is unconstrained: any function of time",
+        "speed is any function of time within [0, 10] m/s",
+    )
+    assert told_freedom(read_claim(home("signal x: bool derived by true"), "x").formula) == ()
+
+
+def test_roles_are_exchanged_in_own_signals_and_never_in_kinds() -> None:
+    query = read_claim(home(), "given truck: vehicle: jerk(truck) > 1 m/s^3 and red and kind(truck) = truck")
+    renamed = with_vehicles(query, {"truck": "POV"})
+    assert vehicles_of(renamed.formula) == ("POV",)
+    assert without_names(read_claim(home(), renamed.text).formula) == renamed.formula
+
+
+def test_a_derived_signal_is_shown_with_what_it_is_derived_by() -> None:
+    query = read_claim(home(), "F braking and ahead(SV) > 0")
+    assert [x.name for x in definitions_used(home(), query.claim.body)] == ["braking", "ahead"]
+
+
+def test_the_fingerprint_changes_with_signals_only() -> None:
+    plain = bundled_library().fingerprint
+    assert load_library([Source("x", "")]).fingerprint == plain
+    assert len({plain, home().library.fingerprint, home("signal y: m").library.fingerprint}) == 3
+
+
+@pytest.mark.parametrize(
+    ("claim", "column", "told"),
+    [
+        ("jerk > 2", 1, "'jerk' needs its arguments"),
+        ("red(SV)", 1, "'red' takes 0 arguments but got 1"),
+        ("jerk(SV, POV) > 0", 1, "'jerk' takes 1 argument but got 2"),
+        ("red > 0", 1, "a number is expected here, but this is a formula"),
+        ("jerk(SV) > 2", 1, "write it with m/s^3"),
+        ("jek(SV) > 0", 1, "did you mean 'jerk'?"),
+        ("F[0, speed(SV)] red", 6, "an interval bound is a time"),
+        ("given red: vehicle: v_lon(red) > 0", 7, "'red' is a signal of the specification"),
+        ("some red in lanes: atLane(SV, red)", 1, "'red' is a signal of the specification"),
+        ("kind(SV)", 1, "a kind is no number"),
+        ("kind(SV) + 1 > 2", 1, "a kind is no number"),
+        ("kind(SV) = lorry", 12, "Kinds are car, truck, bus, motorcycle, other"),
+        ("kind(SV) > truck", 1, "kinds are compared with = and != only"),
+        ("kind(SV, POV) = car", 1, "'kind' takes 1 argument"),
+    ],
+)
+def test_mistakes_in_claims(claim: str, column: int, told: str) -> None:
+    with pytest.raises(TextError) as raised:
+        read_claim(home(), claim)
+    assert told in str(raised.value)
+    assert f"line 1, column {column}:" in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("declared", "told"),
+    [
+        ("signal s(a: vehicle): m", "'s' is built in"),
+        ("signal kind(a: vehicle): m", "'kind' is built in"),
+        ("def kind(a: vehicle) := true", "'kind' is built in"),
+        ("signal POV1: m", "'POV1' means something else"),
+        ("signal time: s", "'time' means something else"),
+        ("signal x(a: lane): m", "is of one vehicle or of none"),
+        ("signal x: lane", "'lane' is no unit of a signal"),
+        ("signal x: bool in [0, 1]", "is true or false"),
+        ("signal x: m in [0, 1] derived by 1 m", "so its bounds follow"),
+        ("signal x: m in [2, 2]", "low=2 is not below high=2"),
+        ("signal x: m in [inf, 2]", "the wrong way round"),
+        ("signal x: m in [0 s, 2]", "is in m, but its bound is in s"),
+        ("signal danger: bool", "'danger' is a definition already"),
+        ("signal rho: s", "'rho' is a parameter already"),
+        ("param gap = 1 m", "'gap' is a signal already"),
+        ("def gap(a: vehicle) := true", "'gap' is a signal"),
+        ("signal x: m signal x: m", "signal 'x' is given twice"),
+        ("signal x: m derived by 3 s", "is declared in m, but derived in s"),
+        ("signal x: bool derived by 3 s", "is declared bool, but derived by a number"),
+        ("signal x: m derived by x", "'x' is defined by itself"),
+    ],
+)
+def test_mistakes_in_declarations(declared: str, told: str) -> None:
+    with pytest.raises(TextError) as raised:
+        read_claim(home(declared), "x = 1 m" if "x:" in declared else "red")
+    assert told in str(raised.value)
+
+
+# --- Definitions under their options, judged at one instant -----------------------------------------
+
+LIBRARY = bundled_library()
+
+
+def going(v_lon: int, v_lat: int) -> Motion:
+    return Motion(F(9, 2), F(9, 5), F(0), F(3), F(v_lon), F(v_lat), (Piece(None, F(0), F(0)),))
+
+
+@pytest.mark.parametrize(
+    ("sv", "pov", "along", "total"),
+    [
+        ((30, 0), (29, 8), False, True),  # 900 and 905
+        ((30, 0), (29, -8), False, True),
+        ((30, 0), (29, 7), False, False),  # 900 and 890
+        ((29, 8), (30, 0), True, False),
+        ((30, 4), (30, -4), False, False),
+        ((20, 0), (30, 0), True, True),
+    ],
+)
+def test_faster_along_the_road_or_in_all(
+    sv: tuple[int, int], pov: tuple[int, int], along: bool, total: bool
+) -> None:
+    drive = Drive({"SV": going(*sv), "POV": going(*pov)})
+    for options, expected in (({}, along), ({"speed": "total"}, total)):
+        formula = read_claim(LIBRARY.select("base", options), "fasterThan(SV, POV)").formula
+        assert judge(with_values(formula, default_values(LIBRARY)), drive).holds == expected

@@ -1,19 +1,30 @@
 """The template: what Python knows of the scenarios comes from the specification."""
 
+import ast
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
 from fractions import Fraction
+from fractions import Fraction as F
+from itertools import pairwise
+from pathlib import Path
 
 import pytest
 
 from roadproof.errors import InputError, TextError, UsageError
 from roadproof.library import scenario_references as references
 from roadproof.library import scenarios
+from roadproof.library.bind import bind, default_values
 from roadproof.library.elaborate import read_claim, signature
 from roadproof.library.loading import build_library, bundled_library
-from roadproof.library.scenarios import Scenario
+from roadproof.library.scenarios import PAIR, TRIPLE, Scenario
 from roadproof.library.specification import Source, Specification
 from roadproof.library.words import called
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.rewrite import without_names
+from roadproof.semantics.exact import judge
+from roadproof.world.drive import Drive, Motion, Piece
+from roadproof.world.models import load_road
 
 BASE = bundled_library().select()
 
@@ -169,3 +180,310 @@ def test_a_name_that_several_scenarios_have_is_refused_with_the_choices() -> Non
 @pytest.mark.parametrize("text", ["cut", "cutIn", "danger", "cut-in, moon", "", ",", "main"])
 def test_what_names_no_scenario_is_left_to_formulas(text: str) -> None:
     assert references.numbers_called(BASE, text) == ()
+
+
+# --- Names of the library's definitions stand in ``library/scenarios.py`` and nowhere else in Python
+# A string that has such a name followed by ``(``, is one, or has the part of one before its number
+# (``scenario_``), is read, matched or put together somewhere; so is one that is the name of a role. Words
+# for people are left out: docstrings, ``_EXAMPLES`` and the ``help`` of options.
+
+SOURCE = Path(__file__).parents[2] / "src" / "roadproof"
+HOME = "library/scenarios.py"
+ROLES = {*PAIR, *TRIPLE}
+WORDS = {
+    "__init__.py",
+    "frontends/api/recordings.py",
+}  # what is exported from Python is named; so are columns of frames
+ROWS = 8
+"""How many rows the table of formulas has, which other scenarios repeat."""
+
+
+def said_to_people(tree: ast.Module) -> set[int]:
+    """The nodes of strings that are docstrings, examples or help, by identity."""
+    found: list[ast.AST] = []
+    for node in ast.walk(tree):
+        match node:
+            case ast.Expr(ast.Constant(str()) as text):
+                found.append(text)
+            case ast.Assign([ast.Name("_EXAMPLES")], value):
+                found.append(value)
+            case ast.keyword("help", value):
+                found.append(value)
+            case _:
+                pass
+    return {id(inner) for node in found for inner in ast.walk(node)}
+
+
+def is_name(text: str) -> bool:
+    return text in ROLES or bool(NAME.search(text)) or text in bundled_library().definitions
+
+
+def _pattern() -> re.Pattern[str]:
+    names = set(bundled_library().definitions)
+    stems = {found[1] for name in names if (found := re.fullmatch(r"(.*_)\d+", name))}
+    calls = "|".join(sorted(map(re.escape, names)))
+    return re.compile(rf"\b(?:(?:{calls})\(|(?:{'|'.join(sorted(map(re.escape, stems)))}))")
+
+
+NAME = _pattern()
+
+
+def offences(text: str) -> Iterator[str]:
+    """Lines of a module that name a definition, or count rows of the table of formulas."""
+    tree = ast.parse(text)
+    people = said_to_people(tree)
+    for node in ast.walk(tree):
+        match node:
+            case ast.Constant(str() as value) if id(node) not in people and is_name(value):
+                yield f"{node.lineno}: {value[:60]!r}"
+            case ast.BinOp(_, ast.Mod(), ast.Constant(value)) if value == ROWS:
+                yield f"{node.lineno}: % {ROWS}"
+            case _:
+                pass
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        'read_claim(spec, "danger(SV, POV)")',
+        'f"{x} and initSafe({a}, {b})"',
+        'f"scenario_{number}"',
+        'f"scenario_{number}@{set_name}({vehicles})"',
+        're.compile(r"roadSector_(\\d+)")',
+        'name == "rssViolation"',
+        'definitions["initialCondition_12"]',
+        "number % 8 == 7",
+        'applied(spec, 4, ("SV", other))',
+    ],
+)
+def test_names_and_rows_are_found(line: str) -> None:
+    assert list(offences(line))
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        '"""As ``danger(SV, POV)``."""',
+        'def go():\n    """As scenario_4."""',
+        '_EXAMPLES = """\\\n  roadproof show \'danger(SV,POV)\'\n"""',
+        'parser.add_argument("--x", help="such as scenario_4")',
+        'print("there is danger", f"scenario {number}")',
+        "'no danger within the section'",
+        "number % 7",
+    ],
+)
+def test_words_for_people_are_not(line: str) -> None:
+    assert not list(offences(line))
+
+
+def test_words_are_only_roles() -> None:
+    for name in WORDS:
+        found = [line.partition(": ")[2] for line in offences((SOURCE / name).read_text())]
+        assert found
+        assert {*found} <= {repr(role) for role in ROLES}, name
+
+
+def test_no_other_file_knows_a_definition_by_name() -> None:
+    found: dict[str, list[str]] = {}
+    for path in sorted(SOURCE.rglob("*.py")):
+        name = path.relative_to(SOURCE).as_posix()
+        if name not in (HOME, *WORDS):
+            found[name] = list(offences(path.read_text()))
+    assert {name: lines for name, lines in found.items() if lines} == {}
+    assert list(offences((SOURCE / HOME).read_text()))
+
+
+# --- The detectors of earlier works, on drives whose answer follows from what their definitions say in words
+
+LIBRARY = bundled_library()
+ROAD = load_road("main-2")
+RIGHT, LEFT = F(53, 20), F(123, 20)  # the left side of a car in the middle of a lane
+
+
+@dataclass(frozen=True)
+class Car:
+    """``across``: (seconds, lateral speed), one after the other; then straight on. ``brakes`` for so long."""
+
+    s: F | int | str = 0
+    d: F = RIGHT
+    v: F | int | str = 20
+    a: F | int | str = 0
+    across: tuple[tuple[str, str], ...] = ()
+    brakes: F | None = None
+
+    @property
+    def motion(self) -> Motion:
+        """Lateral speeds are reached within a hundredth of a second."""
+        flick = F(1, 100)
+        speeds = [F(v) for _, v in self.across]
+        pieces = []
+        for (seconds, _), (now, after) in zip(self.across, pairwise([*speeds, F(0)]), strict=True):
+            pieces += [Piece(F(seconds), F(self.a), F(0)), Piece(flick, F(self.a), (after - now) / flick)]
+        if self.brakes is not None:
+            pieces.append(Piece(self.brakes, F(self.a), F(0)))
+        end = F(0) if pieces else F(self.a)
+        pieces.append(Piece(None, end, F(0)))
+        numbers = (F(9, 2), F(9, 5), F(self.s), self.d, F(self.v), speeds[0] if speeds else F(0))
+        return Motion(*numbers, tuple(pieces))
+
+
+def holds(text: str, sv: Car, pov: Car) -> bool:
+    drive = Drive({"SV": sv.motion, "POV": pov.motion})
+    formula = read_claim(LIBRARY.select(), text).formula
+    return judge(bind(formula, ROAD, {"L": "main-1"}, default_values(LIBRARY)), drive).holds
+
+
+def ahead(gap: str, **more: object) -> Car:
+    """A car whose rear is ``gap`` ahead of a front at 0."""
+    return Car(s=F(gap) + F(9, 2), **more)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("name", "gap", "expected"),
+    [
+        *(("nearByTTC", gap, truth) for gap, truth in (("0", 1), ("39.9", 1), ("40", 0), ("-0.1", 0))),
+        *(("nearByTHW", gap, truth) for gap, truth in (("0", 1), ("59.9", 1), ("60", 0), ("-0.1", 0))),
+        *(("nearByDistance", gap, truth) for gap, truth in (("0", 1), ("100", 1), ("100.1", 0), ("-0.1", 0))),
+    ],
+)
+def test_what_is_near(name: str, gap: str, expected: int) -> None:
+    """SV comes closer by 10 m/s; 4 s to a collision, 2 s of headway at 30 m/s, 100 m."""
+    assert holds(f"{name}(SV, POV)", Car(v=30), ahead(gap)) == bool(expected)
+    assert not holds(f"{name}(POV, SV)", Car(v=30), ahead(gap))
+
+
+def test_a_slower_vehicle_reaches_nobody() -> None:
+    assert not holds("nearByTTC(SV, POV)", Car(v=20), ahead("1"))
+    assert not holds("nearByTTC(SV, POV)", Car(v=15), ahead("1"))
+
+
+@pytest.mark.parametrize(
+    ("sv", "pov", "expected"), [(0, 1, True), (1, 0, False), (0, 0, False), (1, 1, False)]
+)
+def test_outside_the_lane(sv: int, pov: int, expected: bool) -> None:
+    cars = (Car(d=(RIGHT, LEFT)[sv]), ahead("30", d=(RIGHT, LEFT)[pov]))
+    assert holds("outsideLane(POV, SV, L)", *cars) == expected
+
+
+@pytest.mark.parametrize(
+    ("across", "expected"),
+    [
+        ((("3", "0.2"),), True),
+        ((("3", "-0.2"),), True),
+        ((("3", "0.1"),), False),
+        ((("3", "-0.1"),), False),
+        ((("0.5", "0.2"),), False),
+        ((("0.5", "0.2"), ("0.5", "-0.2")), False),
+        ((("1.1", "0.2"), ("1.1", "-0.2")), True),
+        ((), False),
+    ],
+)
+def test_drifting(across: tuple[tuple[str, str], ...], expected: bool) -> None:
+    """To one side faster than 0.1 m/s for a second."""
+    assert holds("drifts(POV)", Car(), ahead("30", across=across)) == expected
+
+
+@pytest.mark.parametrize(
+    ("sv", "pov", "expected"),
+    [
+        (Car(v=30), ahead("30", a=-1), True),
+        (Car(v=30, a=-1), ahead("30", a=-1), True),
+        (Car(v=30, a=1), ahead("30", a=-1), False),
+        (Car(v=30), ahead("30"), False),
+        (Car(v=20), ahead("30", a=-1), False),
+    ],
+)
+def test_braking_alone(sv: Car, pov: Car, expected: bool) -> None:
+    assert holds("brakesAlone(POV, SV)", sv, pov) == expected
+
+
+CHANGE = (("3.4", "-1"),)
+STAYS = (("0.5", "-1"),)
+ONCE_NEAR = {"ttc": "40", "thw": "60", "free": "100"}
+
+
+@pytest.mark.parametrize("kind", ["ttc", "thw", "free"])
+def test_a_cut_in_ends_near_within_a_second(kind: str) -> None:
+    """POV is in L after 0.85 s, and the gap shrinks by 10 m each second for good."""
+
+    def cut_in(gap: float, across: tuple[tuple[str, str], ...] = CHANGE, **sv: object) -> bool:
+        pov = ahead(str(gap), d=LEFT, across=across)
+        return holds(f"cutIn_{kind}(SV, POV, L)", Car(v=30, **sv), pov)  # type: ignore[arg-type]
+
+    near = float(ONCE_NEAR[kind])
+    assert cut_in(near / 2)
+    assert cut_in(near + 15)  # near less than a second after it is still outside
+    assert not cut_in(near + 25)  # near only later
+    assert not cut_in(near / 2, across=STAYS)
+    assert not cut_in(-30)
+    assert not cut_in(near / 2, d=LEFT)  # SV is not in L
+    leaves = holds(f"cutIn_{kind}(POV, SV, L)", Car(s=40, d=LEFT, v=20, across=CHANGE), Car(v=30))
+    assert leaves  # the same with names exchanged
+
+
+@pytest.mark.parametrize("kind", ["ttc", "thw", "free"])
+def test_a_cut_in_may_be_near_at_once_and_for_a_moment_only(kind: str) -> None:
+    """POV is in L after 0.2 s, 3 m ahead, and is passed at 0.5 s."""
+    pov = ahead("5", d=F(11, 2), across=(("1.5", "-1"),))
+    assert holds(f"cutIn_{kind}(SV, POV, L)", Car(v=30), pov)
+
+
+def test_who_does_not_drift_does_not_cut_in_freely() -> None:
+    """Half a second at 1.8 m/s ends in L as well."""
+    quick = (("0.6", "-1.8"),)
+    assert holds("cutIn_ttc(SV, POV, L)", Car(v=30), ahead("30", d=LEFT, across=quick))
+    assert not holds("cutIn_free(SV, POV, L)", Car(v=30), ahead("30", d=LEFT, across=quick))
+
+
+@pytest.mark.parametrize(("kind", "near"), [("ttc", "30"), ("thw", "50")])
+def test_hard_braking_near(kind: str, near: str) -> None:
+    def brakes(gap: str, a: str = "-3", d: F = RIGHT) -> bool:
+        pov = ahead(gap, a=a, d=d, brakes=F(1, 10))
+        return holds(f"decel_{kind}(SV, POV, L)", Car(v=30), pov)
+
+    assert brakes(near)
+    assert not brakes(near, a="-2.9")
+    assert not brakes(near, d=LEFT)
+    assert not brakes("99")
+
+
+def test_braking_ahead_for_a_second() -> None:
+    def brakes(gap: str, seconds: str, d: F = RIGHT, v: int = 30) -> bool:
+        pov = ahead(gap, a=-1, d=d, brakes=F(seconds))
+        return holds("decel_free(SV, POV, L)", Car(v=v), pov)
+
+    assert brakes("60", "1.1")
+    assert not brakes("60", "0.9")
+    assert not brakes("120", "1.1")
+    assert not brakes("60", "1.1", d=LEFT)
+    assert not brakes("60", "1.1", v=15)
+
+
+def test_parameters_have_their_bounds() -> None:
+    bounds = {name: LIBRARY.bounds[name] for name in ("ttcLimit", "thwLimit", "farthest", "hardBraking")}
+    assert set(bounds.values()) == {">"}
+    assert {LIBRARY.bounds[name] for name in ("leastDrift", "cutInTime", "brakeTime")} == {">="}
+
+
+# --- The set without gaps: each of its definitions said again in other words ------------------------
+
+SAID = {
+    "cutIn(POV, SV, L)": "not (atLane(POV,L) and atLane(SV,L)) and F danger(SV,POV)",
+    "cutOut(POV, SV, L)": "(atLane(POV,L) and atLane(SV,L)) and F danger(POV,SV) and F not atLane(POV,L)",
+    "decel(POV, SV, L)": "laneKeep(POV,L)",
+    "aheadOf(POV, SV)": "s(POV) <= s(SV)",
+    "initialCondition_8(SV, POV, L)": "atLane(SV,L) and atLane(POV,L)",
+}
+
+
+@pytest.mark.parametrize("name", SAID)
+def test_a_definition_is_what_is_said(name: str) -> None:
+    complete, ext = LIBRARY.select("complete"), LIBRARY.select("ext")
+    found = without_names(read_claim(complete, name).formula)
+    assert found == without_names(read_claim(ext, SAID[name]).formula)
+    assert found != without_names(read_claim(ext, name).formula)
+
+
+def test_nothing_else_differs() -> None:
+    complete, ext = (LIBRARY.select(x).definitions for x in ("complete", "ext"))
+    assert {f"{n}(" for n in complete if complete[n] is not ext[n]} == {x[: x.index("(") + 1] for x in SAID}

@@ -1,29 +1,45 @@
 """Measured roads: what the projection is off by, and which matches depend on that."""
 
 import math
+from collections import Counter
 from dataclasses import replace
 from fractions import Fraction
+from itertools import permutations
 
 import numpy as np
 import pytest
 
 from planting import plant as plant_fault
+from roadproof.frontends.report.traffic import results_tables
+from roadproof.library.loading import build_library, bundled_library
+from roadproof.library.scenarios import COMPARISON
+from roadproof.library.specification import Source
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare, Formula
-from roadproof.recordings.evaluate import boundary
+from roadproof.recordings.evaluate import boundary, detectors
 from roadproof.recordings.evaluate.boundary import TraceQuestion, uncertain
+from roadproof.recordings.evaluate.detectors import Detection, find_detections
 from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
-from roadproof.recordings.evaluate.questions import ask, default_settings
+from roadproof.recordings.evaluate.questions import Questions, Settings, ask, askable, default_settings
+from roadproof.recordings.evaluate.recheck import recheck
+from roadproof.recordings.evaluate.results import as_json
+from roadproof.recordings.evaluate.sectors import ANYWHERE, is_possible, sectors_of
+from roadproof.recordings.evaluate.totals import add_findings, begin_totals
 from roadproof.recordings.formats.commonroad import read_commonroad
-from roadproof.recordings.formats.recording import Floats, Recording, Slack, keep_vehicles
+from roadproof.recordings.formats.pairs import DetectionRange, common_pairs
+from roadproof.recordings.formats.recording import ZONES, Floats, Recording, Slack, keep_vehicles
 from roadproof.recordings.simulate.plant import Place, plant
 from roadproof.recordings.simulate.simulate import Traffic
 from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.traffic import Traffic as Simulated
+from roadproof.semantics.sampled.recursive import TraceReader
 from traffic.drives import braking, cut_in, swerve
-from traffic.make_recording import Track, cruise, make_recording
+from traffic.make_recording import LANES, Track, cruise, make_recording
 from traffic.planar import commonroad_of
+from traffic.reference import Reference
 from traffic.sampled import lower_road
+from traffic.test_evaluate import planted_traffic
 
 RADIUS, LENGTH = 300.0, 300.0
 
@@ -213,3 +229,252 @@ def test_recordings_in_road_coordinates_are_sure(traffic: Recording) -> None:
     told = found(traffic)
     assert not any(m.uncertain for m in told.matches)
     assert not any("depend" in note for note in told.notes)
+
+
+# --- The comparison detectors: by hand, and batches and pre-filter against the recursive evaluator --
+
+Shown = set[tuple[str, int, int, str]]
+
+
+@pytest.fixture(scope="module")
+def questions() -> Questions:
+    return ask(replace(default_settings(), detectors=COMPARISON), 25)
+
+
+def shown(recording: Recording, questions: Questions) -> Shown:
+    found = find_detections(recording, questions, common_pairs(recording, np.ones(recording.vehicles, bool)))
+    assert list(found) == sorted(found, key=lambda x: (x.detector, x.sv, x.pov, x.lane))
+    return {(x.detector, x.sv, x.pov, x.lane) for x in found}
+
+
+def brute(recording: Recording, questions: Questions) -> Shown:
+    """Every pair, role and lane, one trace at a time."""
+    reference, found = Reference(recording, questions.settings), set()
+    for sv, pov in permutations(range(recording.vehicles), 2):
+        frames = reference.common(sv, pov)
+        for k, lane in enumerate(LANES if frames else ()):
+            if lane.direction == recording.direction[sv]:
+                reading = TraceReader(reference.trace(frames, {"SV": sv, "POV": pov}, {"L": k}))
+                ids = int(recording.vehicle_id[sv]), int(recording.vehicle_id[pov])
+                for name in COMPARISON:
+                    if reading.holds(reference.formula("base", f"{name}(SV, POV, L)", 0), 0, "strong"):
+                        found.add((name, *ids, lane.name))
+    return found
+
+
+def change(s: float, v: float, frames: int, a: float = 0.0) -> list[tuple[float, ...]]:
+    """From the left lane (6) into the middle one (7) at 1 m/s, d from -24.5 to -28."""
+    rows = []
+    for k in range(frames):
+        t = k / 25
+        moving = t < 3.5
+        rows.append((s + v * t, -24.5 - min(t, 3.5), v, -1.0 if moving else 0.0, a, 0.0))
+    return rows
+
+
+def brake(s: float, v: float, a: float, frames: int) -> list[tuple[float, ...]]:
+    return [
+        (s + v * t + a * t * t / 2, -28.0, v + a * t, 0.0, a, 0.0) for t in (k / 25 for k in range(frames))
+    ]
+
+
+BY_HAND = {
+    # 60 m ahead at the same speed: 1.85 s of headway at 30 m/s, no closing speed.
+    "cut-in near by THW": (cruise(0, 30, 120), change(60, 30, 120), {"cutIn_thw", "cutIn_free"}),
+    # 80 m ahead: 2.5 s of headway, but still within 100 m.
+    "cut-in not near": (cruise(0, 30, 120), change(80, 30, 120), {"cutIn_free"}),
+    # 130 m ahead and 30 m/s slower: 4 s reach 120 m when the vehicle enters the lane.
+    "cut-in near by TTC": (cruise(0, 35, 120), change(150, 5, 120), {"cutIn_ttc", "cutIn_free"}),
+    "braking hard": (cruise(0, 30, 75), brake(50, 30, -4, 75), {"decel_thw", "decel_ttc", "decel_free"}),
+    "braking softly": (cruise(0, 30, 75), brake(50, 30, -1, 75), {"decel_free"}),
+    "following": (cruise(0, 30, 75), cruise(30, 30, 75), set()),
+}
+
+
+@pytest.mark.parametrize("name", BY_HAND)
+def test_detectors_by_hand(name: str, questions: Questions) -> None:
+    sv, pov, expected = BY_HAND[name]
+    recording = make_recording([Track(2, 1, sv), Track(2, 1, pov)])
+    found = shown(recording, questions)
+    assert found == brute(recording, questions)
+    assert {x[0] for x in found if x[1:] == (1, 2, "7")} == expected
+    assert all(x[1:] == (1, 2, "7") for x in found)
+
+
+@pytest.fixture(scope="module")
+def busy() -> tuple[Recording, Shown]:
+    recording = simulate(Simulated(seconds=7, flow=1200, lane_width=3.5), seed=3)
+    recording, _ = plant(recording, cut_in(), Place(2, 5, Fraction(6), 10.0, -34.0))
+    recording, _ = plant(recording, braking(), Place(1, 5, Fraction(6), -410.0, 8.5))
+    recording = replace(recording, kind=np.full(recording.vehicles, "Car"))
+    return recording, brute(recording, ask(replace(default_settings(), detectors=COMPARISON), 25))
+
+
+def test_simulated_traffic_against_brute_force(busy: tuple[Recording, Shown], questions: Questions) -> None:
+    recording, expected = busy
+    assert shown(recording, questions) == expected
+    assert len({x[0] for x in expected}) >= 2
+    # Without the pre-filter the answer is the same; with one that sees too little it is not.
+    assert questions.sight is not None
+    assert shown(recording, replace(questions, sight=None)) == expected
+    assert shown(recording, replace(questions, sight=DetectionRange(0.0, 0.0, 5.0))) != expected
+
+
+def test_one_lane_only_is_caught(
+    busy: tuple[Recording, Shown], questions: Questions, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Planted fault: only the rightmost of the lanes that may be asked for is."""
+    recording, expected = busy
+    whole = detectors.pairs_in_sight
+
+    def first_lane(*arguments: object) -> object:
+        pairs, lanes = whole(*arguments)  # type: ignore[arg-type]
+        return pairs, lanes & np.uint32(0b001001)
+
+    monkeypatch.setattr(detectors, "pairs_in_sight", first_lane)
+    assert shown(recording, questions) < expected
+
+
+def test_own_detector_is_asked_of_all_pairs() -> None:
+    text = "def faraway(SV, POV: vehicle, L: lane) := atLane(SV, L) and s(POV) - s(SV) > 350 m"
+    library = build_library([Source("mine.spec", text)], bundled_library())
+    mine = ask(replace(default_settings(library), detectors=("faraway",)), 25)
+    assert mine.sight is None
+    recording = make_recording([Track(2, 1, cruise(0, 30, 9)), Track(2, 1, cruise(360, 30, 9, d=-24.5))])
+    assert shown(recording, mine) == {("faraway", 1, 2, "7")}
+
+
+def test_counts_are_of_unordered_pairs(questions: Questions) -> None:
+    recording = make_recording([Track(2, 1, x) for x in BY_HAND["braking hard"][:2]])
+    findings = evaluate_recording(recording, questions)
+    assert {x.detector for x in findings.detections} == {"decel_thw", "decel_ttc", "decel_free"}
+    totals = begin_totals(questions.settings)
+    twice = (*findings.detections, Detection("decel_thw", 2, 1, "7"), Detection("decel_thw", 1, 2, "6"))
+    add_findings(totals, replace(findings, detections=twice))
+    assert as_json(totals, {})["detectors"] == {
+        name: int(name.startswith("decel")) for name in questions.settings.detectors
+    }
+
+
+def test_no_detectors_unless_asked_for() -> None:
+    recording = make_recording([Track(2, 1, x) for x in BY_HAND["braking hard"][:2]])
+    assert evaluate_recording(recording, ask(default_settings(), 25)).detections == ()
+
+
+# --- Road sectors: which scenarios are asked of which recording, and what is counted where ----------
+
+BASE = bundled_library().select("base")
+SETTINGS = replace(default_settings(), scenarios=askable(BASE), sets=("base", "ext"))
+MAIN, MERGE, DEPART = (np.uint32(1 << k) for k in range(len(ZONES)))
+Found = Counter[tuple[object, ...]]
+
+
+@pytest.fixture(scope="module")
+def recording() -> Recording:
+    """Cut-ins, braking, cut-outs and swerves on a main road of one direction."""
+    return planted_traffic(2)[0]
+
+
+def everywhere(recording: Recording, zone: np.uint32) -> Recording:
+    return replace(recording, zones=np.full(len(recording.zones), zone, np.uint32))
+
+
+def findings_of(recording: Recording, settings: Settings = SETTINGS) -> Findings:
+    questions = ask(settings, recording.rate, recording.zone_names)
+    findings = evaluate_recording(recording, questions)
+    assert [*recheck(recording, questions, findings)] == []
+    return findings
+
+
+def matches(findings: Findings, less: int = 0) -> Found:
+    """All matches, the scenarios' numbers less so many."""
+    return Counter(
+        (m.sv, m.pov, m.pov2, m.start_frame, m.end_frame, m.min_danger, m.set_name, m.scenario - less)
+        for m in findings.matches
+    )
+
+
+def test_the_three_sectors() -> None:
+    found = {x.name: (x.scenarios, x.of_three) for x in sectors_of(BASE, SETTINGS.scenarios)}
+    assert found == {
+        "main road": ((1, 2, 3, 4, 5, 6, 7, 8), (2,)),
+        "merge zone": ((9, 10, 11, 12, 13, 14, 15, 16), (10,)),
+        "departure zone": ((17, 18, 19, 20, 21, 22, 23, 24), (18,)),
+    }
+
+
+@pytest.mark.parametrize(
+    ("zones", "names"),
+    [
+        (("main",), ["main road"]),
+        (("merge",), ["merge zone"]),
+        (("main", "depart"), ["main road", "departure zone"]),
+        (ZONES, ["main road", "merge zone", "departure zone"]),
+        ((), []),
+    ],
+)
+def test_what_a_road_allows(zones: tuple[str, ...], names: list[str]) -> None:
+    assert [x.name for x in sectors_of(BASE, SETTINGS.scenarios) if is_possible(x, zones)] == names
+
+
+def test_what_is_not_understood_is_asked() -> None:
+    text = """
+    def roadSector_25(SV, POV: vehicle) "beside a merge zone"
+      := not inMergeZone(SV) and G not inDepartZone(POV)
+    def disturb_25(SV, POV: vehicle, L: lane) := atLane(SV, L)
+    def scenario_25(SV, POV: vehicle, L: lane) := roadSector_25(SV, POV) and disturb_25(SV, POV, L)
+    def scenario_26(SV, POV: vehicle, L: lane) := atLane(SV, L) and F danger(SV, POV)
+    """
+    bundled = bundled_library()
+    library = build_library([*bundled.sources.values(), Source("mine.spec", text)])
+    chosen = library.select("base")
+    beside, free = sectors_of(chosen, (25, 26))
+    assert (beside.name, free.name, free.where) == ("beside a merge zone", ANYWHERE, None)
+    assert all(is_possible(x, zones) for x in (beside, free) for zones in (("main",), ("merge",), ()))
+    assert askable(chosen)[-2:] == (25, 26)
+
+
+def test_the_same_traffic_in_a_zone_shows_the_scenarios_of_that_zone(recording: Recording) -> None:
+    """Behaviour does not ask where it happens, so matches are the same with numbers 8 and 16 higher."""
+    on_main = findings_of(everywhere(recording, MAIN))
+    assert on_main.sectors == ("main road",)
+    assert {number for *_, number in matches(on_main)} >= {1, 2, 4, 8}
+    for zone, more, name in ((MERGE, 8, "merge zone"), (DEPART, 16, "departure zone")):
+        found = findings_of(everywhere(recording, zone))
+        assert found.sectors == (name,)
+        assert matches(found, more) == matches(on_main)
+        assert {x.sectors for x in found.traces} == {(name,)}
+    both = findings_of(everywhere(recording, MERGE | DEPART))
+    assert {x.sectors for x in both.traces} == {("merge zone", "departure zone")}
+    assert len(both.matches) == 2 * len(on_main.matches)
+
+
+def test_traces_are_counted_where_they_begin(recording: Recording) -> None:
+    """The right half of the road is a merge zone: each trace is in one table, and none is in two."""
+    middle = float(np.median(recording.s))
+    zones = np.where(recording.s > middle, MERGE, MAIN).astype(np.uint32)
+    found = findings_of(replace(recording, zones=zones))
+    totals = begin_totals(SETTINGS)
+    add_findings(totals, found)
+    assert [*totals.shown] == ["main road", "merge zone"]
+    main, merge = (rows[0] for rows in totals.shown.values())
+    assert main.traces > 0
+    assert merge.traces > 0
+    assert main.traces + merge.traces == sum(x.min_danger == 0 for x in found.traces)
+    for row in (main, merge):
+        assert 0 < row.matching <= row.traces
+    tables = results_tables(totals)
+    assert [*tables] == ["results", "results-merge-zone"]
+    assert tables["results-merge-zone"].columns[-1] == "s16"
+    assert not any("paper*" in row for row in tables["results-merge-zone"].rows)
+    assert any("s17 to s24 were not asked" in note for note in tables["results"].notes)
+
+
+def test_a_recording_without_the_zone_has_no_table_of_it(recording: Recording) -> None:
+    totals = begin_totals(replace(SETTINGS, min_danger=(Fraction(0),)))
+    add_findings(
+        totals, findings_of(everywhere(recording, MAIN), replace(SETTINGS, min_danger=(Fraction(0),)))
+    )
+    (table,) = results_tables(totals).values()
+    assert table.title == "Disturbance traces that match a scenario"
+    assert any("No recording has a merge zone or a departure zone, so s9 to s24" in x for x in table.notes)

@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,16 +12,21 @@ import pytest
 from roadproof.errors import InputError, UsageError
 from roadproof.library import elaborate as elaborating
 from roadproof.library import scenarios
+from roadproof.library.bind import occupies
 from roadproof.library.elaboration import Elaborator
 from roadproof.library.loading import build_library, bundled_library
+from roadproof.library.scenarios import Scenario, lane_owner
 from roadproof.library.specification import Query, Source, Specification
 from roadproof.logic import show
 from roadproof.logic.formula import Compare
+from roadproof.logic.rewrite import with_values
 from roadproof.logic.syntax import Claim
 from roadproof.logic.terms import Parameter, number
 from roadproof.recordings.evaluate import disturbances, evaluate
 from roadproof.recordings.evaluate import questions as module
+from roadproof.recordings.evaluate.disturbances import NEVER, Disturbances, _last, _Lookup, _next
 from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
+from roadproof.recordings.evaluate.one_trace import cut_trace, read_samples
 from roadproof.recordings.evaluate.questions import (
     SAFE,
     VIOLATION,
@@ -30,14 +36,19 @@ from roadproof.recordings.evaluate.questions import (
     ask,
     default_settings,
 )
+from roadproof.recordings.evaluate.recheck import recheck
+from roadproof.recordings.formats.neighbours import NONE, find_neighbours
+from roadproof.recordings.formats.pairs import Pairs
 from roadproof.recordings.formats.recording import Recording, keep_vehicles
+from roadproof.recordings.formats.samples import HEADER
 from roadproof.recordings.simulate.plant import Place, plant
 from roadproof.recordings.simulate.synthetic import simulate
 from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.semantics.sampled import compile
 from roadproof.semantics.sampled.answers import TruthArrays, Verdicts
+from roadproof.world.models import load_road
 from traffic.drives import braking, cut_in, cut_out, late_cut_out, swerve
-from traffic.make_recording import Track, cruise, make_recording
+from traffic.make_recording import LANES, Track, cruise, make_recording
 from traffic.reference import Reference, Row
 
 
@@ -382,3 +393,162 @@ def test_only_traces_in_which_danger_arises_are_counted(questions: Questions) ->
         seen = np.array(arises, bool)
         assert tally.ask(Answers(), None, seen)["it"].tolist() == [bool(arises[0]), False, False, False]
         assert (tally.asked, tally.undecided, tally.differing) == counts
+
+
+# --- Answers of an evaluation asked once more: what is right is not denied, and what is wrong is named
+
+
+@pytest.fixture(scope="module")
+def recording() -> Recording:
+    """A drive with two vehicles and one with three, and nobody else."""
+    whole, who = planted_traffic(1)
+    kept = [number for name in ("cut-in", "cut-out") for number in who[name].values()]
+    return keep_vehicles(whole, np.isin(whole.vehicle_id, kept))
+
+
+@pytest.fixture(scope="module")
+def findings(recording: Recording, questions: Questions) -> Findings:
+    found = evaluate_recording(recording, questions)
+    assert {x.pov2 is None for x in found.matches} == {True, False}
+    return found
+
+
+def test_what_is_right_is_not_denied(recording: Recording, questions: Questions, findings: Findings) -> None:
+    assert list(recheck(recording, questions, findings)) == []
+
+
+def test_a_match_that_was_missed_is_named(
+    recording: Recording, questions: Questions, findings: Findings
+) -> None:
+    for match in [x for x in findings.matches if x.pov2 is None][:3]:
+        less = replace(findings, matches=tuple(x for x in findings.matches if x != match))
+        (line,) = recheck(recording, questions, less)
+        assert f"vehicles {match.sv}, {match.pov}, frames" in line
+        assert f"scenario {match.scenario}: missed" in line
+
+
+def test_a_match_too_many_is_named(recording: Recording, questions: Questions, findings: Findings) -> None:
+    """Two vehicles in another scenario about the same lane, and three in another lane."""
+    others = []
+    for match in findings.matches:
+        if match.pov2 is None:
+            asked = [x.number for x in questions.pairs[match.min_danger].formulas]
+            alike = [n for n in asked if _owner(n) == _owner(match.scenario)]
+            others += [replace(match, scenario=n) for n in alike]
+        else:
+            others += [replace(match, lane=x.name) for x in recording.lanes]
+    for many in (False, True):
+        wrong = next(x for x in others if x not in findings.matches and (x.pov2 is not None) == many)
+        (line,) = recheck(recording, questions, replace(findings, matches=(*findings.matches, wrong)))
+        assert f"scenario {wrong.scenario}: found, but the recursive evaluator denies it" in line
+
+
+def _owner(number: int) -> str:
+    return lane_owner(bundled_library().select(), Scenario(number, "base"))
+
+
+# --- Where danger begins and safety comes back, looked up pair by pair and frame by frame -----------
+
+
+def column(*values: int) -> np.ndarray:
+    return np.array(values)[:, None]
+
+
+def test_the_next_and_the_last_true_sample_of_each_frame() -> None:
+    """Frame 0 is a frame like others, and where there is none it is not told."""
+    frames = column(0, 1, 2, 3)
+    truth = column(0, 1, 0, 0).astype(bool)
+    assert _next(truth, frames).ravel().tolist() == [1, 1, NEVER, NEVER]
+    assert _last(truth, frames).ravel().tolist() == [-1, 1, 1, 1]
+    assert _last(column(1, 0, 0, 0).astype(bool), frames).ravel().tolist() == [0, 0, 0, 0]
+
+
+def found() -> Disturbances:
+    """Vehicles 0 and 1 in frames 5 to 7, in danger from 6 on; 0 and 2 in frames 2 and 3, always in danger."""
+    pairs = Pairs(*(np.array(x) for x in ([0, 0], [1, 2], [5, 2], [7, 3])))
+    safe = np.array([5, NEVER, NEVER, NEVER, NEVER])
+    last = np.array([-1, 6, 7, 2, 3])
+    start, end = np.array([5, NEVER]), (np.array([7, -1]),)
+    return Disturbances(pairs, pairs, start, end, np.array([0, 3, 5]), safe, (last,))
+
+
+def test_a_frame_of_a_pair_is_looked_up() -> None:
+    ones, others = np.array([1, 0, 1, 2, 2, 1]), np.array([0, 1, 0, 0, 1, 2])
+    look = _Lookup(found(), ones, others)
+    frames = np.array([7, 5, 4, 3, 3, 6])
+    # 0 and 1 before their first frame; 1 and 2 are no such pair
+    assert look.last_danger(0, frames).tolist() == [7, -1, -1, 3, -1, -1]
+
+
+def test_a_pair_that_never_violates_is_always_safe() -> None:
+    look = _Lookup(found(), np.array([0, 0, 1]), np.array([1, 1, 2]))
+    index, latest = np.arange(3), np.array([7, 7, 7])
+    assert look.next_safe(index, np.array([5, 6, 6]), latest).tolist() == [5, NEVER, 6]
+    assert look.next_safe(index, np.array([5, 5, 8]), np.array([4, 7, 7])).tolist() == [NEVER, 5, NEVER]
+
+
+# --- One trace from a file of samples or cut out of a recording: signals, sizes, and who is in which lane
+
+ROAD = load_road("main-2")
+# A in the right lane, B ahead of it in the left one and faster.
+A, B = "0,5.3,20,0,0,0,4.5,1.8", "40,6.1,30,0,0,0,5,2"
+
+
+def written(path: Path, *rows: str) -> Path:
+    path.write_text("\n".join((",".join(HEADER), *rows)) + "\n", "utf-8")
+    return path
+
+
+def test_two_times_are_enough(tmp_path: Path) -> None:
+    path = written(tmp_path / "two.csv", f"1.5,A,{A}", f"1.5,B,{B}", f"1.9,A,{A}", f"1.9,B,{B}")
+    trace = read_samples(path, ROAD)
+    assert (trace.batch.dt, trace.batch.samples, trace.first) == (Fraction(2, 5), 2, "1.5 s")
+    assert trace.batch.signals["v_lon", "B"].ravel().tolist() == [30, 30]
+    assert trace.batch.sizes["length", "A"].tolist() == [4.5]
+    assert (trace.source, trace.road) == (str(path), ROAD)
+    with pytest.raises(InputError, match="1 times; at least two samples are needed"):
+        read_samples(written(path, f"1.5,A,{A}", f"1.5,B,{B}"), ROAD)
+
+
+def of_way(way: int) -> list[str]:
+    return [lane.name for lane in LANES if lane.direction == way]
+
+
+@pytest.mark.parametrize("way", [1, 2])
+def test_a_cut_knows_the_lanes_of_its_direction(way: int) -> None:
+    """SV changes from one lane to the next; what it occupies is told frame by frame."""
+    first, second = [lane for lane in LANES if lane.direction == way][:2]
+    assert first.d is not None
+    assert second.d is not None
+    middles = [sum(lane.d) / 2 + 0.9 for lane in (first, second)]
+    rows = [*cruise(0, 30, 4, middles[0]), *cruise(4.8, 30, 6, middles[1])]
+    recording = make_recording([Track(way, 0, cruise(50, 30, 10, middles[0])), Track(way, 0, rows)])
+    trace = cut_trace(recording, "here", {"SV": 1, "POV": 0}, (2, 7))
+    assert [x.lane for x in trace.road.lanelets] == of_way(way)
+    assert trace.lanes == {"SV": first.name, "POV": first.name}
+    assert (trace.first, trace.batch.samples) == ("frame 2", 6)
+    assert len(trace.batch.given) == 2 * len(of_way(way))
+
+    def held(vehicle: str, lane: str) -> list[bool]:
+        (lanelet,) = trace.road.lanelets_of(lane)
+        known: np.ndarray = trace.batch.given[with_values(occupies(vehicle, lanelet), {})]
+        return [bool(x) for x in known.ravel()]
+
+    assert held("SV", first.name) == [True] * 2 + [False] * 4
+    assert held("SV", second.name) == [False] * 2 + [True] * 4
+    assert held("POV", first.name) == [True] * 6
+    assert held("POV", second.name) == [False] * 6
+
+
+def test_a_vehicle_beside_the_road_has_no_neighbours() -> None:
+    band = LANES[1].d
+    assert LANES[1].direction == 1
+    assert band is not None
+    for off in (-100.0, 100.0):
+        recording = make_recording(
+            [Track(1, 0, [(0.0, off, 20, 0, 0, 0)]), Track(1, 0, [(5.0, band[1], 20, 0, 0, 0)])]
+        )
+        assert recording.lane.tolist()[0] == NONE
+        found = find_neighbours(recording)
+        for rows in (found.preceding, found.following, *found.beside.values()):
+            assert rows.tolist() == [NONE, NONE]

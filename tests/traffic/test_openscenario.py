@@ -1,8 +1,10 @@
 """Trajectories of OpenSCENARIO: drives exported and read again, turned roads, and damaged files."""
 
 import math
+import random
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 from xml.etree import ElementTree as xml
@@ -14,7 +16,7 @@ import roadproof as rp
 from exporting.kept import kept
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.recordings.evaluate.one_trace import read_samples
+from roadproof.recordings.evaluate.one_trace import read_pair, read_samples
 from roadproof.recordings.export.openscenario import files
 from roadproof.recordings.export.subject import Subject
 from roadproof.recordings.formats import openscenario
@@ -210,3 +212,362 @@ def test_a_planted_reference_point_is_noticed(monkeypatch: pytest.MonkeyPatch, t
     the_reference_point_is_the_centre(monkeypatch)
     moved = read_columns(put(tmp_path, SOME[1]))[0]["s"]
     assert abs(np.median(honest - moved)) > 1
+
+
+# --- OpenSCENARIO with every field that is read away from its default, against a reading written here
+# The files are written here by the published schema (1.0 to 1.3), not by the exporter; the reading below
+# uses ElementTree and polynomials of numpy, and none of the reader's functions.
+
+FRAMES_A_SECOND = 25
+KINDS = {
+    "car": "Car",
+    "van": "Car",
+    "truck": "Truck",
+    "semitrailer": "Truck",
+    "trailer": "Truck",
+    "bus": "Truck",
+    "motorbike": "Motorcycle",
+}
+
+
+@dataclass(frozen=True)
+class Line:
+    """A vehicle: rows of (time as written, s, d, heading to the road) of its reference point."""
+
+    name: str
+    vertices: tuple[tuple[float, float, float, float], ...]
+    category: str = "car"
+    size: tuple[float, float] = (4.5, 1.8)
+    centre: tuple[float, float] = (1.35, 0.0)
+    scale: float = 1.0
+    offset: float = 0.0
+    begin: float = 0.0
+    """When its event begins (s)."""
+    follow: str = 'initialDistanceOffset="0"'
+    mode: str = "position"
+    closed: str = "false"
+    headings: bool = True
+    in_reference: bool = True
+    """Whether the trajectory is in a TrajectoryRef, as from 1.1 on."""
+
+
+def straight(speed: float, s: float, d: float, heading: float = 0.0, ends: float = 4.0, drift: float = 0.0):
+    """Vertices each second."""
+    times = [float(x) for x in np.arange(0.0, ends + 0.5)]
+    return tuple((t, s + speed * t, d + drift * t, heading) for t in times)
+
+
+SHIFT, TURN = (700.0, -40.0), 0.6
+
+
+def plane(s: float, d: float) -> tuple[float, float]:
+    return (
+        SHIFT[0] + s * math.cos(TURN) - d * math.sin(TURN),
+        SHIFT[1] + s * math.sin(TURN) + d * math.cos(TURN),
+    )
+
+
+def road() -> str:
+    """Two lanes of 3.5 m on the right of a reference line that is turned and moved."""
+    lanes = "".join(
+        f'<lane id="-{k}" type="driving" level="false"><width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane>'
+        for k in (1, 2)
+    )
+    return (
+        '<OpenDRIVE><header revMajor="1" revMinor="6"/><road name="r" length="900" id="1" junction="-1">'
+        f'<planView><geometry s="0" x="{SHIFT[0]}" y="{SHIFT[1]}" hdg="{TURN}" length="900"><line/>'
+        f'</geometry></planView><lanes><laneSection s="0"><center><lane id="0" type="none"/></center>'
+        f"<right>{lanes}</right></laneSection></lanes></road></OpenDRIVE>"
+    )
+
+
+def entity(line: Line) -> str:
+    (length, width), (ahead, left) = line.size, line.centre
+    return (
+        f'<ScenarioObject name="{line.name}"><Vehicle name="m" vehicleCategory="{line.category}" mass="1500" '
+        f'role="civil" model3d="m.osgb"><ParameterDeclarations/><BoundingBox><Center x="{ahead}" y="{left}" '
+        f'z="0.9"/><Dimensions width="{width}" length="{length}" height="1.7"/></BoundingBox><Performance '
+        'maxSpeed="70" maxDeceleration="9" maxAcceleration="6"/><Axles/><Properties/></Vehicle>'
+        "</ScenarioObject>"
+    )
+
+
+def vertex(line: Line, row: tuple[float, float, float, float]) -> str:
+    time, s, d, heading = row
+    x, y = plane(s, d)
+    turned = f' h="{heading + TURN!r}"' if line.headings else ""
+    return (
+        f'<Vertex time="{time!r}"><Position><WorldPosition x="{x!r}" y="{y!r}" z="0.3"{turned} p="0.01" '
+        'r="0"/></Position></Vertex>'
+    )
+
+
+def group(line: Line) -> str:
+    shape = f"<Shape><Polyline>{''.join(vertex(line, x) for x in line.vertices)}</Polyline></Shape>"
+    way = f'<Trajectory name="t" closed="{line.closed}"><ParameterDeclarations/>{shape}</Trajectory>'
+    if line.in_reference:
+        way = f"<TrajectoryRef>{way}</TrajectoryRef>"
+    return (
+        f'<ManeuverGroup name="g{line.name}" maximumExecutionCount="1">'
+        f'<Actors selectTriggeringEntities="false"><EntityRef entityRef="{line.name}"/></Actors>'
+        '<Maneuver name="m"><Event name="e" priority="override">'
+        f'<Action name="a"><PrivateAction><RoutingAction><FollowTrajectoryAction {line.follow}>'
+        f"<TimeReference>"
+        f'<Timing domainAbsoluteRelative="absolute" scale="{line.scale}" offset="{line.offset}"/>'
+        f'</TimeReference>{way}<TrajectoryFollowingMode followingMode="{line.mode}"/>'
+        f"</FollowTrajectoryAction></RoutingAction></PrivateAction></Action>{trigger(line.begin)}</Event>"
+        "</Maneuver></ManeuverGroup>"
+    )
+
+
+def trigger(begin: float, rule: str = "greaterThan", delay: str = "0") -> str:
+    return (
+        f'<StartTrigger><ConditionGroup><Condition name="c" delay="{delay}" conditionEdge="none">'
+        f'<ByValueCondition><SimulationTimeCondition value="{begin}" rule="{rule}"/></ByValueCondition>'
+        "</Condition></ConditionGroup></StartTrigger>"
+    )
+
+
+def inner(text: str) -> str:
+    """What is inside an element."""
+    return text[text.index(">") + 1 : text.rindex("</")]
+
+
+def put_lines(folder: Path, lines: Sequence[Line], minor: int = 2) -> Path:
+    """A file of its own act and story for each vehicle but the first two, which share one."""
+    folder.mkdir(exist_ok=True)
+    (folder / "away").mkdir(exist_ok=True)
+    (folder / "away/any.xodr").write_text(road(), "utf-8")
+    acts = [lines[:2], *([x] for x in lines[2:])]
+    stories = "".join(
+        f'<Story name="s{k}"><Act name="a{k}">{"".join(map(group, act))}{trigger(0)}</Act></Story>'
+        for k, act in enumerate(acts)
+    )
+    text = (
+        f'<OpenSCENARIO><FileHeader revMajor="1" revMinor="{minor}" date="2024-05-06T07:08:09" author="x" '
+        'description="y"/><ParameterDeclarations/><CatalogLocations/><RoadNetwork>'
+        '<LogicFile filepath="away/any.xodr"/><SceneGraphFile filepath="z.osgb"/></RoadNetwork>'
+        f"<Entities>{''.join(map(entity, lines))}</Entities><Storyboard><Init><Actions/></Init>{stories}"
+        "<StopTrigger/></Storyboard></OpenSCENARIO>"
+    )
+    path = folder / "fields.xosc"
+    path.write_text(text, "utf-8")
+    return path
+
+
+def told(path: Path) -> Mapping[str, Mapping[str, np.ndarray]]:
+    """By vehicle: time, front-left corner and its motion, by a reading of its own.
+
+    Between vertices the place is the cubic that has there the slopes of the parabola through three vertices.
+    """
+    root = xml.parse(path).getroot()
+    network = root.find("RoadNetwork/LogicFile")
+    assert network is not None
+    geometry = xml.parse(path.parent / network.attrib["filepath"]).getroot().find(".//geometry")
+    assert geometry is not None
+    origin = complex(float(geometry.attrib["x"]), float(geometry.attrib["y"]))
+    towards = np.exp(-1j * float(geometry.attrib["hdg"]))
+    found = {}
+    for thing in root.iter("ScenarioObject"):
+        centre, size = thing.find(".//Center"), thing.find(".//Dimensions")
+        assert centre is not None
+        assert size is not None
+        (course,) = [
+            x
+            for x in root.iter("ManeuverGroup")
+            if [y.attrib["entityRef"] for y in x.iter("EntityRef")] == [thing.attrib["name"]]
+        ]
+        timing = next(course.iter("Timing")).attrib
+        lever = complex(float(centre.attrib["x"]), float(centre.attrib["y"]))
+        knots, places = [], []
+        for node in course.iter("Vertex"):
+            place = next(node.iter("WorldPosition")).attrib
+            knots.append(float(node.attrib["time"]) * float(timing["scale"]) + float(timing["offset"]))
+            point = complex(float(place["x"]), float(place["y"]))
+            places.append((point + lever * np.exp(1j * float(place.get("h", 0))) - origin) * towards)
+        times = [
+            k / FRAMES_A_SECOND
+            for k in range(10_000)
+            if knots[0] - 1e-6 <= k / FRAMES_A_SECOND <= knots[-1] + 1e-6
+        ]
+        length, width = (float(size.attrib[x]) for x in ("length", "width"))
+        rows = {"time": np.array(times)}
+        for axis, half in (("s", length / 2), ("d", width / 2)):
+            numbers = [x.real if axis == "s" else x.imag for x in places]
+            values = np.array([cubic(knots, numbers, t) for t in times])
+            name = {"s": "lon", "d": "lat"}[axis]
+            rows |= {axis: values[:, 0] + half, f"v_{name}": values[:, 1], f"a_{name}": values[:, 2]}
+        rows |= {"length": np.full(len(times), length), "width": np.full(len(times), width)}
+        found[thing.attrib["name"]] = rows
+    return found
+
+
+def cubic(knots: list[float], places: list[float], time: float) -> tuple[float, float, float]:
+    k = max([i for i, knot in enumerate(knots[:-1]) if knot <= time + 1e-9], default=0)
+    a, b = knots[k], knots[k + 1]
+    rows = [[a**3, a**2, a, 1], [b**3, b**2, b, 1], [3 * a**2, 2 * a, 1, 0], [3 * b**2, 2 * b, 1, 0]]
+    right = [places[k], places[k + 1], slope(knots, places, k), slope(knots, places, k + 1)]
+    p = np.poly1d(np.linalg.solve(np.array(rows), np.array(right)))
+    return float(p(time)), float(p.deriv()(time)), float(p.deriv(2)(time))
+
+
+def slope(knots: list[float], places: list[float], k: int) -> float:
+    """That of the parabola through a vertex and those beside it; at an end, through the nearest three."""
+    if len(knots) == 2:
+        return (places[1] - places[0]) / (knots[1] - knots[0])
+    first = min(max(k - 1, 0), len(knots) - 3)
+    parabola = np.polyfit(knots[first : first + 3], places[first : first + 3], 2)
+    return float(np.polyval(np.polyder(parabola), knots[k]))
+
+
+def differences(path: Path) -> list[str]:
+    table = read_columns(path)[0]
+    expected, wrong = told(path), []
+    if {*table["vehicle"].tolist()} != {*expected}:
+        return ["vehicles"]
+    for name, columns in expected.items():
+        rows = table["vehicle"] == name
+        for column, values in columns.items():
+            ours = table[column][rows]
+            if len(ours) != len(values) or not np.allclose(ours, values, atol=2e-5, rtol=0):
+                wrong.append(f"{name}: {column}")
+    return wrong
+
+
+BASE = Line("SV", straight(20, 50, -3))
+OTHER = Line("POV", straight(25, 90, -6, drift=0.3), "truck", (12.5, 2.5), (4.1, 0.0))
+VARIED: Mapping[str, Line] = {
+    "time scale": replace(BASE, scale=0.5),
+    "time scale above one": replace(BASE, scale=1.7),
+    "time offset": replace(BASE, offset=2.0),
+    "offset between samples": replace(BASE, offset=1.23),
+    "scale and offset": replace(BASE, scale=2.0, offset=3.5),
+    "negative offset": replace(BASE, vertices=tuple((t + 5, *x) for t, *x in BASE.vertices), offset=-4.0),
+    "a box to the left": replace(BASE, centre=(1.35, 0.4)),
+    "a box to the right and behind": replace(BASE, centre=(-0.7, -0.25)),
+    "a turned box": replace(BASE, vertices=straight(20, 50, -3, heading=0.3)),
+    "turned to the right": replace(BASE, vertices=straight(20, 50, -3, heading=-0.4), centre=(2.0, 0.3)),
+    "backwards on its wheels": replace(BASE, vertices=straight(20, 50, -3, heading=math.pi)),
+    "a heading that changes": replace(
+        BASE, vertices=tuple((t, s, d + t / 4, 0.1 * t) for t, s, d, _ in BASE.vertices), centre=(1.2, 0.2)
+    ),
+    "no heading": replace(BASE, headings=False, centre=(1.0, 0.5)),
+    "unequal steps": replace(
+        BASE, vertices=((0, 50, -3, 0), (0.3, 57, -2.9, 0), (1.7, 85, -2.5, 0), (4.0, 140, -2, 0))
+    ),
+    "two vertices": replace(BASE, vertices=((0, 50, -3, 0), (4, 130, -2.5, 0))),
+    "a trajectory as in 1.0": replace(BASE, in_reference=False, follow=""),
+    "other sizes": replace(BASE, size=(5.25, 2.05)),
+    "an event before the first vertex": replace(BASE, offset=2.0, begin=1.0),
+}
+
+
+@pytest.mark.parametrize("name", VARIED)
+def test_each_field_is_read_as_the_format_says(name: str, tmp_path: Path) -> None:
+    assert differences(put_lines(tmp_path, [VARIED[name], OTHER])) == []
+
+
+def test_a_file_that_varies_everything_at_once(tmp_path: Path) -> None:
+    rng = random.Random(7)
+    lines = []
+    for k, category in enumerate(KINDS):
+        vertices, t = [], rng.uniform(0, 0.5)
+        for _ in range(6):
+            s = 60 * k + 21 * t + rng.uniform(-0.5, 0.5)
+            vertices.append((round(t, 3), s, -3.5 + rng.uniform(-2, 2), rng.uniform(-0.2, 0.2)))
+            t += rng.uniform(0.4, 1.2)
+        lines.append(
+            Line(
+                f"V{k}",
+                tuple(vertices),
+                category,
+                (rng.uniform(2, 16), rng.uniform(1, 2.6)),
+                (rng.uniform(-1, 4), rng.uniform(-0.3, 0.3)),
+                rng.choice([0.5, 1.25, 2.0]),
+                rng.uniform(0, 3),
+            )
+        )
+    path = put_lines(tmp_path, lines)
+    assert differences(path) == []
+    for minor in (0, 1, 3):
+        assert differences(put_lines(tmp_path, lines, minor)) == []
+
+
+def test_each_category_has_its_class_and_its_label(tmp_path: Path) -> None:
+    lines = [
+        Line(f"V{k}", straight(20, 60 * k, -3), category, (4.0 + k, 1.8)) for k, category in enumerate(KINDS)
+    ]
+    recording = read_recording(put_lines(tmp_path, lines))
+    assert dict(zip(recording.label.tolist(), recording.kind.tolist(), strict=True)) == KINDS
+    assert recording.label.tolist() == [*KINDS]  # V0, V1, … are numbered by name
+    assert recording.length.tolist() == [4.0 + k for k in range(len(KINDS))]
+
+
+def test_vehicles_that_begin_and_end_at_other_times_share_their_frames(tmp_path: Path) -> None:
+    """A frame is counted from the first sample of the file, whichever vehicle it is of."""
+    lines = [replace(BASE, offset=2.0), replace(OTHER, offset=1.0, scale=1.5)]
+    recording = find_source(put_lines(tmp_path, lines)).read()
+    assert recording.first_frame.tolist() == [25, 0]
+    assert recording.last_frame.tolist() == [125, 150]
+    assert "frame 0 is time 1 s" in recording.notes
+    trace = read_pair(f"{tmp_path}/fields.xosc:1,2")
+    ((gap,), *_) = trace.batch.signals["s", "POV"] - trace.batch.signals["s", "SV"]
+    # At 2 s SV's axle is at 50 m, POV's at 90 + 25/1.5 m; fronts are half a length ahead of the middles.
+    assert gap == pytest.approx((90 + 25 / 1.5 + 4.1 + 6.25) - (50 + 1.35 + 2.25), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        (
+            replace(BASE, follow='initialDistanceOffset="5"'),
+            "initialDistanceOffset=5: begin at the first Vertex",
+        ),
+        (replace(BASE, mode="follow"), "followingMode=follow: position is needed"),
+        (replace(BASE, closed="true"), "closed=true"),
+        (replace(BASE, begin=1.0), "StartTrigger of the Event"),
+        (replace(BASE, scale=-1.0), "each later than the one before"),
+        (replace(BASE, scale=0.0), "each later than the one before"),
+    ],
+)
+def test_what_would_be_another_motion_is_refused(line: Line, said: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError) as error:
+        read_recording(put_lines(tmp_path, [OTHER, line]))
+    assert said in str(error.value)
+    assert "a of SV" in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reads"),
+    [
+        (trigger(0), trigger(0, "greaterOrEqual"), True),
+        (trigger(0), "", True),  # from 1.2 on: at once
+        (trigger(0), trigger(0, "lessThan"), False),
+        (trigger(0), trigger(0, delay="0.5"), False),
+        (trigger(0), trigger(0.1), False),
+        (trigger(0), trigger(0).replace("SimulationTimeCondition", "TrafficSignalCondition"), False),
+        (
+            trigger(0),
+            trigger(0).replace("<ConditionGroup>", f"<ConditionGroup>{inner(inner(trigger(9)))}", 1),
+            False,
+        ),
+        (
+            trigger(0),
+            trigger(0).replace("<StartTrigger>", f"<StartTrigger>{inner(trigger(9))}", 1),
+            True,
+        ),
+    ],
+)
+def test_what_begins_late_is_refused(old: str, new: str, reads: bool, tmp_path: Path) -> None:
+    """Conditions of a group hold together, one group is enough, and the act begins like the event."""
+    path = put_lines(tmp_path, [BASE, OTHER])
+    text = path.read_text("utf-8")
+    for place in (text.index(old), text.rindex(old)):
+        path.write_text(text[:place] + new + text[place + len(old) :], "utf-8")
+        if reads:
+            assert differences(path) == []
+        else:
+            with pytest.raises(
+                InputError, match=r"StartTrigger of the (Event|Act): a SimulationTimeCondition"
+            ):
+                read_columns(path)

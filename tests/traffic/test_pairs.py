@@ -2,25 +2,41 @@
 
 from dataclasses import replace
 from itertools import combinations, permutations
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import roadproof as rp
+from roadproof.errors import InputError
+from roadproof.recordings.formats import large, topology
 from roadproof.recordings.formats import pairs as module
+from roadproof.recordings.formats.believable import _check_lanelets
+from roadproof.recordings.formats.median import Median
 from roadproof.recordings.formats.pairs import (
+    DetectionRange,
     Pairs,
     Reach,
     all_moments,
     common_pairs,
     near_moments,
     near_pairs,
+    pairs_in_sight,
     triples_of,
 )
+from roadproof.recordings.formats.plain import plain_text
+from roadproof.recordings.formats.plausible import _worst
 from roadproof.recordings.formats.recording import Recording
+from roadproof.recordings.formats.repeats import see_pair
+from roadproof.recordings.formats.samples import HEADER
+from roadproof.recordings.formats.sources import find_sources
 from roadproof.recordings.simulate.synthetic import simulate
 from roadproof.recordings.simulate.traffic import Traffic
+from roadproof.world.signals import KINDS
 from traffic.make_recording import Track, cruise, make_recording
 
 REACH = Reach(rho=0.6, a_max=5.0, b_min=6.0, b_max=8.0, a_max_lat=1.5, b_min_lat=1.5)
@@ -226,3 +242,183 @@ def test_reach_must_make_sense() -> None:
     r = make_recording([Track(2, 1, cruise(0, 30, 2)), Track(2, 1, cruise(40, 30, 2))])
     with pytest.raises(ValueError, match="b_min"):
         near_pairs(r, common_pairs(r, np.ones(2, bool)), Reach(0.6, 5, 0, 8, 1, 1))
+
+
+# --- The pre-filter of pairs at its bounds: sizes, signs and speeds that differ between the two vehicles
+
+SHORT = Reach(rho=0.6, a_max=4.0, b_min=3.0, b_max=7.0, a_max_lat=1.5, b_min_lat=1.2)
+
+
+def along(rear: float, front: float) -> float:
+    """The greatest distance of a longitudinal violation at these speeds, whatever their signs."""
+    v, m = abs(rear), abs(front)
+    speeded = v + SHORT.a_max * SHORT.rho
+    way = v * SHORT.rho + SHORT.a_max * SHORT.rho**2 / 2 + speeded**2 / (2 * SHORT.b_min)
+    return max(0.0, way - m**2 / (2 * SHORT.b_max))
+
+
+def across(one: float, other: float) -> float:
+    u = max(abs(one), abs(other))
+    moved = u + SHORT.rho * SHORT.a_max_lat
+    return 2 * u * SHORT.rho + SHORT.a_max_lat * SHORT.rho**2 + moved**2 / SHORT.b_min_lat
+
+
+def is_near(tracks: list[Track]) -> bool:
+    r = make_recording(tracks)
+    return len(near_pairs(r, common_pairs(r, np.ones(2, bool)), SHORT)) == 1
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_pair_is_near_up_to_its_bound_and_no_further(seed: int) -> None:
+    """One frame, so that extremes are values: along and across, either vehicle ahead and to the left."""
+    rng = np.random.default_rng(seed)
+    lengths, widths = rng.uniform(2, 18, 2), rng.uniform(1, 2.6, 2)
+    speeds, drifts = rng.uniform(-40, 40, 2), rng.uniform(-2, 2, 2)
+    front, left = int(rng.integers(2)), int(rng.integers(2))
+    far = lengths[front] + along(speeds[1 - front], speeds[front])
+    wide = widths[left] + across(*drifts)
+    for beyond_s, beyond_d in ((-0.05, -0.05), (0.05, -0.05), (-0.05, 0.05)):
+        s, d = [0.0, 0.0], [-25.0, -25.0]
+        s[front] += far + beyond_s
+        d[left] += wide + beyond_d
+        tracks = [
+            Track(2, 1, [(s[k], d[k], speeds[k], drifts[k], 0.0, 0.0)], float(lengths[k]), float(widths[k]))
+            for k in range(2)
+        ]
+        assert is_near(tracks) == (beyond_s < 0 and beyond_d < 0), (beyond_s, beyond_d)
+
+
+def in_sight(r: Recording, sight: DetectionRange) -> dict[tuple[int, int], int]:
+    """By pair the lanes in which both are in a frame, one ahead of the other by no more than the bound."""
+    rows = [range(r.start[k], r.start[k + 1]) for k in range(r.vehicles)]
+    found: dict[tuple[int, int], int] = {}
+    for a in range(r.vehicles):
+        for b in range(a + 1, r.vehicles):
+            if r.direction[a] != r.direction[b]:
+                continue
+            bounds = {}
+            for rear, front in ((a, b), (b, a)):
+                most, least = r.v_lon[rows[rear]].max(), r.v_lon[rows[front]].min()
+                gap = max(sight.farthest, sight.thw * most, sight.ttc * (most - least))
+                bounds[rear] = gap + r.length[front] + 0.001
+            for i in rows[a]:
+                for j in rows[b]:
+                    apart = r.s[j] - r.s[i]
+                    near = -bounds[b] <= apart <= bounds[a]
+                    if r.row_frame[i] == r.row_frame[j] and near:
+                        lanes = int(r.occupancy[i] & r.occupancy[j])
+                        if lanes:
+                            found[a, b] = found.get((a, b), 0) | lanes
+    return found
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_pairs_in_sight_are_those_of_a_brute_force(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    tracks = []
+    for _ in range(7):
+        frames = int(rng.integers(1, 8))
+        s, v = rng.uniform(0, 250), rng.uniform(5, 40)
+        rows = [
+            (s + v * k / 25, rng.uniform(-34, -22), v + rng.uniform(-3, 3), 0.0, 0.0, 0.0)
+            for k in range(frames)
+        ]
+        tracks.append(Track(2, int(rng.integers(0, 6)), rows, float(rng.uniform(3, 16))))
+    r = make_recording(tracks)
+    sight = DetectionRange(*rng.uniform([0.1, 0.1, 1], [4, 2, 60]).tolist())
+    if seed % 2:  # the time to collision decides alone
+        sight = DetectionRange(sight.ttc * 5, 0.01, 0.5)
+    pairs, lanes = pairs_in_sight(r, common_pairs(r, np.ones(r.vehicles, bool)), sight)
+    found = zip(pairs.first.tolist(), pairs.second.tolist(), lanes.tolist(), strict=True)
+    assert {(a, b): mask for a, b, mask in found} == in_sight(r, sight)
+
+
+# --- Parts of readers that recordings in tests pass by: medians that are put into files, lanes that are told
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_median_of_numbers_in_a_file_is_that_of_all(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    parts = [rng.normal(size=rng.integers(1, 40)).round(1) for _ in range(rng.integers(2, 12))]
+    for most in (1, 5, 30, 10_000):
+        median = Median(most)
+        for part in parts:
+            median.add(part)
+        assert median.value() == np.median(np.concatenate(parts))
+
+
+def test_a_box_is_on_the_lane_that_is_told_for_it(tmp_path: Path) -> None:
+    """The first lane is checked as every other one."""
+    folder = rp.simulate(tmp_path, seconds=20, seed=3, ramp="merge", jobs=1).folder
+    [source] = find_sources(folder / "01_tracks.csv")
+    recording = source.read()
+    head = tmp_path / "head.json"
+    _check_lanelets(head, recording)
+    for lane in range(len(recording.lanes)):
+        row = int(np.flatnonzero((recording.lane >= 0) & (recording.lane != lane))[0])
+        wrong = recording.lane.copy()
+        wrong[row] = lane
+        if recording.occupancy[row] >> lane & 1:
+            continue
+        with pytest.raises(InputError, match="the box is not on that lane"):
+            _check_lanelets(head, replace(recording, lane=wrong))
+
+
+def test_text_that_is_no_table_stays_as_it_is() -> None:
+    for content in (b'<a b="1,2"/>\n', b'{"a": "1,2"}\n', b'["1,2"]\n'):
+        assert plain_text(Path("x"), content) == content
+    assert plain_text(Path("x"), b'"a","b"\r\n1,"2"\r\n') == b"a,b\n1,2\n"
+    with pytest.raises(InputError, match="row 1: a comma or a quote within a quoted cell"):
+        plain_text(Path("x"), b'"a,b"\n')
+
+
+@pytest.mark.parametrize("place", range(1, 6))
+def test_the_sample_before_which_two_courses_differ_most(place: int) -> None:
+    signal = np.arange(8.0)
+    signal[place:] += 3
+    assert _worst(signal, np.arange(8.0), 0, 6) == place
+    assert _worst(np.concatenate((np.zeros(2), signal)), np.arange(-2, 8.0), 2, 8) == place + 2
+
+
+def test_the_kind_of_a_vehicle_is_that_of_its_label(tmp_path: Path) -> None:
+    folder = rp.simulate(tmp_path, seconds=5, seed=1, jobs=1).folder
+    [source] = find_sources(folder / "01_tracks.csv")
+    recording = source.read()
+    plain = replace(recording, kind=np.full(recording.vehicles, "Car"))
+    assert {*plain.kind_code.tolist()} == {KINDS.index("car") + 1}
+    labelled = replace(plain, label=np.full(recording.vehicles, "bus"))
+    assert {*labelled.kind_code.tolist()} == {KINDS.index("bus") + 1}
+
+
+def test_pairs_are_known_by_the_moments_of_both(tmp_path: Path) -> None:
+    """The order of the two does not matter, and no other pair has the same keys."""
+    folder = rp.simulate(tmp_path, seconds=20, seed=1, jobs=1).folder
+    [source] = find_sources(folder / "01_tracks.csv")
+    recording = source.read()
+    recording = replace(recording, moments=np.arange(1, len(recording.s) + 1))
+    seen: dict[int, set[int]] = {}
+    for first in range(4):
+        for second in range(first + 1, 5):
+            one = see_pair(recording, first, second, False)
+            assert one.keys == see_pair(recording, second, first, False).keys
+            for key in one.keys:
+                seen.setdefault(key, set()).add(10 * first + second)
+    assert seen
+    assert all(len(pairs) == 1 for pairs in seen.values())
+
+
+def test_the_middle_is_that_of_the_lanelets_beside_the_main_road(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(topology, "length_of", lambda lanelets, chain: len(chain))
+    links: Any = SimpleNamespace(lanelets={})
+    with_main = [False, True, True, True, False, False]
+    assert topology._middle(links, tuple("abcdef"), with_main) == 2
+    assert topology._middle(links, tuple("abcdef"), with_main[::-1]) == 3
+    assert topology._middle(links, tuple("abcd"), [False] * 4) == 2
+
+
+def test_rows_of_vehicles_that_were_not_counted_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "x.csv"
+    path.write_text(f"{','.join(HEADER)}\n" + "".join(f"{k / 25},1,0,0,1,0,0,0,4,2\n" for k in range(5)))
+    survey: Any = SimpleNamespace(counts=np.array([5]), index={"2": 0})
+    with pytest.raises(InputError, match="the file changed while it was read"):
+        large._divide_rows(path, survey, tmp_path)

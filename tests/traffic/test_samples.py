@@ -9,14 +9,16 @@ import numpy as np
 import polars as pl
 import pytest
 
+import roadproof as rp
 from roadproof.errors import InputError
 from roadproof.library.bind import occupies
 from roadproof.logic.rewrite import with_values
 from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
-from roadproof.recordings.evaluate.one_trace import read_pair
+from roadproof.recordings.evaluate.one_trace import read_pair, read_samples
 from roadproof.recordings.evaluate.questions import ask, default_settings
+from roadproof.recordings.formats.converted import same_recording
 from roadproof.recordings.formats.highd import read_highd
-from roadproof.recordings.formats.recording import Recording, keep_vehicles
+from roadproof.recordings.formats.recording import Recording, keep_vehicles, kind_called, own_numbers
 from roadproof.recordings.formats.samples import HEADER, read_columns, read_recording
 from roadproof.recordings.formats.sources import find_source, find_sources
 from roadproof.recordings.formats.straight import of_road, place
@@ -28,6 +30,7 @@ from roadproof.semantics.sampled.batch import Batch
 from roadproof.semantics.sampled.compiled import compile
 from roadproof.world.models import load_road
 from roadproof.world.road import Lanelet, Road
+from roadproof.world.signals import KINDS
 from traffic.drives import cut_in
 from traffic.sampled import TWO, csv_of, lower_road, toml_of, write_samples
 
@@ -332,3 +335,203 @@ def test_one_format_a_folder(tmp_path: Path) -> None:
     (tmp_path / "x.parquet").write_bytes(b"")
     with pytest.raises(InputError, match="CSV and Parquet files in one folder"):
         find_sources(tmp_path)
+
+
+# --- Own signals and kinds in CSV, Parquet and frames: what is read, and what is refused ------------
+
+SPEC = """
+signal red: bool
+signal jerk(a: vehicle): m/s^3 in [-10, 10]
+signal swift(a: vehicle): bool derived by jerk(a) > 2 m/s^3
+"""
+HOME = rp.load(specs=[SPEC])
+BOX = {"d": 3.0, "v_lon": 20.0, "v_lat": 0.0, "a_lon": 0.0, "a_lat": 0.0, "length": 4.5, "width": 1.8}
+ROAD = """
+[[lanelet]]
+id = "a"
+lane = "a"
+zone = "main"
+attribute = "main"
+s = [-inf, inf]
+d = [0, 4]
+"""
+
+
+def own_table(**more: object) -> pl.DataFrame:
+    """Two vehicles for a second, red from 0.4 s on, jerk 3 at 0.6 s; POV is a truck."""
+    rows = [
+        {"time": k / 10, "vehicle": name, "s": place + 2 * k, **BOX, "kind": kind}
+        | {"red": k >= 4, "jerk": 3.0 if k == 6 else float(k % 3)}
+        for k in range(11)
+        for name, place, kind in (("SV", 0.0, "Car"), ("POV", 30.0, "Truck"))
+    ]
+    return pl.DataFrame(rows).with_columns(**more)
+
+
+def written(folder: Path, frame: pl.DataFrame, ending: str) -> Path:
+    path = folder / f"a.{ending}"
+    frame.write_csv(path) if ending == "csv" else frame.write_parquet(path)
+    path.with_name("a_road.toml").write_text(ROAD)
+    return path
+
+
+@pytest.mark.parametrize("source", ["csv", "parquet", "frame"])
+@pytest.mark.parametrize(
+    ("formula", "verdict"),
+    [
+        ("F[0, 1] (red and swift(SV))", "true"),
+        ("F[0, 0.3] red", "false"),
+        ("G[0, 1] jerk(POV) <= 2 m/s^3", "false"),
+        ("kind(POV) = truck and kind(SV) = car", "true"),
+        ("kind(SV) = kind(POV)", "false"),
+    ],
+)
+def test_columns_are_read(tmp_path: Path, source: str, formula: str, verdict: str) -> None:
+    on = own_table() if source == "frame" else written(tmp_path, own_table(), source)
+    assert rp.monitor(formula, on, HOME).verdict == verdict
+
+
+@pytest.mark.parametrize(
+    "red", [[k >= 4 for k in range(11)], ["TRUE", "False"] * 5 + ["1"], [0, 1] * 5 + [0]]
+)
+def test_truth_is_written_as_words_or_as_0_and_1(tmp_path: Path, red: list[object]) -> None:
+    told = pl.Series("red", [x for x in red for _ in (0, 1)], strict=False)
+    path = written(tmp_path, own_table(red=told), "csv")
+    measured = read_samples(path).batch.signals["red", ""][:, 0]
+    assert measured.tolist() == [float(str(x).lower() in ("true", "1")) for x in red]
+
+
+MISSING = pl.when(pl.col("time") > 0.75).then(None).otherwise(pl.col("jerk"))
+
+
+@pytest.mark.parametrize("ending", ["csv", "parquet"])
+@pytest.mark.parametrize(
+    ("more", "formula", "told"),
+    [
+        ({"jerk": MISSING}, "F[0, 1] swift(SV)", "a.{}: jerk(SV) in trace 0 at sample 8 is missing"),
+        ({"jerk": pl.lit("x")}, "swift(SV)", "at sample 0 is missing, or no finite number"),
+        ({"jerk": pl.col("jerk") * 5}, "swift(SV)", "jerk(SV)=15 in trace 0 at sample 6: signal jerk"),
+        ({"red": pl.lit(2)}, "red", "red=2 in trace 0 at sample 0: it is declared bool"),
+        ({"red": pl.col("vehicle") == "SV"}, "red", "a.{}: column red is not the same for all vehicles"),
+        ({"red": pl.col("jerk")}, "F[0,1] red", "declared bool"),
+    ],
+)
+def test_wrong_values_are_refused_by_name(
+    tmp_path: Path, ending: str, more: dict[str, pl.Expr], formula: str, told: str
+) -> None:
+    path = written(tmp_path, own_table(**more), ending)
+    with pytest.raises(InputError) as raised:
+        rp.monitor(formula, path, HOME)
+    assert told.format(ending) in str(raised.value)
+    assert rp.monitor("G[0, 1] v_lon(SV) > 0", path, HOME).verdict == "true"  # what nobody asks for is free
+
+
+def test_a_missing_column_names_the_signal_the_file_and_what_there_is(tmp_path: Path) -> None:
+    path = written(tmp_path, own_table().drop("jerk"), "csv")
+    with pytest.raises(InputError) as raised:
+        rp.monitor("swift(SV)", path, HOME)
+    for part in (str(path), "no column jerk", "signal jerk", "of own signals there are red"):
+        assert part in str(raised.value)
+
+
+def test_a_recording_has_own_signals_by_sample_and_kinds_by_vehicle(tmp_path: Path) -> None:
+    recording = read_recording(written(tmp_path, own_table(), "csv"))
+    assert recording.own["red"].tolist() == [float(k >= 4) for k in range(11)] * 2
+    assert [KINDS[code - 1] for code in recording.kind_code] == ["car", "truck"]
+    kept = keep_vehicles(recording, recording.kind == "Car")
+    assert isinstance(kept, Recording)
+    assert kept.own["red"].tolist() == recording.own["red"].tolist()[:11]
+    assert (
+        rp.monitor("kind(SV) = truck and F[0, 1] swift(SV)", f"{tmp_path}/a.csv:2,1", HOME).verdict == "true"
+    )
+
+
+def test_evaluate_reads_own_signals_and_refuses_recordings_without(tmp_path: Path) -> None:
+    spec = "signal red: bool def rssViolation(a, b: vehicle) := red"
+    home = rp.load(specs=[spec])
+    data = tmp_path / "data"
+    data.mkdir()
+    written(data, own_table().drop("kind"), "csv")
+    assert rp.evaluate(data, tmp_path / "out", home, pictures=False).exit_code == 0
+    written(data, own_table().drop("kind", "red"), "csv")
+    with pytest.raises(InputError, match=r"a\.csv: recording a: there is no column red"):
+        rp.evaluate(data, tmp_path / "other", home)
+
+
+def test_what_files_call_kinds() -> None:
+    told = {
+        "Car": "car",
+        "taxi": "car",
+        "Truck": "truck",
+        "bus": "bus",
+        "Motorbike": "motorcycle",
+        "van": "other",
+    }
+    assert {name: kind_called(name) for name in told} == told
+    assert [str(x) for x in own_numbers(["", None, "nan", True, "FALSE", "1e3"])] == [
+        *("nan", "nan", "nan", "1.0", "0.0", "1000.0")
+    ]
+
+
+# --- CSV files with quoted cells or other line ends say the same as those without -------------------
+
+
+def quoted(content: bytes) -> bytes:
+    lines = content.decode().splitlines()
+    return "".join(",".join(f'"{cell}"' for cell in line.split(",")) + "\n" for line in lines).encode()
+
+
+def quoted_names(content: bytes) -> bytes:
+    """Some rows only, as where texts alone are quoted."""
+    header, _, rest = content.decode().partition("\n")
+    lines = [line.split(",") for line in rest.splitlines()]
+    return f"{header}\n".encode() + "".join(f'"{a}",{",".join(b)}\n' for a, *b in lines).encode()
+
+
+CUSTOMS = {
+    "CR": lambda x: x.replace(b"\n", b"\r"),
+    "CRLF": lambda x: x.replace(b"\n", b"\r\n"),
+    "quoted": quoted,
+    "quoted, CR": lambda x: quoted(x).replace(b"\n", b"\r"),
+    "quoted, CRLF": lambda x: quoted(x).replace(b"\n", b"\r\n"),
+    "some quoted": quoted_names,
+    "mark of UTF-8": lambda x: b"\xef\xbb\xbf" + quoted(x),
+}
+
+
+@pytest.mark.parametrize("custom", CUSTOMS)
+def test_samples_say_the_same(custom: str, tmp_path: Path) -> None:
+    path = written(tmp_path, own_table(), "csv")
+    before = find_source(path.parent).read()
+    path.write_bytes(CUSTOMS[custom](path.read_bytes()))
+    assert same_recording(find_source(path.parent).read(), before)
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return rp.simulate(tmp_path_factory.mktemp("made"), seconds=20, seed=2, jobs=1).folder
+
+
+@pytest.mark.parametrize("custom", CUSTOMS)
+def test_highd_files_say_the_same(custom: str, made: Path, tmp_path: Path) -> None:
+    for path in made.iterdir():
+        (tmp_path / path.name).write_bytes(CUSTOMS[custom](path.read_bytes()))
+    assert same_recording(read_highd(tmp_path, "01"), read_highd(made, "01"))
+
+
+@pytest.mark.parametrize("cell", ['"a,b"', '"a""b"', '"a', '"a"b'])
+def test_other_quotes_are_refused_by_row(cell: str, tmp_path: Path) -> None:
+    path = written(tmp_path, own_table(), "csv")
+    lines = path.read_text().splitlines()
+    first, _, rest = lines[3].split(",", 2)
+    lines[3] = f"{first},{cell},{rest}"
+    path.write_text("\n".join(lines) + "\n")
+    with pytest.raises(InputError, match=r"row 4: a (comma or a quote within|quote does not end)"):
+        find_source(path.parent).read()
+
+
+def test_a_quoted_file_that_was_cut_off_is_refused(tmp_path: Path) -> None:
+    path = written(tmp_path, own_table(), "csv")
+    path.write_bytes(quoted(path.read_bytes())[:-1])
+    with pytest.raises(InputError, match="the file was cut off"):
+        find_source(path.parent).read()
