@@ -20,7 +20,7 @@ lint: $(READY)
 unit: $(READY)
 	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal --maxfail 5 -q -rs -m "not long"
 
-# The tests that take long (tests/lengthy.py), which make test leaves out; CI runs both.
+# The tests that take long (tests/lengthy.txt), which make test leaves out; CI runs both.
 long: $(READY)
 	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal --maxfail 5 -q -rs -m long
 

@@ -1,6 +1,6 @@
 """All of the package is imported before the first test, and random cases are the same in every run.
 
-Tests that take long (``lengthy.py``) are marked ``long``.
+Tests that take long (``lengthy.txt``) are marked ``long``.
 
 A module that is imported while a test has replaced something would keep the replacement for good. New
 random cases are for ``make fuzz``.

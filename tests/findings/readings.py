@@ -177,14 +177,6 @@ def drives_that_serve(outcome: Outcome) -> tuple[int, int, str]:
     return len(every), values.pop() if complete else 0, " or ".join(WORDS[x] for x in served)
 
 
-def us101_rows(outcome: Outcome, sector: str = "") -> tuple[str, ...]:
-    """The cells of a results table of US-101, row by row; ``sector`` is what its file's name ends in."""
-    lines = (outcome.folder / US101 / f"results{sector}.md").read_text("utf-8").splitlines()
-    return tuple(
-        line.split("| here | ")[1].rstrip(" |").replace(" | ", ",") for line in lines if "| here |" in line
-    )
-
-
 def uncertain_matches(outcome: Outcome) -> tuple[int, int]:
     """Rows of matches.csv that depend on less than places may be off by, and all."""
     with (outcome.folder / US101 / "matches.csv").open(encoding="utf-8", newline="") as file:
@@ -212,19 +204,6 @@ def disturbances(outcome: Outcome) -> tuple[int, int]:
     rows = [row for row in us101_counts(outcome)["table"] if row["set"] == "base"]
     every, lasting = (sum(x["traces"] for x in rows if x["min_danger"] == d) for d in ("0", "3/5"))
     return every, lasting
-
-
-def matched(outcome: Outcome, min_danger: str, set_name: str) -> tuple[int, int]:
-    """Traces, and those that match a scenario of a set."""
-    for row in us101_counts(outcome)["table"]:
-        if (row["min_danger"], row["set"]) == (min_danger, set_name):
-            return row["traces"], row["matching"]
-    return 0, 0
-
-
-def roles_differ(outcome: Outcome, min_danger: str) -> int:
-    """Pairs for which scenarios 3 and 4 differ in base."""
-    return sum(x[-1] == min_danger for x in us101_counts(outcome)["checks"]["unequal_3_4"])
 
 
 def windows_with_ramps(outcome: Outcome) -> int:
@@ -346,3 +325,64 @@ def range_of_both(outcome: Outcome) -> tuple[str, str]:
     least = {value.removeprefix("-") for (_, sense), value in found.items() if sense == "least"}
     greatest = {value for (_, sense), value in found.items() if sense == "greatest"}
     return ", ".join(sorted(least)), ", ".join(sorted(greatest))
+
+
+def us101_tables(outcome: Outcome) -> dict[str, tuple[str, ...]]:
+    """The cells of the results tables of US-101, row by row, of each road sector."""
+    endings = {"main road": "", "merge zone": "-merge-zone", "departure zone": "-departure-zone"}
+    texts = {
+        sector: (outcome.folder / US101 / f"results{ending}.md").read_text("utf-8")
+        for sector, ending in endings.items()
+    }
+    rows = {sector: re.findall(r"\| here \| (.*)", text) for sector, text in texts.items()}
+    return {sector: tuple(x.rstrip(" |").replace(" | ", ",") for x in rows[sector]) for sector in texts}
+
+
+def roles_differ(outcome: Outcome) -> tuple[int, int]:
+    """Pairs for which scenarios 3 and 4 differ in base, with minDanger 0 and with 0.6."""
+    found = Counter(x[-1] for x in us101_counts(outcome)["checks"]["unequal_3_4"])
+    return found["0"], found["3/5"]
+
+
+def detections(outcome: Outcome) -> tuple[int, ...]:
+    """Pairs that each detector of US-101 shows."""
+    return tuple(us101_counts(outcome)["detectors"].values())
+
+
+def repeats(outcome: Outcome) -> tuple[str, ...]:
+    """No figure, if no two windows of US-101 show the same moment."""
+    return ("repeats",) if us101_counts(outcome)["repeats"] else ()
+
+
+def claims_of_classes(outcome: Outcome) -> int:
+    return len(read(outcome, "classes/index.json")["claims"])
+
+
+def classes_proofs_drives(outcome: Outcome) -> tuple[str, int, str]:
+    return all_witnessed(outcome), claims_of_classes(outcome), all_witnessed(outcome)
+
+
+def classes_of_several(outcome: Outcome) -> int:
+    """Classes of several scenarios that occur in a recording."""
+    return sum(share > 0 for name, share in shares(outcome).items() if "_" in name)
+
+
+def needed_definitions(outcome: Outcome) -> int:
+    return outcome.printed.count(": needed, by a drive on ")
+
+
+def implied_by_chains(outcome: Outcome) -> int:
+    """Proved implications that follow from others."""
+    index = read(outcome, "order/index.json")
+    return len(index["proved"]) - len(index["edges"])
+
+
+def counts_of_order(outcome: Outcome) -> tuple[int, ...]:
+    """Formulas, proofs, refuted implications, doubts."""
+    index = read(outcome, "order/index.json")
+    return tuple(len(index[key]) for key in ("kinds", "proved", "missing", "doubts"))
+
+
+def least_measures(outcome: Outcome) -> tuple[str, ...]:
+    """The least measure of each scenario, in the order of their numbers."""
+    return tuple(value for (_, sense), value in sorted(measures(outcome).items()) if sense == "least")
