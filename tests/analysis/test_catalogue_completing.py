@@ -39,7 +39,7 @@ from roadproof.frontends.api.cataloguing import CatalogueAnswer, catalogue
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.report import catalogue_drives
 from roadproof.frontends.report.catalogue_drives import DrivePicture, draw_tests
-from roadproof.frontends.report.figures import make_page, shorten
+from roadproof.frontends.report.figures import as_bytes, make_page, shorten
 from roadproof.library.bind import bind, values_with
 from roadproof.library.scenarios import Scenario, applied, name_of, vehicles_of
 from roadproof.logic import formula as f
@@ -285,7 +285,7 @@ def test_all_tests_are_drawn_on_pages_and_titles_fit(monkeypatch: pytest.MonkeyP
     assert courses is not None
     assert courses_of(Concrete("x", str(DRIVES / "torn.json"))) is None
     pages = list(draw_tests([DrivePicture("W" * 60, "1 cut-in", courses)] * 3))
-    assert [page["png"][:4] for page in pages] == [b"\x89PNG"] * 2
+    assert [as_bytes(page)["png"][:4] for page in pages] == [b"\x89PNG"] * 2
     text = make_page(4, 4).text(0, 0, "W" * 60, fontsize=6.5)
     shorten(text, 1.9)
     assert text.get_window_extent().width <= 1.9 * text.figure.dpi

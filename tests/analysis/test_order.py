@@ -32,7 +32,7 @@ from roadproof.engines.solve.smt import ask as ask_solver
 from roadproof.evidence.certificate import refusal
 from roadproof.evidence.judged import judge_file
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.report.order import as_dot, as_text, compose_order
+from roadproof.frontends.report.order import as_dot, as_text, draw_order
 from roadproof.library.bind import bind
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
@@ -77,7 +77,7 @@ def test_implications_are_chains_of_edges() -> None:
     graph = as_dot(order, words)
     assert graph.count("->") == 1
     assert graph.count('label="1@') == graph.count("cut-in, lane keep, main road") == 2
-    figure = compose_order(order, "implications in base and ext; an arrow leads to what is implied", words)
+    figure = draw_order(order, "implications in base and ext; an arrow leads to what is implied", words)
     assert cut_off(figure) == []
     assert "cut-in, lane keep\nmain road" in [x.get_text() for x in figure.axes[0].texts]
     told = as_text(order, 1.0, words).splitlines()

@@ -19,10 +19,10 @@ from roadproof.errors import InputError, UsageError
 from roadproof.evidence.certificate import refusal
 from roadproof.evidence.judged import judge_file
 from roadproof.frontends.cli.main import main
+from roadproof.frontends.report.figures import as_bytes
 from roadproof.frontends.report.overlap import (
     as_matrix,
     as_text,
-    compose_overlap,
     draw_overlap,
     sectors_among,
     sheet_of,
@@ -277,14 +277,14 @@ def test_the_heat_map_shows_every_core_once() -> None:
         verdict(1, 4, "IMPOSSIBLE", *core),
         verdict(3, 4, "WITNESSED"),
     ]
-    drawn = draw_overlap(answers, "title", False, WORDS)
+    drawn = as_bytes(draw_overlap(answers, "title", False, WORDS))
     assert drawn["png"].startswith(b"\x89PNG")
     assert drawn["svg"].count(b"not sameLane") == 1
 
 
 def test_the_heat_map_is_one_triangle_with_names_in_groups() -> None:
     answers = [verdict(a, b, "WITNESSED") for a, b in combinations((1, 4, 9, 12), 2)]
-    figure = compose_overlap(answers, "title", False, WORDS)
+    figure = draw_overlap(answers, "title", False, WORDS)
     assert cut_off(figure) == []
     axes, _ = figure.axes
     assert [x.get_text() for x in axes.get_yticklabels()] == [
@@ -296,7 +296,7 @@ def test_the_heat_map_is_one_triangle_with_names_in_groups() -> None:
     assert len(axes.patches) == 6 + 1  # the cells, and what the colour means
     groups = ["main road", "merge zone"]
     assert [x.get_text() for x in axes.texts] == [*groups, *groups]
-    across, _ = compose_overlap(answers, "title", True, WORDS).axes
+    across, _ = draw_overlap(answers, "title", True, WORDS).axes
     assert (across.get_ylabel(), across.get_xlabel()) == ("set base", "set base")
     assert sectors_among((1, 4, 9, 99), {**WORDS, 99: Words(99)}) == [
         (0, 2, "main road"),

@@ -15,7 +15,7 @@ import roadproof as rp
 from report.edges import cut_off
 from roadproof.evidence.drive_file import DriveFile, load_drive, read_drive
 from roadproof.evidence.judged import judge_file
-from roadproof.frontends.report.drive import DANGER, SNAPSHOTS, compose_drive
+from roadproof.frontends.report.drive import DANGER, SNAPSHOTS, draw_drive
 from roadproof.frontends.report.drive_data import (
     Danger,
     Strip,
@@ -30,7 +30,7 @@ from roadproof.frontends.report.drive_data import (
     window_of,
 )
 from roadproof.frontends.report.moving import Scene, draw_moving
-from roadproof.frontends.report.one_trace import compose_strips
+from roadproof.frontends.report.one_trace import draw_strips
 from roadproof.frontends.report.viewer_data import ShownFormula, viewer_data
 from roadproof.frontends.report.viewer_files import viewer_modules, viewer_style
 from roadproof.frontends.report.viewer_page import json_in_html, viewer_page
@@ -141,7 +141,7 @@ def test_a_library_without_such_a_distance_has_none() -> None:
     other = load_library([Source("mine.spec", "def dangerAhead(a, b: vehicle) := s(a) < s(b)")])
     assert distances_of(file_of(), other, "along") == ()
     assert len(distances_of(file_of(), other, "across")) == 1
-    assert compose_drive(file_of(), other).axes
+    assert draw_drive(file_of(), other).axes
 
 
 def test_danger_begins_where_the_judge_says() -> None:
@@ -184,7 +184,7 @@ def test_names_of_vehicles_are_on_nothing() -> None:
 
 
 def test_the_figure_says_what_it_shows() -> None:
-    figure = compose_drive(file_of(), LIBRARY)
+    figure = draw_drive(file_of(), LIBRARY)
     title = figure.get_suptitle().splitlines()
     assert title[0] == "Scenario 4: deceleration ahead, lane keep, main road"
     assert title[1].startswith("Main road: you (SV) keep your lane")
@@ -207,14 +207,14 @@ def test_the_figure_says_what_it_shows() -> None:
 def test_nothing_is_cut_off() -> None:
     three = {"POV2": driving(105, 20), "SV": driving(0, 30), "POV1": driving(60, 20, F(13, 2), F(-1, 2))}
     long = " and ".join(["scenario_2(SV, POV1, POV2, L)", "aheadOf(SV, POV1)"] * 5)
-    assert cut_off(compose_drive(file_of(None, long, **three), LIBRARY)) == []
-    assert cut_off(compose_drive(file_of(), LIBRARY)) == []
+    assert cut_off(draw_drive(file_of(None, long, **three), LIBRARY)) == []
+    assert cut_off(draw_drive(file_of(), LIBRARY)) == []
 
 
 def test_a_formula_is_its_own_title() -> None:
     file = file_of(None, "F danger(SV, POV)")
-    assert compose_drive(file, LIBRARY).get_suptitle().splitlines()[0] == "F danger(SV, POV)"
-    assert compose_drive(file, LIBRARY, "mine").get_suptitle().splitlines()[0] == "mine"
+    assert draw_drive(file, LIBRARY).get_suptitle().splitlines()[0] == "F danger(SV, POV)"
+    assert draw_drive(file, LIBRARY, "mine").get_suptitle().splitlines()[0] == "mine"
 
 
 def test_strips_of_one_trace_are_all_there() -> None:
@@ -222,7 +222,7 @@ def test_strips_of_one_trace_are_all_there() -> None:
     claim = read_claim(LIBRARY.select("base"), " and ".join(f"scenario_{k}(SV, POV, L)" for k in (1, 4, 8)))
     formula = bind(claim.formula, file.road, file.lanes, values_with(LIBRARY, {}))
     observed = observe_drive("three", formula, file.drive, file.horizon, F(1, 10))
-    [axes] = compose_strips(observed).axes
+    [axes] = draw_strips(observed).axes
     rows = [x.get_text() for x in axes.get_yticklabels()]
     assert len(rows) == len(observed.strips) > 40
     assert rows[:3] == ["three", "  scenario_1(SV, POV, main-1)", "    initSafe(SV, POV)"]

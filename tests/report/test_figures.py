@@ -25,7 +25,7 @@ from roadproof.engines.search.ask import Search
 from roadproof.errors import InputError
 from roadproof.evidence.answers.classify import Doubt
 from roadproof.frontends.report.answers import answer_questions
-from roadproof.frontends.report.classify import as_table, compose_classes, summary
+from roadproof.frontends.report.classify import as_table, draw_classes, summary
 from roadproof.frontends.report.explore import as_text, draw_exploration, show
 from roadproof.frontends.report.figures import (
     as_bytes,
@@ -39,7 +39,7 @@ from roadproof.frontends.report.paper import COMPARISON, MARK, RESULTS, VIOLATIN
 from roadproof.frontends.report.tables import LOOKS, Table, as_csv, as_latex, as_markdown
 from roadproof.frontends.report.tables import as_text as table_text
 from roadproof.frontends.report.traffic import Share, comparison_table, decimal, percent, results_tables
-from roadproof.frontends.report.traffic_figures import compose_figures, draw_figures
+from roadproof.frontends.report.traffic_figures import draw_figures
 from roadproof.frontends.report.write_traffic import write_report
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenario_references import read_query
@@ -139,7 +139,7 @@ def test_the_picture_names_scenarios_and_colours_and_counts_in_whole_numbers(
     shares: Shares | None, doubt: Verdict
 ) -> None:
     pytest.importorskip("matplotlib")
-    figure = compose_classes([one((4,), None), one((4, 8), None, doubt)], shares, "Classes", WORDS)
+    figure = draw_classes([one((4,), None), one((4, 8), None, doubt)], shares, "Classes", WORDS)
     assert cut_off(figure) == []
     *bars, dots = figure.axes
     assert [x.get_text() for x in dots.get_yticklabels()] == ["4 slow ahead", "8 slow ahead, leaving"]
@@ -212,7 +212,7 @@ def test_a_map_has_the_first_knob_across() -> None:
     asked, explored = replace(ASKED, knobs=knobs, steps=2), exploration(findings=values, boundaries=())
     lines = as_text(asked, explored).splitlines()
     assert lines[1:5] == ["  b (s)", "  1 | ? -", "  0 | # .", "      0 … 1  a (s)"]
-    assert draw_exploration(asked, explored)["png"].startswith(b"\x89PNG")
+    assert as_bytes(draw_exploration(asked, explored))["png"].startswith(b"\x89PNG")
 
 
 def test_extremes_name_both_sides() -> None:
@@ -234,7 +234,7 @@ def test_pictures_of_strips_with_and_without_measures() -> None:
     best, missed = finding("2", Verdict.WITNESSED), finding("1", Verdict.UNKNOWN, "r")
     extremes = tuple(Extreme(MEASURE, (F(at),), best, missed, None, 1) for at in (0, 1))
     for explored in (exploration(), exploration(extremes=extremes)):
-        made = draw_exploration(ASKED, explored)
+        made = as_bytes(draw_exploration(ASKED, explored))
         assert made["png"].startswith(b"\x89PNG")
         assert b"<svg" in made["svg"]
 
@@ -431,19 +431,19 @@ def test_nothing_found_is_said() -> None:
 
 
 def test_figures(totals: Totals) -> None:
-    made = dict(draw_figures(totals))
+    made = {name: as_bytes(figure) for name, figure in draw_figures(totals)}
     assert list(made) == ["recall", "scenarios", "overlaps"]
     for formats in made.values():
         assert formats["png"].startswith(b"\x89PNG")
         assert b"<svg" in formats["svg"]
-    again = dict(draw_figures(totals))
+    again = {name: as_bytes(figure) for name, figure in draw_figures(totals)}
     assert again == made
 
 
 def test_figures_name_scenarios_and_count_in_whole_numbers(totals: Totals) -> None:
     for row in totals.rows:
         row.scenarios = Counter({1: 1, 4: 2})
-    figures = dict(compose_figures(totals))
+    figures = dict(draw_figures(totals))
     [bars] = figures["scenarios"].axes
     assert bars.get_xticklabels()[3].get_text() == "s4\ndeceleration\nahead, lane\nkeep"
     assert all(tick == int(tick) for tick in bars.get_yticks())

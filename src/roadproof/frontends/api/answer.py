@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.row import Row
+from roadproof.frontends.report.figures import as_bytes
 from roadproof.frontends.report.sheet import Sheet, as_rows
 from roadproof.runtime.files import write_whole
 from roadproof.verdict import ExitCode, Verdict
@@ -38,9 +39,9 @@ class Picture:
         return self.png
 
 
-def picture(drawn: Mapping[str, bytes]) -> Picture:
-    """What ``report`` has drawn."""
-    return Picture(drawn["png"], drawn["svg"])
+def picture(figure: object) -> Picture:
+    """A figure that ``report`` has drawn, in both formats."""
+    return Picture(**as_bytes(figure))
 
 
 class Answer(ABC):

@@ -19,7 +19,7 @@ from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.phrases import Term
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import searches_of, setting, work_of
-from roadproof.frontends.api.studied import StudyAnswers
+from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import explore as report
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.groups import Run
@@ -73,11 +73,8 @@ class Explorations(StudyAnswers[Exploration, ExplorationResult, kept.Record]):
     def files(self, pictures: bool) -> dict[str, bytes]:
         """Pictures of all, and of the drives at boundaries and extremes."""
         named = self.study.named.items() if pictures else ()
-        return {
-            file: content
-            for name, asked in named
-            for file, content in report.draw_all(name, asked, self.explored[name])
-        }
+        every = (x for name, asked in named for x in report.draw_all(name, asked, self.explored[name]))
+        return drawn({file: picture(figure) for file, figure in every})
 
     def __str__(self) -> str:
         return "\n".join(

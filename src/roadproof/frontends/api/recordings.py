@@ -153,7 +153,7 @@ class Evaluation:
 
     def plot(self) -> Picture:
         """The first of the figures."""
-        return next(picture(formats) for _, formats in draw_figures(self.totals))
+        return next(picture(figure) for _, figure in draw_figures(self.totals))
 
     def __str__(self) -> str:
         tables = [

@@ -12,7 +12,7 @@ from roadproof.analysis.catalogue.result import Result
 from roadproof.analysis.catalogue.tested import CLASSES, SCENARIOS, Targets, kind_of
 from roadproof.evidence.answers.catalogue_index import Figure, Remark, Target
 from roadproof.frontends.report import catalogue_drivers
-from roadproof.frontends.report.figures import as_bytes, count_axis, make_figure
+from roadproof.frontends.report.figures import count_axis, make_figure
 from roadproof.frontends.report.sheet import Column, Mark, Sheet, csv_text
 from roadproof.frontends.report.sheet import as_csv as csv_of
 from roadproof.library.scenarios import number_in
@@ -219,10 +219,8 @@ def _suite(suites: xml.Element, name: str, cases: dict[str, str], in_force: Sequ
             xml.SubElement(element, "failure", message=told)
 
 
-def draw_matrix(tests: Sequence[str], found: Targets, in_force: Sequence[str] = ()) -> dict[str, bytes]:
-    """Tests over scenarios and gaps, how many tests each class has, and each class of gaps, if that is asked:
-    ``{"png": …, "svg": …}``.
-    """
+def draw_matrix(tests: Sequence[str], found: Targets, in_force: Sequence[str] = ()) -> Any:
+    """Tests over scenarios and gaps; how many tests each class has, and each class of gaps, if asked."""
     scenarios, classes = kinds(found).values()
     gaps = [x for x in found.gaps.targets if x.tested or x.possible]
     bars = {"tests of each class (red: none)": classes}
@@ -260,7 +258,7 @@ def draw_matrix(tests: Sequence[str], found: Targets, in_force: Sequence[str] = 
     above.set_title("\n".join([title, *in_force]), fontsize=8)
     for below, (title, those) in zip(axes[1:], bars.items(), strict=True):
         _draw_bars(below, title, those)
-    return as_bytes(figure)
+    return figure
 
 
 def _draw_bars(axes: Any, title: str, targets: Sequence[Target]) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 from roadproof.analysis.catalogue.traces import Courses
 from roadproof.frontends.report.drive import COLOURS
-from roadproof.frontends.report.figures import as_bytes, make_page, shorten
+from roadproof.frontends.report.figures import make_page, shorten
 
 MOST_ON_A_PAGE = 40
 _COLUMNS, _FEW = 5, 3
@@ -24,13 +24,13 @@ class DrivePicture:
     courses: Courses
 
 
-def draw_tests(tests: Sequence[DrivePicture]) -> Iterator[dict[str, bytes]]:
-    """Pages of small pictures, groups in the order in which they come: ``{"png": …, "svg": …}`` each."""
+def draw_tests(tests: Sequence[DrivePicture]) -> Iterator[Any]:
+    """Pages of small pictures, groups in the order in which they come."""
     for k in range(0, len(tests), MOST_ON_A_PAGE):
         yield _page(tests[k : k + MOST_ON_A_PAGE])
 
 
-def _page(tests: Sequence[DrivePicture]) -> dict[str, bytes]:
+def _page(tests: Sequence[DrivePicture]) -> Any:
     groups: dict[str, list[DrivePicture]] = {}
     for test in tests:
         groups.setdefault(test.group, []).append(test)
@@ -50,7 +50,7 @@ def _page(tests: Sequence[DrivePicture]) -> dict[str, bytes]:
             left, upper = _MARGIN[0] + k % columns * _CELL[0], top - k // columns * _CELL[1]
             _draw(figure, test, colours, (left, upper), (width, height))
         top -= -(-len(those) // columns) * _CELL[1]
-    return as_bytes(figure)
+    return figure
 
 
 def _legend(figure: Any, colours: Mapping[str, str], height: float) -> None:

@@ -10,7 +10,7 @@ from roadproof.analysis.classify.shares import Shares
 from roadproof.analysis.classify.study import ClassificationResult
 from roadproof.analysis.classify.text import HEADINGS
 from roadproof.evidence.answers.classify import CountedClass
-from roadproof.frontends.report.figures import as_bytes, count_axis, legend_beside, make_figure
+from roadproof.frontends.report.figures import count_axis, legend_beside, make_figure
 from roadproof.frontends.report.sheet import Bar, Column, Sheet, as_lines
 from roadproof.library.words import Called
 from roadproof.verdict import Verdict
@@ -172,14 +172,7 @@ def _of_shares(shares: Shares) -> Iterator[str]:
         yield f"{number} situations with a scenario, each in exactly one class, which names its scenarios"
 
 
-def draw_classes(
-    examples: Sequence[Example], shares: Shares | None, title: str, words: Called
-) -> dict[str, bytes]:
-    """The picture as ``{"png": …, "svg": …}``."""
-    return as_bytes(compose_classes(examples, shares, title, words))
-
-
-def compose_classes(examples: Sequence[Example], shares: Shares | None, title: str, words: Called) -> Any:
+def draw_classes(examples: Sequence[Example], shares: Shares | None, title: str, words: Called) -> Any:
     """Bars of how often each class occurs, over dots for the scenarios in it.
 
     Places are added up: a column is something that happens, a row a scenario but for its road sector.

@@ -3,12 +3,14 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from roadproof.analysis.coverage.answers import ClassAnswer, Gap
 from roadproof.analysis.coverage.needed import Need
 from roadproof.analysis.coverage.occurring import GapTraffic, Survey
 from roadproof.evidence.answers import coverage as kept
 from roadproof.frontends.report.drive import draw_drive
+from roadproof.frontends.report.figures import as_bytes
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.scenarios import PAIR, Scenario, applied, danger_comes
 from roadproof.library.specification import Library
@@ -124,7 +126,7 @@ def sheet_of_claims(index: kept.Index) -> Sheet[kept.Claim]:
     )
 
 
-def draw_gap(answer: ClassAnswer, gap: Gap, library: Library) -> dict[str, bytes]:
+def draw_gap(answer: ClassAnswer, gap: Gap, library: Library) -> Any:
     """The picture of a gap, with when each part of the missed scenario is true."""
     file, part = gap.drive.file, answer.part
     specification = library.select(file.set_name, file.options)
@@ -144,5 +146,5 @@ def draw_beside(library: Library, job: tuple[ClassAnswer, Gap, Path]) -> None:
     picture = path.with_suffix(".png")
     if picture.exists() and picture.stat().st_mtime_ns >= path.stat().st_mtime_ns:
         return
-    for kind, content in draw_gap(answer, gap, library).items():
+    for kind, content in as_bytes(draw_gap(answer, gap, library)).items():
         write_whole(path.with_suffix(f".{kind}"), content)

@@ -25,7 +25,7 @@ from roadproof.frontends.report.drive_data import (
     vehicles_of,
     window_of,
 )
-from roadproof.frontends.report.figures import as_bytes, draw_box, legend_beside, make_figure, name_rows
+from roadproof.frontends.report.figures import draw_box, legend_beside, make_figure, name_rows
 from roadproof.library.specification import Library
 from roadproof.world.motion import State, state_at
 from roadproof.world.road import Zone
@@ -39,16 +39,11 @@ ROAD_INCHES = 6.0  # about what is left of WIDTH between names and legends
 LETTER = (0.058, 0.13)  # of a vehicle's name, in inches
 
 
-def draw_drive(file: DriveFile, library: Library, title: str = "") -> dict[str, bytes]:
-    """The picture of a drive file as ``{"png": …, "svg": …}``; the title is its formula where none is given.
+def draw_drive(file: DriveFile, library: Library, title: str = "") -> Any:
+    """The road at some instants, then speeds, gaps and strips over one axis of time.
 
-    Raises ``InputError`` without matplotlib.
+    The title is the formula where none is given. Raises ``MissingSolverError`` without matplotlib.
     """
-    return as_bytes(compose_drive(file, library, title))
-
-
-def compose_drive(file: DriveFile, library: Library, title: str = "") -> Any:
-    """The figure: the road at some instants, then speeds, gaps and strips over one axis of time."""
     judgement = judge_file(file, library).judgement
     strips = () if judgement is None else strips_of(judgement, file.horizon)
     dangers = dangers_of(file, library)

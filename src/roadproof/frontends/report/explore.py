@@ -11,7 +11,7 @@ from roadproof.analysis.explore.answer import Boundary, Explorable, ExplorationR
 from roadproof.analysis.explore.knobs import Variable
 from roadproof.analysis.explore.record import ends_of
 from roadproof.frontends.report.drive import draw_drive
-from roadproof.frontends.report.figures import as_bytes, legend_beside, make_figure
+from roadproof.frontends.report.figures import legend_beside, make_figure
 from roadproof.frontends.report.overlap import COLOURS, SIGNS
 from roadproof.frontends.report.sheet import Cell, Column, Sheet
 from roadproof.library.words import words_of
@@ -193,27 +193,21 @@ def _value_of(name: str, entry: Entry) -> Cell:
     return dict(zip(entry[3], entry[2].at, strict=True)).get(name)
 
 
-def draw_all(name: str, asked: Explorable, explored: ExplorationResult) -> Iterator[tuple[str, bytes]]:
+def draw_all(name: str, asked: Explorable, explored: ExplorationResult) -> Iterator[tuple[str, Any]]:
     """Pictures of an exploration, and of the drives at its boundaries and extremes, with names of files."""
-    library = asked.search.specification.library
     if explored.findings:
-        for kind, content in draw_exploration(asked, explored).items():
-            yield f"{name}.{kind}", content
+        yield name, draw_exploration(asked, explored)
     for file, finding in ends_of(name, explored):
         if finding.drive is not None:
-            for kind, content in draw_drive(finding.drive.file, library).items():
-                yield f"{file}.{kind}", content
+            yield file, draw_drive(finding.drive.file, asked.search.specification.library)
 
 
-def draw_exploration(asked: Explorable, explored: ExplorationResult) -> dict[str, bytes]:
-    """The strip or map of an exploration as ``{"png": …, "svg": …}``, measures over the strip.
-
-    Raises ``InputError`` without matplotlib.
-    """
+def draw_exploration(asked: Explorable, explored: ExplorationResult) -> Any:
+    """The strip or map of an exploration, measures over the strip."""
     return (_draw_strip if len(asked.knobs) == 1 else _draw_map)(asked, explored)
 
 
-def _draw_strip(asked: Explorable, explored: ExplorationResult) -> dict[str, bytes]:
+def _draw_strip(asked: Explorable, explored: ExplorationResult) -> Any:
     [knob] = asked.knobs
     measured = [x for x in explored.extremes if x.best is not None and x.point]
     figure, made = make_figure([2.6, 0.7, 0.7] if measured else [0.7, 0.7], width=8.0)
@@ -237,7 +231,7 @@ def _draw_strip(asked: Explorable, explored: ExplorationResult) -> dict[str, byt
     if measured:
         _draw_measures(above[0], measured)
     _finish(figure, below, asked, explored)
-    return as_bytes(figure)
+    return figure
 
 
 def _edges(places: Sequence[Fraction], boundaries: Sequence[Boundary]) -> Iterator[Fraction]:
@@ -270,7 +264,7 @@ def _draw_measures(axes: Any, measured: Sequence[Extreme]) -> None:
     legend_beside(axes)
 
 
-def _draw_map(asked: Explorable, explored: ExplorationResult) -> dict[str, bytes]:
+def _draw_map(asked: Explorable, explored: ExplorationResult) -> Any:
     across, up = asked.knobs
     columns, rows = (knob.values(asked.steps) for knob in asked.knobs)
     found = {x.at: x for x in explored.findings}
@@ -295,7 +289,7 @@ def _draw_map(asked: Explorable, explored: ExplorationResult) -> dict[str, bytes
     axes.set_xlabel(f"{across.name}, {_unit(across.unit)}; numbers in cells tell drives apart", fontsize=8)
     axes.set_ylabel(f"{up.name}, {_unit(up.unit)}", fontsize=8)
     _finish(figure, below, asked, explored)
-    return as_bytes(figure)
+    return figure
 
 
 def _finish(figure: Any, below: Any, asked: Explorable, explored: ExplorationResult) -> None:

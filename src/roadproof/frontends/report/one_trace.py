@@ -1,10 +1,9 @@
 """What a formula is on one trace: a few lines, and strips that show when each part of it is true."""
 
-from collections.abc import Mapping
 from textwrap import wrap
 from typing import Any
 
-from roadproof.frontends.report.figures import as_bytes, legend_beside, make_figure, name_rows
+from roadproof.frontends.report.figures import legend_beside, make_figure, name_rows
 from roadproof.recordings.evaluate.observed import FirstAnswer
 
 _TRUE, _UNDECIDED, _WIDEST = "#4b8b3b", "#bbbbbb", 60
@@ -46,18 +45,13 @@ def _interval(span: tuple[float, float]) -> str:
     return f"{{{begin:g}}}" if begin == end else f"[{begin:g}, {end:g}]"
 
 
-def draw_strips(observed: FirstAnswer) -> Mapping[str, bytes]:
-    """A strip a part: green where it is true, grey where undecided. Raises ``InputError``."""
-    return as_bytes(compose_strips(observed))
-
-
 def _short(name: str) -> str:
     """A name that fits beside its strip; the whole formula stands above."""
     return name if len(name) <= _WIDEST else name[: _WIDEST - 1] + "…"
 
 
-def compose_strips(observed: FirstAnswer) -> Any:
-    """The figure: all parts, each below what it is part of."""
+def draw_strips(observed: FirstAnswer) -> Any:
+    """A strip a part, each below what it is part of: green where it is true, grey where undecided."""
     strips = observed.strips
     figure, (axes,) = make_figure([0.6 + 0.2 * len(strips)])
     end = max(observed.seconds, float(observed.dt))

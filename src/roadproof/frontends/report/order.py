@@ -5,7 +5,7 @@ from typing import Any
 
 from roadproof.analysis.order.deciding import Edge, Kind
 from roadproof.analysis.order.study import Order
-from roadproof.frontends.report.figures import as_bytes, make_figure
+from roadproof.frontends.report.figures import make_figure
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.scenarios import Scenario
 from roadproof.library.words import Called, Words, legend
@@ -48,13 +48,8 @@ def as_dot(order: Order, words: Called) -> str:
     return "\n".join([*lines, "}"]) + "\n"
 
 
-def draw_order(order: Order, title: str, words: Called) -> dict[str, bytes]:
-    """The diagram as ``{"png": …, "svg": …}``."""
-    return as_bytes(compose_order(order, title, words))
-
-
-def compose_order(order: Order, title: str, words: Called) -> Any:
-    """The figure: a column for each scenario's number, which is named below, weaker ones higher."""
+def draw_order(order: Order, title: str, words: Called) -> Any:
+    """The diagram: a column for each scenario's number, which is named below, weaker ones higher."""
     kinds, edges = order.kinds, order.edges
     height = _heights(kinds, edges)
     columns = sorted({kind.node.number for kind in kinds})

@@ -6,7 +6,7 @@ from textwrap import wrap
 from typing import Any
 
 from roadproof.analysis.overlap import PairVerdict, name_of
-from roadproof.frontends.report.figures import as_bytes, legend_beside, make_figure
+from roadproof.frontends.report.figures import legend_beside, make_figure
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.words import Called, Words, legend
 from roadproof.verdict import Verdict
@@ -85,15 +85,11 @@ def _evidence(pair: PairVerdict) -> str:
     return f"impossible-{name}.json" if pair.certificate else f"drive-{name}.json" if pair.drive else ""
 
 
-def draw_overlap(
-    verdicts: Sequence[PairVerdict], title: str, across: bool, words: Called
-) -> dict[str, bytes]:
-    """The heat map as ``{"png": …, "svg": …}``; numbers in the cells lead to the cores below."""
-    return as_bytes(compose_overlap(verdicts, title, across, words))
+def draw_overlap(verdicts: Sequence[PairVerdict], title: str, across: bool, words: Called) -> Any:
+    """The heat map: one triangle, or all cells where ``across`` two sets; sectors are groups.
 
-
-def compose_overlap(verdicts: Sequence[PairVerdict], title: str, across: bool, words: Called) -> Any:
-    """The figure: one triangle, or all cells where ``across`` two sets; sectors are groups."""
+    Numbers in the cells lead to the cores below.
+    """
     rows, columns = _axes(verdicts, across)
     rows, columns = (rows, columns) if across else (rows[1:], columns[:-1])
     found = _cells(verdicts, across)

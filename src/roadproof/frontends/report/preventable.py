@@ -13,7 +13,7 @@ from roadproof.drivers.lines import End, Line
 from roadproof.drivers.manoeuvres import Quantity
 from roadproof.drivers.models import MODELS, parts_of
 from roadproof.drivers.words import legend
-from roadproof.frontends.report.figures import as_bytes, make_page
+from roadproof.frontends.report.figures import make_page
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.world.units import UNITS
 
@@ -144,7 +144,7 @@ def _fixed(name: str, entry: Entry) -> Fraction:
     return entry[0].fixed[name]
 
 
-def draw_sheet(study: Preventable, plates: Sequence[Plate]) -> dict[str, bytes]:
+def draw_sheet(study: Preventable, plates: Sequence[Plate]) -> Any:
     """All plates of a sheet: rows are the second of what is fixed, columns all else; colours are models."""
     names = list(study.sheet)
     beside = [name for name in names if name not in names[1:2]]
@@ -173,7 +173,7 @@ def draw_sheet(study: Preventable, plates: Sequence[Plate]) -> dict[str, bytes]:
             if i == len(rows) - 1:
                 axes.set_xlabel(_label(study, study.manoeuvre.line), fontsize=7)
     _head(figure, study, width, height)
-    return as_bytes(figure)
+    return figure
 
 
 def _below(study: Preventable, width: float) -> list[str]:

@@ -1,11 +1,11 @@
 """Pictures of a traffic evaluation: recall by set, scenario counts, and how scenarios overlap."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from textwrap import wrap
 from typing import Any
 
-from roadproof.frontends.report.figures import as_bytes, count_axis, legend_beside, make_figure
+from roadproof.frontends.report.figures import count_axis, legend_beside, make_figure
 from roadproof.frontends.report.paper import MARK
 from roadproof.frontends.report.traffic import decimal, ending_of, paper_row
 from roadproof.library.words import Called
@@ -16,13 +16,8 @@ COLOURS = ("#9db8d9", "#4f7fb8", "#1f4a80", "#e0b990", "#c8783c", "#8a4a1c", "#8
 BAR, GREY = "#9db8d9", "#555555"
 
 
-def draw_figures(totals: Totals) -> Iterator[tuple[str, Mapping[str, bytes]]]:
-    """Name and bytes by format of the figures of each sector. Raises ``InputError`` without matplotlib."""
-    yield from ((name, as_bytes(figure)) for name, figure in compose_figures(totals))
-
-
-def compose_figures(totals: Totals) -> Iterator[tuple[str, Any]]:
-    """The figures themselves, by name."""
+def draw_figures(totals: Totals) -> Iterator[tuple[str, Any]]:
+    """The figures of each sector, by name. Raises ``MissingSolverError`` without matplotlib."""
     shown, words = totals.shown, words_in(totals.settings)
     for sector, rows in shown.items():
         end, where = ending_of(totals, sector), f" ({sector})" if len(shown) > 1 else ""

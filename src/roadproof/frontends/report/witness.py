@@ -6,6 +6,7 @@ from typing import TypeAlias
 from roadproof.engines.search.ask import Outcome
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.report.drive import draw_drive
+from roadproof.frontends.report.figures import as_bytes
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.scenarios import LANE
 from roadproof.library.specification import Library, Specification
@@ -81,5 +82,5 @@ def files_of(judged: JudgedDrive, stem: str, library: Library, pictures: bool) -
     """The same by name, with what is in them: samples, pictures."""
     yield f"{stem}.csv", csv_of(judged.file).encode()
     if pictures:
-        for kind, content in draw_drive(judged.file, library).items():
+        for kind, content in as_bytes(draw_drive(judged.file, library)).items():
             yield f"{stem}.{kind}", content

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from roadproof.frontends.report.answers import answer_questions
+from roadproof.frontends.report.figures import as_bytes
 from roadproof.frontends.report.tables import LOOKS
 from roadproof.frontends.report.traffic import comparison_table, drivers_table, results_tables
 from roadproof.frontends.report.traffic_figures import draw_figures
@@ -28,8 +29,8 @@ def write_report(folder: Path, totals: Totals, failed: Mapping[str, str], pictur
                 write_whole(folder / f"{name}.{ending}", look(table).encode())
     write_whole(folder / "answers.md", answer_questions(totals, failed).encode())
     if pictures:
-        for name, formats in draw_figures(totals):
-            for ending, content in formats.items():
+        for name, figure in draw_figures(totals):
+            for ending, content in as_bytes(figure).items():
                 write_whole(folder / "figures" / f"{name}.{ending}", content)
 
 
