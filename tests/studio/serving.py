@@ -105,7 +105,7 @@ def question(formula: str = "scenario_1(SV,POV,L)", text: str = "", **other: Any
         "draft": {**DRAFT, "text": text},
         "set": "edit",
         "formula": formula,
-        "objective": "smooth",
+        "settings": {"objective": "smooth"},
         **other,
     }
 

@@ -144,6 +144,18 @@ def test_next_is_another_drive_and_without_it_is_one_where_it_does_not_hold(tab:
     tab.holds("false")
 
 
+def test_options_of_jobs_are_chosen_on_the_page(tab: Tab) -> None:
+    tab.page.get_by_label("objective").select_option("severe")
+    tab.press("f")
+    tab.answered("WITNESSED")
+    assert "--objective severe" in tab.see(".verdict .command code").inner_text()
+    tab.page.get_by_label("declared").check()
+    tab.write("asked", "minDanger >= 0.6 s or v_lon(SV) > 0 m/s or v_lon(SV) < 1 m/s")
+    tab.press("p")
+    tab.answered("PROVED")
+    assert "--declared" in tab.see(".verdict .command code").inner_text()
+
+
 def test_a_claim_is_proved_with_a_certificate_that_check_accepts(tab: Tab, tmp_path: Path) -> None:
     tab.write("asked", "minDanger = 0.6 s and danger(SV,POV) -> G[0, 0.6 s] rssViolation(SV,POV)")
     tab.press("p")

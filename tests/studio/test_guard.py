@@ -9,10 +9,13 @@ from typing import Any
 
 import pytest
 
-from roadproof.errors import InputError
+from roadproof.errors import InputError, RoadproofError
 from roadproof.frontends.api.drafting import QUESTION
+from roadproof.frontends.settings.questions import Witness
 from roadproof.frontends.studio.dropping import drop
+from roadproof.frontends.studio.jobs import answer
 from roadproof.frontends.studio.pages import served
+from roadproof.frontends.studio.requests import form, read_ask
 from roadproof.frontends.studio.showing import marks_of
 from roadproof.frontends.studio.start_page import begin_with
 from studio.serving import Served, question, serving
@@ -261,13 +264,42 @@ def dropped(*paths: Path) -> dict[str, Any]:
     files = [{"name": x.name, "content": x.read_text("utf-8")} for x in paths]
     draft = {"base": "base", "text": "", "options": {}, "params": {}}
     asked = {"draft": draft, "set": "base", "formula": "scenario_4(SV,POV,L)", "files": files}
-    return drop(asked, lambda stage: None)
+    return drop(read_ask(asked), lambda stage: None)
 
 
 def test_a_drive_is_shown_and_samples_are_monitored() -> None:
     assert dropped(DRIVE)["drive"]["schema"].startswith("roadproof/drive/")
     found = dropped(SAMPLES / "braking.csv")
     assert [x["role"] for x in found["view"]["formulas"]] == ["question"]
+
+
+def test_the_form_of_the_page_follows_the_options_of_questions() -> None:
+    assert {(x["job"], x["name"], x["default"]) for x in form()} == {
+        ("find", "objective", "smooth"),
+        ("prove", "declared", False),
+    }
+    [objective] = [x for x in form() if x["name"] == "objective"]
+    assert objective["choices"] == Witness.options()["objective"].choices
+    asked = {"draft": {}, "formula": "true", "settings": {"objective": "severe"}}
+    assert read_ask(asked).options("find") == {"objective": "severe"}
+
+
+@pytest.mark.parametrize(
+    ("asked", "told"),
+    [
+        ({"settings": {"declared": True}}, "declared=True: the page has no such option of find"),
+        ({"settings": {"objective": 3}}, "objective=3: the page has no such option of find"),
+        ({"settings": {"objective": "fast"}}, "objective='fast': write 'any' or 'smooth'"),
+        ({"count": 13}, "count=13: ask for 1 to 12"),
+        ({"formula": "x" * 200_001}, "formula has 200001 characters"),
+        ({"more": 1}, "unknown field 'more'"),
+        ({"explain": {"part": 0, "at": 3601}}, "explain an instant from 0 to 3600 s"),
+        ({"watches": ["true"] * 13}, "at most 12 formulas are watched"),
+    ],
+)
+def test_questions_of_a_page_are_read_strictly(asked: dict[str, Any], told: str) -> None:
+    with pytest.raises(RoadproofError, match=re.escape(told)):
+        answer("find", {"draft": {}, "formula": "true", **asked}, lambda stage: None)
 
 
 def test_marks_are_of_places_in_the_texts_of_the_editors_alone() -> None:

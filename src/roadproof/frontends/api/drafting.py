@@ -13,7 +13,6 @@ from functools import lru_cache
 
 from roadproof.errors import Position, RoadproofError, TextError, UsageError, raise_all
 from roadproof.frontends.api.definitions import Definitions, values_of
-from roadproof.library.bind import Number
 from roadproof.library.diagnose import Lost, Proofreader, as_diagnostic, claim_errors
 from roadproof.library.loading import load_library
 from roadproof.library.scenario_references import read_query
@@ -38,7 +37,7 @@ class Draft:
     text: str = ""
     before: str | None = None
     options: Mapping[str, str] = field(default_factory=dict)
-    params: Mapping[str, Number] = field(default_factory=dict)
+    params: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def edited(self) -> str:

@@ -1,25 +1,29 @@
 """Questions that may take long: a drive, a proof, a comparison."""
 
 import contextlib
-import shlex
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from typing import Any
 
 import roadproof as rp
-from roadproof.evidence.certificate import certificate_data
+from roadproof.evidence.certificate import Certificate, certificate_data
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.api.definitions import Definitions
-from roadproof.frontends.api.drafting import BEFORE, EDIT, Draft, place_in
+from roadproof.frontends.api.drafting import BEFORE, EDIT, place_in
 from roadproof.frontends.report.viewer_data import shown_place
-from roadproof.frontends.studio.requests import count_of, draft_of, set_of, text_of
+from roadproof.frontends.settings import groups
+from roadproof.frontends.settings.flags import command_line
+from roadproof.frontends.settings.option import Settings
+from roadproof.frontends.settings.questions import Compare, Prove, Witness
+from roadproof.frontends.studio.requests import Answer, Ask, Say
 from roadproof.frontends.studio.showing import marks_of, view
 from roadproof.library.compose import negation
 from roadproof.library.specification import Query
 from roadproof.library.uses import nearest, places_of
 from roadproof.logic.formula import Formula
 from roadproof.runtime.progress import Listener
+from roadproof.verdict import Verdict
 
-Say = Callable[[str], None]
-MOST_DRIVES = 12
 FILE = "edit.spec"
 _STAGES = {
     "prove": "looking for a proof",
@@ -32,41 +36,51 @@ _STAGES = {
 }
 
 
-def find(ask: Mapping[str, Any], say: Say) -> dict[str, Any]:
+@dataclass(frozen=True)
+class _Settled:
+    """A verdict with its evidence, and the command line that gives the same."""
+
+    verdict: Verdict
+    reason: str
+    formula: str
+    command: str
+    certificate: Certificate | None
+    drive: JudgedDrive | None
+
+    def shown(self, ask: Ask) -> Answer:
+        """The answer for the page, with the document of the viewer where there is a drive."""
+        proof, drive = self.certificate, self.drive
+        return {
+            "verdict": str(self.verdict),
+            "reason": self.reason,
+            "formula": self.formula,
+            "certificate": None if proof is None else certificate_data(proof),
+            "drive": None if drive is None else drive.as_data(),
+            "spec": ask.draft.file(),
+            "command": self.command,
+            **({} if drive is None else {"view": view(ask, drive.file)}),
+        }
+
+
+def find(ask: Ask, say: Say) -> Answer:
     """A drive with the question, or without it: the ``count``-th that differs clearly."""
-    draft, chosen = draft_of(ask), set_of(ask)
-    home, count = draft.definitions(chosen), count_of(ask, "count", MOST_DRIVES)
-    query = home.read(text_of(ask, "formula"))
-    if ask.get("negated") is True:
-        query = negation(query)
-    objective = text_of(ask, "objective")
+    home, how = ask.home, {**ask.options("find"), "count": ask.count}
+    query = home.read(ask.formula)
+    query = negation(query) if ask.negated else query
     say("looking for a drive")
-    how: Any = {"objective": objective, "count": count, "jobs": 1, "stage": _telling(say)}
-    found = rp.witness(query, using=home, **how)
-    outcome = found.outcomes[0]
-    options = [] if objective == "smooth" else ["--objective", objective]
-    options += ["--count", str(count)] if count > 1 else []
-    answer: dict[str, Any] = {
-        "verdict": str(outcome.verdict),
-        "reason": outcome.told(()),
-        "formula": query.text,
-        "road": outcome.road,
-        "core": [] if outcome.impossibility is None else list(outcome.impossibility.told),
-        "marks": [] if outcome.impossibility is None else _clash(home, query, outcome.impossibility.core),
-        "certificate": None
-        if outcome.impossibility is None
-        else certificate_data(outcome.impossibility.certificate),
-        "drive": None,
-        "drives": [x.as_data() for x in outcome.drives],
-        "spec": draft.file(),
-        "command": command("witness", [query.text], draft, home, options),
-    }
-    if len(outcome.drives) == count:
-        judged = outcome.drives[-1]
-        answer["drive"] = judged.as_data()
+    outcome = rp.witness(query, using=home, jobs=1, stage=_telling(say), **how).outcomes[0]
+    drive = outcome.drives[-1] if len(outcome.drives) == ask.count else None
+    if drive is not None:
         say("judging the drive")
-        answer["view"] = view(draft, judged.file, ask)
-    return answer
+    proof, command = outcome.impossibility, _command("witness", [query.text], ask, home, Witness.of(how))
+    certificate = None if proof is None else proof.certificate
+    found = _Settled(outcome.verdict, outcome.told(()), query.text, command, certificate, drive)
+    return found.shown(ask) | {
+        "road": outcome.road,
+        "core": [] if proof is None else list(proof.told),
+        "marks": [] if proof is None else _clash(home, query, proof.core),
+        "drives": [x.as_data() for x in outcome.drives],
+    }
 
 
 class _AnsweredError(Exception):
@@ -75,7 +89,7 @@ class _AnsweredError(Exception):
 
 def _first_direction(text: str, home: Definitions, say: Say) -> Any:
     """Whether the formula in the first set implies it in the second; the other direction is another job's."""
-    found: list[Any] = []
+    found: list[object] = []
 
     def each(name: str, direction: object) -> None:
         found.append(direction)
@@ -91,79 +105,47 @@ def _telling(say: Say) -> Listener:
     return lambda stage: say(", ".join(filter(None, (_STAGES.get(stage.name, stage.name), stage.told))))
 
 
-def _clash(home: Definitions, query: Query, core: Iterable[Formula]) -> list[dict[str, Any]]:
+def _clash(home: Definitions, query: Query, core: Iterable[Formula]) -> list[Answer]:
     """Where the parts that clash are said in the texts that the user sees."""
     every = places_of(home.specification, query)
     seen = [x for x in every if place_in(x.source, (x.at.line, x.at.column)) is not None]
     return marks_of((shown_place(x) for part in core for x in nearest(seen, part)), "clash")
 
 
-def prove(ask: Mapping[str, Any], say: Say) -> dict[str, Any]:
+def prove(ask: Ask, say: Say) -> Answer:
     """The question as a claim: proved with a certificate, or refuted with a drive.
 
     It is about all values of parameters but those that the page has set; ``declared``: at one value of each.
     """
-    draft, chosen = draft_of(ask), set_of(ask)
-    home = draft.definitions(chosen)
-    declared = ask.get("declared") is True
+    home, how = ask.home, ask.options("prove")
     say("looking for a proof")
-    query, stage = home.read(text_of(ask, "formula")), _telling(say)
-    [found] = rp.prove(query, using=home, declared=declared, jobs=1, stage=stage).answers
-    settled = found.settled
-    answer: dict[str, Any] = {
-        "verdict": str(found.verdict),
-        "reason": settled.result.reason,
-        "formula": found.task.claim,
-        "assuming": list(found.task.assuming),
-        "refuted_by": settled.refuted_by,
-        "certificate": None
-        if settled.result.certificate is None
-        else certificate_data(settled.result.certificate),
-        "drive": None,
-        "spec": draft.file(),
-        "command": command("prove", [found.task.claim], draft, home, ["--declared"] if declared else []),
-    }
-    if settled.drive is not None:
-        answer["drive"] = settled.drive.as_data()
-        answer["view"] = view(draft, settled.drive.file, ask)
-    return answer
+    [found] = rp.prove(home.read(ask.formula), using=home, jobs=1, stage=_telling(say), **how).answers
+    task, settled, result = found.task, found.settled, found.settled.result
+    command = _command("prove", [task.claim], ask, home, Prove.of(how))
+    one = _Settled(found.verdict, result.reason, task.claim, command, result.certificate, settled.drive)
+    return one.shown(ask) | {"assuming": list(task.assuming), "refuted_by": settled.refuted_by}
 
 
-def compare(ask: Mapping[str, Any], say: Say) -> dict[str, Any]:
+def compare(ask: Ask, say: Say) -> Answer:
     """One direction of before against after the edit: does the one imply the other?
 
     ``forward``: whether before implies after.
     """
-    draft = draft_of(ask)
-    below = BEFORE if draft.before is not None else draft.base
-    pair = (below, "edit") if ask.get("forward") is True else ("edit", below)
-    home = draft.definitions(*pair)
-    text = text_of(ask, "formula")
-    direction = _first_direction(text, home, say)
-    answer: dict[str, Any] = {
-        "verdict": str(direction.verdict),
-        "reason": direction.reason,
-        "formula": direction.claim.text,
-        "sets": list(pair),
-        "certificate": None if direction.certificate is None else certificate_data(direction.certificate),
-        "drive": None,
-        "spec": draft.file(),
-        "command": command("compare", [text, text], draft, home, []),
-    }
-    if direction.drive is not None:
-        answer["drive"] = direction.drive.as_data()
-        answer["view"] = view(draft, direction.drive.file, {**ask, "compare": True})
-    return answer
+    below = BEFORE if ask.draft.before is not None else ask.draft.base
+    pair = (below, EDIT) if ask.forward else (EDIT, below)
+    home = ask.draft.definitions(*pair)
+    found = _first_direction(ask.formula, home, say)
+    command = _command("compare", [ask.formula, ask.formula], ask, home, Compare())
+    one = _Settled(found.verdict, found.reason, found.claim.text, command, found.certificate, found.drive)
+    return one.shown(replace(ask, compare=True)) | {"sets": list(pair)}
 
 
-def command(name: str, words: list[str], draft: Draft, home: Definitions, options: list[str]) -> str:
+def _command(name: str, words: list[str], ask: Ask, home: Definitions, asked: Settings) -> str:
     """The command line that gives the same answer; the draft is in ``edit.spec`` where it says something."""
-    said = ["roadproof", name, *words]
-    sets = home.sets
-    said += [x for one in sets if one != "base" or len(sets) > 1 for x in ("--set", one)]
-    said += ["--spec", FILE] if {EDIT, BEFORE} & {*sets} else []
-    for option, reading in draft.options.items():
-        said += ["--option", f"{option}={reading}"]
-    for parameter, value in draft.params.items():
-        said += ["--param", f"{parameter}={value}"]
-    return shlex.join([*said, *options])
+    definitions = groups.Definitions(
+        sets=home.sets,
+        specs=(FILE,) if {EDIT, BEFORE} & {*home.sets} else (),
+        readings=ask.draft.options or None,
+        params=ask.draft.params or None,
+    )
+    return command_line(name, words, definitions, asked)

@@ -6,8 +6,9 @@ names that it allows; no path that the page names is ever opened.
 
 import re
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,20 +16,19 @@ import roadproof as rp
 from roadproof.errors import InputError, RoadproofError, UsageError
 from roadproof.evidence.drive_file import SCHEMAS_READ as DRIVES
 from roadproof.evidence.drive_file import read_drive
-from roadproof.evidence.strict import Fields, parse_json
+from roadproof.evidence.strict import parse_json
 from roadproof.frontends.report.viewer_recorded import recorded_data
-from roadproof.frontends.studio.requests import draft_of, set_of, text_of
+from roadproof.frontends.studio.requests import MOST_FILES, Answer, Ask, Say
 from roadproof.frontends.studio.showing import view
 from roadproof.recordings.evaluate.one_trace import OneTrace, read_pair, read_samples
 
-MOST_FILES = 12
 MOST_PAIRS = 2000
 _NAME = re.compile(r"\w[\w .()+-]{0,80}\.(json|csv|xosc|xodr|xml|toml)")
 
 
-def drop(ask: Mapping[str, Any], say: Any) -> dict[str, Any]:
+def drop(ask: Ask, say: Say) -> Answer:
     """What was dropped: a drive, a certificate, or a recording with a list of its pairs and matches."""
-    names = [name for name, _ in _files(ask)]
+    names = _names(ask)
     if len(names) == 1 and names[0].endswith(".json"):
         return _evidence(ask, say)
     say("reading the recording")
@@ -36,37 +36,34 @@ def drop(ask: Mapping[str, Any], say: Any) -> dict[str, Any]:
         if len(names) == 1 and names[0].endswith((".csv", ".xosc")) and "_tracks" not in names[0]:
             return {"view": _monitored(ask, read_samples(folder / names[0]))}
         say("searching for danger")
-        draft = draft_of(ask)
-        found = rp.evaluate(folder, using=draft.definitions(set_of(ask)), detectors=False, jobs=1)
+        found = rp.evaluate(folder, using=ask.home, detectors=False, jobs=1)
         pairs, matches = found.pairs().to_dicts(), found.matches().to_dicts()
-        return {
-            "recording": {"pairs": _plain(pairs[:MOST_PAIRS]), "matches": _plain(matches), "files": names}
-        }
+        told = {"pairs": _plain(pairs[:MOST_PAIRS]), "matches": _plain(matches), "files": names}
+        return {"recording": told}
 
 
-def pair(ask: Mapping[str, Any], say: Any) -> dict[str, Any]:
+def pair(ask: Ask, say: Say) -> Answer:
     """Vehicles of a recording that was dropped, with the question and what is watched monitored on them."""
-    data = Fields(ask.get("pair"), "pair", ("recording", "vehicles", "first", "last"))
-    ids = ",".join(str(_whole(x)) for x in data.items("vehicles"))
+    if ask.pair is None:
+        raise InputError("question: 'pair' is missing")
+    wanted, ids = ask.pair, ",".join(map(str, ask.pair.vehicles))
     say(f"reading vehicles {ids}")
     with _laid_out(ask) as folder:
-        tracks = f"{data.text('recording')}_tracks.csv"
-        if tracks not in [name for name, _ in _files(ask)]:
-            raise InputError(f"recording={data.text('recording')[:40]}: it is not among the files")
-        frames = (data.whole("first"), data.whole("last"))
-        return {"view": _monitored(ask, read_pair(f"{folder / tracks}:{ids}", frames))}
+        tracks = f"{wanted.recording}_tracks.csv"
+        if tracks not in _names(ask):
+            raise InputError(f"recording={wanted.recording[:40]}: it is not among the files")
+        return {"view": _monitored(ask, read_pair(f"{folder / tracks}:{ids}", (wanted.first, wanted.last)))}
 
 
-def _evidence(ask: Mapping[str, Any], say: Any) -> dict[str, Any]:
-    [(name, content)] = _files(ask)
-    data = parse_json(content, name)
+def _evidence(ask: Ask, say: Say) -> Answer:
+    [name], [file] = _names(ask), ask.files
+    data = parse_json(file.content, name)
     if isinstance(data, dict) and data.get("schema") in DRIVES:
-        file = read_drive(data, name)
-        return {"drive": data, "view": view(draft_of(ask), file, {**ask, "formula": file.formula})}
+        drive = read_drive(data, name)
+        return {"drive": data, "view": view(replace(ask, formula=drive.formula), drive)}
     say("checking the file")
-    draft = draft_of(ask)
     with _laid_out(ask) as folder:
-        specs = []
+        specs, draft = [], ask.draft
         if draft.text.strip() or draft.before is not None:
             (folder / "edit.spec").write_text(draft.file(), "utf-8")
             specs = [folder / "edit.spec"]
@@ -77,12 +74,10 @@ def _evidence(ask: Mapping[str, Any], say: Any) -> dict[str, Any]:
     return {"checked": {"verdict": word, "accepted": checked.accepted, "formula": found.claim, "told": told}}
 
 
-def _monitored(ask: Mapping[str, Any], trace: OneTrace) -> dict[str, Any]:
+def _monitored(ask: Ask, trace: OneTrace) -> Answer:
     """The document of a trace: the question, where it can be asked of these vehicles, and what is watched."""
-    draft = draft_of(ask)
-    home = draft.definitions(set_of(ask))
-    asked = [("question", text_of(ask, "formula"))]
-    asked += [("watch", x) for x in Fields(ask, "question").texts("watches")] if "watches" in ask else []
+    home = ask.home
+    asked = [("question", ask.formula), *(("watch", x) for x in ask.watches)]
     observed, refused = [], []
     for role, formula in asked:
         try:
@@ -94,43 +89,33 @@ def _monitored(ask: Mapping[str, Any], trace: OneTrace) -> dict[str, Any]:
     return document
 
 
-def _files(ask: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """The names and contents that were sent. Raises ``UsageError``, ``InputError``."""
-    every = Fields(ask, "question").items("files")
-    if not 1 <= len(every) <= MOST_FILES:
-        raise UsageError(f"{len(every)} files: drop 1 to {MOST_FILES} at once")
-    found = []
-    for one in every:
-        data = Fields(one, "file", ("name", "content"))
-        name = data.text("name")
+def _names(ask: Ask) -> list[str]:
+    """The names of the files that were sent. Raises ``UsageError``."""
+    names = [x.name for x in ask.files]
+    if not 1 <= len(names) <= MOST_FILES:
+        raise UsageError(f"{len(names)} files: drop 1 to {MOST_FILES} at once")
+    for name in names:
         if not _NAME.fullmatch(name):
             raise UsageError(
                 f"file {name[:60]!r}: drop drives and certificates (.json), samples (.csv, .xosc), or the "
                 "files of a recording (01_tracks.csv, 01_tracksMeta.csv, 01_recordingMeta.csv) together"
             )
-        found.append((name, data.text("content")))
-    return found
+    return names
 
 
 @contextmanager
-def _laid_out(ask: Mapping[str, Any]) -> Iterator[Path]:
+def _laid_out(ask: Ask) -> Iterator[Path]:
     """A folder of our own with the files in it, for as long as it is needed."""
     with tempfile.TemporaryDirectory(prefix="roadproof-studio-") as place:
-        for name, content in _files(ask):
-            (Path(place) / name).write_text(content, "utf-8")
+        for name, file in zip(_names(ask), ask.files, strict=True):
+            (Path(place) / name).write_text(file.content, "utf-8")
         try:
             yield Path(place)
         except RoadproofError as error:
             raise InputError(str(error).replace(f"{place}/", "")) from None
 
 
-def _whole(value: object) -> int:
-    if not isinstance(value, int) or isinstance(value, bool):
-        raise UsageError(f"vehicle {str(value)[:40]}: name it by its number")
-    return value
-
-
-def _plain(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+def _plain(rows: list[dict[str, Any]]) -> list[Answer]:
     return [{name: x if isinstance(x, str | bool) else _number(x) for name, x in row.items()} for row in rows]
 
 

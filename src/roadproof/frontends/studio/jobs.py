@@ -1,13 +1,13 @@
 """What a worker does for a page: each job is a question of the front door, asked with the page's words."""
 
 from collections.abc import Callable, Mapping
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
+from roadproof.frontends.api.drafting import Draft
 from roadproof.frontends.studio import asking, dropping, naming, showing
+from roadproof.frontends.studio.requests import Answer, Ask, Say, read_ask
 
-Ask: TypeAlias = Mapping[str, Any]
-Say: TypeAlias = Callable[[str], None]
-Job: TypeAlias = Callable[[Ask, Say], dict[str, Any]]
+Job: TypeAlias = Callable[[Ask, Say], Answer]
 
 # Jobs that take a moment, and those that may take long and can be stopped.
 LIVE: Mapping[str, Job] = {
@@ -26,22 +26,14 @@ LONG: Mapping[str, Job] = {
 }
 
 
-def answer(kind: str, ask: Ask, say: Say) -> dict[str, Any]:
+def answer(kind: str, ask: object, say: Say) -> Answer:
     """The answer to one job. Raises ``RoadproofError``."""
-    return {**LIVE, **LONG}[kind](ask, say)
+    return {**LIVE, **LONG}[kind](read_ask(ask), say)
 
 
 def warm_up(long: bool) -> None:
     """Read a formula, for ``long`` jobs find a drive: so the first of a user is as quick as the next."""
-    naming.read({**_FIRST, "formulas": {"formula": "1"}}, None)
+    first = Ask(Draft(), formula="v_lon(SV) > 1 m/s", formulas={"formula": "1"})
+    naming.read(first, None)
     if long:
-        asking.find({**_FIRST, "objective": "smooth"}, lambda stage: None)
-
-
-_FIRST: Ask = {
-    "draft": {"base": "base", "text": "", "before": None, "options": {}, "params": {}},
-    "set": "edit",
-    "formula": "v_lon(SV) > 1 m/s",
-    "negated": False,
-    "count": 1,
-}
+        asking.find(first, lambda stage: None)

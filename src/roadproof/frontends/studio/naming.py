@@ -1,39 +1,30 @@
 """Words for the editor: what there is to be named, what a name means, and what is wrong with a text."""
 
-from collections.abc import Mapping
-from typing import Any
-
-from roadproof.errors import RoadproofError
+from roadproof.errors import Position, RoadproofError
 from roadproof.evidence.codec import write
-from roadproof.evidence.strict import Fields
 from roadproof.frontends.api.drafting import mistakes
-from roadproof.frontends.studio.requests import draft_of, set_of, text_of
+from roadproof.frontends.studio.requests import Answer, Ask
 from roadproof.library.elaborate import read_claim, signature
 from roadproof.library.scenario_references import read_query
 from roadproof.library.scenarios import number_in, scenario_number
 from roadproof.library.specification import Specification, source_of
 from roadproof.library.words import words_of
 from roadproof.logic.show import as_syntax, decimal, text
-from roadproof.logic.syntax import Definition
+from roadproof.logic.syntax import Definition, ParameterDeclaration
 from roadproof.world.signals import SIGNALS, SIZES
 
 WIDTH = 84
 LONGEST_EXPANSION = 4000  # characters of a definition that is written out
 
 
-def names(ask: Mapping[str, Any], say: object) -> dict[str, Any]:
+def names(ask: Ask, say: object) -> Answer:
     """Everything that can be named, for completion: definitions, parameters, signals, sets."""
-    home = draft_of(ask).definitions(set_of(ask)).specification
+    home = ask.home.specification
     library = home.library
     return {
         "definitions": [_described(home, x) for x in home.definitions.values()],
         "parameters": [
-            {
-                "name": p.name,
-                "value": f"{decimal(abs(p.value)) or p.value} {p.unit}",
-                "bound": p.bound,
-                "doc": p.doc,
-            }
+            {"name": p.name, "value": _value(p), "bound": p.bound, "doc": p.doc}
             for p in library.parameters.values()
         ],
         "signals": [{"name": n, "doc": about.unit} for n, about in SIGNALS.items()]
@@ -50,20 +41,27 @@ def names(ask: Mapping[str, Any], say: object) -> dict[str, Any]:
     }
 
 
-def _described(home: Specification, definition: Definition) -> dict[str, Any]:
+def _value(parameter: ParameterDeclaration) -> str:
+    return f"{decimal(abs(parameter.value)) or parameter.value} {parameter.unit}"
+
+
+def _described(home: Specification, definition: Definition) -> Answer:
     parameters = ", ".join(f"{b.name}: {b.sort}" for b in definition.parameters)
     return {"name": definition.name, "parameters": parameters, "doc": home.describe(definition)}
 
 
-def definition(ask: Mapping[str, Any], say: object) -> dict[str, Any]:
+def definition(ask: Ask, say: object) -> Answer:
     """One definition: where it is from, its text, and written out."""
-    home = draft_of(ask).definitions(set_of(ask)).specification
-    name = text_of(ask, "name")
+    home, name = ask.home.specification, ask.name
     known = home.library.parameters.get(name)
     if known is not None:
         bound = f" where {name} {known.bound} 0" if known.bound else ""
-        value = f"{decimal(abs(known.value)) or known.value} {known.unit}"
-        return {"name": name, "text": f"param {name} = {value}{bound}", "doc": known.doc, "expansion": ""}
+        return {
+            "name": name,
+            "text": f"param {name} = {_value(known)}{bound}",
+            "doc": known.doc,
+            "expansion": "",
+        }
     found = home.definitions.get(name)
     if found is None:
         return {"name": name, "text": "", "doc": "", "expansion": ""}
@@ -90,36 +88,27 @@ def _expansion(home: Specification, name: str) -> str:
     return written if len(written) <= LONGEST_EXPANSION else f"{written[:LONGEST_EXPANSION]} …"
 
 
-def read(ask: Mapping[str, Any], say: object) -> dict[str, Any]:
+def read(ask: Ask, say: object) -> Answer:
     """What is wrong with a draft and with the formulas that are asked of it, and what they are called."""
-    draft = draft_of(ask)
-    formulas = Fields(ask, "question").named_texts("formulas")
-    found = mistakes(draft, formulas)
     told = [
-        {
-            "where": x.where,
-            "message": x.message,
-            "hint": x.hint,
-            "at": None
-            if x.position is None
-            else [
-                [x.position.line, x.position.column],
-                [x.position.end_line, x.position.end_column],
-            ],
-        }
-        for x in found
+        {"where": x.where, "message": x.message, "hint": x.hint, "at": x.position and _ends(x.position)}
+        for x in mistakes(ask.draft, ask.formulas)
     ]
-    return {"mistakes": told, "formulas": _about(ask, formulas)}
+    return {"mistakes": told, "formulas": _about(ask)}
 
 
-def _about(ask: Mapping[str, Any], formulas: Mapping[str, str]) -> dict[str, Any]:
+def _ends(at: Position) -> list[list[int]]:
+    return [[at.line, at.column], [at.end_line, at.end_column]]
+
+
+def _about(ask: Ask) -> Answer:
     """What each formula that can be read is called."""
     try:
-        home = draft_of(ask).definitions(set_of(ask)).specification
+        home = ask.home.specification
     except RoadproofError:
         return {}
-    about: dict[str, Any] = {}
-    for name, formula in formulas.items():
+    about: Answer = {}
+    for name, formula in ask.formulas.items():
         try:
             query = read_query(home, formula)[1]
         except RoadproofError:

@@ -1,61 +1,128 @@
 """What a page asks, as values: every field is read strictly, since anything may be sent."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any
+from typing import Any, TypeAlias
 
 from roadproof.errors import UsageError
-from roadproof.evidence.strict import Fields
+from roadproof.evidence.codec import read
+from roadproof.frontends.api.definitions import Definitions
 from roadproof.frontends.api.drafting import BEFORE, EDIT, Draft
+from roadproof.frontends.settings.option import Settings
+from roadproof.frontends.settings.questions import Prove, Witness
 
 LONGEST_TEXT = 200_000
 LATEST = 3600
+MOST_DRIVES = 12
+MOST_FILES = 12
+MOST_WATCHES = 12
+FORM: Mapping[str, tuple[type[Settings], tuple[str, ...]]] = {
+    "find": (Witness, ("objective",)),
+    "prove": (Prove, ("declared",)),
+}
+"""The options that the page offers for a job, of the question that it asks."""
+Say: TypeAlias = Callable[[str], None]
+Answer: TypeAlias = dict[str, object]
 
 
-def draft_of(ask: Mapping[str, Any]) -> Draft:
-    """The definitions that a job is about: ``draft`` with base, text, before, options, params."""
-    data = Fields(ask.get("draft", {}), "draft", ("base", "text", "before", "options", "params"))
-    before = None if data.content.get("before") is None else _text(data.text("before"), "before")
-    return Draft(
-        data.text("base"),
-        _text(data.text("text"), "text"),
-        before,
-        data.named_texts("options"),
-        data.named_texts("params"),
-    )
+@dataclass(frozen=True)
+class File:
+    """A file that was dropped on the page."""
+
+    name: str
+    content: str
 
 
-def text_of(ask: Mapping[str, Any], name: str) -> str:
-    """A text. Raises ``UsageError``, ``InputError``."""
-    return _text(Fields(ask, "question").text(name), name)
+@dataclass(frozen=True)
+class Pair:
+    """Vehicles of a recording that was dropped, and the frames to look at."""
+
+    recording: str
+    vehicles: tuple[int, ...]
+    first: int
+    last: int
 
 
-def set_of(ask: Mapping[str, Any], name: str = "set") -> str:
-    """The spec set that is asked about: edit, before, or the one below them."""
-    found = text_of(ask, name)
-    return found if found in (EDIT, BEFORE) else draft_of(ask).base
+@dataclass(frozen=True)
+class Part:
+    """A part of the question by its place, and the instant (s) at which it is to be explained."""
+
+    part: int
+    at: float
 
 
-def count_of(ask: Mapping[str, Any], name: str, most: int) -> int:
-    """A whole number from 1 to ``most``."""
-    value = ask.get(name, 1)
-    if not isinstance(value, int) or isinstance(value, bool) or not 1 <= value <= most:
-        raise UsageError(f"{name}={str(value)[:40]}: ask for 1 to {most}")
-    return value
+@dataclass(frozen=True)
+class Ask:
+    """What the page asks; each job reads the fields that it needs. Raises ``UsageError``."""
+
+    draft: Draft
+    kind: str = ""
+    set: str = EDIT
+    formula: str = ""
+    watches: tuple[str, ...] = ()
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    negated: bool = False
+    count: int = 1
+    forward: bool = False
+    compare: bool = False
+    drive: Any = None
+    explain: Part | None = None
+    files: tuple[File, ...] = ()
+    pair: Pair | None = None
+    name: str = ""
+    formulas: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for name, value in (
+            ("text", self.draft.text),
+            ("before", self.draft.before),
+            ("formula", self.formula),
+        ):
+            if value is not None and len(value) > LONGEST_TEXT:
+                raise UsageError(f"{name} has {len(value)} characters: at most {LONGEST_TEXT} are read")
+        if not 1 <= self.count <= MOST_DRIVES:
+            raise UsageError(f"count={self.count}: ask for 1 to {MOST_DRIVES}")
+        if len(self.watches) > MOST_WATCHES:
+            raise UsageError(f"watches={len(self.watches)}: at most {MOST_WATCHES} formulas are watched")
+        if self.explain is not None and not 0 <= self.explain.at <= LATEST:
+            raise UsageError(f"at={self.explain.at}: explain an instant from 0 to {LATEST} s")
+
+    @property
+    def home(self) -> Definitions:
+        """The definitions that are asked about: edit, before, or the set below them."""
+        return self.draft.definitions(self.set if self.set in (EDIT, BEFORE) else self.draft.base)
+
+    @property
+    def explained(self) -> tuple[int, Fraction] | None:
+        """The part that is to be explained, by its place, and the instant."""
+        found = self.explain
+        return None if found is None else (found.part, Fraction(found.at).limit_denominator(10**6))
+
+    def options(self, job: str) -> dict[str, Any]:
+        """The options that the page has chosen for a job. Raises ``UsageError``."""
+        question, names = FORM[job]
+        for name, value in self.settings.items():
+            if name not in names or type(value) is not type(getattr(question, name)):
+                raise UsageError(f"{name[:40]}={str(value)[:40]}: the page has no such option of {job}")
+        return dict(self.settings)
 
 
-def explain_of(ask: Mapping[str, Any]) -> tuple[int, Fraction] | None:
-    """A part by its place and an instant in seconds, where something is to be explained."""
-    if ask.get("explain") is None:
-        return None
-    data = Fields(ask["explain"], "explain", ("part", "at"))
-    at = data.get("at")
-    if not isinstance(at, int | float) or isinstance(at, bool) or not 0 <= at <= LATEST:
-        raise UsageError(f"at={str(at)[:40]}: explain an instant from 0 to {LATEST} s")
-    return data.whole("part"), Fraction(at).limit_denominator(10**6)
+def read_ask(content: object) -> Ask:
+    """What a page asks with a job. Raises ``InputError``, ``UsageError``."""
+    return read(Ask, content, "question")
 
 
-def _text(value: str, name: str) -> str:
-    if len(value) > LONGEST_TEXT:
-        raise UsageError(f"{name} has {len(value)} characters: at most {LONGEST_TEXT} are read")
-    return value
+def form() -> list[dict[str, object]]:
+    """The options that the page offers, as it shows them."""
+    return [
+        {
+            "job": job,
+            "name": name,
+            "help": question.options()[name].help,
+            "choices": question.options()[name].choices,
+            "default": getattr(question, name),
+        }
+        for job, (question, names) in FORM.items()
+        for name in names
+    ]

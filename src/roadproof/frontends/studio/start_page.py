@@ -7,6 +7,7 @@ from typing import Any
 
 from roadproof.errors import InputError
 from roadproof.evidence.strict import read_json
+from roadproof.frontends.studio.requests import form
 from roadproof.library.specification import read_specification
 
 
@@ -18,8 +19,9 @@ class Begun:
     drives: tuple[tuple[str, Any], ...] = ()
 
     def as_data(self) -> dict[str, Any]:
-        """As plain data."""
-        return {"text": self.text, "drives": [{"name": name, "drive": x} for name, x in self.drives]}
+        """As plain data, with the options that the page offers."""
+        drives = [{"name": name, "drive": x} for name, x in self.drives]
+        return {"text": self.text, "drives": drives, "form": form()}
 
 
 def begin_with(paths: Sequence[Path]) -> Begun:

@@ -109,7 +109,7 @@ let found = { text: "", count: 0 };
 
 /** Find a drive; `negated`: one without it; `next`: one that differs clearly from those before. */
 export async function find({ negated = false, next = false } = {}) {
-  const question = { ...state.question.value, objective: state.kept.objective.value, negated };
+  const question = { ...state.question.value, settings: state.settingsOf("find"), negated };
   const text = JSON.stringify(question);
   const count = next && found.text === text ? found.count + 1 : next ? 2 : 1;
   const title = negated ? "Find one without it" : count > 1 ? `Find drive ${count}` : "Find a drive";
@@ -135,8 +135,8 @@ export function explain() {
 }
 
 export async function prove() {
-  const declared = state.kept.declared.value;
-  const answer = await askLong("Prove", "prove", { ...state.question.value, declared });
+  const settings = state.settingsOf("prove");
+  const answer = await askLong("Prove", "prove", { ...state.question.value, settings });
   if (answer) take(answer);
 }
 

@@ -103,6 +103,7 @@ async function begin() {
   state.theme.value = dark ? "dark" : "light";
   const begun = await start();
   state.drives.value = begun.drives;
+  state.form.value = begun.form;
   const said = await fromAddress();
   if (said) state.takeOver(said);
   else {

@@ -5,7 +5,18 @@ import * as actions from "studio/actions";
 import { Editor } from "studio/editor";
 import * as state from "studio/state";
 
-const OBJECTIVES = ["smooth", "severe", "mild", "short", "margin", "any"];
+// The options of a job, as the server describes them: a list of words to choose from, or a switch.
+function Options({ job }) {
+  return state.form.value.filter((x) => x.job === job).map((x) => {
+    const value = state.settingOf(x);
+    const set = (chosen) => (state.kept.settings.value = { ...state.kept.settings.value, [x.name]: chosen });
+    return x.choices
+      ? html`<select aria-label=${x.name} title=${x.help} value=${value} onChange=${(e) => set(e.target.value)}>
+          ${x.choices.map((choice) => html`<option>${choice}</option>`)}
+        </select>`
+      : html`<label title=${x.help}><input type="checkbox" checked=${value} onChange=${(e) => set(e.target.checked)} /> ${x.name}</label>`;
+  });
+}
 
 export function Bar() {
   const { kept, names, about, job } = state;
@@ -36,15 +47,11 @@ export function Bar() {
       </div>
       <div class="buttons">
         <button class="main" title="f" onClick=${() => actions.find()}>Find a drive</button>
-        <select aria-label="What the drive should be like" value=${kept.objective.value} onChange=${(e) => (kept.objective.value = e.target.value)}>
-          ${OBJECTIVES.map((x) => html`<option>${x}</option>`)}
-        </select>
+        <${Options} job="find" />
         <button title="n" onClick=${() => actions.find({ next: true })}>Next</button>
         <button title="w" onClick=${() => actions.find({ negated: true })}>Find one without it</button>
         <button title="p" onClick=${() => actions.prove()}>Prove</button>
-        <select aria-label="For which values of parameters" value=${kept.declared.value ? "declared" : "all"} onChange=${(e) => (kept.declared.value = e.target.value === "declared")}>
-          <option value="all">for all values</option><option value="declared">at declared values</option>
-        </select>
+        <${Options} job="prove" />
         <button title="c" onClick=${() => actions.compare()}>Compare</button>
         <button title="e" aria-pressed=${state.explain.value !== null} onClick=${() => actions.explain()}>Explain</button>
       </div>

@@ -11,12 +11,12 @@ export const kept = {
   params: signal({}),
   formula: signal("scenario_1(SV,POV,L)"),
   watches: signal([]),
-  objective: signal("smooth"),
-  declared: signal(false),
+  settings: signal({}), // options of jobs that differ from their defaults, by name
   drive: signal(null),
   compared: signal(false),
 };
 
+export const form = signal([]); // the options that the page offers: {job, name, help, choices, default}
 export const names = signal(null); // what there is to be named
 export const view = signal(null); // the document of the drive that is shown
 export const mistakes = signal([]);
@@ -50,6 +50,17 @@ export const question = computed(() => ({
   formula: kept.formula.value,
   watches: kept.watches.value.filter((x) => x.trim()),
 }));
+
+/** The value of an option of the page. */
+export function settingOf(option) {
+  return kept.settings.value[option.name] ?? option.default;
+}
+
+/** The options of a job, by name. */
+export function settingsOf(job) {
+  const own = form.value.filter((x) => x.job === job);
+  return Object.fromEntries(own.map((x) => [x.name, settingOf(x)]));
+}
 
 /** All that is kept, as plain data. */
 export function asData() {
