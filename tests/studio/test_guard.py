@@ -12,8 +12,8 @@ import pytest
 from roadproof.errors import InputError, RoadproofError
 from roadproof.frontends.api.drafting import QUESTION
 from roadproof.frontends.settings.questions import Witness
+from roadproof.frontends.studio import jobs
 from roadproof.frontends.studio.dropping import drop
-from roadproof.frontends.studio.jobs import answer
 from roadproof.frontends.studio.pages import served
 from roadproof.frontends.studio.requests import form, read_ask
 from roadproof.frontends.studio.showing import marks_of
@@ -299,7 +299,7 @@ def test_the_form_of_the_page_follows_the_options_of_questions() -> None:
 )
 def test_questions_of_a_page_are_read_strictly(asked: dict[str, Any], told: str) -> None:
     with pytest.raises(RoadproofError, match=re.escape(told)):
-        answer("find", {"draft": {}, "formula": "true", **asked}, lambda stage: None)
+        jobs.answer("find", {"draft": {}, "formula": "true", **asked}, lambda stage: None)
 
 
 def test_marks_are_of_places_in_the_texts_of_the_editors_alone() -> None:
