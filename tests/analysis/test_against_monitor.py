@@ -16,8 +16,7 @@ import roadproof as rp
 from asking import prove
 from monitoring.cases import random_traffic
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.coverage.claims import in_either_role, sectors_of
-from roadproof.analysis.coverage.classes import GapClasses
+from roadproof.analysis.coverage.classes import GapClasses, in_either_role, sectors_of
 from roadproof.analysis.coverage.traffic import disturbances_in, recordings_in
 from roadproof.analysis.overlap import Meeting, conjunctions
 from roadproof.analysis.redundancy import changes_of

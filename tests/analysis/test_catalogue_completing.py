@@ -29,7 +29,7 @@ from roadproof.analysis.catalogue.ranges import Reach
 from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, Freedom, show
 from roadproof.analysis.catalogue.traces import courses_of
 from roadproof.analysis.catalogue.why import Course, why_none
-from roadproof.analysis.coverage import claims, found, settling, study
+from roadproof.analysis.coverage import classes, found, settling, study
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.analysis.coverage.classes import near_miss
 from roadproof.errors import UsageError
@@ -107,7 +107,7 @@ def surveyed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Catalog
         patch.setattr(found, "simple_drives", lambda road, car: islice(simple(road, car), 0, None, 60))
         patch.setattr(gaps, "ROADS", ("main-2",))
         patch.setattr(study, "CHUNKS", 1)
-        patch.setattr(claims, "PROOF", 1.0)
+        patch.setattr(classes, "PROOF", 1.0)
         patch.setattr(settling, "LONG_PROOF", 2.0)
         report = folder / "report"
         made = catalogue(CUT_IN, among="4", classes=False, gaps=True, effort=3, jobs=1, out=report)

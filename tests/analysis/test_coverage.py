@@ -8,26 +8,41 @@ import pytest
 
 from asking import prove
 from roadproof.analysis.basis import Basis, ProofResult
-from roadproof.analysis.coverage import needed
-from roadproof.analysis.coverage.answers import Answers, ClassAnswer
-from roadproof.analysis.coverage.claims import (
+from roadproof.analysis.coverage import found as needed
+from roadproof.analysis.coverage.answers import (
+    Answers,
+    ClassAnswer,
+    GapTrace,
+    GapTraffic,
+    verdict_on,
+    with_counts,
+)
+from roadproof.analysis.coverage.classes import (
     PROOF,
+    GapClasses,
+    GapGroup,
+    GapSurvey,
+    Part,
     claims_of,
     in_either_role,
     missed,
+    parts_of,
     replaced_in,
     sectors_of,
     sets_between,
     two_vehicle_numbers,
 )
-from roadproof.analysis.coverage.classes import GapClasses, GapGroup, GapSurvey
-from roadproof.analysis.coverage.found import FoundGap, Trials, find_among_simple
+from roadproof.analysis.coverage.found import (
+    HORIZON,
+    FoundGap,
+    Trials,
+    find_among_simple,
+    find_need,
+    replaced_by,
+    simple_drives,
+)
 from roadproof.analysis.coverage.minimal import simplest
-from roadproof.analysis.coverage.needed import find_need, replaced_by
-from roadproof.analysis.coverage.occurring import GapTrace, GapTraffic, verdict_on, with_counts
-from roadproof.analysis.coverage.parts import Part, parts_of
 from roadproof.analysis.coverage.settling import ClassGroup
-from roadproof.analysis.coverage.simple import HORIZON, simple_drives
 from roadproof.errors import InputError
 from roadproof.evidence.certificate import to_json
 from roadproof.evidence.drive_file import DriveFile

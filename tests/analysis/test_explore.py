@@ -12,12 +12,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roadproof.analysis.explore import extreme, never, search, study, values
-from roadproof.analysis.explore.answer import Explorable, ExplorationResult, Extreme, PointFinding
+from roadproof.analysis.explore import extreme, search, study, values
+from roadproof.analysis.explore.answer import (
+    Explorable,
+    ExplorationResult,
+    Extreme,
+    PointFinding,
+    Sense,
+    Variable,
+    between,
+    read_measure,
+)
 from roadproof.analysis.explore.bracket import Bracket, range_of, starting_ranges
 from roadproof.analysis.explore.extreme import ExtremeQuestion, find_extreme, find_extremes
-from roadproof.analysis.explore.knobs import Variable, between
-from roadproof.analysis.explore.measure import Sense, read_measure
 from roadproof.analysis.explore.search import (
     MOST_STEPS,
     DriveClaim,
@@ -26,6 +33,7 @@ from roadproof.analysis.explore.search import (
     dt_of,
     fit_grid,
     look,
+    never,
     stand_ins,
     values_of,
 )
@@ -526,7 +534,7 @@ def test_an_extreme_is_bracketed_by_proofs() -> None:
 )
 def test_what_is_proved_at_values(text: str, proved: bool) -> None:
     search = search_at(text, rho=F("0.5"))
-    certificate = never.never(search, search.query, 2.0)
+    certificate = never(search, search.query, 2.0)
     assert (certificate is not None) == proved
 
 

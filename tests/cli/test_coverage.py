@@ -9,7 +9,8 @@ import pytest
 
 from planting import plant
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.coverage import occurring, study
+from roadproof.analysis.coverage import answers as occurring
+from roadproof.analysis.coverage import study
 from roadproof.analysis.coverage.classes import GapClasses, GapGroup, GapSurvey
 from roadproof.analysis.coverage.found import FoundGap, Trials
 from roadproof.analysis.coverage.study import Coverage

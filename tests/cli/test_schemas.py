@@ -14,7 +14,7 @@ from referencing import Registry, Resource
 import roadproof as rp
 from cli.test_coverage import components
 from roadproof.analysis.coverage import study
-from roadproof.analysis.coverage.needed import Need
+from roadproof.analysis.coverage.found import Need
 from roadproof.analysis.coverage.study import Coverage
 from roadproof.evidence.drive_file import load_drive, read_drive
 from roadproof.evidence.heading import heading

@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from evidence.test_drive_file import FILE
-from roadproof.analysis.coverage.claims import claims_of
+from roadproof.analysis.coverage.classes import claims_of
 from roadproof.engines.prove.properties import find_label
 from roadproof.errors import InputError
 from roadproof.evidence.answers.coverage import Entries, KeptClass

@@ -18,9 +18,15 @@ from roadproof.analysis.classify.classes import Class
 from roadproof.analysis.classify.drives import Example
 from roadproof.analysis.classify.shares import Shares
 from roadproof.analysis.classify.study import ClassificationResult
-from roadproof.analysis.explore.answer import Boundary, Explorable, ExplorationResult, Extreme, PointFinding
-from roadproof.analysis.explore.knobs import Variable
-from roadproof.analysis.explore.measure import read_measure
+from roadproof.analysis.explore.answer import (
+    Boundary,
+    Explorable,
+    ExplorationResult,
+    Extreme,
+    PointFinding,
+    Variable,
+    read_measure,
+)
 from roadproof.engines.search.ask import Search
 from roadproof.errors import InputError
 from roadproof.evidence.answers.classify import Doubt

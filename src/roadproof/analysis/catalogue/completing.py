@@ -15,7 +15,7 @@ from roadproof.analysis.classify.classes import Class
 from roadproof.analysis.classify.drives import Example, find_examples
 from roadproof.analysis.classify.text import with_classes, write_classes
 from roadproof.analysis.coverage.answers import ClassAnswer
-from roadproof.analysis.explore.measure import with_parts
+from roadproof.analysis.explore.answer import with_parts
 from roadproof.analysis.placing import judged_as
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.pool import Progress

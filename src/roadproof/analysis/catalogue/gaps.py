@@ -9,8 +9,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.coverage.classes import GapClasses, GapSurvey
-from roadproof.analysis.coverage.parts import Part
+from roadproof.analysis.coverage.classes import GapClasses, GapSurvey, Part
 from roadproof.analysis.coverage.study import Coverage
 from roadproof.drivers.restriction import restriction_of
 from roadproof.errors import UsageError

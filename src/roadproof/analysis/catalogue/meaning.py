@@ -21,7 +21,7 @@ from roadproof.analysis.catalogue.gaps import GapKinds
 from roadproof.analysis.catalogue.ranges import Reach, reached
 from roadproof.analysis.catalogue.showing import Freedom, names_shown, shown_by
 from roadproof.analysis.catalogue.sides import Sides, facts_on_sides, has_sides, unanswered_sides
-from roadproof.analysis.coverage import pieces
+from roadproof.analysis.coverage import answers as survey
 from roadproof.analysis.coverage.study import Coverage
 from roadproof.analysis.placing import judged_as
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question
@@ -53,7 +53,7 @@ class Pair:
 class GapPiece:
     """A part of the survey of gaps."""
 
-    piece: pieces.Piece
+    piece: survey.Piece
 
 
 Piece: TypeAlias = Abstract | Pair | Sides | GapPiece | Reach
@@ -64,7 +64,7 @@ Facts: TypeAlias = tuple[Fact, ...]
 class AboutGaps:
     """An answer of the survey of gaps."""
 
-    answer: pieces.Kept
+    answer: survey.Kept
 
 
 Kept: TypeAlias = Facts | AboutGaps
@@ -143,7 +143,7 @@ class Meanings:
             return
         names = {None if part is None else part.key: name for name, part in self.gaps.parts.items()}
         for piece in self.survey.pieces(gap_answers(known)):
-            if isinstance(piece, pieces.Component):
+            if isinstance(piece, survey.Component):
                 parts = self.survey.groups[piece.name].parts
                 if all(names[None if part is None else part.key] in self.shown for part in parts):
                     continue
@@ -287,7 +287,7 @@ def scenarios_shown(facts: Iterable[Fact]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(x for x in shown if number_in(x) is not None))
 
 
-def gap_answers(known: Mapping[str, Kept]) -> dict[str, pieces.Kept]:
+def gap_answers(known: Mapping[str, Kept]) -> dict[str, survey.Kept]:
     """What is known of gaps, by the names of the survey."""
     return {n.removeprefix(GAPS): x.answer for n, x in known.items() if isinstance(x, AboutGaps)}
 

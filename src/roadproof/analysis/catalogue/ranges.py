@@ -14,8 +14,8 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.showing import ConcreteAnswer, signal_of
+from roadproof.analysis.explore.answer import Sense, read_measure
 from roadproof.analysis.explore.extreme import ExtremeQuestion, find_extreme
-from roadproof.analysis.explore.measure import Sense, read_measure
 from roadproof.analysis.placing import judged_as
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import JudgedDrive

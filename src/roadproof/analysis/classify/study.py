@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import ClassVar
 
 from roadproof.analysis.basis import Basis, ProofResult
-from roadproof.analysis.classify.classes import Class, Classes
-from roadproof.analysis.classify.divide import Division
+from roadproof.analysis.classify.classes import Class, Classes, Division
 from roadproof.analysis.classify.drives import Example, find_examples
 from roadproof.analysis.classify.shares import Shares
 from roadproof.analysis.classify.text import ClassClaim, claims_of, with_classes, write_classes

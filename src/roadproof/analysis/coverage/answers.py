@@ -1,14 +1,17 @@
-"""What came out for a class of gaps, and the same as plain data."""
+"""What came out for a class of gaps, how often it occurs in recordings, and the same as plain data."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, TypeAlias
 
-from roadproof.analysis.coverage.classes import GapGroup
-from roadproof.analysis.coverage.parts import Part
+from roadproof.analysis.basis import ProofResult
+from roadproof.analysis.coverage.classes import GapGroup, Part
+from roadproof.analysis.coverage.found import FoundGap, Need
 from roadproof.analysis.study.evidence_store import EvidenceStore
 from roadproof.errors import InputError
 from roadproof.evidence.answers import coverage as kept
+from roadproof.evidence.answers.coverage import MissedTrace, SetVerdict, Traffic
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.elaborate import read_claim
@@ -136,3 +139,151 @@ def _read_gap(said: kept.Gap, shelf: EvidenceStore) -> Gap:
     assert drive is not None
     there = {road: judged for road, judged in drives.items() if judged is not None}
     return Gap(drive, said.first, said.caught_by, said.classes, there)
+
+
+@dataclass(frozen=True)
+class GapTrace:
+    """A disturbance between two vehicles of a recording; ``missed``: no scenario, any lane, either role.
+
+    ``classes``: the keys of the parts without which a scenario would hold; ``alone``: whether no single
+    condition is to blame.
+    """
+
+    recording: str
+    first: int
+    second: int
+    frames: tuple[int, int]
+    missed: bool
+    classes: tuple[str, ...]
+    alone: bool
+
+    @property
+    def pair(self) -> str:
+        return f"{self.first} and {self.second}, frames {self.frames[0]} to {self.frames[1]}"
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Its classes by their keys, that of gaps without a single condition to blame as ''."""
+        return (*self.classes, "") if self.alone else self.classes
+
+
+@dataclass(frozen=True)
+class GapTraffic:
+    """What recordings hold. ``repeats``: how many disturbances an earlier window has shown already."""
+
+    folder: Path
+    disturbances: int
+    missed: tuple[GapTrace, ...]
+    repeats: int
+
+    @property
+    def told(self) -> Traffic:
+        """What an index says of it."""
+        missed = tuple(MissedTrace(recording=x.recording, pair=x.pair, classes=x.keys) for x in self.missed)
+        return Traffic(
+            recordings=str(self.folder), disturbances=self.disturbances, repeats=self.repeats, missed=missed
+        )
+
+
+def with_counts(answer: ClassAnswer, traffic: GapTraffic) -> ClassAnswer:
+    """The answer with how often its class occurs. One that is proved empty and occurs is our fault."""
+    key = "" if answer.part is None else answer.part.key
+    traces = [trace for trace in traffic.missed if key in trace.keys]
+    if not traces:
+        return replace(answer, in_traffic=0)
+    where = f"recording {traces[0].recording}, vehicles {traces[0].pair}"
+    seen = replace(answer, in_traffic=len(traces), trace=where)
+    if answer.verdict is Verdict.WITNESSED:
+        return seen
+    broken = answer.verdict is Verdict.IMPOSSIBLE
+    verdict = Verdict.CROSSCHECK_FAILED if broken else answer.verdict
+    return replace(seen, verdict=verdict, reason=f"occurs in {where}")
+
+
+# --- all answers together --------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Survey:
+    """All answers together: claims that there is no gap, the classes of gaps, definitions that are needed."""
+
+    claims: tuple[ProofResult[Query], ...]
+    classes: tuple[ClassAnswer, ...]
+    needs: tuple[Need, ...]
+    traffic: GapTraffic | None = None
+
+    @property
+    def verdict(self) -> SetVerdict:
+        return verdict_on(self.claims, self.classes, self.traffic)
+
+
+def is_covered(claims: Sequence[ProofResult[Query]]) -> bool:
+    """Whether the set is proved to have no gap."""
+    return all(claim.verdict is Verdict.PROVED for claim in claims)
+
+
+def verdict_on(
+    claims: Sequence[ProofResult[Query]], classes: Sequence[ClassAnswer], traffic: GapTraffic | None
+) -> SetVerdict:
+    """The verdict on a set: CROSSCHECK-FAILED where traffic shows what is proved not to be."""
+    proved = is_covered(claims)
+    if any(x.verdict is Verdict.CROSSCHECK_FAILED for x in classes):
+        return Verdict.CROSSCHECK_FAILED
+    if proved and traffic is not None and traffic.missed:
+        return Verdict.CROSSCHECK_FAILED
+    if proved:
+        return Verdict.COVERED
+    return Verdict.GAPS if any(x.gaps for x in classes) else Verdict.UNKNOWN
+
+
+@dataclass(frozen=True)
+class CoverageClaim:
+    number: int
+    query: Query
+
+
+@dataclass(frozen=True)
+class NeededDefinition:
+    name: str
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """Some of the simple drives, on one of the survey's roads."""
+
+    road: int
+    number: int
+
+
+@dataclass(frozen=True)
+class Component:
+    """A group of classes by name, with gaps to begin with; ``lost``: why there may be too few of these."""
+
+    name: str
+    known: tuple[FoundGap, ...]
+    lost: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class GapScan:
+    """The gaps in some of the simple drives; ``lost``: why it was not looked through."""
+
+    found: tuple[FoundGap, ...]
+    lost: str = ""
+
+
+Piece: TypeAlias = CoverageClaim | NeededDefinition | Chunk | Component
+Kept: TypeAlias = ProofResult[Query] | Need | GapScan | Answers
+
+
+def name_of(piece: Piece) -> str:
+    """Under which name the answer to a piece is known."""
+    match piece:
+        case CoverageClaim(number):
+            return f"covered-{number}"
+        case NeededDefinition(name):
+            return f"needed-{name}"
+        case Chunk(road, number):
+            return f"simple-{road}-{number}"
+        case Component(name):
+            return name

@@ -5,11 +5,19 @@ from dataclasses import dataclass, replace
 from itertools import product
 
 from roadproof.analysis.coverage.answers import Answers, ClassAnswer, Gap
-from roadproof.analysis.coverage.claims import caught, in_either_role, starts_in
-from roadproof.analysis.coverage.classes import GapClasses, GapGroup, GapSurvey, exchanged, near_miss
+from roadproof.analysis.coverage.classes import (
+    GapClasses,
+    GapGroup,
+    GapSurvey,
+    Part,
+    caught,
+    exchanged,
+    in_either_role,
+    near_miss,
+    starts_in,
+)
 from roadproof.analysis.coverage.found import FoundGap, Trials
 from roadproof.analysis.coverage.minimal import simplest
-from roadproof.analysis.coverage.parts import Part
 from roadproof.analysis.placing import judged_as, placed
 from roadproof.engines.search.ask import ask
 from roadproof.errors import UsageError

@@ -10,22 +10,33 @@ from functools import cached_property
 from typing import ClassVar, TypeGuard
 
 from roadproof.analysis.basis import ProofResult
-from roadproof.analysis.coverage.answers import ClassAnswer, answers_in, group_name, record_of
-from roadproof.analysis.coverage.claims import PROOF, claims_of
-from roadproof.analysis.coverage.classes import GapClasses, GapGroup, GapSurvey
-from roadproof.analysis.coverage.found import FoundGap, Trials, find_among_simple
-from roadproof.analysis.coverage.needed import Need, find_need, parent_of, replaced_by
-from roadproof.analysis.coverage.occurring import GapTraffic, Survey, is_covered, with_counts
-from roadproof.analysis.coverage.parts import Part
-from roadproof.analysis.coverage.pieces import (
+from roadproof.analysis.coverage.answers import (
     Chunk,
+    ClassAnswer,
     Component,
     CoverageClaim,
     GapScan,
+    GapTraffic,
     Kept,
     NeededDefinition,
     Piece,
+    Survey,
+    answers_in,
+    group_name,
+    is_covered,
     name_of,
+    record_of,
+    with_counts,
+)
+from roadproof.analysis.coverage.classes import PROOF, GapClasses, GapGroup, GapSurvey, Part, claims_of
+from roadproof.analysis.coverage.found import (
+    FoundGap,
+    Need,
+    Trials,
+    find_among_simple,
+    find_need,
+    parent_of,
+    replaced_by,
 )
 from roadproof.analysis.coverage.settling import ClassGroup
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.analysis.basis import Basis
+from roadproof.analysis.coverage.answers import GapTrace, GapTraffic
 from roadproof.analysis.coverage.classes import GapClasses
-from roadproof.analysis.coverage.occurring import GapTrace, GapTraffic
 from roadproof.errors import InputError
 from roadproof.library.bind import bind
 from roadproof.library.scenarios import MIN_DANGER, PAIR

@@ -1,16 +1,157 @@
 """What is asked of an exploration, and what is answered: values."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
+from typing import Literal, TypeAlias
 
-from roadproof.analysis.explore.knobs import Point, Variable, stated
-from roadproof.analysis.explore.measure import Measure, with_parts
 from roadproof.engines.search.ask import Search
+from roadproof.errors import UsageError
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.library.specification import Query
+from roadproof.library.compose import always, both, comparison, eventually
+from roadproof.library.elaborate import read_claim, read_term
+from roadproof.library.specification import Query, Specification
+from roadproof.logic import syntax
+from roadproof.logic.parse import parse_claim
+from roadproof.logic.show import declared
+from roadproof.logic.syntax import BinaryOperator, Binding, Expression
+from roadproof.logic.terms import Dimension, Inverse, Term, Varying, leaves
 from roadproof.verdict import DriveVerdict, Verdict
+from roadproof.world.units import UNITS
+
+
+def with_parts(query: Query, parts: Sequence[Query]) -> Query:
+    """``query`` and all of ``parts``; as it was written where there are none."""
+    return both(query, *parts) if parts else query
+
+
+def compared(
+    search: Search, left: Expression, op: BinaryOperator, value: Fraction, dimension: Dimension
+) -> Query:
+    """``left op value`` in the names that the search has, where ``value`` is in SI units of ``dimension``."""
+    return comparison(search.specification, search.query.claim.given, left, op, value, dimension)
+
+
+Sense: TypeAlias = Literal["least", "greatest"]
+
+
+@dataclass(frozen=True)
+class Measure:
+    """The ``sense`` value of ``term``, at time 0 or at some ``moment`` at which that holds.
+
+    ``text`` and ``when`` are how a user wrote term and moment; ``said`` is the term as a tree.
+    """
+
+    sense: Sense
+    text: str
+    said: Expression
+    term: Term
+    dimension: Dimension
+    when: str = ""
+    moment: Query | None = None
+
+    @property
+    def sign(self) -> int:
+        """What turns a better value into a smaller one."""
+        return 1 if self.sense == "least" else -1
+
+    def bound(self, search: Search, value: Fraction | None) -> list[Query]:
+        """That the measure is ``value`` or better (None: that there is a moment for it), as parts."""
+        op: Literal["<=", ">="] = "<=" if self.sense == "least" else ">="
+        here = [] if value is None else [compared(search, self.said, op, value, self.dimension)]
+        return here if self.moment is None else [eventually(both(self.moment, *here))]
+
+
+def read_measure(
+    specification: Specification,
+    sense: Sense,
+    text: str,
+    when: str = "",
+    given: tuple[Binding, ...] = (),
+) -> Measure:
+    """A measure from what the user wrote, in the names that a formula has in its ``given``.
+
+    Raises ``TextError``, and ``UsageError`` for what no drive changes.
+    """
+    head = declared(given)
+    term, dimension = read_term(specification, head + text, f"--{sense}")
+    if isinstance(term, Inverse):
+        raise UsageError(f"--{sense} '{text}': 1/x may be infinite; ask for the other extreme of x")
+    if not any(isinstance(leaf, Varying) for leaf in leaves(term)):
+        raise UsageError(f"--{sense} '{text}': no drive changes this; name a signal, such as v_lon(SV)")
+    moment = read_claim(specification, head + when, "--when") if when else None
+    return Measure(sense, text, parse_claim(head + text).body, term, dimension, when, moment)
+
+
+# A value for each knob, in order, in SI units.
+Point: TypeAlias = tuple[Fraction, ...]
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A parameter, or the ``limit`` (such as ``a_lon.min``) of ``vehicles``, from ``low`` to ``high``.
+
+    ``name`` is how the user names it; values are in SI units and printed in ``unit``.
+    """
+
+    name: str
+    unit: str
+    low: Fraction
+    high: Fraction
+    vehicles: tuple[str, ...] = ()
+    limit: str = ""
+
+    def values(self, steps: int) -> tuple[Fraction, ...]:
+        """``steps`` (2 or more) values, evenly spaced, both ends included."""
+        return tuple(self.low + (self.high - self.low) * k / (steps - 1) for k in range(steps))
+
+
+def with_point(search: Search, knobs: Sequence[Variable], point: Point) -> Search:
+    """``search`` with every knob at its value."""
+    values = dict(search.setting.values)
+    limits = {vehicle: dict(ends) for vehicle, ends in search.setting.limits.items()}
+    for knob, value in zip(knobs, point, strict=True):
+        if not knob.limit:
+            values[knob.name] = value
+        for vehicle in knob.vehicles:
+            limits.setdefault(vehicle, {})[knob.limit] = value
+    return replace(search, setting=replace(search.setting, values=values, limits=limits))
+
+
+def stated(search: Search, knobs: Sequence[Variable], point: Point) -> list[Query]:
+    """The limits at a point as formulas, so that a drive file says them and whoever judges it checks them."""
+    parts: list[Query] = []
+    for knob, value in zip(knobs, point, strict=True):
+        signal, _, end = knob.limit.partition(".")
+        for vehicle in knob.vehicles:
+            left = syntax.Call(signal, (syntax.Name(vehicle),))
+            op: Literal[">=", "<="] = ">=" if end == "min" else "<="
+            parts.append(always(compared(search, left, op, value, UNITS[knob.unit][1])))
+    return parts
+
+
+def between(one: Fraction, other: Fraction, grains: Sequence[Fraction] = ()) -> Fraction:
+    """A plain number strictly between two: a multiple of the first grain that has one, near the middle.
+
+    Else the decimal with the fewest digits in the middle half.
+
+    >>> str(between(Fraction(0), Fraction(3), [Fraction(3, 5)])), str(between(Fraction(1, 3), Fraction(1)))
+    ('6/5', '7/10')
+    """
+    low, high = sorted((one, other))
+    middle, quarter = (low + high) / 2, (high - low) / 4
+    for grain in grains:
+        multiple = round(middle / grain) * grain
+        if low < multiple < high:
+            return multiple
+    for digits in range(-9, 12):
+        unit = Fraction(10) ** -digits
+        rounded = round(middle / unit) * unit
+        if low + quarter <= rounded <= high - quarter:
+            return rounded
+    return middle
 
 
 def say_nothing(text: str) -> None:

@@ -9,9 +9,7 @@ from fractions import Fraction
 from itertools import product
 from typing import TypeAlias
 
-from roadproof.analysis.explore.answer import Explorable
-from roadproof.analysis.explore.knobs import Variable
-from roadproof.analysis.explore.measure import Sense, read_measure
+from roadproof.analysis.explore.answer import Explorable, Sense, Variable, read_measure
 from roadproof.engines.search.ask import Search
 from roadproof.engines.search.question import Setting
 from roadproof.errors import UsageError

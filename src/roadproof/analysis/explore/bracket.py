@@ -5,8 +5,7 @@ from fractions import Fraction
 from itertools import product
 from typing import TypeAlias, assert_never
 
-from roadproof.analysis.explore.answer import PointFinding
-from roadproof.analysis.explore.knobs import between
+from roadproof.analysis.explore.answer import PointFinding, between
 from roadproof.engines.encode.place import span
 from roadproof.engines.search.question import SearchProblem
 from roadproof.logic import terms as t

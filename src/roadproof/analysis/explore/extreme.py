@@ -13,15 +13,19 @@ from roadproof.analysis.explore.answer import (
     Explorable,
     ExplorationResult,
     Extreme,
+    Measure,
+    Point,
     PointFinding,
+    Variable,
     say_nothing,
+    stated,
+    with_parts,
+    with_point,
 )
 from roadproof.analysis.explore.bracket import Bracket, range_of, starting_ranges
-from roadproof.analysis.explore.knobs import Point, Variable, stated, with_point
-from roadproof.analysis.explore.measure import Measure, with_parts
-from roadproof.analysis.explore.never import NEVER, never, stages_for
 from roadproof.analysis.explore.search import (
     NATURAL_FIRST,
+    NEVER,
     PLAIN_FIRST,
     DriveClaim,
     Reply,
@@ -31,6 +35,8 @@ from roadproof.analysis.explore.search import (
     claim_of,
     dt_of,
     made_for,
+    never,
+    stages_for,
     values_of,
 )
 from roadproof.analysis.explore.values import PROOF, QUICK_PROOF, LookAll, look_one_by_one

@@ -3,9 +3,15 @@
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from roadproof.analysis.explore.answer import Boundary, Explorable, ExplorationResult, Extreme, PointFinding
+from roadproof.analysis.explore.answer import (
+    Boundary,
+    Explorable,
+    ExplorationResult,
+    Extreme,
+    Point,
+    PointFinding,
+)
 from roadproof.analysis.explore.extreme import ExtremeQuestion, soughts_of
-from roadproof.analysis.explore.knobs import Point
 from roadproof.analysis.study.evidence_store import EvidenceStore
 from roadproof.errors import InputError
 from roadproof.evidence.answers import explore as kept

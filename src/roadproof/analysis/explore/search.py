@@ -2,7 +2,7 @@
 
 Bounds of intervals have to be multiples of dt. For each question the coarsest dt that divides them is
 taken; where that would be too fine, drives are looked for at coarser durations nearby and judged at the
-exact ones.
+exact ones. Of formulas about one instant that no engine reads, a proof says that there is no drive.
 """
 
 from collections.abc import Iterable, Mapping
@@ -12,17 +12,22 @@ from math import ceil, floor
 from typing import Literal, TypeAlias
 
 from roadproof.engines.encode.unroll import common_step
+from roadproof.engines.prove.prover import prove
 from roadproof.engines.search.ask import Search, judge_found, telling_values
 from roadproof.engines.search.grid import COARSEST, coarsest, durations
 from roadproof.engines.search.question import SearchProblem, Setting, pose
 from roadproof.engines.search.search import Attempt, find_witness, show_none
 from roadproof.errors import UsageError
+from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.library.bind import values_with
+from roadproof.library.compose import negation
+from roadproof.library.motion import Assumption, value_texts
 from roadproof.library.specification import Library, Query
 from roadproof.logic.formula import Formula
-from roadproof.logic.fragment import intervals_of
+from roadproof.logic.fragment import intervals_of, is_cubic_state
+from roadproof.logic.rewrite import parameters_of
 from roadproof.logic.terms import Parameter, leaves
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.replay import first_overlap
@@ -256,3 +261,27 @@ def claim_of(search: Search, query: Query) -> DriveClaim:
     there = replace(search, query=query)
     values = telling_values(search.specification.library, query.formula, values_of(search))
     return DriveClaim(query, values, _clear(there))
+
+
+NEVER = "proved for all states, with the parameters at their values here"
+
+
+def stages_for(search: Search, stages: tuple[Stage, ...]) -> tuple[Stage, ...]:
+    """``stages`` without the last word of an engine, for formulas that have a proof in place of it."""
+    hard = is_cubic_state(search.query.formula)
+    return tuple(x for x in stages if x != "none") if hard else stages
+
+
+def never(search: Search, query: Query, units: float) -> Certificate | None:
+    """A proof that ``query`` holds in no state with the parameters at the values of ``search``.
+
+    Wherever, however fast and how near vehicles are: it needs no limits. None where none is found with
+    ``units`` of work, and for formulas of other kinds. Raises ``BudgetExceeded``.
+    """
+    if not is_cubic_state(query.formula):
+        return None
+    values = values_of(search)
+    there = {name: values[name] for name in parameters_of(query.formula)}
+    said = value_texts(search.specification, there)
+    effort = search.search_options.effort.of(units)
+    return prove(search.specification, negation(query), effort, assumed=Assumption(said)).certificate

@@ -14,13 +14,15 @@ from roadproof.analysis.explore.answer import (
     Boundary,
     Explorable,
     ExplorationResult,
+    Point,
     PointFinding,
+    between,
     say_nothing,
+    with_point,
 )
-from roadproof.analysis.explore.knobs import Point, between, with_point
-from roadproof.analysis.explore.never import NEVER, never, stages_for
 from roadproof.analysis.explore.search import (
     NATURAL_FIRST,
+    NEVER,
     PLAIN_FIRST,
     DriveClaim,
     Reply,
@@ -31,6 +33,8 @@ from roadproof.analysis.explore.search import (
     dt_of,
     duration_parameters,
     look,
+    never,
+    stages_for,
 )
 from roadproof.analysis.study.pool import Say
 from roadproof.engines.search.ask import Search

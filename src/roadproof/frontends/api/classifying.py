@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import ClassVar, Unpack
 
 from roadproof.analysis.basis import ProofResult
-from roadproof.analysis.classify.classes import plan_of
-from roadproof.analysis.classify.divide import divide
+from roadproof.analysis.classify.classes import divide, plan_of
 from roadproof.analysis.classify.drives import Example
 from roadproof.analysis.classify.shares import Shares, count_shares
 from roadproof.analysis.classify.study import (

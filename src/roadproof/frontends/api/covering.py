@@ -8,11 +8,8 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import ClassVar, Unpack
 
-from roadproof.analysis.coverage.answers import ClassAnswer
-from roadproof.analysis.coverage.claims import sets_between
-from roadproof.analysis.coverage.classes import GapSurvey
-from roadproof.analysis.coverage.occurring import GapTraffic, Survey
-from roadproof.analysis.coverage.pieces import Kept
+from roadproof.analysis.coverage.answers import ClassAnswer, GapTraffic, Kept, Survey
+from roadproof.analysis.coverage.classes import GapSurvey, sets_between
 from roadproof.analysis.coverage.study import Coverage
 from roadproof.analysis.coverage.traffic import count_in_traffic, recordings_in
 from roadproof.analysis.study import pool

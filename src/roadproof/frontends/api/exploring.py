@@ -4,9 +4,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Unpack
 
-from roadproof.analysis.explore.answer import Explorable, ExplorationResult, PointFinding, say_nothing
+from roadproof.analysis.explore.answer import Explorable, ExplorationResult, PointFinding, Sense, say_nothing
 from roadproof.analysis.explore.asking import ask_for
-from roadproof.analysis.explore.measure import Sense
 from roadproof.analysis.explore.study import Exploration
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.pool import Say

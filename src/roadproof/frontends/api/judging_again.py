@@ -14,9 +14,8 @@ from roadproof.analysis.catalogue.request import Request, read_request
 from roadproof.analysis.catalogue.result import Result
 from roadproof.analysis.catalogue.showing import names_shown
 from roadproof.analysis.catalogue.sides import decisions_of, read_side_name
-from roadproof.analysis.coverage.answers import ClassAnswer, names_of
-from roadproof.analysis.coverage.pieces import name_of
-from roadproof.analysis.explore.measure import Sense
+from roadproof.analysis.coverage.answers import ClassAnswer, name_of, names_of
+from roadproof.analysis.explore.answer import Sense
 from roadproof.analysis.study.evidence_store import EvidenceStore, inside
 from roadproof.analysis.study.pool import Progress
 from roadproof.errors import InputError, RoadproofError

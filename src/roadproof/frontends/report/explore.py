@@ -7,8 +7,14 @@ from itertools import pairwise
 from textwrap import wrap
 from typing import Any, TypeAlias
 
-from roadproof.analysis.explore.answer import Boundary, Explorable, ExplorationResult, Extreme, PointFinding
-from roadproof.analysis.explore.knobs import Variable
+from roadproof.analysis.explore.answer import (
+    Boundary,
+    Explorable,
+    ExplorationResult,
+    Extreme,
+    PointFinding,
+    Variable,
+)
 from roadproof.analysis.explore.record import ends_of
 from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.figures import legend_beside, make_figure
