@@ -18,9 +18,9 @@ STYLE = """
 .search { fill: #2c303a; stroke: #9aa0aa } .answer { fill: #12402f; stroke: #3ecf9c } }
 """
 LEGEND = {
-    "given": "given, or read",
-    "search": "found, then checked",
-    "right": "must be right",
+    "given": "given",
+    "search": "not trusted: results are checked",
+    "right": "trusted",
     "answer": "answer",
 }
 
