@@ -61,12 +61,12 @@ class Ask:
     set: str = EDIT
     formula: str = ""
     watches: tuple[str, ...] = ()
-    settings: Mapping[str, Any] = field(default_factory=dict)
+    settings: Mapping[str, object] = field(default_factory=dict)
     negated: bool = False
     count: int = 1
     forward: bool = False
     compare: bool = False
-    drive: Any = None
+    drive: object = None
     explain: Part | None = None
     files: tuple[File, ...] = ()
     pair: Pair | None = None
