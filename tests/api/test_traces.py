@@ -310,7 +310,12 @@ def test_the_notebook_runs_as_readers_run_it(tmp_path: Path) -> None:
 # --- Pages of the documentation: what they show of Python is typed in, and prints what they say -----
 
 ROOT = Path(__file__).parents[2]
-PAGES = [ROOT / "docs/reference/python.md", ROOT / "docs/how-to/jupyter.md", ROOT / "README.md"]
+PAGES = [
+    ROOT / "docs/reference/python.md",
+    ROOT / "docs/how-to/jupyter.md",
+    ROOT / "README.md",
+    *sorted(Path(__file__).parent.joinpath("book").glob("*.md")),
+]
 
 
 @pytest.mark.parametrize("path", PAGES, ids=lambda x: x.stem)
