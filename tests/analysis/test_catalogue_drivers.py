@@ -45,6 +45,7 @@ from roadproof.recordings.evaluate.evaluate import evaluate_recording
 from roadproof.recordings.evaluate.one_trace import cut_trace, sample_drive
 from roadproof.semantics.exact.exact import judge
 from roadproof.world.drive import Drive, Piece
+from tables import read_table
 from traffic.test_drivers import EACH, drives, questions_with
 
 DELAYS = {"careful": "cc_delay", "r157": "r157_delay", "eu1426": "eu1426_delay", "rss": "rho"}
@@ -418,36 +419,7 @@ def faults_in(folder: Path) -> dict[str, str]:
 
 @pytest.mark.parametrize(
     ("text", "told"),
-    [
-        ("id='x'", "test x: a test has either a file or a formula"),
-        ("id='x'\nfile='a.json'\nformula='true'", "test x: a test has either a file or a formula"),
-        ("id='x'\nfile='a.json'\nroad='main-2'", "test x: road is for tests with a formula"),
-        ("id='x'\nformula='true'\nroles={SV='a'}", "test x: roles is for tests with a file"),
-        ("id='x'\nfile='a.json'\nroles='a'", "test x: roles='a'; write a table"),
-        ("id='x'\nfile='a.json'\nroles={SV=[]}", "test x, roles: SV = []; write the name of a vehicle"),
-        ("id='x'\nfile='a.json'\nroles={SV='a',POV='a'}", "test x, roles: a is SV and POV; it can play one"),
-        ("id='x'\nformula='true'\ncolour='red'", "test x: 'colour' is not known; a test has id, title"),
-        ("id='x'\nformula='true'\ncliams=[4]", "test x: 'cliams' is not known; did you mean 'claims'?"),
-        ("id=3\nformula='true'", "test 2: id=3; write a text"),
-        ("formula='true'", "test 2: there is no id; write one"),
-        ("id='x'\nfile=' '", "test x: file=' '; write a text"),
-        ("id='x'\nformula='true'\nclaims=[99]", "test x: there is no scenario '99'"),
-        ("id='x'\nformula='true'\nclaims=4", "test x, claims=4: write a list"),
-        ("id='x'\nformula='true'\nclaims=['1-8']", "test x, claims: '1-8' names 8 scenarios"),
-        ("id='x'\nformula='true'\nclaims=['a b']", "no number of a scenario and no name"),
-        ("id='x'\nformula='v_lon(SV) >'", "test x, formula, line 1, column 12: the text ends too early\n"),
-        ("id='x'\nformula='assuming motion: true'", "test x, formula: leave 'assuming motion:' out"),
-        ("id='x'\nformula='true'\nat_start={'v_lon(SV)'='20 m/s'}", "test x, at_start: 'v_lon(SV)'"),
-        ("id='x'\nformula='true'\nat_start={'v_lon(SV)'='20 m .. 30 m'}", "test x, at_start, line 1"),
-        ("id='x'\nformula='true'\nalways={'w(SV)'='2 m .. 3 m'}", "test x, always, line 1"),
-        ("id='x'\nformula='true'\nroad='moon'", "test x: there is no road 'moon'"),
-        ("id='x'\nformula='true'\nvehicles={SV='tank'}", "test x: there is no vehicle 'tank'"),
-        ("id='FIRST'\nformula='true'", "two tests are called FIRST; give each an id of its own"),
-        ("id='x\nformula='true'", "test 2: from line 4 on this is no TOML: "),
-        ("id='x'\nformula=true and", "test x: from line 4 on this is no TOML: "),
-        ("id='x'\nid='y'\nformula='true'", "is no TOML: Cannot overwrite a value (at line 6, column 7)"),
-        ("id='x'\nformula='true'\nat_start={'v_lon(SV)'='20 m/s'", "test x: from line 4 on"),
-    ],
+    read_table(__file__, "one_mistake_is_one_fault"),
 )
 def test_one_mistake_is_one_fault(text: str, told: str, tmp_path: Path) -> None:
     """The message names the file and the test; those before and after it are as they were."""

@@ -52,6 +52,7 @@ from roadproof.library.elaborate import read_claim, read_term
 from roadproof.library.loading import bundled_library
 from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.verdict import Verdict
+from tables import read_table
 
 LIBRARY = bundled_library()
 BASE = LIBRARY.select("base")
@@ -453,33 +454,7 @@ def test_the_command_writes_evidence_that_is_accepted(
 
 @pytest.mark.parametrize(
     ("words", "code", "complaint"),
-    [
-        (("4",), 2, "say what to explore"),
-        (("4", "--vary", "minSafe"), 2, "write --vary NAME=LOW:HIGH"),
-        (("4", "--vary", "minSafe=3:0"), 2, "the range is empty"),
-        (("4", "--vary", "minSafe=-1:3"), 2, "the library demands minSafe >= 0"),
-        (("4", "--vary", "minSafee=0:3"), 2, "did you mean 'minSafe'"),
-        (("4", "--vary", "minSafe=0 m:3"), 3, "which m does not measure"),
-        (("F v_lon(SV) > 20 m/s", "--vary", "minSafe=0:3"), 2, "does not depend on minSafe"),
-        (("4", "--vary", "POV.a_lon.min=-6:1"), 2, "leaves out 0"),
-        (("4", "--vary", "POV.v_lon.min=-6:1"), 2, "never reverses"),
-        (
-            ("4", "--vary", "SV.a_lon.min=-6:0", "--vary", "SV.a_lon.max=0:3"),
-            2,
-            "at SV.a_lon.min=0, SV.a_lon",
-        ),
-        (("4", "--vary", "SV.a_lon.min=-6:-1", "--vary", "vehicle.a_lon.min=-6:-1"), 2, "both are a_lon.min"),
-        (("4", "--vary", "POV2.a_lon.min=-6:-1"), 2, "the formula mentions POV, SV"),
-        (("4", "--vary", "POV.a.min=-6:-1"), 2, "VEHICLE.LIMIT.min"),
-        (("4", "--vary", "minSafe=0:3", "--param", "minSafe=1"), 2, "leave one out"),
-        (("4", "--vary", "minSafe=0:3", "--steps", "1"), 2, "--steps 1"),
-        (("4", "--vary", "minSafe=0:3", "--precision", "0"), 2, "greater than 0"),
-        (("4", "--when", "true", "--vary", "minSafe=0:3"), 2, "add --least TERM"),
-        (("4", "--least", "v_lon(SV"), 3, "column 9"),
-        (("4", "--least", "v_lon(SV) < 3 m/s"), 3, "this is a formula"),
-        (("4", "--least", "minSafe"), 2, "no drive changes this"),
-        (("F[0, 0.013 s] v_lon(SV) > 20 m/s", "--least", "v_lon(SV)"), 2, "no common step"),
-    ],
+    read_table(__file__, "mistakes"),
 )
 def test_mistakes(
     words: tuple[str, ...], code: int, complaint: str, capsys: pytest.CaptureFixture[str]

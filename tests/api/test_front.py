@@ -21,19 +21,9 @@ from roadproof.frontends.api.completing import _free
 from roadproof.frontends.api.kernel import KernelQuestion, write
 from roadproof.frontends.api.restricting import drivers_of
 from roadproof.frontends.cli.main import main
+from tables import read_table
 
-HEAVY = (
-    "z3",
-    "cvc5",
-    "cvxpy",
-    "numpy",
-    "polars",
-    "matplotlib",
-    "sympy",
-    "lark",
-    "highspy",
-    "clarabel",
-)
+HEAVY = tuple(read_table(__file__, "heavy"))
 
 
 def python(*arguments: str) -> str:

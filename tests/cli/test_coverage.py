@@ -26,6 +26,7 @@ from roadproof.library.specification import Query, Specification
 from roadproof.verdict import ExitCode, Verdict
 from roadproof.world.models import load_road
 from roadproof.world.road import Road
+from tables import read_table
 
 WANTED = ("behaviourPOV_4", "behaviourSV_8")
 """Components that are asked for here, without their conditions: the rest takes minutes."""
@@ -312,26 +313,7 @@ def test_none_within_prints_its_limits(capsys):
 
 @pytest.mark.parametrize(
     ("arguments", "code", "message"),
-    [
-        (("witness",), 2, "name scenarios or formulas"),
-        (("witness", "4", "--all"), 2, "but not both"),
-        (("witness", "4", "--solver", "magic"), 2, "unknown solver; choose one of"),
-        (("witness", "4", "--solver", "gurobi"), 4, "gurobipy"),
-        (("witness", "4", "--dt", "0"), 2, "greater than 0"),
-        (("witness", "4", "--dt", "1e9"), 2, "greater than 0"),
-        (("witness", "4", "--horizon", "7", "--dt", "3/5"), 2, "no multiple of dt"),
-        (("witness", "4", "--param", "minDanger=0.5", "--dt", "3/5"), 2, "dt=1/10"),
-        (("witness", "4", "--count", "0"), 2, "--count"),
-        (("witness", "4", "--timeout", "-1"), 2, "--timeout"),
-        (("witness", "4", "--lane", "main-7"), 2, "has the lanes"),
-        (("witness", "4", "--road", "nowhere"), 3, "there is no road"),
-        (("witness", "4", "--vehicle", "SV=tank"), 3, "there is no vehicle"),
-        (("witness", "4", "--out", "/proc/none"), 3, "cannot write into /proc/none"),
-        (("witness", "99"), 3, "scenario_99"),
-        (("witness", "scenario_4(SV,POV"), 3, "ends too early"),
-        (("witness", "4", "--set", "extB"), 3, "extB"),
-        (("compare", "3", "4", "--set", "a", "--set", "b", "--set", "c"), 2, "at most two"),
-    ],
+    read_table(__file__, "mistakes_are_explained"),
 )
 def test_mistakes_are_explained(capsys, arguments, code, message):
     found, _, err = witness(capsys, *arguments)

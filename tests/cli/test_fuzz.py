@@ -27,6 +27,7 @@ from roadproof.frontends.cli.main import COMMANDS, answer
 from roadproof.frontends.studio.server import serve
 from roadproof.runtime.package_data import shipped
 from roadproof.verdict import ExitCode
+from tables import read_table
 
 SEEDS = range(4)
 LINES = 8  # command lines a seed and sub-command
@@ -70,22 +71,7 @@ TEXTS = (
     "a\nb",
     "='=",
 )
-NUMBERS = (
-    "0",
-    "1",
-    "2",
-    "-1",
-    "3",
-    "x",
-    "1.5",
-    "99999999999999999999",
-    "٣",
-    "nan",
-    "inf",
-    "1e300",
-    "1e-300",
-    "",
-)
+NUMBERS = tuple(read_table(__file__, "numbers"))
 WORDS = {
     "S": ("base", "ext", "extA", "complete", "exta", "6", "3/5", "0", "1e3", "0.1", "-1", "0,0.6", "nan"),
     "S,S": ("base", "base,ext", ",", "0", "0,0.6", "-1", "x"),

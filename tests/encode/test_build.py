@@ -28,6 +28,7 @@ from roadproof.semantics.sampled.compiled import compile as compile_monitor
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road, load_vehicle
 from searching.known import BASE, CAR, ROADS, VALUES, holds_on_samples, known
+from tables import read_table
 
 GRID = Grid(Fraction(1, 2), 4)
 CARS = dict.fromkeys(("A", "B", "C"), load_vehicle("car"))
@@ -146,17 +147,7 @@ def test_differences_along_are_the_same_everywhere_on_an_endless_road(text):
 
 @pytest.mark.parametrize(
     "text",
-    [
-        "s(SV) = 30 m",
-        "rear(SV) > 30 m",
-        "2 * s(SV) - 3 * s(POV) > 0 m",
-        "s(SV) + s(POV) > 0 m",
-        "F not (v_lon(SV) > 20 m/s and s(POV) <= 1 m)",
-        "max(s(SV), 0 m) < s(POV)",
-        "s(SV)^2 > 9 * 1 m * 1 m",
-        "s(SV) * v_lat(SV) > s(POV) * v_lat(POV)",
-        "inverse(s(SV)) > inverse(3 m)",
-    ],
+    read_table(__file__, "places_along_are_not_the_same_everywhere"),
 )
 def test_places_along_are_not_the_same_everywhere(text):
     assert not same(text)

@@ -28,6 +28,7 @@ from roadproof.library.specification import Library, Source
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.package_data import shipped
 from roadproof.world.units import UNITS
+from tables import read_table
 
 library = bundled_library()
 # A template property, one from set to set, one in two directions, and one with a lemma of many cases.
@@ -151,16 +152,7 @@ def test_an_invented_lemma_proves_nothing():
 
 
 CLAIM = "scenario_4(SV,POV,L) -> dangerArises(SV,POV)"
-ALTERED = [
-    "scenario_4(SV,POV,L) -> dangerArises(SV,POV) and F[0,1] danger(SV,POV)",  # another conclusion
-    "scenario_4(SV,POV,L) -> F (initSafe(SV,POV) and F[0,1] danger(SV,POV))",  # one bound changed
-    "initSafe(SV,POV) -> dangerArises(SV,POV)",
-    "scenario_4(POV,SV,L) -> dangerArises(SV,POV)",
-    "scenario_3(SV,POV,L) -> dangerArises(SV,POV)",
-    "scenario_4(SV,POV,L) -> nonsense(SV,POV)",
-    "scenario_4(SV,POV",
-    "",
-]
+ALTERED = read_table(__file__, "altered")
 
 
 @pytest.mark.parametrize("claim", ALTERED)

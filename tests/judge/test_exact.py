@@ -36,6 +36,7 @@ from roadproof.semantics.exact.truth import ALWAYS, NEVER, intersection, interva
 from roadproof.semantics.exact.within import truth_within
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.road import Lanelet, Road, pairs
+from tables import read_table
 
 LIBRARY = bundled_library()
 ROAD = Road(
@@ -410,19 +411,7 @@ def test_along_lines_of_driver_models_it_is_what_the_judge_says(options, speed):
 
 @pytest.mark.parametrize(
     ("name", "right", "wrong"),
-    [
-        ("_visit", "if kept == NEVER", "if kept != self.within"),
-        ("_visit", "if found == self.within", "if found != NEVER"),
-        (
-            "_visit",
-            "intersection([self.within, complement(self.visit(body))])",
-            "complement(self.visit(body))",
-        ),
-        ("_visit", "return self.within if value", "return NEVER if value"),
-        ("_visit", "union([found, self.visit(part)])", "self.visit(part)"),
-        ("signal", "if x[0] < self.end", "if x[0] < self.end - 1"),
-        ("signal", "(self.end, ZERO)", "(self.end - 1, ZERO)"),
-    ],
+    read_table(__file__, "planted_faults_are_noticed"),
 )
 def test_planted_faults_are_noticed(monkeypatch, name, right, wrong):
     owner = within._EndedSignals if name == "signal" else within._RestrictedTruth

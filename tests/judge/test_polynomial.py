@@ -37,6 +37,7 @@ from roadproof.semantics.exact.truth import (
     union,
     until,
 )
+from tables import read_table
 
 quiet = settings(max_examples=150, deadline=None, derandomize=True)
 fractions = st.builds(Fraction, st.integers(-6, 6), st.integers(1, 4))
@@ -140,16 +141,7 @@ def test_a_root_at_an_end_or_within_is_not_overlooked(found, low, high) -> None:
 
 @pytest.mark.parametrize(
     ("name", "right", "wrong"),
-    [
-        ("_on_positive", "(at_low, scale), (scale,)", "(at_low, scale), (1,)"),
-        ("_on_positive", "(scale, scale)", "(scale,)"),
-        ("_on_positive", "power = _times(power, bottom)", "pass"),
-        ("is_rootless", "or not found[0] or not found[-1]", "or not found[0]"),
-        ("is_rootless", "or not found[0] or not found[-1]", "or not found[-1]"),
-        ("is_rootless", "all(x * sign >= 0 for x in found)", "found[-1] * sign > 0"),
-        ("is_rootless", "is_rootless(numerators, low, middle, halvings - 1) and", ""),
-        ("is_rootless", "numerators, middle, high, halvings - 1", "numerators, middle, middle, halvings - 1"),
-    ],
+    read_table(__file__, "faults_in_the_rule_are_noticed"),
 )
 def test_faults_in_the_rule_are_noticed(monkeypatch, name: str, right: str, wrong: str) -> None:
     dice = random.Random(6)

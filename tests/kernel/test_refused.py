@@ -19,6 +19,7 @@ from roadproof.evidence.kernel.tableau import RULES, coq_tree, lines, read_lines
 from roadproof.library.loading import bundled_library
 from roadproof.runtime.package_data import shipped
 from roadproof.verdict import Verdict
+from tables import read_table
 
 DONORS = ("P1-scenario-04-base", "P5-scenario-04-base", "P6-scenario-01-base", "P1-scenario-02-ext")
 FALSE = """
@@ -127,15 +128,7 @@ def test_no_tableau_of_another_claim_proves_a_false_one():
 
 
 # The last ones stay true: of two untils one is enough, and what danger and safety are is the same throughout.
-CHANGED = [
-    ("initSafe SV POV and roadSector_4 SV POV and", "Truth true and roadSector_4 SV POV and"),
-    ("F (initSafe a b and (F danger a b))", "G (initSafe a b and (F danger a b))"),
-    ("F (initSafe a b and (F danger a b))", "F[1, inf) (initSafe a b and (F danger a b))"),
-    ("F (initSafe a b and (F danger a b))", "F (initSafe a b and (F danger b a))"),
-    ("F (initSafe a b and (F danger a b))", "F (initSafe a b and (G danger a b))"),
-    ("claim : formula := scenario_4 SV POV L", "claim : formula := not (scenario_4 SV POV L)"),
-    ("claim : formula := scenario_4 SV POV L", "claim : formula := scenario_4 POV SV L"),
-]
+CHANGED = read_table(__file__, "changed")
 STILL_TRUE = [
     ("laneKeep SV L U danger SV POV", "laneKeep SV L"),
     ("decel POV SV L U danger SV POV", "decel POV SV L"),

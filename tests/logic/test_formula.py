@@ -26,6 +26,7 @@ from roadproof.logic.rewrite import (
     without_names,
 )
 from roadproof.semantics.exact.exact import judge
+from tables import read_table
 
 SECONDS = (0, 1)
 SLOW = f.Compare(t.Signal("v_lon", "SV"), "<", t.Parameter("limit", (1, -1)))
@@ -255,18 +256,7 @@ def pinned(claim: str) -> dict[str, Fraction]:
 
 @pytest.mark.parametrize(
     "claim",
-    [
-        "minDanger = 0.6 s -> danger(SV,POV)",
-        "initSafe(SV,POV) and (0.6 s = minDanger and rssViolation(SV,POV)) -> danger(SV,POV)",
-        "not (minDanger = 600 ms and danger(SV,POV))",
-        "not F (danger(SV,POV) and minDanger = 0.6 s)",
-        "not (danger(SV,POV) U (rssViolation(SV,POV) and minDanger = 0.6 s))",
-        "danger(SV,POV) or G (minDanger = 0.6 s -> rssViolation(SV,POV))",
-        "minDanger <= 0.6 s and minDanger >= 0.6 s -> danger(SV,POV)",
-        "(minDanger = 0.6 s -> danger(SV,POV)) and (rho = 1 s and minDanger = 0.6 s -> danger(POV,SV))",
-        "not ((minDanger = 0.6 s and danger(SV,POV)) or (danger(POV,SV) and minDanger = 0.6 s))",
-        "not (some M in lanes: atLane(SV,M) and minDanger = 0.6 s)",
-    ],
+    read_table(__file__, "a_premise_pins_a_parameter"),
 )
 def test_a_premise_pins_a_parameter(claim):
     assert pinned(claim) == {"minDanger": HERE}
@@ -274,20 +264,7 @@ def test_a_premise_pins_a_parameter(claim):
 
 @pytest.mark.parametrize(
     "claim",
-    [
-        "danger(SV,POV)",
-        "minDanger = 0.6 s and danger(SV,POV)",
-        "minDanger = 0.6 s or danger(POV,SV) -> danger(SV,POV)",
-        "minDanger <= 0.6 s -> danger(SV,POV)",
-        "minDanger < 0.6 s and minDanger > 0.6 s -> danger(SV,POV)",
-        "minDanger = rho -> danger(SV,POV)",
-        "2*minDanger = 1.2 s -> danger(SV,POV)",
-        "minDanger = 0.6 s and minDanger = 0.7 s -> danger(SV,POV)",
-        "not G (minDanger = 0.6 s and danger(SV,POV))",
-        "not (minDanger = 0.6 s U danger(SV,POV))",
-        "(minDanger = 0.6 s -> danger(SV,POV)) and danger(POV,SV)",
-        "minDanger = 0.6 s <-> danger(SV,POV)",
-    ],
+    read_table(__file__, "what_pins_nothing"),
 )
 def test_what_pins_nothing(claim):
     assert pinned(claim) == {}

@@ -27,6 +27,7 @@ from roadproof.logic.syntax import (
     Temporal,
     WhenBlock,
 )
+from tables import read_table
 
 A, B, C, D = (Name(name) for name in "abcd")
 
@@ -251,15 +252,7 @@ def test_a_sign_of_another_language(text: str, line: int, column: int, sign: str
 
 @pytest.mark.parametrize(
     ("text", "said"),
-    [
-        ("F[] p(SV)", "']' cannot stand here"),
-        ("p(SV) and and q(SV)", "'and' cannot stand here"),
-        ("given S: lane: occ(SV, S) occ(SV, S)", "'occ' cannot stand here"),
-        ("given S: lane: occ(SV S)", "'S' cannot stand here"),
-        ("p(SV) and", "the text ends too early"),
-        ("s(SV) = ", "the text ends too early"),
-        ("s(SV) != = 3", "'=' cannot stand here"),
-    ],
+    read_table(__file__, "other_mistakes_are_told_as_they_are"),
 )
 def test_other_mistakes_are_told_as_they_are(text: str, said: str) -> None:
     with pytest.raises(TextError) as raised:

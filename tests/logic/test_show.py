@@ -22,6 +22,7 @@ from roadproof.logic.parse import parse_claim, parse_library
 from roadproof.logic.restore import as_syntax, term_as_syntax
 from roadproof.logic.rewrite import map_terms
 from roadproof.logic.show import decimal, text
+from tables import read_table
 
 LIBRARY = bundled_library()
 
@@ -66,27 +67,7 @@ def test_definitions_read_back(set_name: str, options: Mapping[str, str]) -> Non
 
 @pytest.mark.parametrize(
     ("written", "shown"),
-    [
-        ("((a) and (b)) and (c)", "(a and b) and c"),
-        ("a and b or c and not (d or e)", "a and b or c and not (d or e)"),
-        ("(a and b) or c", "a and b or c"),
-        ("a and (b or c)", "a and (b or c)"),
-        ("(a -> b) -> (c -> d)", "(a -> b) -> c -> d"),
-        ("(a <-> b) <-> (c <-> d)", "a <-> b <-> (c <-> d)"),
-        ("(a U b) U (c U d)", "(a U b) U c U d"),
-        ("F (a U b)", "F (a U b)"),
-        ("(F a) U b", "F a U b"),
-        ("not (a < b)", "not a < b"),
-        ("(not a) and b", "not a and b"),
-        ("a - (b - c) - d", "a - (b - c) - d"),
-        ("a * (b / c)", "a*(b/c)"),
-        ("(-a)^2 + -(b^2)", "(-a)^2 + -b^2"),
-        ("(2 m)^2 > 2^2", "(2 m)^2 > 2^2"),
-        ("(some x in lanes: a) and b", "(some x in lanes: a) and b"),
-        ("some x in {A, B}: (a and b)", "some x in {A, B}: a and b"),
-        ("F[0,inf] G[ 0 , 600 ms ] a", "F[0, inf] G[0, 600 ms] a"),
-        ("given A,B:vehicle;v:m/s: f(A,B,v)", "given A, B: vehicle; v: m/s: f(A, B, v)"),
-    ],
+    read_table(__file__, "parentheses_are_minimal"),
 )
 def test_parentheses_are_minimal(written: str, shown: str) -> None:
     assert text(parse_claim(written)) == shown
@@ -218,18 +199,7 @@ DEFINITIONS = bundled_library().select("ext").definitions
 
 @pytest.mark.parametrize(
     ("name", "shown"),
-    [
-        ("SV", r"\mathit{SV}"),
-        ("POV1", r"\mathit{POV}_{1}"),
-        ("L", "L"),
-        ("rho", r"\rho"),
-        ("v_r", "v_{r}"),
-        ("a_max", r"a_{\mathrm{max}}"),
-        ("b_min_lat", r"b_{\mathrm{min}}^{\mathit{lat}}"),
-        ("minDanger", r"\mathit{minDanger}"),
-        ("scenario_12", r"\mathit{scenario}_{12}"),
-        ("accel@ext", r"\mathit{accel}^{\mathit{ext}}"),
-    ],
+    read_table(__file__, "symbols"),
 )
 def test_symbols(name: str, shown: str) -> None:
     assert symbol(name) == shown
@@ -237,38 +207,7 @@ def test_symbols(name: str, shown: str) -> None:
 
 @pytest.mark.parametrize(
     ("name", "shown"),
-    [
-        (
-            "danger",
-            r"\mathit{danger}(a,b) \;:=\; \mathcal{G}_{[0,\mathit{minDanger}]} \mathit{rssViolation}(a,b)",
-        ),
-        (
-            "cutIn",
-            r"\mathit{cutIn}(\mathit{POV},\mathit{SV},L) \;:=\;"
-            r" \neg \mathit{sameLane}(\mathit{POV},\mathit{SV},L) \wedge"
-            r" \mathcal{F} \left(\mathit{danger}(\mathit{SV},\mathit{POV}) \wedge"
-            r" \mathcal{F}_{[0,\mathit{minDanger}]} \mathit{sameLane}(\mathit{SV},\mathit{POV},L)\right)",
-        ),
-        (
-            "dRSS_lon",
-            r"\mathit{dRSS}_{\mathit{lon}}(v_{r},v_{f}) \;:=\;"
-            r" \max\left(0,v_{r} \rho + \frac{a_{\mathrm{max}} \rho^{2}}{2}"
-            r" + \frac{\left(v_{r} + a_{\mathrm{max}} \rho\right)^{2}}{2 b_{\mathrm{min}}} -"
-            r" \frac{v_{f}^{2}}{2 b_{\mathrm{max}}}\right)",
-        ),
-        ("fasterThan", r"\mathit{fasterThan}(a,b) \;:=\; v_{\mathit{lon},a} < v_{\mathit{lon},b}"),
-        ("atLane", r"\mathit{atLane}(a,L) \;:=\; \bigvee_{l\in L} \mathit{occ}(a,l)"),
-        (
-            "onMainRoad",
-            r"\mathit{onMainRoad}(a) \;:=\; \bigvee_{\mathit{zone}(l)=\mathit{main}} \mathit{occ}(a,l)",
-        ),
-        ("mainRoad", r"\mathit{mainRoad}(a) \;:=\; \bigwedge_{x\in a} \mathit{onMainRoad}(x)"),
-        (
-            "behaviourSV_4",
-            r"\mathit{behaviourSV}_{4}(\mathit{SV},\mathit{POV},L) \;:=\; \mathit{laneKeep}(\mathit{SV},L)"
-            r" \mathbin{\mathcal{U}} \mathit{danger}(\mathit{SV},\mathit{POV})",
-        ),
-    ],
+    read_table(__file__, "definitions_read_like_the_paper"),
 )
 def test_definitions_read_like_the_paper(name: str, shown: str) -> None:
     assert latex(DEFINITIONS[name]) == shown

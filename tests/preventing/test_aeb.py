@@ -27,6 +27,7 @@ from roadproof.evidence.judged import judge_file
 from roadproof.frontends.cli.main import main
 from roadproof.recordings.evaluate.questions import Settings
 from roadproof.semantics.exact.exact import judge
+from tables import read_table
 
 RATE = 1000
 FULL = 0.85 * stepping.G
@@ -316,25 +317,7 @@ def test_mistakes_are_named(words, told, capsys):
 DRAWN = 600
 LENGTHS = 8.6
 # How far constants go; speeds, gaps and angles as in the other tests.
-RANGES = {
-    "cc_wander": (0.05, 1.5),
-    "cc_evaluation": (0, 1),
-    "cc_drift": (0, 1.5),
-    "cc_delay": (0, 1.5),
-    "cc_ramp": (0.05, 2),
-    "cc_braking": (2, 12),
-    "cc_ttc": (0.5, 4),
-    "cc_hard": (0, 8),
-    "r157_delay": (0, 1),
-    "r157_braking": (2, 10),
-    "r157_past": (0, 0.6),
-    "eu1426_ramp": (0, 1),
-    "eu1426_delay": (0, 0.5),
-    "eu1426_braking": (2, 9),
-    "rho": (0, 1.5),
-    "a_max": (0.5, 6),
-    "b_min": (2, 9),
-}
+RANGES = read_table(__file__, "ranges")
 
 
 def constants(seed: int) -> dict[str, Fraction]:

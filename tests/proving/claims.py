@@ -21,77 +21,12 @@ from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact import TruthSet, judge
 from roadproof.semantics.exact.truth import from_switches
 from roadproof.verdict import Verdict
+from tables import read_table
 
 P, Q, R = "atLane(SV,L)", "atLane(POV,L)", "fasterThan(SV,POV)"
 
 # Valid in dense time, for all parameters.
-VALID = [
-    # dualities and unfolding
-    "not F p <-> G not p",
-    "not G[1,2] p <-> F[1,2] not p",
-    "F[0,minDanger] p <-> true U[0,minDanger] p",
-    "F p <-> p or F p",
-    "G p -> p and G G p",
-    "F F p -> F p",
-    "F[1,2] F[1,2] p <-> F[2,4] p",
-    "G[0,1] G[0,1] p <-> G[0,2] p",
-    "F[0,minSafe] F[0,minDanger] p <-> F[0,minSafe + minDanger] p",
-    # distribution
-    "F (p or q) <-> F p or F q",
-    "G[0,minSafe] (p and q) <-> G[0,minSafe] p and G[0,minSafe] q",
-    "F (p and q) -> F p and F q",
-    "G (p -> q) -> (F p -> F q)",
-    "p U (q or r) <-> (p U q) or (p U r)",
-    "(p and q) U r <-> (p U r) and (q U r)",
-    # until
-    "q -> p U q",
-    "p U q -> F q",
-    "p U q -> q or p",
-    "p U q and G not q -> r",
-    "F q and G p -> p U q",
-    "p U[1,2] q -> F[1,2] q",
-    "p U[0,1] q -> p U[0,2] q",
-    "(p U[1,2] q) <-> F[1,1] (p U[0,1] q)",  # the paper's until looks at the window only
-    "F[1,1] q -> p U[1,2] q",
-    "p U[minSafe, inf] q -> F[minSafe, inf] q",
-    "G[0,1] not p and F[1,1] q -> p U[1,1] q",
-    "not (p U q) -> G not q or F not p",
-    "(p U q) U q -> p U q",
-    # windows
-    "G[0,2] p -> G[0,1] p",
-    "F[1,2] p -> F[0,3] p",
-    "G[0,minSafe] p -> F[0,minDanger] p",
-    "G[1,1] p <-> F[1,1] p",
-    "G[0,0] p <-> p",
-    "G[minSafe,minDanger] p -> G[minSafe,minDanger] (p or q)",
-    "F[minSafe,minDanger] p -> F[minSafe,inf] p",
-    # one instant
-    "aheadOf(SV,POV) -> not aheadOf(POV,SV)",
-    "aheadOf(SV,POV) -> aheadOf_ext(SV,POV)",
-    "F (v_lon(SV) > 30 m/s) -> F (v_lon(SV) > 20 m/s)",
-    "G (s(SV) <= s(POV) - length(POV)) -> G (s(SV) < s(POV))",
-    "danger(SV,POV) <-> danger(POV,SV)",
-    "given u, v, w: m/s: u <= v and v <= w -> u <= w",
-    "given v: m/s: v^2 >= 0",
-    "given u, v: m/s: max(u,v) >= u and max(u,v) >= v and min(u,v) <= u",
-    "given u, v: m/s: max(u,v) = u or max(u,v) = v",
-    "given u, v: m/s: max(u,v) + min(u,v) = u + v",
-    "given u, v: m/s: 0 <= u and u <= v -> dRSS_lon(u,u) <= dRSS_lon(v,u)",
-    "dangerLeft_rs(SV,POV) <-> dangerLeft(SV,POV)",
-    "given a1: m: a1 > 0 m or a1 <= 0 m",
-    # roads
-    "(every M in lanes: atLane(SV,M)) -> atLane(SV,L)",
-    "atLane(SV,L) -> (some M in lanes: atLane(SV,M))",
-    "F (some M in lanes: atLane(SV,M)) <-> (some M in lanes: F atLane(SV,M))",
-    "(some M in lanes: G atLane(SV,M)) -> G (some M in lanes: atLane(SV,M))",
-    "not (some M in adjacentLanes(L): atLane(SV,M)) <-> (every M in adjacentLanes(L): not atLane(SV,M))",
-    "(some M in lanes: inAdjLanes(SV,POV,L)) -> inAdjLanes(SV,POV,L)",
-    "(some M in lanes: every N in lanes: atLane(SV,M) or atLane(POV,N))"
-    " -> (every N in lanes: some M in lanes: atLane(SV,M) or atLane(POV,N))",
-    "(some l in lanelets(L): occ(SV,l)) <-> (some m in lanelets(L): occ(SV,m))",
-    "(every M in lanes: some M1 in adjacentLanes(M): atLane(SV,M1))"
-    " -> (every K in lanes: some N in adjacentLanes(K): atLane(SV,N))",
-]
+VALID = read_table(__file__, "valid")
 
 # Valid because of what every road has: a lanelet has a lane and one zone, a lane has a lanelet.
 ALL_ZONES = " {join} ".join(f"({{word}} m in zone({zone}): {{body}})" for zone in ("main", "merge", "depart"))
@@ -124,65 +59,7 @@ VALID_MORE = [
 ]
 
 # False on some trace, for some parameters.
-INVALID = [
-    "F p -> p",
-    "F p -> G p",
-    "F p and F q -> F (p and q)",
-    "G (p or q) -> G p or G q",
-    "F[1,2] p -> F[0,1] p",
-    "F[0,minDanger] p -> F[0,minSafe] p",
-    "G[0,1] p -> G[0,2] p",
-    "G[0,1] p -> F[2,2] p",
-    "G[1,2] p -> p",
-    "F[2,2] p -> F[1,1] p",
-    # until: neither end is asked for, and the window counts from its start
-    "p U q -> p",
-    "p U q -> F (p and q)",
-    "p U q -> q U p",
-    "F q -> p U q",
-    "p U[1,2] q -> p",  # holds where until asks for p from 0 on
-    "p U[1,2] q -> G[0,1] p",
-    "p U q and p U r -> p U (q and r)",
-    "(p U r) or (q U r) <-> (p or q) U r",
-    "G[0,1] p and F[0,2] q -> p U q",
-    "p and F[0,1] (not p and F[0,1] q) -> p U q",
-    # windows that end before they begin for some parameters
-    "G[minSafe,minDanger] p -> F p",
-    "F[minSafe,minDanger] true",
-    # strictness
-    "s(SV) >= s(POV) -> s(SV) > s(POV)",
-    "aheadOf_ext(SV,POV) -> aheadOf(SV,POV)",
-    "given v: m/s: v^2 > 0",
-    "given u, v: m/s: max(u,v) > min(u,v)",
-    "given u, v: m/s: max(u,v) <= u",
-    "given u, v: m/s: u <= v -> u^2 <= v^2",
-    "given u, v: m/s: dRSS_lon(u,v) > 0 m",
-    "given a1: m: a1 > 0 m",
-    "minSafe <= minDanger",
-    "rssViolation(SV,POV) -> danger(SV,POV)",
-    "dangerArises(SV,POV) -> initSafe(SV,POV)",
-    "danger(SV,POV) -> sameLane(SV,POV,L)",
-    # roads
-    "(some M in lanes: atLane(SV,M)) -> atLane(SV,L)",
-    "(every M in adjacentLanes(L): atLane(SV,M)) -> atLane(SV,L)",
-    "(every M in adjacentLanes(L): atLane(SV,M)) -> (some M in adjacentLanes(L): atLane(SV,M))",
-    "F (every M in lanes: atLane(SV,M)) -> (every M in lanes: G atLane(SV,M))",
-    "(every M in lanes: F atLane(SV,M)) -> F (every M in lanes: atLane(SV,M))",
-    "given M1: lane: (some M in adjacentLanes(M1): atLane(SV,M)) -> atLane(SV,M1)",
-    "given M2: lane: (F (some M in adjacentLanes(M2): atLane(SV,M))) -> F atLane(SV,M2)",
-    "(some M in lanes: atLane(SV,M) and inAdjLanes(SV,POV,L))"
-    " -> (some N in lanes: atLane(SV,N) and atLane(POV,N))",
-    "(every N in lanes: some M in lanes: atLane(SV,M) <-> atLane(POV,N))"
-    " -> (some M in lanes: every N in lanes: atLane(SV,M) <-> atLane(POV,N))",
-    "some M in adjacentLanes(L): true",
-    "every M in adjacentLanes(L): not atLane(SV,M)",
-    "atLane(SV,L) -> onMainRoad(SV)",
-    "given l: lanelet: G occ(SV,l)",
-    "(some l in zone(main): F occ(SV,l)) -> (every K in lanes: some l in lanelets(K): F occ(SV,l))",
-    "minSafe <= minDanger -> F[minDanger,minSafe] true",
-    "F[1.6 s, 4.2 s] not F danger(POV, SV)",
-    "given x: m: s(SV) > x",
-]
+INVALID = read_table(__file__, "invalid")
 
 # Not valid, but each trace that shows it switches for ever: nothing is claimed of these.
 NEEDS_INFINITELY_MANY_SWITCHES = ["G F p -> F G p", "G F p and G F q -> F (p and q)"]

@@ -48,6 +48,7 @@ from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact import judge
 from roadproof.semantics.exact.truth import from_switches
 from roadproof.verdict import Verdict
+from tables import read_table
 
 library = specification().library
 
@@ -90,17 +91,7 @@ def test_does_not_refute_what_is_true_of_every_road(claim):
 # --- Random claims: what is proved holds on random traces, what is refuted fails where it is said to
 
 UNITS = 0.5
-WINDOWS = [
-    "",
-    "[0, 1]",
-    "[1, 2]",
-    "[1, 1]",
-    "[1, inf]",
-    "[0, minDanger]",
-    "[minSafe, inf]",
-    "[minSafe, minSafe + minDanger]",
-    "[minSafe, minDanger]",
-]
+WINDOWS = read_table(__file__, "windows")
 windows = st.sampled_from(WINDOWS)
 trees = st.recursive(
     st.sampled_from([(P,), (Q,), (R,)]),

@@ -25,6 +25,7 @@ from roadproof.evidence.certificate import refusal
 from roadproof.logic import formula as f
 from roadproof.verdict import Verdict
 from roadproof.world.road import Lanelet, Road
+from tables import read_table
 
 UNITS = 0.4
 true_smt, true_inside, true_shrink = Window.smt, Window.inside, InstanceSearch._shrink
@@ -150,17 +151,7 @@ FINDER_FAULTS = [
     no_membership,
     everything_unsat,
 ]
-TEMPTING = [
-    "F p -> p",
-    "F p -> G p",
-    "F p and F q -> F (p and q)",
-    "G[0,1] p -> G[0,2] p",
-    "G[1,2] p -> p",
-    "p U q -> F (p and q)",
-    "p U q and p U r -> p U (q and r)",
-    "s(SV) >= s(POV) -> s(SV) > s(POV)",
-    "every M in adjacentLanes(L): not atLane(SV,M)",
-]
+TEMPTING = read_table(__file__, "tempting")
 
 
 def verdict_or_crash(claim: str) -> Verdict | str:

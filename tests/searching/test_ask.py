@@ -35,6 +35,7 @@ from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.verdict import Verdict
 from roadproof.world.models import load_vehicle
 from roadproof.world.motion import state_at
+from tables import read_table
 
 LIBRARY = bundled_library()
 SLOWER = "v_lon(SV) < v_lon(POV)"
@@ -247,16 +248,7 @@ def test_what_holds_for_all_time_is_proved_so():
 
 HOME = bundled_library().select()
 # Drives refute it only outside the limits of the shipped car.
-SLOW = (
-    "scenario_4(SV,POV,L) -> v_lon(SV) > 0 m/s",
-    "scenario_4(SV,POV,L) -> v_lon(SV) > 5 m/s",
-    "scenario_1(SV,POV,L) -> v_lon(SV) > 0 m/s",
-    "scenario_1(SV,POV,L) -> v_lon(SV) > 5 m/s",
-    "scenario_3(SV,POV,L) -> v_lon(SV) > 0 m/s",
-    "scenario_3(SV,POV,L) -> v_lon(SV) > 5 m/s",
-    # False on v = 8 + t: at a left-open boundary, where traces that hold a state refute nothing.
-    "v_lon(SV) <= 10 m/s and F v_lon(SV) > 10 m/s -> v_lon(SV) <= 10 m/s U v_lon(SV) > 10 m/s",
-)
+SLOW = tuple(read_table(__file__, "slow"))
 WITHIN = (
     "a_lon(SV) <= 2 m/s^2",
     "scenario_1(SV,POV,L) -> v_lon(SV) < 30 m/s",

@@ -19,23 +19,12 @@ from roadproof.evidence.judged import judge_file
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 from searching.known import LIBRARY, holds_on_samples, known
+from tables import read_table
 
 SHORT = {"horizon": Fraction(9, 5)}
 
 # Questions that have drives, each of them out of reach of a fault below.
-DRIVES = {
-    "in the second lane": "d(SV) > 6 m and atLane(SV, L)",
-    "a square": "v_lon(SV)^2 = 900 * 1 m/s * 1 m/s",
-    "at the limits": "v_lon(SV) >= 40 m/s and v_lat(SV) >= 2 m/s and d(SV) <= 1.8 m",
-    "as far as the reach": "s(POV) - s(SV) >= 80 m",
-    "elsewhere": "s(SV) = 30 m",
-    "before the zone": "not inMergeZone(SV) and F inMergeZone(SV)",
-    "gone again": "F[1.8 s, 1.8 s] s(SV) < 30 m and s(SV) > 0 m",
-    "bumper to bumper": "s(POV) - s(SV) = 4.5 m and d(SV) = d(POV)",
-    "through between samples": "s(POV) > s(SV) and d(POV) = d(SV) and F[0.6 s, 0.6 s] s(POV) < rear(SV)",
-    "full throttle": "F[1.2 s, 1.2 s] a_lon(SV) = 3 m/s^2 and a_lat(SV) >= 1.5 m/s^2",
-    "on the lane that ends": "G[0, 1.8 s] d(SV) < 0 m and atLane(SV, L) and inMergeZone(SV)",
-}
+DRIVES = read_table(__file__, "drives")
 
 
 def denied(search_options=None):
@@ -249,18 +238,7 @@ def test_claims_about_places_are_refuted(claim, road, engine):
     assert judge_file(result.drive.file, LIBRARY).accepted
 
 
-BORDERLINE = [
-    "v_lon(SV) = 40 m/s and v_lat(SV) = 2 m/s and d(SV) = 1.8 m",
-    "s(POV) - s(SV) = 80 m",
-    "s(SV) = 1/3 * 1 m and s(POV) = 1/7 * 1 m and d(POV) = 7 m and d(SV) = 9/5 * 1 m",
-    "a_lon(SV) = 3 m/s^2 and F[0.6 s, 0.6 s] (a_lon(SV) = -6 m/s^2 and v_lon(SV) = 40 m/s)",
-    "v_lon(SV) = 20.1 m/s and F[0.6 s, 0.6 s] v_lon(SV) = 20.2 m/s and F[1.2 s, 1.2 s] v_lon(SV) = 20.3 m/s",
-    "s(SV) = 0 m and v_lon(SV) = 20.1 m/s and F[0.6 s, 0.6 s] (v_lon(SV) = 20.2 m/s and s(SV) = 12.09 m)",
-    "v_lon(SV)^2 = 900 * 1 m/s * 1 m/s",
-    "v_lon(SV) * v_lon(POV) = 1600 * 1 m/s * 1 m/s",
-    "s(SV)^2 = 900 * 1 m * 1 m and v_lon(SV) >= 40 m/s",
-    "v_lat(SV) = 0.1 m/s and F[0.6 s, 0.6 s] v_lat(SV) = 1/3 * 1 m/s and s(SV) = 0.3 m",
-]
+BORDERLINE = read_table(__file__, "borderline")
 
 
 @pytest.mark.parametrize("what", BORDERLINE)

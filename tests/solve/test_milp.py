@@ -40,6 +40,7 @@ from roadproof.semantics.exact import judge
 from roadproof.world.models import load_vehicle
 from roadproof.world.motion import state_at
 from solve import small
+from tables import read_table
 
 
 def satisfied(problem, values, tolerance=1e-6):
@@ -258,16 +259,7 @@ def test_a_polynomial_is_an_affine_part_and_squares():
 
 @pytest.mark.parametrize(
     ("shift", "strict", "inner", "outer"),
-    [
-        (0, False, "true", "true"),
-        (0, True, "leaf", "true"),
-        (1, True, "true", "true"),
-        (-1, False, "leaf", "leaf"),
-        (-4, False, "leaf", "leaf"),
-        (-4, True, "false", "leaf"),
-        (-5, False, "false", "false"),
-        (-5, True, "false", "false"),
-    ],
+    read_table(__file__, "what_the_box_decides"),
 )
 def test_what_the_box_decides(shift: int, strict: bool, inner: str, outer: str):
     """The polynomial is x + 1 + shift on [-1, 3], so from shift to 4 + shift."""

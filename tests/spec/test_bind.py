@@ -35,6 +35,7 @@ from roadproof.semantics.exact import judge
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.road import Lanelet, Road, pairs
 from roadproof.world.signals import KINDS
+from tables import read_table
 
 WIDTH = Fraction(7, 2)
 METRES = (1, 0)
@@ -299,17 +300,7 @@ def home(more: str = ""):
 
 @pytest.mark.parametrize(
     ("claim", "expanded"),
-    [
-        ("red and jerk(SV) > 2 m/s^3", "red and jerk(SV) > 2 m/s^3"),
-        ("F braking", "F red"),
-        ("ahead(SV) < s(POV)", "s(SV) + gap(SV) < s(POV)"),
-        ("not red", "not red"),
-        ("kind(SV) = truck", "kind(SV) = truck"),
-        ("not kind(SV) = car", "not kind(SV) = car"),
-        ("bus = kind(SV)", "kind(SV) = bus"),
-        ("kind(SV) != motorcycle", "kind(SV) != motorcycle"),
-        ("given truck: vehicle: kind(truck) = truck", "kind(truck) = truck"),
-    ],
+    read_table(__file__, "what_is_written_is_printed"),
 )
 def test_what_is_written_is_printed(claim: str, expanded: str) -> None:
     assert text(as_syntax(read_claim(home(), claim).formula, expand=True)) == expanded
@@ -356,22 +347,7 @@ def test_the_fingerprint_changes_with_signals_only() -> None:
 
 @pytest.mark.parametrize(
     ("claim", "column", "told"),
-    [
-        ("jerk > 2", 1, "'jerk' needs its arguments"),
-        ("red(SV)", 1, "'red' takes 0 arguments but got 1"),
-        ("jerk(SV, POV) > 0", 1, "'jerk' takes 1 argument but got 2"),
-        ("red > 0", 1, "a number is expected here, but this is a formula"),
-        ("jerk(SV) > 2", 1, "write it with m/s^3"),
-        ("jek(SV) > 0", 1, "did you mean 'jerk'?"),
-        ("F[0, speed(SV)] red", 6, "an interval bound is a time"),
-        ("given red: vehicle: v_lon(red) > 0", 7, "'red' is a signal of the specification"),
-        ("some red in lanes: atLane(SV, red)", 1, "'red' is a signal of the specification"),
-        ("kind(SV)", 1, "a kind is no number"),
-        ("kind(SV) + 1 > 2", 1, "a kind is no number"),
-        ("kind(SV) = lorry", 12, "Kinds are car, truck, bus, motorcycle, other"),
-        ("kind(SV) > truck", 1, "kinds are compared with = and != only"),
-        ("kind(SV, POV) = car", 1, "'kind' takes 1 argument"),
-    ],
+    read_table(__file__, "mistakes_in_claims"),
 )
 def test_mistakes_in_claims(claim: str, column: int, told: str) -> None:
     with pytest.raises(TextError) as raised:
@@ -382,28 +358,7 @@ def test_mistakes_in_claims(claim: str, column: int, told: str) -> None:
 
 @pytest.mark.parametrize(
     ("declared", "told"),
-    [
-        ("signal s(a: vehicle): m", "'s' is built in"),
-        ("signal kind(a: vehicle): m", "'kind' is built in"),
-        ("def kind(a: vehicle) := true", "'kind' is built in"),
-        ("signal POV1: m", "'POV1' means something else"),
-        ("signal time: s", "'time' means something else"),
-        ("signal x(a: lane): m", "is of one vehicle or of none"),
-        ("signal x: lane", "'lane' is no unit of a signal"),
-        ("signal x: bool in [0, 1]", "is true or false"),
-        ("signal x: m in [0, 1] derived by 1 m", "so its bounds follow"),
-        ("signal x: m in [2, 2]", "low=2 is not below high=2"),
-        ("signal x: m in [inf, 2]", "the wrong way round"),
-        ("signal x: m in [0 s, 2]", "is in m, but its bound is in s"),
-        ("signal danger: bool", "'danger' is a definition already"),
-        ("signal rho: s", "'rho' is a parameter already"),
-        ("param gap = 1 m", "'gap' is a signal already"),
-        ("def gap(a: vehicle) := true", "'gap' is a signal"),
-        ("signal x: m signal x: m", "signal 'x' is given twice"),
-        ("signal x: m derived by 3 s", "is declared in m, but derived in s"),
-        ("signal x: bool derived by 3 s", "is declared bool, but derived by a number"),
-        ("signal x: m derived by x", "'x' is defined by itself"),
-    ],
+    read_table(__file__, "mistakes_in_declarations"),
 )
 def test_mistakes_in_declarations(declared: str, told: str) -> None:
     with pytest.raises(TextError) as raised:

@@ -19,6 +19,7 @@ from roadproof.logic.formula import FOREVER, Formula
 from roadproof.logic.parse import parse_library
 from roadproof.logic.recover import parse_pieces
 from roadproof.runtime.package_data import shipped
+from tables import read_table
 
 BASE = bundled_library().select()
 SECONDS = (0, 1)
@@ -143,43 +144,7 @@ def test_definitions_of_other_sets() -> None:
 
 @pytest.mark.parametrize(
     ("text", "column", "message"),
-    [
-        ("dangr(SV, POV)", 1, "there is no definition 'dangr'; did you mean 'danger'"),
-        ("danger(SV)", 1, "'danger' takes 2 arguments but got 1"),
-        ("scenario_4(SV, POV)", 1, "'scenario_4' takes at least 3 arguments but got 2"),
-        ("danger(SV, L)", 12, "there is no vehicle 'L'"),
-        ("laneKeep(SV, SV)", 14, "there is no lane 'SV'"),
-        ("danger(SV, ego)", 12, "there is no vehicle 'ego'"),
-        ("danger(SV, 3 m)", 12, "a vehicle is expected here"),
-        ("danger", 1, "'danger' needs its arguments"),
-        ("v_lon(SV)", 1, "a formula is expected here, but this is a number"),
-        ("v_lon(SV) > danger(SV, POV)", 13, "a number is expected here, but this is a formula"),
-        ("v_lon(SV) > 3", 1, "m/s and no unit cannot be compared"),
-        ("v_lon(SV) > s(SV)", 1, "m/s and m cannot be compared"),
-        ("v_lon(SV) + s(SV) > 0", 1, "m/s and m cannot be added"),
-        ("max(v_lon(SV), s(SV)) > 0", 1, "m/s and m cannot be compared"),
-        ("s(SV) / v_lon(SV) > 0", 1, "the divisor must be greater than zero"),
-        ("s(SV) / 0 > 0", 1, "the divisor must be greater than zero"),
-        ("s(SV) / rho > 0", 1, "the divisor must be greater than zero"),
-        ("1 + inverse(s(SV)) > 0", 1, "inverse(…) may only stand alone"),
-        ("max(inverse(s(SV)), 0) > 0", 1, "inverse(…) may only stand alone"),
-        ("F[2, 1] true", 2, "the interval is empty: low=2 is above high=1"),
-        ("F[-1, 1] true", 2, "an interval may not start in the past"),
-        ("F[0, 3 m] true", 6, "an interval bound is a time, but this is in m"),
-        ("F[0, v_lon(SV)] true", 6, "an interval bound is a time"),
-        ("F[0, s(SV)/(1 m/s)] true", 6, "may not depend on a vehicle's motion"),
-        ("some x in roads: true", 11, "this is no domain to quantify over"),
-        ("some l in zone(side): true", 16, "there is no zone 'side'"),
-        ("lanes(SV) > 0", 1, "'lanes' is a domain"),
-        ("occ(SV, L)", 9, "there is no lanelet 'L'"),
-        ("length(SV, POV) > 0 m", 1, "'length' takes 1 argument but got 2"),
-        ("max() > 0", 1, "'max' needs at least one argument"),
-        ("given A: car: true", 7, "there is no sort or unit 'car'"),
-        ("given A: vehicle; A: lane: true", 19, "'A' is given twice"),
-        ("accel@exta(POV, SV, L)", 1, "there is no spec set 'exta'; did you mean 'ext"),
-        ("dRSS_lon(SV, 3 m/s) > 0", 10, "is a vehicle|there is no"),
-        ("dRSS_lon(3 m, 3 m/s) > 0", 10, "argument v_r of 'dRSS_lon' is in m/s, but this is in m"),
-    ],
+    read_table(__file__, "mistakes"),
 )
 def test_mistakes(text: str, column: int, message: str) -> None:
     with pytest.raises(TextError, match=message.replace("(", r"\(").replace(")", r"\)")) as raised:
@@ -321,26 +286,7 @@ def one(SV: vehicle) := true
 set last extends base {
   def danger(SV, POV: vehicle) := rssViolation(SV, POV) and nosuch(SV)
 """
-WRONG = [
-    (2, 43, "the statement ends too early"),
-    (3, 25, "m/s and m cannot be compared"),
-    (3, 45, "m/s and s cannot be compared"),
-    (4, 27, "there is no definition 'dangr'; did you mean 'danger'?"),
-    (4, 57, "'danger' takes 2 arguments but got 1"),
-    (4, 73, "there is no vehicle 'ego'; there are SV"),
-    (5, 5, "'d' is built in and cannot be defined"),
-    (6, 27, "the interval is empty: low=2 is above high=1"),
-    (6, 54, "there is no parameter or definition 'nofoo'; did you mean 'foo'?"),
-    (7, 26, "'five' is defined by itself: five -> five"),
-    (8, 21, "there is no sort or unit 'lan'; did you mean 'lane'?"),
-    (10, 45, "'rssViolation' takes 2 arguments but got 1"),
-    (11, 7, "an override needs something to replace: there is no definition 'nosuch'"),
-    (12, 46, "'rssViolation' cannot stand here"),
-    (14, 1, "there is no spec set 'bas'; did you mean 'base'?"),
-    (16, 29, "there is no definition 'y_1'; did you mean 'x_1'?"),
-    (18, 1, "neg=-1 s: it is declared with neg > 0"),
-    (22, 71, "'set last extends base {' is not closed"),
-]
+WRONG = read_table(__file__, "wrong")
 
 
 def said(diagnostics) -> list[tuple[int, int, str]]:

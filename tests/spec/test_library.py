@@ -26,6 +26,7 @@ from roadproof.library.specification import (
 from roadproof.library.words import Words, called, called_in, legend, spans, words_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
+from tables import read_table
 
 PLAIN = """
 param limit = 130 km/h where limit > 0 "as signs say"
@@ -92,21 +93,7 @@ def test_each_makes_one_definition_an_index() -> None:
 
 @pytest.mark.parametrize(
     ("text", "message"),
-    [
-        ("def p(a: vehicle) := true def p(a: vehicle) := false", "definition 'p' is given twice"),
-        ("param a = 1 s param a = 2 s", "parameter 'a' is given twice"),
-        ("option a = x | y option a = x | z", "option 'a' is given twice"),
-        ("set a {} set a {}", "set 'a' is given twice"),
-        ("def occ(a: vehicle) := true", "'occ' is built in"),
-        ("set a extends b {}", "there is no spec set 'b'"),
-        ("set a { def p(a: vehicle) := true }", "an override needs something to replace"),
-        ("def pale(a: vehicle) := true set a { def pal(a: vehicle) := true }", "did you mean 'pale'"),
-        ("when a = b { }", "there is no option 'a'"),
-        ("option a = x | y when a = z { }", "there is no value of option a 'z'"),
-        ("each i in 1..2 { def p_{j}(a: vehicle) := true }", "'{j}' is no index"),
-        ("each i in 1..2 { def p_{i*2}(a: vehicle) := true }", "'{i\\*2}' is no index"),
-        ("set a { def p(a: vehicle) := true def p(a: vehicle) := true }", "given twice|needs something"),
-    ],
+    read_table(__file__, "mistakes_in_files"),
 )
 def test_mistakes_in_files(text: str, message: str) -> None:
     with pytest.raises(TextError, match=message) as raised:

@@ -20,6 +20,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import motion
 from roadproof.logic import terms as t
 from spec.motions import ABOUT, AXIOMS, holds, random_drive, specification
+from tables import read_table
 
 DRIVES = [random_drive(seed) for seed in range(300)]
 
@@ -179,38 +180,7 @@ def test_the_faults_are_written_like_the_schemas():
 
 # --- what cannot be assumed ----------------------------------------------------------------------
 
-REFUSED = [
-    ("no-such-schema", ("s(SV)", "s(POV)"), "no schema of motion"),
-    ("below", ("s(SV)",), "takes left, right"),
-    ("below", ("s(SV)*s(POV)", "0 m*1 m"), "no affine combination"),
-    ("below", ("max(s(SV), s(POV))", "0 m"), "no affine combination"),
-    ("at-most", ("a_lon(SV)", "0 m/s^2"), "no affine combination"),
-    ("at-most", ("rho", "minSafe"), "neither side ever changes"),
-    ("below", ("s(SV)", "s(POV9)"), "speaks of POV9, but the claim does not"),
-    ("below", ("s(SV)", "3 m/s"), "units do not fit"),
-    ("below", ("s(SV) < 3 m", "s(POV)"), "a number is expected here"),
-    ("below", ("given A: vehicle: s(A)", "s(SV)"), "may declare nothing"),
-    ("meets", ("a_lon(SV)", "0 m/s^2"), "may jump"),
-    ("leaves", ("s(SV) <= s(POV)",), "not open"),
-    ("leaves", ("not atLane(SV,L)",), "not open"),
-    ("leaves", ("a_lon(SV) < 0 m/s^2",), "not open"),
-    ("leaves", ("inverse(s(SV) - s(POV)) > 0",), "not open"),
-    ("leaves", ("F s(SV) < s(POV)",), "not open"),
-    ("leaves", ("atLane(SV,L3)",), "speaks of L3, but the claim does not"),
-    ("leaves", ("s(SV)",), "is a number"),
-    ("within", ("s(SV)", "0 m", "v_lon(POV)", "1 s"), "may not change"),
-    ("within", ("s(SV)", "0 m", "3 m", "1 s"), "units do not fit"),
-    ("after", ("s(SV)", "0 m", "3 m/s", "1 s - rho"), "may never be negative"),
-    ("after", ("s(SV)", "0 m", "3 m/s", "-1 s"), "may not start in the past"),
-    ("after", ("s(SV)", "0 m", "3 m/s", "v_lon(SV)*1 s^2/(1 m)"), ""),
-    ("after-twice", ("s(SV)", "0 m", "3 m/s", "1 s"), "takes left, right, speed, growth, time"),
-    ("after-twice", ("v_lon(SV)", "0 m/s", "3 m/s^2", "0 m/s^3", "1 s"), "no affine combination"),
-    ("after-twice", ("s(SV)", "0 m", "3 m/s", "3 m/s", "1 s"), "units do not fit"),
-    ("after-twice", ("s(SV)", "0 m", "3 m/s", "a_lon(POV)", "1 s"), "may not change"),
-    ("within-twice", ("s(SV)", "0 m", "v_lon(POV)", "3 m/s^2", "1 s"), "may not change"),
-    ("within-twice", ("s(SV)", "0 m", "3 m/s", "3 m/s^2", "-1 s"), "may not start in the past"),
-    ("within-twice", ("s(SV)*s(SV)", "0 m*1 m", "0", "0", "1 s"), "no affine combination"),
-]
+REFUSED = read_table(__file__, "refused")
 
 
 @pytest.mark.parametrize(("schema", "arguments", "why"), REFUSED)
@@ -222,17 +192,7 @@ def test_refuses_what_is_no_fact_about_motion(schema, arguments, why):
 
 @pytest.mark.parametrize(
     "said",
-    [
-        ("rest",),
-        ("motion", "s(SV) < s(POV)"),
-        ("motion", "false"),
-        ("motion", "v_lon(SV) <= 3 m/s and v_lon(POV) <= 3 m/s"),
-        ("motion", "v_lon(POV9) <= 3 m/s"),
-        ("motion", "v_lon(SV) <= rho*1 m/s^2"),
-        ("motion", "v_lon(SV)<=3 m/s"),
-        ("motion", "v_lon(SV) <= 3 m/s # as far as anybody knows"),
-        ("motion", "v_lon(SV) <= 3 m/s", "v_lon(SV) <= 3 m/s"),
-    ],
+    read_table(__file__, "refuses_what_is_no_limit_in_evidence"),
 )
 def test_refuses_what_is_no_limit_in_evidence(said):
     with pytest.raises(InputError):

@@ -25,6 +25,7 @@ from roadproof.logic.rewrite import without_names
 from roadproof.semantics.exact import judge
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road
+from tables import read_table
 
 BASE = bundled_library().select()
 
@@ -244,17 +245,7 @@ def offences(text: str) -> Iterator[str]:
 
 @pytest.mark.parametrize(
     "line",
-    [
-        'read_claim(spec, "danger(SV, POV)")',
-        'f"{x} and initSafe({a}, {b})"',
-        'f"scenario_{number}"',
-        'f"scenario_{number}@{set_name}({vehicles})"',
-        're.compile(r"roadSector_(\\d+)")',
-        'name == "rssViolation"',
-        'definitions["initialCondition_12"]',
-        "number % 8 == 7",
-        'applied(spec, 4, ("SV", other))',
-    ],
+    read_table(__file__, "names_and_rows_are_found"),
 )
 def test_names_and_rows_are_found(line: str) -> None:
     assert list(offences(line))
@@ -262,15 +253,7 @@ def test_names_and_rows_are_found(line: str) -> None:
 
 @pytest.mark.parametrize(
     "line",
-    [
-        '"""As ``danger(SV, POV)``."""',
-        'def go():\n    """As scenario_4."""',
-        '_EXAMPLES = """\\\n  roadproof show \'danger(SV,POV)\'\n"""',
-        'parser.add_argument("--x", help="such as scenario_4")',
-        'print("there is danger", f"scenario {number}")',
-        "'no danger within the section'",
-        "number % 7",
-    ],
+    read_table(__file__, "words_for_people_are_not"),
 )
 def test_words_for_people_are_not(line: str) -> None:
     assert not list(offences(line))
@@ -367,16 +350,7 @@ def test_outside_the_lane(sv: int, pov: int, expected: bool) -> None:
 
 @pytest.mark.parametrize(
     ("across", "expected"),
-    [
-        ((("3", "0.2"),), True),
-        ((("3", "-0.2"),), True),
-        ((("3", "0.1"),), False),
-        ((("3", "-0.1"),), False),
-        ((("0.5", "0.2"),), False),
-        ((("0.5", "0.2"), ("0.5", "-0.2")), False),
-        ((("1.1", "0.2"), ("1.1", "-0.2")), True),
-        ((), False),
-    ],
+    read_table(__file__, "drifting"),
 )
 def test_drifting(across: tuple[tuple[str, str], ...], expected: bool) -> None:
     """To one side faster than 0.1 m/s for a second."""

@@ -27,6 +27,7 @@ from roadproof.recordings.formats.projection import (
     project,
     triangles_of,
 )
+from tables import read_table
 from traffic.tiny_commonroad import Car, document, point
 
 US101 = Path(__file__).parents[3] / "shared" / "data" / "us101"
@@ -97,24 +98,7 @@ def test_overlaps_are_reported(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("old", "new", "message"),
-    [
-        ('timeStepSize="0.1"', 'timeStepSize="0.3"', "timeStepSize=0.3: a whole number"),
-        ('timeStepSize="0.1"', 'timeStepSize="fast"', "timeStepSize of commonRoad is 'fast'"),
-        ('Version="2020a"', 'Version="2018b"', "2020a is needed"),
-        ("</commonRoad>", "", "no well-formed XML"),
-        ('<?xml version="1.0"?>', '<!DOCTYPE a [<!ENTITY b "c">]>', "the file has a document type"),
-        (
-            "<time><exact>2</exact>",
-            "<time><exact>5</exact>",
-            "dynamicObstacle 7: time step 1 is followed by 5",
-        ),
-        ("<exact>20.0</exact>", "<exact>nan</exact>", "velocity in a state of dynamicObstacle 7 is 'nan'"),
-        ("<width>1.8</width>", "<width>-1.8</width>", r"dynamicObstacle 7 has length=4.0, width=-1.8"),
-        ('dynamicObstacle id="3"', 'dynamicObstacle id="7"', "dynamicObstacle 7 occurs twice"),
-        ("<lanelet ", "<lane ", "no well-formed XML"),
-        ('successor ref="4"', 'successor ref="99"', "lanelet 3: successor 99 is no lanelet of the file"),
-        ('lanelet id="2"', 'lanelet id="1"', "lanelet 1 occurs twice"),
-    ],
+    read_table(__file__, "damage_is_named"),
 )
 def test_damage_is_named(old: str, new: str, message: str, tmp_path: Path) -> None:
     path = tmp_path / "spoiled.xml"
@@ -484,17 +468,7 @@ def test_an_opposite_lane_is_a_direction_of_its_own(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("kind", "length", "expected"),
-    [
-        ("car", 4.5, ("Car", "Car")),
-        ("car", 7.0, ("Car", "Car")),
-        ("car", 7.1, ("Truck", "Truck")),
-        ("truck", 5.0, ("Truck", "truck")),
-        ("bus", 5.0, ("Truck", "bus")),
-        ("taxi", 4.5, ("Car", "taxi")),
-        ("motorcycle", 2.2, ("Car", "motorcycle")),
-        ("bicycle", 1.9, ("Car", "bicycle")),
-        ("unknown", 9.0, ("Truck", "unknown")),
-    ],
+    read_table(__file__, "types_and_lengths_are_classes"),
 )
 def test_types_and_lengths_are_classes(
     kind: str, length: float, expected: tuple[str, str], tmp_path: Path
@@ -549,23 +523,7 @@ def test_static_obstacles_are_noted(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("old", "new", "said"),
-    [
-        ("</width>", "</width><orientation>0.1</orientation>", "orientation=0.1 of the rectangle of"),
-        (
-            "</width>",
-            "</width><orientation>x</orientation>",
-            "orientation of the rectangle of dynamicObstacle 7",
-        ),
-        ("</width>", "</width><center><x>1</x></center>", "center y of the rectangle of dynamicObstacle 7"),
-        (
-            "<velocity><exact>20.0</exact>",
-            "<velocity><intervalStart>1</intervalStart>",
-            "velocity in a state",
-        ),
-        ("<acceleration><exact>", "<acceleration><intervalEnd>", "acceleration in a state"),
-        ("<time><exact>0</exact>", "<time><intervalStart>0</intervalStart>", "time in a state"),
-        ("<position><point>", "<position><circle>", "x in a state of dynamicObstacle 7"),
-    ],
+    read_table(__file__, "intervals_areas_and_turned_shapes_are_refused"),
 )
 def test_intervals_areas_and_turned_shapes_are_refused(old: str, new: str, said: str, tmp_path: Path) -> None:
     path = put(tmp_path, [FIRST])

@@ -24,6 +24,7 @@ from roadproof.recordings.formats.openscenario import RATE, read_columns, read_r
 from roadproof.recordings.formats.sources import find_source
 from roadproof.world.motion import state_at
 from roadproof.world.signals import RECORDED
+from tables import read_table
 
 NEAR = {"s": 0.012, "d": 0.012, "v_lon": 0.25, "v_lat": 0.25}
 """m and m/s: vertices are rounded to the millimetre, and speeds at them are estimated."""
@@ -219,15 +220,7 @@ def test_a_planted_reference_point_is_noticed(monkeypatch: pytest.MonkeyPatch, t
 # uses ElementTree and polynomials of numpy, and none of the reader's functions.
 
 FRAMES_A_SECOND = 25
-KINDS = {
-    "car": "Car",
-    "van": "Car",
-    "truck": "Truck",
-    "semitrailer": "Truck",
-    "trailer": "Truck",
-    "bus": "Truck",
-    "motorbike": "Motorcycle",
-}
+KINDS = read_table(__file__, "kinds")
 
 
 @dataclass(frozen=True)
