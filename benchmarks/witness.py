@@ -12,8 +12,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from roadproof.engines.encode.build import NONE, encode_formula, frame
-from roadproof.engines.encode.custom_signals import own_columns
-from roadproof.engines.encode.motion import Layout
+from roadproof.engines.encode.motion import Layout, own_columns
 from roadproof.engines.search.ask import Outcome, Search, ask
 from roadproof.engines.search.question import pose
 from roadproof.engines.solve.exact import solve_exactly

@@ -173,7 +173,7 @@ from fractions import Fraction as F
 import random
 from roadproof.engines.encode.along import names_places
 from roadproof.engines.encode.build import NONE, ground
-from roadproof.engines.encode.circuit import evaluate
+from roadproof.engines.encode.problem import evaluate
 from roadproof.engines.encode.motion import Layout
 from roadproof.engines.encode.unroll import Grid, unroll
 from roadproof.semantics.exact import judge

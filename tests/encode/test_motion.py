@@ -9,10 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadproof.engines.encode.build import Assumptions, inequality_at, inequality_for_ever
-from roadproof.engines.encode.circuit import AnyOf, evaluate
 from roadproof.engines.encode.motion import Layout, encode_motions
 from roadproof.engines.encode.place import move_one_way, rectangles, stay_apart, stay_on_road
-from roadproof.engines.encode.polynomial import Inequality, affine, variable
+from roadproof.engines.encode.problem import AnyOf, Inequality, affine, evaluate, variable
 from roadproof.engines.encode.unroll import Grid
 from roadproof.engines.search.rounding import round_drive
 from roadproof.world.models import load_road, load_vehicle

@@ -13,10 +13,22 @@ from encode import cases
 from encode.test_motion import columns_of, motions, satisfied
 from planting import plant
 from roadproof.engines.encode import inequalities, motion, place, unroll
-from roadproof.engines.encode.circuit import All, AnyOf, Leaf, any_of, evaluate, implicant
 from roadproof.engines.encode.motion import Layout
-from roadproof.engines.encode.polynomial import Inequality, affine, variable
-from roadproof.engines.encode.problem import Column, Problem, Row, Unknown
+from roadproof.engines.encode.problem import (
+    All,
+    AnyOf,
+    Column,
+    Inequality,
+    Leaf,
+    Problem,
+    Row,
+    Unknown,
+    affine,
+    any_of,
+    evaluate,
+    implicant,
+    variable,
+)
 from roadproof.engines.encode.unroll import Grid
 from roadproof.engines.solve import bounds, milp
 from roadproof.logic import formula as f

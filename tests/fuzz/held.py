@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from fuzz.case import Disagreement
 from fuzz.definition import DT, Definition, Held
 from logic.test_show import canonical
-from roadproof.engines.encode.circuit import evaluate
+from roadproof.engines.encode.problem import evaluate
 from roadproof.engines.encode.unroll import Grid, unroll
 from roadproof.library.bind import bind, default_values
 from roadproof.library.elaborate import read_claim

@@ -13,7 +13,7 @@ from roadproof.drivers.boundary import Plane, line
 from roadproof.drivers.manoeuvres import MANOEUVRES
 from roadproof.drivers.models import MODELS, SCENARIOS, foreseen, unpreventable
 from roadproof.drivers.restriction import Restriction, Side, restriction_of
-from roadproof.engines.prove.driver_claims import prove_of_scenarios
+from roadproof.engines.prove.induction import prove_of_scenarios
 from roadproof.engines.search.impossible import show_impossible
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import load_drive

@@ -3,9 +3,19 @@
 import random
 from fractions import Fraction
 
-from roadproof.engines.encode.circuit import Leaf, all_of, any_of, evaluate
-from roadproof.engines.encode.polynomial import Inequality, affine, variable
-from roadproof.engines.encode.problem import Column, Problem, Row, Unknown
+from roadproof.engines.encode.problem import (
+    Column,
+    Inequality,
+    Leaf,
+    Problem,
+    Row,
+    Unknown,
+    affine,
+    all_of,
+    any_of,
+    evaluate,
+    variable,
+)
 from roadproof.engines.solve.bounds import approximate, value_of
 from roadproof.engines.solve.exact import solve_exactly
 from roadproof.runtime.budget import Effort

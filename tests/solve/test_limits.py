@@ -6,9 +6,17 @@ from fractions import Fraction
 import cvxpy
 import pytest
 
-from roadproof.engines.encode.circuit import Leaf, all_of, any_of
-from roadproof.engines.encode.polynomial import Inequality, affine
-from roadproof.engines.encode.problem import Column, Problem, Row, Unknown
+from roadproof.engines.encode.problem import (
+    Column,
+    Inequality,
+    Leaf,
+    Problem,
+    Row,
+    Unknown,
+    affine,
+    all_of,
+    any_of,
+)
 from roadproof.engines.solve import exact, milp, smt
 from roadproof.engines.solve.exact import solve_exactly
 from roadproof.engines.solve.milp import Solution, box_of, solve_mixed

@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import Any, Generic, TypeVar
 
 from roadproof.analysis.study.evidence_store import specification_names
-from roadproof.engines.prove.driver_claims import prove_of_scenarios
+from roadproof.engines.prove.induction import prove_of_scenarios
 from roadproof.engines.prove.prover import Result
 from roadproof.engines.search.ask import Search
 from roadproof.engines.search.question import Objective, SearchOptions, Setting

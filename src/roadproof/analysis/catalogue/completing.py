@@ -20,7 +20,7 @@ from roadproof.analysis.placing import judged_as
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.pool import Progress
 from roadproof.engines.search.ask import answer
-from roadproof.engines.search.variety import CLEARLY
+from roadproof.engines.search.initial_conditions import CLEARLY
 from roadproof.errors import UsageError
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.drive_file import DriveFile

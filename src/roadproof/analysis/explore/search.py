@@ -14,8 +14,7 @@ from typing import Literal, TypeAlias
 from roadproof.engines.encode.unroll import common_step
 from roadproof.engines.prove.prover import prove
 from roadproof.engines.search.ask import Search, judge_found, telling_values
-from roadproof.engines.search.grid import COARSEST, coarsest, durations
-from roadproof.engines.search.question import SearchProblem, Setting, pose
+from roadproof.engines.search.question import COARSEST, SearchProblem, Setting, coarsest, durations, pose
 from roadproof.engines.search.search import Attempt, find_witness, show_none
 from roadproof.errors import UsageError
 from roadproof.evidence.certificate import Certificate

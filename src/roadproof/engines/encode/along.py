@@ -9,9 +9,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from typing import Literal, TypeAlias, assert_never
 
-from roadproof.engines.encode.circuit import Leaf, nodes
 from roadproof.engines.encode.inequalities import Quantity, inequalities_of, sizes_of
-from roadproof.engines.encode.polynomial import Polynomial
+from roadproof.engines.encode.problem import Leaf, Polynomial, nodes
 from roadproof.engines.encode.unroll import Grid
 from roadproof.logic.formula import Compare, Formula, subformulas
 from roadproof.world.road import Road

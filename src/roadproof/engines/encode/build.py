@@ -6,12 +6,24 @@ from fractions import Fraction
 from itertools import combinations
 from typing import TypeAlias, assert_never
 
-from roadproof.engines.encode.circuit import Circuit, Leaf, all_of, replace_leaves
 from roadproof.engines.encode.inequalities import Quantity, inequalities_of, sizes_of
 from roadproof.engines.encode.motion import Layout, encode_motions
 from roadproof.engines.encode.place import be_in_lane, move_one_way, span, stay_apart, stay_on_road
-from roadproof.engines.encode.polynomial import Inequality, Polynomial, affine, variable
-from roadproof.engines.encode.problem import Column, ColumnInequality, Problem, Row, row_of
+from roadproof.engines.encode.problem import (
+    Circuit,
+    Column,
+    ColumnInequality,
+    Inequality,
+    Leaf,
+    Polynomial,
+    Problem,
+    Row,
+    affine,
+    all_of,
+    replace_leaves,
+    row_of,
+    variable,
+)
 from roadproof.engines.encode.unroll import At, unroll
 from roadproof.logic.formula import Compare, Formula
 from roadproof.world.road import Road

@@ -9,8 +9,18 @@ from fractions import Fraction
 from itertools import product
 from typing import TypeAlias, assert_never
 
-from roadproof.engines.encode.circuit import All, AnyOf, Circuit, Leaf, all_of, any_of
-from roadproof.engines.encode.polynomial import Inequality, Polynomial, constant, variable
+from roadproof.engines.encode.problem import (
+    All,
+    AnyOf,
+    Circuit,
+    Inequality,
+    Leaf,
+    Polynomial,
+    all_of,
+    any_of,
+    constant,
+    variable,
+)
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import code_of
 from roadproof.logic.formula import Compare

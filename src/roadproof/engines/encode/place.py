@@ -4,10 +4,18 @@ from collections.abc import Iterable
 from fractions import Fraction
 from itertools import pairwise
 
-from roadproof.engines.encode.circuit import Circuit, Leaf, all_of, any_of
 from roadproof.engines.encode.motion import Layout
-from roadproof.engines.encode.polynomial import Inequality, Polynomial, affine, constant
-from roadproof.engines.encode.problem import ColumnInequality
+from roadproof.engines.encode.problem import (
+    Circuit,
+    ColumnInequality,
+    Inequality,
+    Leaf,
+    Polynomial,
+    affine,
+    all_of,
+    any_of,
+    constant,
+)
 from roadproof.world.road import Lanelet, Road
 from roadproof.world.signals import SignalName, SizeName
 from roadproof.world.vehicle import Range, Vehicle

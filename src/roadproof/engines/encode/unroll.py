@@ -13,7 +13,7 @@ from fractions import Fraction
 from math import gcd
 from typing import assert_never
 
-from roadproof.engines.encode.circuit import All, AnyOf, Circuit, Leaf, all_of, any_of
+from roadproof.engines.encode.problem import All, AnyOf, Circuit, Leaf, all_of, any_of
 from roadproof.errors import UsageError
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Compare, Comparison, Formula, Interval

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TypeAlias, assert_never
 
-from roadproof.engines.prove.small_roads import Roster
+from roadproof.engines.prove.roads import Roster
 from roadproof.engines.solve.smt import Session
 from roadproof.evidence.atoms import ZONES, Atoms, is_rigid, membership, true_of_roads
 from roadproof.evidence.sites import Lemma, Site, prefix_form

@@ -1,9 +1,11 @@
-"""Which inductions over time may help to prove a claim: those whose step the claim itself supposes."""
+"""Proofs by induction, and of scenarios that begin with what a driver prevents, or cannot prevent."""
 
 from collections.abc import Iterator, Sequence
 
+from roadproof.drivers.restriction import left_open
 from roadproof.engines.prove.prover import Result, prove
 from roadproof.errors import InputError
+from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import Assumption, Axiom, axiom_formula
 from roadproof.library.specification import Query, Specification
 from roadproof.logic import formula as f
@@ -12,6 +14,7 @@ from roadproof.logic.restore import as_syntax, term_as_syntax
 from roadproof.logic.show import text
 from roadproof.logic.terms import Term
 from roadproof.runtime.budget import Effort
+from roadproof.verdict import Verdict
 
 MOST = 8
 UNITS = 4.0
@@ -67,3 +70,21 @@ def _text(formula: Formula) -> str:
 
 def _number(term: Term) -> str:
     return text(term_as_syntax(term))
+
+
+_OPEN = "not proved where it is left open what a driver prevents, and no other proof was looked for"
+
+
+def prove_of_scenarios(specification: Specification, query: Query, effort: Effort, label: str = "") -> Result:
+    """As ``prove``; but where a driver model says what begins, UNKNOWN for what needs its numbers.
+
+    A proof is one of the claim itself, with its certificate. That there may be one is asked first where what
+    the driver prevents is left open, which is quickly refuted: a search in the formulas of a driver, cubic in
+    the state, is not. Raises ``BudgetExceeded``.
+    """
+    outline = left_open(specification)
+    if outline is not None:
+        first = prove(outline, read_claim(outline, query.text), effort, label)
+        if not first.holds:
+            return Result(Verdict.UNKNOWN, _OPEN, first.seconds, first.work)
+    return prove(specification, query, effort, label)

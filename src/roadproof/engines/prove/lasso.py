@@ -10,10 +10,9 @@ from fractions import Fraction
 from itertools import islice, product
 from typing import TypeAlias, TypeGuard
 
-from roadproof.engines.prove.countermodel import Trace, realise
-from roadproof.engines.prove.place import Values
+from roadproof.engines.prove.countermodel import Trace, Values, realise
+from roadproof.engines.prove.roads import open_quantifiers
 from roadproof.engines.prove.search import Model
-from roadproof.engines.prove.small_roads import open_quantifiers
 from roadproof.engines.prove.states import StateChecker
 from roadproof.errors import RoadproofError
 from roadproof.evidence.periodic import Loop, judge_periodic

@@ -8,8 +8,8 @@ from fractions import Fraction
 from roadproof.engines.prove.countermodel import realise, with_truths
 from roadproof.engines.prove.doubt import Doubt, Stop
 from roadproof.engines.prove.lasso import find_lasso
+from roadproof.engines.prove.roads import Roster, roster_for
 from roadproof.engines.prove.search import GaveUp, InstanceSearch, Model, Proof
-from roadproof.engines.prove.small_roads import Roster, roster_for
 from roadproof.engines.prove.states import Learnt, StateChecker
 from roadproof.engines.solve.smt import ask
 from roadproof.errors import InputError

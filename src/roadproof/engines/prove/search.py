@@ -13,10 +13,9 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from roadproof.engines.prove.doubt import Stop
-from roadproof.engines.prove.explanation import is_plain, reason
 from roadproof.engines.prove.grounding import Grounding, Universal
-from roadproof.engines.prove.small_roads import Roster, open_quantifiers
-from roadproof.engines.prove.states import CASE, StateChecker
+from roadproof.engines.prove.roads import Roster, open_quantifiers
+from roadproof.engines.prove.states import CASE, StateChecker, is_plain, reason
 from roadproof.engines.solve.smt import Satisfiability
 from roadproof.evidence.atoms import free_lanelets, membership
 from roadproof.evidence.derivation import free_prefix

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from roadproof.engines.prove.prover import prove
 from roadproof.engines.search.ask import Search, ask, reads_all
 from roadproof.engines.search.constant_motion import steady_drive
-from roadproof.engines.search.instant_claims import sampled_drive
+from roadproof.engines.search.refute import sampled_drive
 from roadproof.evidence.answers import compare as kept
 from roadproof.evidence.answers.compare import Relation
 from roadproof.evidence.certificate import Certificate, certificate_data

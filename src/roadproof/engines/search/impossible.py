@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from roadproof.drivers.restriction import left_open
-from roadproof.engines.prove.driver_claims import prove_of_scenarios
+from roadproof.engines.prove.induction import prove_of_scenarios
 from roadproof.engines.prove.prover import ProofHeuristic, Result, prove
 from roadproof.evidence.certificate import Certificate, certificate_data
 from roadproof.library.compose import negation, of_parts

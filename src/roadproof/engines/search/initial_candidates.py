@@ -11,10 +11,10 @@ from itertools import combinations
 
 from roadproof.engines.encode.along import Place, names_places
 from roadproof.engines.encode.build import inequality_at
-from roadproof.engines.encode.circuit import Leaf, nodes
 from roadproof.engines.encode.inequalities import inequalities_of, sizes_of
 from roadproof.engines.encode.motion import Layout
 from roadproof.engines.encode.place import span
+from roadproof.engines.encode.problem import Leaf, nodes
 from roadproof.engines.search.initial_conditions import Condition, Start
 from roadproof.engines.search.question import SearchProblem
 from roadproof.engines.search.sampling import Space, State, signals_in, states

@@ -1,17 +1,27 @@
-"""How a drive begins: conditions at time 0, in place of parts of a formula that they imply."""
+"""Conditions on a drive beside the formula: how it begins, and how it differs from drives found before."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from roadproof.engines.encode.circuit import Circuit, Leaf, all_of
 from roadproof.engines.encode.motion import Layout
-from roadproof.engines.encode.polynomial import Inequality, Polynomial, constant
-from roadproof.engines.encode.problem import ColumnInequality
+from roadproof.engines.encode.problem import (
+    Circuit,
+    ColumnInequality,
+    Inequality,
+    Leaf,
+    Polynomial,
+    all_of,
+    any_of,
+    constant,
+)
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.initial_conditions import conjuncts, narrowed
 from roadproof.logic.terms import Signal
+from roadproof.world.drive import Drive
+from roadproof.world.motion import state_at
+from roadproof.world.signals import SignalName
 
 
 @dataclass(frozen=True)
@@ -61,3 +71,21 @@ def encode_start(start: Start, layout: Layout) -> Circuit[ColumnInequality]:
         found.append(Leaf(Inequality(value + constant(-x.low), False)))
         found.append(Leaf(Inequality(value.scaled(Fraction(-1)) + constant(x.high), False)))
     return all_of(found)
+
+
+# How far a signal at the start or the end has to be from that of another drive, in m and m/s.
+CLEARLY: Mapping[SignalName, Fraction] = {"s": Fraction(15), "d": Fraction(5, 2), "v_lon": Fraction(4)}
+
+
+def differ(layout: Layout, other: Drive) -> Circuit[ColumnInequality]:
+    """At the start or the end, a vehicle is in another lane, elsewhere along it, or at another speed."""
+    choices: list[Circuit[ColumnInequality]] = []
+    for name in layout.vehicles:
+        for step in (0, layout.grid.steps):
+            state = state_at(other.vehicles[name], step * layout.grid.dt)
+            for signal, distance in CLEARLY.items():
+                value: Fraction = getattr(state, signal)
+                now = layout.state(name, signal, step)
+                choices.append(Leaf(Inequality(now + constant(-value - distance), False)))
+                choices.append(Leaf(Inequality(now.scaled(Fraction(-1)) + constant(value - distance), False)))
+    return any_of(choices)

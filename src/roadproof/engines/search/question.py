@@ -1,18 +1,17 @@
-"""What is asked for, how to look for it, and what was found: plain data."""
+"""What is asked for, on which grid, with which vehicles, how to look for it, and what was found."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from itertools import product
+from math import ceil
 from typing import Literal, TypeAlias
 
 from roadproof.engines.encode.along import starting_range
 from roadproof.engines.encode.build import Assumptions
-from roadproof.engines.encode.custom_signals import own_columns
-from roadproof.engines.encode.unroll import Grid
-from roadproof.engines.search.default_vehicles import refuse_unknown, usual_model
-from roadproof.engines.search.grid import fitting_grid, make_grid
+from roadproof.engines.encode.motion import own_columns
+from roadproof.engines.encode.unroll import Grid, common_step
 from roadproof.engines.search.initial_conditions import Start
 from roadproof.engines.search.limits import Limits
 from roadproof.errors import UsageError
@@ -20,14 +19,111 @@ from roadproof.library.bind import bind, values_with
 from roadproof.library.specification import Library, Query
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.custom_names import told_range
+from roadproof.logic.custom_names import code_of, told_range, vehicles_with_kind
 from roadproof.logic.formula import Formula, subformulas
-from roadproof.logic.rewrite import parameters_of, signals_of
+from roadproof.logic.fragment import intervals_of
+from roadproof.logic.initial_conditions import conjuncts
+from roadproof.logic.rewrite import bounds_of, parameters_of, signals_of, terms_of, with_values
 from roadproof.runtime.budget import Effort
+from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.signals import AbstractSignals
 from roadproof.world.drive import Drive
-from roadproof.world.models import load_road
+from roadproof.world.models import load_road, load_vehicle, names_of
 from roadproof.world.road import Road
+from roadproof.world.signals import KINDS, Kind
 from roadproof.world.vehicle import Range, Vehicle, with_limits
+
+
+def usual_model(formula: Formula, vehicle: str) -> Vehicle:
+    """The shipped model of the first kind that is not excluded by a part of the conjunction ``formula``."""
+    asked = [part for part in conjuncts(formula) if _is_about_kind(part, vehicle)]
+    kinds = (kind for kind in KINDS if kind in names_of("vehicles"))
+    return load_vehicle(next((k for k in kinds if all(_holds(x, vehicle, k) for x in asked)), KINDS[0]))
+
+
+def refuse_unknown(formula: Formula, vehicle: str, model: Vehicle) -> None:
+    """Raise ``UsageError`` where a formula speaks of a kind that the model does not tell."""
+    if model.kind is None and vehicle in vehicles_with_kind(formula):
+        raise UsageError(
+            f"vehicle {vehicle}={model.name}: the formula mentions its kind, and the model does not say it: "
+            f'write kind = "{KINDS[1]}" in its file (or {", ".join(x for x in KINDS if x != KINDS[1])})'
+        )
+
+
+def _is_about_kind(part: Formula, vehicle: str) -> bool:
+    """Whether ``part`` says something of the kind of ``vehicle``, and of nothing else."""
+    about = (f.Truth, f.Compare, f.Not, f.And, f.Or, f.Application)
+    if not all(isinstance(x, about) for x in f.subformulas(part)):
+        return False
+    leaves = [x for side in terms_of(part) for x in t.leaves(side) if not isinstance(x, t.Number)]
+    return bool(leaves) and all(x == t.Size("kind", vehicle) for x in leaves)
+
+
+def _holds(part: Formula, vehicle: str, kind: Kind) -> bool:
+    return judge(part, AbstractSignals({}, {t.Size("kind", vehicle): Fraction(code_of(kind))})).holds
+
+
+COARSEST = Fraction(3, 5)
+MOST_STEPS = 400
+
+
+def make_grid(horizon: Fraction, dt: Fraction) -> Grid:
+    """Raises ``UsageError`` unless the horizon is a sensible multiple of dt."""
+    if dt <= 0 or horizon <= 0:
+        raise UsageError(f"horizon={horizon} s and dt={dt} s must be greater than 0")
+    steps = horizon / dt
+    if steps.denominator != 1:
+        raise UsageError(
+            f"horizon={horizon} s is no multiple of dt={dt} s: choose a horizon "
+            f"such as {dt * (int(steps) + 1)} s, or another dt"
+        )
+    if steps > MOST_STEPS:
+        raise UsageError(
+            f"horizon={horizon} s with dt={dt} s is {steps} steps; at most {MOST_STEPS} are allowed"
+        )
+    return Grid(dt, int(steps))
+
+
+def fitting_grid(horizon: Fraction, formula: Formula, values: Mapping[str, Fraction]) -> Grid:
+    """The coarsest grid, of at most 3/5 s, of whose step all durations and the horizon are multiples.
+
+    Where only the horizon is in the way, it grows to a multiple. Raises ``UsageError`` where the grid
+    would have too many steps.
+    """
+    step = Fraction(0)
+    found = durations(formula, values)
+    for duration in found:
+        step = common_step(step, duration)
+    dt = coarsest(step)
+    with_horizon = coarsest(common_step(step, horizon))
+    if with_horizon < dt / 4:
+        horizon, with_horizon = ceil(horizon / dt) * dt, dt
+    if horizon / with_horizon > MOST_STEPS:
+        raise UsageError(
+            f"horizon={horizon} s is {horizon / with_horizon} steps of dt={with_horizon} s, the coarsest of "
+            f"which all durations of the formula are multiples ({_some(found)}); at most {MOST_STEPS} are "
+            "allowed: give parameters and windows durations that are multiples of a longer time, or choose a "
+            "shorter horizon"
+        )
+    return make_grid(horizon, with_horizon)
+
+
+def _some(found: Collection[Fraction]) -> str:
+    """Some durations in seconds, the shortest first."""
+    shown = [f"{x} s" for x in sorted(x for x in found if x)]
+    return ", ".join(shown[:6]) + (", …" if len(shown) > 6 else "")
+
+
+def coarsest(step: Fraction, most: Fraction = COARSEST) -> Fraction:
+    """The greatest part of ``step``, one over a whole number, that is at most ``most``; of 0 it is that."""
+    return step / ceil(step / most) if step else most
+
+
+def durations(formula: Formula, values: Mapping[str, Fraction]) -> set[Fraction]:
+    """The finite bounds of all intervals, in s, with parameters at ``values``."""
+    bounds = (bounds_of(interval) for interval in intervals_of(with_values(formula, values)))
+    return {bound for pair in bounds for bound in pair if bound is not None}
+
 
 Objective: TypeAlias = Literal["any", "smooth", "margin", "mild", "severe", "short"]
 Engine: TypeAlias = Literal["milp", "smt"]

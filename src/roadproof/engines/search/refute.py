@@ -1,20 +1,27 @@
 """Drives against claims: a drive on a reference road on which a claim is false."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 
 from roadproof.engines.search.ask import Search, ask, reads_all
-from roadproof.engines.search.default_vehicles import usual_model
+from roadproof.engines.search.constant_motion import steady_drive
 from roadproof.engines.search.enumeration import Within, small_drive
-from roadproof.engines.search.question import SearchOptions, Setting
+from roadproof.engines.search.initial_candidates import space_of
+from roadproof.engines.search.question import SearchOptions, Setting, pose, usual_model
+from roadproof.engines.search.sampling import Space, states
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.evidence.refutation import Countermodel, Instant
+from roadproof.library.bind import bind, values_with
 from roadproof.library.compose import negation
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import is_state
+from roadproof.logic.fragment import is_cubic_state
 from roadproof.logic.initial_conditions import pins
+from roadproof.logic.terms import Signal
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact.replay import first_breach, first_overlap
-from roadproof.world.vehicle import Vehicle
+from roadproof.world.vehicle import Range, Vehicle
 
 # Units of work: for a drive within the limits of the usual models, where one beyond them is known, and
 # without them.
@@ -100,3 +107,41 @@ def beyond_limits(drive: JudgedDrive) -> str:
         return f"limits of the shipped {models[breach.vehicle].name}: {breach}"
     overlap = first_overlap(file.drive, file.horizon)
     return "" if overlap is None else f"usual drives: {overlap}"
+
+
+def sampled_drive(
+    specification: Specification, claim: Query, values: Mapping[str, Fraction], setting: Setting
+) -> JudgedDrive | None:
+    """A drive of constant motion on which ``claim`` is false at time 0, or None where none was found.
+
+    States are looked for within what the vehicles of ``setting`` can do, then around that; the drive need
+    not keep their limits. ``values`` of parameters, SI. Only for claims about one instant that speak of the
+    signals of vehicles and of nothing else; of others it is None.
+    """
+    against = negation(claim)
+    if not claim.vehicles or not is_cubic_state(claim.formula):
+        return None
+    library = specification.library
+    question = pose(library, against, replace(setting, values=values))
+    formula = bind(against.formula, question.road, {}, question.values)
+    inside = space_of(question)
+    for space in (inside, _around(inside)):
+        for state in states(formula, space, 1):
+            now = {f"{x.name}({x.vehicle})": value for x, value in state.items()}
+            now |= {f"{x.name}({x.vehicle})": value for x, value in space.sizes.items()}
+            found = Countermodel((Instant(Fraction(0), now, {}),), values_with(library, values), "before")
+            drive = steady_drive(specification, claim, found, values_with(library, values))
+            if drive is not None:
+                return drive
+    return None
+
+
+def _around(space: Space) -> Space:
+    """As much again on both sides of every range; no vehicle reverses."""
+
+    def wider(signal: Signal, ends: Range) -> Range:
+        low, high = ends
+        below = low - (high - low)
+        return (max(below, Fraction(0)) if signal.name == "v_lon" else below), high + (high - low)
+
+    return Space({x: wider(x, ends) for x, ends in space.ranges.items()}, space.sizes)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadproof.engines.encode.inequalities import Quantity, polynomial_of
-from roadproof.engines.encode.polynomial import Polynomial, constant, variable
+from roadproof.engines.encode.problem import Polynomial, constant, variable
 from roadproof.engines.search.patterns import spread
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t

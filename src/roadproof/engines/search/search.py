@@ -7,18 +7,15 @@ from fractions import Fraction
 from itertools import combinations, product, zip_longest
 
 from roadproof.engines.encode.build import Assumptions, Margin, encode_formula, frame
-from roadproof.engines.encode.circuit import Circuit
-from roadproof.engines.encode.custom_signals import own_columns
-from roadproof.engines.encode.motion import Layout
-from roadproof.engines.encode.problem import ColumnInequality, Problem
+from roadproof.engines.encode.motion import Layout, own_columns
+from roadproof.engines.encode.problem import Circuit, ColumnInequality, Problem
 from roadproof.engines.encode.unroll import Grid
 from roadproof.engines.search.initial_candidates import closed, starts, unread
-from roadproof.engines.search.initial_conditions import encode_start
+from roadproof.engines.search.initial_conditions import differ, encode_start
 from roadproof.engines.search.limits import Limits
 from roadproof.engines.search.question import FoundDrive, SearchOptions, SearchProblem
 from roadproof.engines.search.rounding import round_drive
 from roadproof.engines.search.shape import reshape, violation_depths
-from roadproof.engines.search.variety import differ
 from roadproof.engines.solve.bounds import TooNonlinearError
 from roadproof.engines.solve.exact import solve_exactly
 from roadproof.engines.solve.milp import Solution, box_of, solve_mixed

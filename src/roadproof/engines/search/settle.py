@@ -152,9 +152,8 @@ class _Settler:
 
     def _quick(self) -> JudgedDrive | None:
         """A short or steady drive on which the claim is false, found without a solver; None as below."""
-        from roadproof.engines.search.instant_claims import sampled_drive
         from roadproof.engines.search.question import Setting
-        from roadproof.engines.search.refute import quick_drive
+        from roadproof.engines.search.refute import quick_drive, sampled_drive
 
         try:
             found = quick_drive(self.specification, self.against)

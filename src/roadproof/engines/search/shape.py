@@ -3,10 +3,15 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 from roadproof.engines.encode.build import NONE, ground
-from roadproof.engines.encode.circuit import evaluate, implicant
 from roadproof.engines.encode.motion import Layout
-from roadproof.engines.encode.polynomial import Polynomial
-from roadproof.engines.encode.problem import Column, ColumnInequality, Problem
+from roadproof.engines.encode.problem import (
+    Column,
+    ColumnInequality,
+    Polynomial,
+    Problem,
+    evaluate,
+    implicant,
+)
 from roadproof.engines.encode.unroll import unroll_at
 from roadproof.engines.search.question import Objective
 from roadproof.engines.solve.bounds import Affine, Bound, TooNonlinearError, value_of

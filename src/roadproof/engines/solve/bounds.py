@@ -13,9 +13,16 @@ from dataclasses import dataclass
 from itertools import pairwise, product
 from typing import Literal, TypeAlias
 
-from roadproof.engines.encode.circuit import All, AnyOf, Circuit, Leaf, all_of, any_of
-from roadproof.engines.encode.polynomial import Inequality
-from roadproof.engines.encode.problem import ColumnInequality
+from roadproof.engines.encode.problem import (
+    All,
+    AnyOf,
+    Circuit,
+    ColumnInequality,
+    Inequality,
+    Leaf,
+    all_of,
+    any_of,
+)
 
 Side: TypeAlias = Literal["inner", "outer"]
 # Lower and upper bound of each column.

@@ -5,9 +5,16 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, TypeAlias, assert_never
 
-from roadproof.engines.encode.circuit import All, AnyOf, Leaf, nodes
-from roadproof.engines.encode.polynomial import Polynomial
-from roadproof.engines.encode.problem import ColumnInequality, Problem, Row
+from roadproof.engines.encode.problem import (
+    All,
+    AnyOf,
+    ColumnInequality,
+    Leaf,
+    Polynomial,
+    Problem,
+    Row,
+    nodes,
+)
 from roadproof.engines.solve.smt import Satisfiability, Session
 from roadproof.runtime.budget import Budget, Effort
 

@@ -19,8 +19,7 @@ from typing import Any, Literal, TypeAlias, assert_never
 
 import numpy as np
 
-from roadproof.engines.encode.circuit import All, AnyOf, Circuit, Leaf, nodes, replace_leaves
-from roadproof.engines.encode.problem import Problem
+from roadproof.engines.encode.problem import All, AnyOf, Circuit, Leaf, Problem, nodes, replace_leaves
 from roadproof.engines.solve.bounds import Affine, Bound, Box, Side, approximate, loosened
 from roadproof.errors import MissingSolverError, UsageError
 from roadproof.runtime.budget import Budget, Effort
