@@ -34,7 +34,7 @@ READERS_OF_NODES = {
         "evidence/state.py",
         "evidence/refutation.py",
     ),
-    *("logic/formula.py", "logic/fragment.py", "logic/motion.py", "logic/restore.py"),
+    *("logic/formula.py", "logic/rewrite.py", "logic/motion.py", "logic/restore.py"),
     *("evidence/derivations/derive.py", "evidence/kernel/printer.py"),
     *("analysis/catalogue/nearest.py", "evidence/periodic.py"),
 }

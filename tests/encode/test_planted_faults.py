@@ -97,7 +97,7 @@ def test_faults_in_unrolling_are_caught(fault, monkeypatch):
 
 
 def test_strictness_lost_in_negation_is_caught(monkeypatch):
-    monkeypatch.setattr(unroll, "_OPPOSITE", {"<": ">", "<=": ">=", ">": "<", ">=": "<="})
+    monkeypatch.setattr(unroll, "NEGATED", {"<": ">", "<=": ">=", ">": "<", ">=": "<="})
     rises = cases.atom("a_lon", "A", ">", Fraction(0))
     circuit = unroll.unroll(f.Not(rises), cases.GRID)
     still = {w: [0] * cases.STEPS for w in cases.SIGNALS}

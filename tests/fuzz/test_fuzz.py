@@ -68,7 +68,7 @@ STRICT = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 FAULTS = {
     "held: until asks for its left side too early": (held, exact, "until", classic_until),
     "held: not keeps the view": (held, semantics, "OPPOSITE", {view: view for view in semantics.View}),
-    "held: strictness is lost": (held, unroll, "_OPPOSITE", STRICT),
+    "held: strictness is lost": (held, unroll, "NEGATED", STRICT),
     "truths: until asks for its left side too early": (truths, exact, "until", classic_until),
     "drives: a square too large": (drives, signals, "_course", full_square),
     "claims: or is and": (claims, exact, "union", truth.intersection),

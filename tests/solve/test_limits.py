@@ -12,6 +12,7 @@ from roadproof.engines.encode.problem import (
     Leaf,
     Problem,
     Row,
+    Solution,
     Unknown,
     affine,
     all_of,
@@ -19,7 +20,7 @@ from roadproof.engines.encode.problem import (
 )
 from roadproof.engines.solve import exact, milp, smt
 from roadproof.engines.solve.exact import solve_exactly
-from roadproof.engines.solve.milp import Solution, box_of, solve_mixed
+from roadproof.engines.solve.milp import box_of, solve_mixed
 from roadproof.engines.solve.smt import Session, ask, solve
 from roadproof.runtime import budget
 from roadproof.runtime.budget import BudgetExceeded, Effort

@@ -12,7 +12,7 @@ from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.logic.fragment import intervals_of
+from roadproof.logic.rewrite import intervals_of
 from roadproof.logic.terms import Term
 
 # Words of SMT-LIB and its theories that are names in the language of claims.

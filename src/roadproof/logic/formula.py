@@ -8,7 +8,7 @@ Semantics (semantics §1; paper, Table *Boolean semantics of STL*): time is dens
 ``Until(φ, J, ψ)`` at T: some t in J has ψ at T+t and φ at T+t' for every t' < t in J.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Literal, TypeAlias, assert_never
 
 from roadproof.logic.node import node, once
@@ -16,6 +16,8 @@ from roadproof.logic.terms import Number, Signal, Size, Term, number, subtract
 
 Comparison: TypeAlias = Literal["<", "<=", ">", ">="]
 DomainKind: TypeAlias = Literal["lanes", "adjacent", "lanelets", "zone"]
+NEGATED: Mapping[Comparison, Comparison] = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
+MIRRORED: Mapping[Comparison, Comparison] = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 
 
 @node
@@ -198,22 +200,16 @@ def with_children(formula: Formula, new: tuple[Formula, ...]) -> Formula:
     match formula:
         case Truth() | Compare() | Occupies():
             return formula
-        case And():
-            return And(new)
-        case Or():
-            return Or(new)
+        case And() | Or():
+            return type(formula)(new)
         case Not():
             return Not(new[0])
         case Until(_, interval, _):
             return Until(new[0], interval, new[1])
-        case Eventually(interval, _):
-            return Eventually(interval, new[0])
-        case Always(interval, _):
-            return Always(interval, new[0])
-        case Some(variable, domain, _):
-            return Some(variable, domain, new[0])
-        case Every(variable, domain, _):
-            return Every(variable, domain, new[0])
+        case Eventually(interval, _) | Always(interval, _):
+            return type(formula)(interval, new[0])
+        case Some(variable, domain, _) | Every(variable, domain, _):
+            return type(formula)(variable, domain, new[0])
         case Application(name, arguments, _):
             return Application(name, arguments, new[0])
         case _:
@@ -236,10 +232,8 @@ def with_intervals(formula: Formula, change: Callable[[Interval], Interval]) -> 
     match formula:
         case Until(left, interval, right):
             return Until(left, change(interval), right)
-        case Eventually(interval, body):
-            return Eventually(change(interval), body)
-        case Always(interval, body):
-            return Always(change(interval), body)
+        case Eventually(interval, body) | Always(interval, body):
+            return type(formula)(change(interval), body)
         case Truth() | Compare() | Occupies() | Some() | Every() | Not() | And() | Or() | Application():
             return formula
         case _:

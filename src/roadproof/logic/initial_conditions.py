@@ -1,6 +1,6 @@
 """What a formula says of the instant that it begins with, and which parameters it leaves one value only."""
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator
 from fractions import Fraction
 from functools import reduce
 from typing import TypeAlias, assert_never
@@ -10,8 +10,6 @@ from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula, Interval
 from roadproof.logic.rewrite import terms_of
 from roadproof.logic.terms import Parameter, Term, constant_value
-
-_OPPOSITE: Mapping[f.Comparison, f.Comparison] = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
 
 
 def conjuncts(formula: Formula, positive: bool = True) -> Iterator[Formula]:
@@ -93,7 +91,7 @@ def demands(formula: Formula) -> Formula:
                 now = visit(right, positive)
                 return f.disjunction(visit(left, True), now) if positive else now
             case f.Compare(left, op, right) if not _has_own(current):
-                return current if positive else f.Compare(left, _OPPOSITE[op], right)
+                return current if positive else f.Compare(left, f.NEGATED[op], right)
             case f.Truth():
                 return current if positive else f.negation(current)
             case _:
@@ -114,7 +112,6 @@ def _has_own(part: f.Compare) -> bool:
 _Bound: TypeAlias = tuple[str, int, Fraction]
 _Bounds: TypeAlias = frozenset[_Bound]
 _NONE: _Bounds = frozenset()
-_TURNED = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 
 
 def pins(formula: Formula) -> dict[str, Fraction]:
@@ -164,10 +161,10 @@ class _Reader:
                 assert_never(formula)
 
 
-def _compared(left: Term, op: str, right: Term) -> _Bounds:
+def _compared(left: Term, op: f.Comparison, right: Term) -> _Bounds:
     number = constant_value(right)
     if number is None:
-        left, op, right, number = right, _TURNED[op], left, constant_value(left)
+        left, op, right, number = right, f.MIRRORED[op], left, constant_value(left)
     if number is None or not isinstance(left, Parameter) or op not in ("<=", ">="):
         return _NONE
     return frozenset({(left.name, 1 if op == "<=" else -1, number)})

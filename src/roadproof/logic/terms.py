@@ -7,6 +7,7 @@ A ``Quotient`` divides by a term without signals, so each term is a piecewise po
 
 from collections.abc import Callable, Iterator
 from fractions import Fraction
+from math import prod
 from typing import TypeAlias, assert_never
 
 from roadproof.logic.node import node
@@ -180,14 +181,8 @@ def with_children(term: Term, new: tuple[Term, ...]) -> Term:
     match term:
         case Number() | Parameter() | Variable() | Signal() | Size() | Own():
             return term
-        case Sum():
-            return Sum(new)
-        case Product():
-            return Product(new)
-        case Maximum():
-            return Maximum(new)
-        case Minimum():
-            return Minimum(new)
+        case Sum() | Product() | Maximum() | Minimum():
+            return type(term)(new)
         case Power(_, exponent):
             return Power(new[0], exponent)
         case Quotient():
@@ -200,7 +195,7 @@ def with_children(term: Term, new: tuple[Term, ...]) -> Term:
 
 def leaves(term: Term) -> Iterator[Leaf]:
     """Every leaf of ``term``, from left to right."""
-    if isinstance(term, Number | Parameter | Variable | Signal | Size | Own):
+    if isinstance(term, Leaf):
         yield term
         return
     for child in children(term):
@@ -209,7 +204,7 @@ def leaves(term: Term) -> Iterator[Leaf]:
 
 def replace_leaves(term: Term, replace: Callable[[Leaf], Term]) -> Term:
     """``term`` with each leaf replaced by ``replace(leaf)``."""
-    if isinstance(term, Number | Parameter | Variable | Signal | Size | Own):
+    if isinstance(term, Leaf):
         return replace(term)
     return with_children(term, tuple(replace_leaves(child, replace) for child in children(term)))
 
@@ -220,26 +215,21 @@ def constant_value(term: Term) -> Fraction | None:
     >>> constant_value(Quotient(number(3), number(5)))
     Fraction(3, 5)
     """
-    match term:
-        case Number(value, _):
-            return value
-        case Parameter() | Variable() | Signal() | Size() | Own() | Inverse():
+    if isinstance(term, Number):
+        return term.value
+    if isinstance(term, Leaf | Inverse):
+        return None
+    values: list[Fraction] = []
+    for child in children(term):
+        value = constant_value(child)
+        if value is None:
             return None
-        case _:
-            values: list[Fraction] = []
-            for child in children(term):
-                value_of_child = constant_value(child)
-                if value_of_child is None:
-                    return None
-                values.append(value_of_child)
+        values.append(value)
     match term:
         case Sum():
             return sum(values, Fraction(0))
         case Product():
-            product = Fraction(1)
-            for factor in values:
-                product *= factor
-            return product
+            return prod(values, start=Fraction(1))
         case Power(_, exponent):
             return values[0] ** exponent
         case Quotient():

@@ -27,7 +27,6 @@ MOST_INSTANTS = 12
 LONGEST = 100
 """Characters of a comparison that is written out."""
 _FINE = 1000
-_NEGATED: Mapping[f.Comparison, f.Comparison] = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
 
 
 @dataclass(frozen=True)
@@ -254,7 +253,7 @@ def told(part: FalsePart, words: Mapping[str, Definition]) -> str:
         f"{_shown(x)} = {_number(value)} {SI.get(_dimension(x), '')}".strip()
         for x, value in part.values.items()
     )
-    op = comparison.op if part.needed else _NEGATED[comparison.op]
+    op = comparison.op if part.needed else f.NEGATED[comparison.op]
     said = text(as_syntax(f.Compare(comparison.left, op, comparison.right)))
     sides = f"left side {_number(part.left)} {unit}, right side {_number(part.right)} {unit}"
     needs = said if len(said) <= LONGEST else f"left side {op} right side of the comparison, {sides}"

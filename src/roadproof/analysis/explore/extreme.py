@@ -51,7 +51,7 @@ from roadproof.evidence.judged import JudgedDrive, judge_file
 from roadproof.library.bind import bind
 from roadproof.library.specification import Query
 from roadproof.logic import formula as f
-from roadproof.logic.fragment import is_cubic_state
+from roadproof.logic.rewrite import is_cubic_state
 from roadproof.logic.terms import Term, number
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.signals import Courses, DriveSignals

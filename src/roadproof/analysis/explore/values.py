@@ -39,7 +39,7 @@ from roadproof.analysis.explore.search import (
 from roadproof.analysis.study.pool import Say
 from roadproof.engines.search.ask import Search
 from roadproof.engines.search.impossible import Impossibility, show_impossible
-from roadproof.logic.fragment import is_cubic_state
+from roadproof.logic.rewrite import is_cubic_state
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.verdict import Verdict
 

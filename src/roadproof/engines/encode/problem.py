@@ -8,7 +8,7 @@ true and ``AnyOf(())`` is false.
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Generic, TypeAlias, TypeVar, assert_never
+from typing import Generic, Literal, TypeAlias, TypeVar, assert_never
 
 from roadproof.world.signals import OwnName, SignalName
 
@@ -266,6 +266,17 @@ class Row:
     terms: Mapping[int, Fraction]
     low: Fraction | None
     high: Fraction | None
+
+
+Status: TypeAlias = Literal["found", "infeasible", "unknown"]
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Values of a problem's columns where ``status`` is found, rational where the search was exact."""
+
+    status: Status
+    values: tuple[float, ...] | tuple[Fraction, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from typing import assert_never
 from roadproof.engines.encode.problem import All, AnyOf, Circuit, Leaf, all_of, any_of
 from roadproof.errors import UsageError
 from roadproof.logic import formula as f
-from roadproof.logic.formula import Compare, Comparison, Formula, Interval
+from roadproof.logic.formula import NEGATED, Compare, Formula, Interval
 from roadproof.logic.rewrite import bounds_of
 
 
@@ -78,9 +78,6 @@ def unroll_at(formula: Formula, grid: Grid, step: int) -> Circuit[At]:
     return _Unroller(grid).at(formula, True, step)
 
 
-_OPPOSITE: dict[Comparison, Comparison] = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
-
-
 class _Unroller:
     def __init__(self, grid: Grid) -> None:
         self.grid = grid
@@ -99,7 +96,7 @@ class _Unroller:
             case f.Truth(value):
                 return All(()) if value == wanted else AnyOf(())
             case Compare(left, op, right):
-                return Leaf(At(formula if wanted else Compare(left, _OPPOSITE[op], right), step))
+                return Leaf(At(formula if wanted else Compare(left, NEGATED[op], right), step))
             case f.Not(body):
                 return self.at(body, not wanted, step)
             case f.And(parts):

@@ -20,8 +20,7 @@ from roadproof.evidence.refutation import Countermodel, Instant, without_empty_w
 from roadproof.library.specification import Query
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.logic.fragment import intervals_of
-from roadproof.logic.rewrite import bounds_of, with_values
+from roadproof.logic.rewrite import bounds_of, intervals_of, with_values
 from roadproof.runtime.budget import Budget, BudgetExceeded
 from roadproof.semantics.exact import TruthSet
 from roadproof.semantics.exact.truth import from_switches

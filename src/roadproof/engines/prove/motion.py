@@ -20,9 +20,8 @@ from roadproof.logic import formula as f
 from roadproof.logic import motion
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.logic.fragment import intervals_of
 from roadproof.logic.restore import as_syntax, term_as_syntax
-from roadproof.logic.rewrite import signals_of, without_names
+from roadproof.logic.rewrite import intervals_of, signals_of, without_names
 from roadproof.logic.show import text
 from roadproof.logic.terms import SignalName, Term
 from roadproof.runtime.budget import Effort

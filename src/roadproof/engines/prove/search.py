@@ -23,8 +23,7 @@ from roadproof.evidence.sites import Lemma, Site
 from roadproof.evidence.times import ZERO, Moment, at, bound_parameters, constant, moment_of, read_moment
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.logic.fragment import intervals_of
-from roadproof.logic.rewrite import road_names
+from roadproof.logic.rewrite import intervals_of, road_names
 from roadproof.runtime.budget import Budget
 
 MOST_ROUNDS = 400

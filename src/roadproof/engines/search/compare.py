@@ -17,8 +17,7 @@ from roadproof.library.compose import both, implication, negation
 from roadproof.library.motion import Assumption, value_texts
 from roadproof.library.specification import Query
 from roadproof.logic.formula import is_state
-from roadproof.logic.fragment import is_cubic_state
-from roadproof.logic.rewrite import parameters_of
+from roadproof.logic.rewrite import is_cubic_state, parameters_of
 from roadproof.runtime.attempts import LostJob
 from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.runtime.process_pool import answers_of, is_worker

@@ -22,9 +22,8 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import own_of
 from roadproof.logic.formula import Formula
-from roadproof.logic.fragment import intervals_of
 from roadproof.logic.initial_conditions import conjuncts, pins
-from roadproof.logic.rewrite import bounds_of, terms_of, with_values
+from roadproof.logic.rewrite import bounds_of, intervals_of, terms_of, with_values
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.semantics.sampled.compiled import compile

@@ -22,8 +22,8 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import own_of
 from roadproof.logic.formula import Formula, boxes_overlap, is_state
-from roadproof.logic.fragment import signal_degree
 from roadproof.logic.initial_conditions import compared, conjuncts, demands
+from roadproof.logic.rewrite import signal_degree
 from roadproof.logic.terms import Own, Signal, Size
 from roadproof.semantics.exact.algebraic import bounds
 from roadproof.semantics.exact.exact import judge

@@ -21,9 +21,8 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import code_of, told_range, vehicles_with_kind
 from roadproof.logic.formula import Formula, subformulas
-from roadproof.logic.fragment import intervals_of
 from roadproof.logic.initial_conditions import conjuncts
-from roadproof.logic.rewrite import bounds_of, parameters_of, signals_of, terms_of, with_values
+from roadproof.logic.rewrite import bounds_of, intervals_of, parameters_of, signals_of, terms_of, with_values
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.signals import AbstractSignals

@@ -16,8 +16,8 @@ from roadproof.library.bind import bind, values_with
 from roadproof.library.compose import negation
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import is_state
-from roadproof.logic.fragment import is_cubic_state
 from roadproof.logic.initial_conditions import pins
+from roadproof.logic.rewrite import is_cubic_state
 from roadproof.logic.terms import Signal
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact.replay import first_breach, first_overlap

@@ -8,7 +8,7 @@ from itertools import combinations, product, zip_longest
 
 from roadproof.engines.encode.build import Assumptions, Margin, encode_formula, frame
 from roadproof.engines.encode.motion import Layout, own_columns
-from roadproof.engines.encode.problem import Circuit, ColumnInequality, Problem
+from roadproof.engines.encode.problem import Circuit, ColumnInequality, Problem, Solution
 from roadproof.engines.encode.unroll import Grid
 from roadproof.engines.search.initial_candidates import closed, starts, unread
 from roadproof.engines.search.initial_conditions import differ, encode_start
@@ -18,7 +18,7 @@ from roadproof.engines.search.rounding import round_drive
 from roadproof.engines.search.shape import reshape, violation_depths
 from roadproof.engines.solve.bounds import TooNonlinearError
 from roadproof.engines.solve.exact import solve_exactly
-from roadproof.engines.solve.milp import Solution, box_of, solve_mixed
+from roadproof.engines.solve.milp import box_of, solve_mixed
 from roadproof.errors import UsageError
 from roadproof.logic.formula import Formula
 from roadproof.runtime.budget import Effort
@@ -239,8 +239,7 @@ class _Search:
 
     def _solve(self, problem: Problem) -> Solution:
         if self.search_options.engine == "smt":
-            exact = solve_exactly(problem, self.meter.part(max(LEAST_EXACT, self.meter.left() / 3)))
-            return Solution(exact.status, exact.values)
+            return solve_exactly(problem, self.meter.part(max(LEAST_EXACT, self.meter.left() / 3)))
         try:
             return solve_mixed(problem, box_of(problem), solver=self.search_options.solver, meter=self.meter)
         except TooNonlinearError:
@@ -304,7 +303,7 @@ class _Search:
         limits = self.question.limits(how)
         return replace(self._answer(Verdict.NONE_WITHIN, None, limits.text()), limits=limits)
 
-    def _refute(self, problem: Problem) -> tuple[str, tuple[Fraction, ...] | None]:
+    def _refute(self, problem: Problem) -> tuple[str, Sequence[float | Fraction] | None]:
         """How it was shown that ``problem`` has no solution (empty where it was not), or a solution."""
         if self.search_options.engine == "milp":
             try:

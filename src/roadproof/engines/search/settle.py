@@ -18,8 +18,8 @@ from roadproof.errors import InputError, UsageError
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.motion import Assumption, is_moving, under_limits
 from roadproof.library.specification import Query, Specification
-from roadproof.logic.fragment import is_cubic_state
 from roadproof.logic.initial_conditions import pins
+from roadproof.logic.rewrite import is_cubic_state
 from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import ClaimVerdict, Verdict

@@ -11,6 +11,7 @@ the outer side are loosened by more than rounding and a solver's tolerance can t
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise, product
+from math import prod
 from typing import Literal, TypeAlias
 
 from roadproof.engines.encode.problem import (
@@ -18,7 +19,6 @@ from roadproof.engines.encode.problem import (
     AnyOf,
     Circuit,
     ColumnInequality,
-    Inequality,
     Leaf,
     all_of,
     any_of,
@@ -171,12 +171,9 @@ def _leaf(affine: Affine, inequality: ColumnInequality, box: Box, side: Side) ->
     return Leaf(Bound(affine, float(inequality.margin)))
 
 
-def value_of(inequality: Inequality[int], values: Sequence[float]) -> float:
+def value_of(inequality: ColumnInequality, values: Sequence[float]) -> float:
     """The value of the polynomial of an inequality where ``values`` gives that of each column."""
     total = 0.0
     for monomial, coefficient in inequality.polynomial.terms.items():
-        term = float(coefficient)
-        for column in monomial:
-            term *= values[column]
-        total += term
+        total += prod((values[column] for column in monomial), start=float(coefficient))
     return total

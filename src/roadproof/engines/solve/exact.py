@@ -1,9 +1,8 @@
 """A problem as an SMT query: exact polynomials, exact rationals, nothing approximated."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal, TypeAlias, assert_never
+from typing import assert_never
 
 from roadproof.engines.encode.problem import (
     All,
@@ -13,6 +12,7 @@ from roadproof.engines.encode.problem import (
     Polynomial,
     Problem,
     Row,
+    Solution,
     nodes,
 )
 from roadproof.engines.solve.smt import Satisfiability, Session
@@ -21,19 +21,11 @@ from roadproof.runtime.budget import Budget, Effort
 UNIT = 600_000  # of what z3 counts: from 0.05 s in preprocessing to 1.5 s on polynomial arithmetic
 FIRST_TURN = 1.0
 
-Status: TypeAlias = Literal["found", "infeasible", "unknown"]
 
-
-@dataclass(frozen=True)
-class ExactSolution:
-    """Rational values of the columns where ``status`` is found; no values where one is irrational."""
-
-    status: Status
-    values: tuple[Fraction, ...] = ()
-
-
-def solve_exactly(problem: Problem, meter: Budget | None = None) -> ExactSolution:
+def solve_exactly(problem: Problem, meter: Budget | None = None) -> Solution:
     """Ask z3 for a solution within what ``meter`` has left; ``infeasible`` is an exact no.
+
+    A solution with an irrational value is ``unknown``.
 
     How long z3 takes depends on luck, so it starts again with another seed and twice the work.
     Raises ``BudgetExceeded``.
@@ -47,11 +39,11 @@ def solve_exactly(problem: Problem, meter: Budget | None = None) -> ExactSolutio
         answer = session.check_plainly(meter.part(turn), seed)
         seed, turn = seed + 1, turn * 2
     if answer != "sat":
-        return ExactSolution("infeasible" if answer == "unsat" else "unknown")
+        return Solution("infeasible" if answer == "unsat" else "unknown")
     values = [v for v in session.values([f"c{k}" for k in range(len(problem.columns))]) if v is not None]
     if len(values) < len(problem.columns):
-        return ExactSolution("unknown")
-    return ExactSolution("found", tuple(Fraction(v) for v in values))
+        return Solution("unknown")
+    return Solution("found", tuple(Fraction(v) for v in values))
 
 
 def script(problem: Problem) -> Iterator[str]:

@@ -11,21 +11,26 @@ import sys
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from importlib import import_module
 from importlib.util import find_spec
 from types import ModuleType
-from typing import Any, Literal, TypeAlias, assert_never
+from typing import Any, assert_never
 
 import numpy as np
 
-from roadproof.engines.encode.problem import All, AnyOf, Circuit, Leaf, Problem, nodes, replace_leaves
+from roadproof.engines.encode.problem import (
+    All,
+    AnyOf,
+    Circuit,
+    Leaf,
+    Problem,
+    Solution,
+    nodes,
+    replace_leaves,
+)
 from roadproof.engines.solve.bounds import Affine, Bound, Box, Side, approximate, loosened
 from roadproof.errors import MissingSolverError, UsageError
 from roadproof.runtime.budget import Budget, Effort
-
-Status: TypeAlias = Literal["found", "infeasible", "unknown"]
-
 
 # A unit of work, about a second: HiGHS does 3,000 to 8,000 iterations a second, and 100 to 500 nodes once
 # it branches. Iterations are the better measure, but only nodes can be limited.
@@ -126,14 +131,6 @@ SOLVERS: Mapping[str, SolverFacts] = {
         lambda limits: {"tm_lim": math.ceil(limits.seconds * 1000), "mip_gap": limits.gap},
     ),
 }
-
-
-@dataclass(frozen=True)
-class Solution:
-    """Values of the problem's columns where ``status`` is found."""
-
-    status: Status
-    values: tuple[float, ...] | tuple[Fraction, ...] = ()
 
 
 def find_solver(name: str) -> SolverFacts:

@@ -5,7 +5,8 @@ written to a file and asked again of another program.
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+import re
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
@@ -19,6 +20,7 @@ CONTEXT, COMMAND, CHARACTER = 4.5e-3, 1e-4, 2e-7
 UNIT_CVC5 = 200_000
 _MOST = 4_000_000_000  # both count in 32 bits
 _NEVER = 4294967295
+_TOKEN = re.compile(r"[()]|(?:\|[^|]*(?:\||$)|[^()\s|])+")  # what stands between bars is one word
 
 Satisfiability: TypeAlias = Literal["sat", "unsat", "unknown"]
 SExpression: TypeAlias = "str | list[SExpression]"
@@ -167,7 +169,7 @@ def _ask_cvc5(script: str, meter: Budget | None) -> Satisfiability:
 def parse_sexpression(text: str) -> list[SExpression]:
     """The first parenthesised expression of ``text``."""
     stack: list[list[SExpression]] = [[]]
-    for token in _tokens(text):
+    for token in _TOKEN.findall(text):
         if token == "(":
             stack.append([])
         elif token == ")":
@@ -177,26 +179,6 @@ def parse_sexpression(text: str) -> list[SExpression]:
             stack[-1].append(token)
     first = stack[0][0] if stack[0] else []
     return first if isinstance(first, list) else [first]
-
-
-def _tokens(text: str) -> Iterable[str]:
-    quoted = False
-    word = ""
-    for character in text:
-        if quoted:
-            word += character
-            quoted = character != "|"
-        elif character in "() \t\r\n":
-            if word:
-                yield word
-            word = ""
-            if character in "()":
-                yield character
-        else:
-            word += character
-            quoted = character == "|"
-    if word:
-        yield word
 
 
 def read_value(value: SExpression) -> Fraction | bool | None:

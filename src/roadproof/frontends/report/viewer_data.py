@@ -29,8 +29,7 @@ from roadproof.library.uses import Place, places_of
 from roadproof.library.words import words_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, subformulas
-from roadproof.logic.fragment import intervals_of
-from roadproof.logic.rewrite import bounds_of
+from roadproof.logic.rewrite import bounds_of, intervals_of
 from roadproof.logic.show import as_syntax, text
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.blame import blame

@@ -37,8 +37,7 @@ from roadproof.library.scenarios import (
 )
 from roadproof.library.specification import Library, Query, Specification, unknown
 from roadproof.logic.formula import Formula, disjunction, is_state
-from roadproof.logic.fragment import horizon
-from roadproof.logic.rewrite import all_with_values, with_values, without_names
+from roadproof.logic.rewrite import all_with_values, horizon, with_values, without_names
 from roadproof.recordings.evaluate.courses import Course, courses_of
 from roadproof.recordings.evaluate.lane_atoms import OTHER_LANE, LaneAtom, lane_atoms
 from roadproof.recordings.evaluate.sectors import Sector, is_possible, sectors_of

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from roadproof.logic.formula import Comparison
+from roadproof.logic.formula import MIRRORED, Comparison
 from roadproof.logic.terms import Inverse, Term
 from roadproof.semantics.exact import piecewise
 from roadproof.semantics.exact.piecewise import Pieces, where_sign
@@ -17,7 +17,6 @@ TRUE_SIGNS: Mapping[Comparison, frozenset[int]] = {
     ">": frozenset({1}),
     ">=": frozenset({0, 1}),
 }
-MIRRORED: Mapping[Comparison, Comparison] = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 POSITIVE, ZERO, NEGATIVE = frozenset({1}), frozenset({0}), frozenset({-1})
 NONZERO = POSITIVE | NEGATIVE
 

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations
-from typing import Protocol, TypeAlias
 
 from roadproof.errors import UsageError
 from roadproof.logic.formula import Compare, Comparison, Formula, boxes_overlap, conjunction
@@ -26,27 +25,7 @@ from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.truth import Cut, TruthSet, complement
 from roadproof.world.drive import Drive
 from roadproof.world.motion import State, state_at
-
-Range: TypeAlias = tuple[Fraction, Fraction]
-
-
-class Limits(Protocol):
-    """What a vehicle can do, in m/s and m/s²; |v_lat| is at most ``lateral_share`` of v_lon."""
-
-    @property
-    def v_lon(self) -> Range: ...
-
-    @property
-    def v_lat(self) -> Range: ...
-
-    @property
-    def a_lon(self) -> Range: ...
-
-    @property
-    def a_lat(self) -> Range: ...
-
-    @property
-    def lateral_share(self) -> Fraction: ...
+from roadproof.world.vehicle import Range, Vehicle
 
 
 @dataclass(frozen=True)
@@ -97,7 +76,7 @@ def first_overlap(drive: Drive, horizon: Fraction | None) -> Overlap | None:
     return Overlap(a, b, *begin)
 
 
-def first_breach(drive: Drive, limits: Mapping[str, Limits], horizon: Fraction | None) -> Breach | None:
+def first_breach(drive: Drive, limits: Mapping[str, Vehicle], horizon: Fraction | None) -> Breach | None:
     """The first instant within [0, horizon] at which a vehicle leaves its limits, or None.
 
     Speeds and accelerations in their ranges, no reversing, |v_lat| <= lateral_share·v_lon. Raises
@@ -118,25 +97,22 @@ def first_breach(drive: Drive, limits: Mapping[str, Limits], horizon: Fraction |
     return Breach(name, rule, *begin)
 
 
-def _rules(name: str, limits: Limits) -> Iterator[tuple[str, Formula]]:
+def _rules(name: str, limits: Vehicle) -> Iterator[tuple[str, Formula]]:
     """Every limit in words and as a formula."""
     zero = number(0, (1, -1))
-    yield from _bounded("v_lon", name, limits.v_lon, "m/s")
-    yield from _bounded("v_lat", name, limits.v_lat, "m/s")
-    yield from _bounded("a_lon", name, limits.a_lon, "m/s²")
-    yield from _bounded("a_lat", name, limits.a_lat, "m/s²")
+    ranges: dict[SignalName, Range] = {"v_lon": limits.v_lon, "v_lat": limits.v_lat}
+    ranges |= {"a_lon": limits.a_lon, "a_lat": limits.a_lat}
+    for signal, (low, high) in ranges.items():
+        unit = "m/s" if signal.startswith("v_") else "m/s²"
+        bounds: tuple[tuple[Comparison, Fraction], ...] = ((">=", low), ("<=", high))
+        for op, limit in bounds:
+            bound = Number(limit, SIGNAL_DIMENSIONS[signal])
+            yield f"{signal} {op} {limit} {unit}", Compare(Signal(signal, name), op, bound)
     yield "v_lon >= 0 m/s (no reversing)", Compare(Signal("v_lon", name), ">=", zero)
     share: Term = Product((number(limits.lateral_share), Signal("v_lon", name)))
     lateral = Signal("v_lat", name)
     inside = conjunction(Compare(lateral, "<=", share), Compare(subtract(zero, share), "<=", lateral))
     yield f"|v_lat| <= {limits.lateral_share}·v_lon (heading)", inside
-
-
-def _bounded(signal: SignalName, name: str, limits: Range, unit: str) -> Iterator[tuple[str, Formula]]:
-    bounds: tuple[tuple[Comparison, Fraction], ...] = ((">=", limits[0]), ("<=", limits[1]))
-    for op, limit in bounds:
-        bound = Number(limit, SIGNAL_DIMENSIONS[signal])
-        yield f"{signal} {op} {limit} {unit}", Compare(Signal(signal, name), op, bound)
 
 
 def _first(truth: TruthSet, horizon: Fraction | None) -> Cut | None:

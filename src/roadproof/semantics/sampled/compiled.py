@@ -18,8 +18,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import own_of
 from roadproof.logic.formula import Application, Compare, Formula
-from roadproof.logic.fragment import intervals_of
-from roadproof.logic.rewrite import bounds_of, signals_of, terms_of, without_names
+from roadproof.logic.rewrite import bounds_of, intervals_of, signals_of, terms_of, without_names
 from roadproof.logic.terms import Own
 from roadproof.semantics.sampled.answers import (
     Convention,
