@@ -20,7 +20,7 @@ from roadproof.engines.prove.properties import Task
 from roadproof.errors import InputError, LostError, MissingSolverError, TextError
 from roadproof.frontends.cli import supervising
 from roadproof.frontends.cli.main import main
-from roadproof.runtime.attempts import LostJob
+from roadproof.runtime.executors import LostJob
 from roadproof.runtime.process_pool import answers_of
 
 HANGS = 60.0

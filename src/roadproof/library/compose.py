@@ -129,21 +129,10 @@ def taken_from(home: Specification, query: Query, set_name: str) -> Query:
         return query
 
     def visit(expression: Expression) -> Expression:
-        match expression:
-            case syntax.Call(name, arguments, at):
-                of_set = f"{name}@{set_name}" if name in home.definitions else name
-                return syntax.Call(of_set, tuple(visit(a) for a in arguments), at)
-            case syntax.Literal_() | syntax.Name():
-                return expression
-            case syntax.Prefix() | syntax.Quantified():
-                return replace(expression, body=visit(expression.body))
-            case syntax.Binary():
-                return replace(expression, left=visit(expression.left), right=visit(expression.right))
-            case syntax.Chain():
-                return replace(expression, parts=tuple(visit(p) for p in expression.parts))
-            case syntax.Temporal():
-                left = None if expression.left is None else visit(expression.left)
-                return replace(expression, left=left, right=visit(expression.right))
+        made = syntax.with_parts(expression, visit)
+        if isinstance(made, syntax.Call) and made.name in home.definitions:
+            return replace(made, name=f"{made.name}@{set_name}")
+        return made
 
     return elaborate(home, Claim(query.claim.given, visit(query.claim.body)))
 
@@ -193,23 +182,10 @@ def _with_names(expression: Expression, names: Mapping[str, str]) -> Expression:
     match expression:
         case syntax.Name(name, at):
             return syntax.Name(names.get(name, name), at)
-        case syntax.Literal_():
-            return expression
-        case syntax.Call(name, arguments, at):
-            return syntax.Call(name, tuple(_with_names(a, names) for a in arguments), at)
-        case Prefix(op, body, at):
-            return Prefix(op, _with_names(body, names), at)
-        case Binary(op, left, syntax.Name() as kind, at) if syntax.is_kind(left):
-            return Binary(op, _with_names(left, names), kind, at)
-        case Binary(op, syntax.Name() as kind, right, at) if syntax.is_kind(right):
-            return Binary(op, kind, _with_names(right, names), at)
-        case Binary(op, left, right, at):
-            return Binary(op, _with_names(left, names), _with_names(right, names), at)
-        case Chain(op, parts, at):
-            return Chain(op, tuple(_with_names(p, names) for p in parts), at)
-        case Temporal(op, bounds, left, right, at):
-            first = None if left is None else _with_names(left, names)
-            return Temporal(op, bounds, first, _with_names(right, names), at)
+        case Binary(_, left, syntax.Name(), _) if syntax.is_kind(left):
+            return replace(expression, left=_with_names(left, names))
+        case Binary(_, syntax.Name(), right, _) if syntax.is_kind(right):
+            return replace(expression, right=_with_names(right, names))
         case syntax.Quantified(kind, variable, domain, body, at):
             inner = {old: new for old, new in names.items() if old != variable}
             if variable in inner.values():
@@ -218,6 +194,8 @@ def _with_names(expression: Expression, names: Mapping[str, str]) -> Expression:
                     "rename that variable"
                 )
             return syntax.Quantified(kind, variable, _in_domain(domain, names), _with_names(body, inner), at)
+        case _:
+            return syntax.with_parts(expression, lambda part: _with_names(part, names))
 
 
 def _in_domain(

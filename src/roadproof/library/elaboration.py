@@ -332,7 +332,7 @@ class Elaborator:
             return custom_names.from_kind(vehicle, "<" if op == "<" else ">=", kind)
         if op not in ("=", "!="):
             raise TextError("kinds are compared with = and != only", expression.at)
-        return custom_names.is_kind(vehicle, kind) if op == "=" else custom_names.is_no_kind(vehicle, kind)
+        return custom_names.is_kind(vehicle, kind, op == "=")
 
     def _whose_kind(self, call: Expression, scope: Scope) -> str:
         if not isinstance(call, syntax.Call) or len(call.arguments) != 1:

@@ -36,29 +36,10 @@ def instances(block: EachBlock) -> list[Definition]:
         return _INDEX.sub(value, text)
 
     def rename(expression: Expression, index: int) -> Expression:
-        match expression:
-            case syntax.Call(name, arguments, at):
-                new = tuple(rename(a, index) for a in arguments)
-                return syntax.Call(at_index(name, index, at), new, at)
-            case syntax.Name(name, at):
-                return syntax.Name(at_index(name, index, at), at)
-            case syntax.Literal_():
-                return expression
-            case syntax.Prefix():
-                return replace(expression, body=rename(expression.body, index))
-            case syntax.Binary():
-                return replace(
-                    expression,
-                    left=rename(expression.left, index),
-                    right=rename(expression.right, index),
-                )
-            case syntax.Chain():
-                return replace(expression, parts=tuple(rename(p, index) for p in expression.parts))
-            case syntax.Quantified():
-                return replace(expression, body=rename(expression.body, index))
-            case syntax.Temporal():
-                left = None if expression.left is None else rename(expression.left, index)
-                return replace(expression, left=left, right=rename(expression.right, index))
+        made = syntax.with_parts(expression, lambda part: rename(part, index))
+        if isinstance(made, syntax.Call | syntax.Name):
+            return replace(made, name=at_index(made.name, index, made.at))
+        return made
 
     return [
         replace(

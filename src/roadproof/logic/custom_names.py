@@ -49,29 +49,18 @@ def kind_of(number: Fraction) -> Kind:
     return KINDS[max(0, min(len(KINDS), int(number + HALF)) - 1)]
 
 
-def is_kind(vehicle: str, kind: Kind) -> Formula:
-    """That a vehicle is of a kind."""
-    low, high = from_kind(vehicle, ">=", kind), _beyond(vehicle, "<", kind)
-    if kind == KINDS[0]:
-        return high
-    return low if kind == KINDS[-1] else f.And((low, high))
-
-
-def is_no_kind(vehicle: str, kind: Kind) -> Formula:
-    """That a vehicle is not of a kind."""
-    low, high = from_kind(vehicle, "<", kind), _beyond(vehicle, ">=", kind)
-    if kind == KINDS[0]:
-        return high
-    return low if kind == KINDS[-1] else f.Or((low, high))
+def is_kind(vehicle: str, kind: Kind, positive: bool = True) -> Formula:
+    """That a vehicle is of a kind, or, where not ``positive``, that it is of another."""
+    low = from_kind(vehicle, ">=" if positive else "<", kind)
+    high = Compare(t.Size("kind", vehicle), "<" if positive else ">=", t.number(code_of(kind) + HALF))
+    if kind in (KINDS[0], KINDS[-1]):
+        return high if kind == KINDS[0] else low
+    return f.And((low, high)) if positive else f.Or((low, high))
 
 
 def from_kind(vehicle: str, op: Comparison, kind: Kind) -> Formula:
     """That a vehicle is of this kind or a later one (``>=``), or of an earlier one (``<``)."""
     return Compare(t.Size("kind", vehicle), op, t.number(code_of(kind) - HALF))
-
-
-def _beyond(vehicle: str, op: Comparison, kind: Kind) -> Formula:
-    return Compare(t.Size("kind", vehicle), op, t.number(code_of(kind) + HALF))
 
 
 def own_of(formulas: Iterable[Formula]) -> tuple[t.Own, ...]:

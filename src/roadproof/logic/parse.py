@@ -3,7 +3,7 @@
 import io
 import re
 import sys
-from functools import cache
+from functools import cache, lru_cache
 from importlib import resources
 from pathlib import Path
 from typing import cast
@@ -156,6 +156,7 @@ def parse_bundled(text: str, source: str) -> tuple[Statement, ...]:
     return remembered("tree", made_of, lambda: parse_library(text, source))
 
 
+@lru_cache(maxsize=256)
 def parse_claim(text: str, source: str = "claim") -> syntax.Claim:
     """A formula, with an optional ``given a, b: vehicle; L: lane:`` in front. Raises ``TextError``."""
     if len(text) > LONGEST_CLAIM:

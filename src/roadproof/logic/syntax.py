@@ -3,8 +3,8 @@
 Terms and formulas are not yet told apart, since a call may be either. ``spec.elaborate`` does that.
 """
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
@@ -266,6 +266,23 @@ def parts(expression: Expression) -> tuple[Expression, ...]:
             if bounds is not None:
                 inner += [bounds.low] if bounds.high is None else [bounds.low, bounds.high]
             return (*inner, right)
+
+
+def with_parts(expression: Expression, change: Callable[[Expression], Expression]) -> Expression:
+    """``expression`` with each direct sub-expression changed; bounds of intervals stay."""
+    match expression:
+        case Literal_() | Name():
+            return expression
+        case Call(_, arguments, _):
+            return replace(expression, arguments=tuple(map(change, arguments)))
+        case Prefix(_, body, _) | Quantified(_, _, _, body, _):
+            return replace(expression, body=change(body))
+        case Binary(_, left, right, _):
+            return replace(expression, left=change(left), right=change(right))
+        case Chain(_, items, _):
+            return replace(expression, parts=tuple(map(change, items)))
+        case Temporal(_, _, first, right, _):
+            return replace(expression, left=None if first is None else change(first), right=change(right))
 
 
 def depth(expression: Expression) -> int:

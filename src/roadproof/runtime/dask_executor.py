@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from roadproof.errors import InputError, MissingSolverError, UsageError
 from roadproof.runtime import process_pool
-from roadproof.runtime.attempts import LostJob, try_twice
-from roadproof.runtime.executors import Cluster
+from roadproof.runtime.executors import Cluster, LostJob, try_twice
 from roadproof.runtime.memory import keep_freed_memory
 
 if TYPE_CHECKING:

@@ -1,8 +1,13 @@
-"""Who does the work of a long question: processes here, the workers of a cluster, one of several runs."""
+"""Who does the work of a long question: processes here, the workers of a cluster, one of several runs.
+
+A job whose process ends before it is done is tried once more, alone.
+"""
 
 import hashlib
 import re
-from collections.abc import Callable, Sequence
+import signal
+from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
 from typing import TypeAlias, TypeVar
 
@@ -97,3 +102,57 @@ def hands_of(jobs: Jobs) -> Executor:
     if hands.processes is not None and hands.processes < 1:
         raise UsageError(f"--jobs {hands.processes} must be greater than 0")
     return hands
+
+
+Answer = TypeVar("Answer")
+# The answers of jobs at some places; where a process ended instead, the mapping gets the reason.
+Attempt: TypeAlias = Callable[[Sequence[int], dict[int, str]], Generator[tuple[int, Answer], None, None]]
+
+OUTSIDE = "from outside or for want of memory"
+
+
+@dataclass(frozen=True)
+class LostJob:
+    """In place of an answer: the process of the job ended twice, the second time while no other ran."""
+
+    reason: str
+
+
+def try_twice(
+    attempt: Attempt[Answer], count: int, lost: str
+) -> Generator[tuple[int, Answer | LostJob], None, None]:
+    """The answers of ``count`` jobs, each with its place.
+
+    A job whose process ended is tried again when the others are done, alone, so that no other is taken for
+    the one that kills. ``lost`` says in words that it ended again; the reason follows.
+    """
+    died: dict[int, str] = {}
+    with closing(attempt(range(count), died)) as found:
+        yield from found
+    for place in sorted(died):
+        again: dict[int, str] = {}
+        with closing(attempt([place], again)) as found:
+            yield from found
+        yield from ((place, LostJob(lost + reason)) for reason in again.values())
+
+
+def ended_by(code: int) -> str:
+    """What ended a process, from its exit code: ``SIGKILL``, or ``exited with 3``."""
+    return signal.Signals(-code).name if code < 0 else f"exited with {code}"
+
+
+Job = TypeVar("Job")
+
+
+def answers_of(
+    function: Callable[[Job], Answer], jobs: Sequence[Job], hands: Executor, fresh: bool = False
+) -> Generator[tuple[int, Answer | LostJob], None, None]:
+    """``function`` of every job with its place, as ``answers_of`` of ``workers`` or ``cluster`` give it."""
+    if hands.cluster is None:
+        from roadproof.runtime import process_pool  # which imports this
+
+        yield from process_pool.answers_of(function, jobs, hands.processes, fresh)
+        return
+    from roadproof.runtime import dask_executor  # dask takes long to import
+
+    yield from dask_executor.answers_of(function, jobs, hands.cluster)

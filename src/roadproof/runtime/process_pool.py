@@ -14,7 +14,7 @@ from multiprocessing.connection import wait
 from typing import Any, TypeVar
 
 from roadproof.errors import UsageError
-from roadproof.runtime.attempts import OUTSIDE, LostJob, ended_by, try_twice
+from roadproof.runtime.executors import OUTSIDE, LostJob, ended_by, try_twice
 from roadproof.runtime.parent_watchdog import die_with
 from roadproof.runtime.progress import Stage, is_heard, listening, pass_on
 

@@ -18,8 +18,8 @@ from roadproof.library.motion import Assumption, value_texts
 from roadproof.library.specification import Query
 from roadproof.logic.formula import is_state
 from roadproof.logic.rewrite import is_cubic_state, parameters_of
-from roadproof.runtime.attempts import LostJob
 from roadproof.runtime.budget import BudgetExceeded, Effort
+from roadproof.runtime.executors import LostJob
 from roadproof.runtime.process_pool import answers_of, is_worker
 from roadproof.runtime.progress import about
 from roadproof.verdict import ClaimVerdict, Verdict

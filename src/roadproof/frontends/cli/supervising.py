@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable
 
 from roadproof.frontends.cli import progress
-from roadproof.runtime.attempts import OUTSIDE, ended_by
+from roadproof.runtime.executors import OUTSIDE, ended_by
 from roadproof.runtime.parent_watchdog import die_with
 from roadproof.verdict import ExitCode
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from roadproof.errors import RoadproofError
-from roadproof.runtime.attempts import OUTSIDE, ended_by
+from roadproof.runtime.executors import OUTSIDE, ended_by
 
 BEAT = 0.25  # seconds between two words about a job that runs
 LONGEST_LINE = 256 * 2**20

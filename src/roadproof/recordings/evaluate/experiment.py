@@ -23,9 +23,7 @@ from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.source import RecordingSource
 from roadproof.recordings.formats.sources import copies_among, find_sources
 from roadproof.recordings.formats.windows import WindowedRecording
-from roadproof.runtime.attempts import LostJob
-from roadproof.runtime.dispatch import answers_of
-from roadproof.runtime.executors import Executor
+from roadproof.runtime.executors import Executor, LostJob, answers_of
 from roadproof.runtime.memory import keep_freed_memory
 from roadproof.runtime.process_pool import is_worker
 
