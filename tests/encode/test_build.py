@@ -13,9 +13,9 @@ from encode import cases
 from planting import plant
 from roadproof.engines.encode import along
 from roadproof.engines.encode.build import NONE, Assumptions, encode_formula, frame, ground
-from roadproof.engines.encode.circuit import All, AnyOf, Leaf, all_of, any_of, evaluate, implicant, nodes
 from roadproof.engines.encode.inequalities import inequalities_of, polynomial_of
 from roadproof.engines.encode.motion import Layout
+from roadproof.engines.encode.problem import All, AnyOf, Leaf, all_of, any_of, evaluate, implicant, nodes
 from roadproof.engines.encode.unroll import Grid, unroll
 from roadproof.errors import UsageError
 from roadproof.library.bind import bind

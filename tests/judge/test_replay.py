@@ -11,9 +11,8 @@ import pytest
 from judge.test_exact import motion
 from planting import plant
 from roadproof.engines.encode.build import NONE, ground
-from roadproof.engines.encode.circuit import evaluate
-from roadproof.engines.encode.custom_signals import own_columns
-from roadproof.engines.encode.motion import Layout
+from roadproof.engines.encode.motion import Layout, own_columns
+from roadproof.engines.encode.problem import evaluate
 from roadproof.engines.encode.unroll import Grid, unroll
 from roadproof.engines.prove.prover import prove
 from roadproof.errors import UsageError

@@ -9,17 +9,18 @@ from hypothesis import strategies as st
 
 from judge.cases import comparisons_of, drives, formulas
 from roadproof.library.bind import default_values
-from roadproof.library.elaborate import apply_definition, read_claim
+from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import FALSE, TRUE, Compare, Formula
-from roadproof.logic.fragment import Sizes, horizon, signal_degree, sizes
 from roadproof.logic.initial_conditions import compared, conjuncts, demands, narrowed, pins
 from roadproof.logic.rewrite import (
     bounds_of,
+    horizon,
     map_terms,
     parameters_of,
+    signal_degree,
     terms_of,
     vehicles_of,
     with_values,
@@ -234,14 +235,6 @@ def test_a_horizon_needs_values() -> None:
 )
 def test_degree(term: t.Term, degree: int | None) -> None:
     assert signal_degree(term) == degree
-
-
-def test_sizes_count_distinct_parts_without_names() -> None:
-    atom = f.Compare(SPEED, ">", t.number(0, (1, -1)))
-    twice = f.Application("both", (), f.And((f.Always(f.FOREVER, atom), f.Not(f.Application("p", (), atom)))))
-    assert sizes(twice) == Sizes(subformulas=4, atoms=1, temporal=1, depth=3)
-    whole = sizes(apply_definition(BASE, "scenario_4").formula)
-    assert whole.temporal == 4  # initSafe, danger, and two untils
 
 
 # --- Which premises leave a parameter one value: tried against values that make the formula false ---

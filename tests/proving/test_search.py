@@ -16,13 +16,12 @@ from proving.on_roads import is_road, neighbours
 from roadproof.drivers.lemmas import lemmas_for
 from roadproof.drivers.models import models_for
 from roadproof.engines.prove import countermodel, prover
+from roadproof.engines.prove.countermodel import place
 from roadproof.engines.prove.doubt import Stop
-from roadproof.engines.prove.explanation import is_plain, reason
 from roadproof.engines.prove.grounding import Grounding
-from roadproof.engines.prove.place import place
-from roadproof.engines.prove.roads import ZONES, Box, Layout, lay_road
+from roadproof.engines.prove.roads import ZONES, Box, Layout, lay_road, roster_for
 from roadproof.engines.prove.search import GaveUp, Model
-from roadproof.engines.prove.small_roads import roster_for
+from roadproof.engines.prove.states import is_plain, reason
 from roadproof.evidence import state
 from roadproof.evidence.atoms import Atoms
 from roadproof.library.elaborate import read_claim

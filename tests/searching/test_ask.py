@@ -14,11 +14,9 @@ from roadproof.engines.search import compare as compare_module
 from roadproof.engines.search.ask import answer
 from roadproof.engines.search.bounded import check_bounded
 from roadproof.engines.search.compare import compare
-from roadproof.engines.search.default_vehicles import usual_model
 from roadproof.engines.search.enumeration import small_drive
-from roadproof.engines.search.grid import make_grid
 from roadproof.engines.search.patterns import spread
-from roadproof.engines.search.question import SearchOptions
+from roadproof.engines.search.question import SearchOptions, make_grid, usual_model
 from roadproof.engines.search.refute import beyond_limits, quick_drive
 from roadproof.engines.search.settle import settle
 from roadproof.errors import UsageError

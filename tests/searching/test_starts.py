@@ -9,11 +9,11 @@ import pytest
 
 import roadproof as rp
 from planting import plant
-from roadproof.engines.search import initial_candidates, instant_claims, sampling, search, settle
+from roadproof.engines.search import initial_candidates, refute, sampling, search, settle
 from roadproof.engines.search.ask import Search, answer, reads_all
 from roadproof.engines.search.initial_candidates import space_of, unread
-from roadproof.engines.search.instant_claims import sampled_drive
 from roadproof.engines.search.question import SearchOptions, Setting, pose
+from roadproof.engines.search.refute import sampled_drive
 from roadproof.engines.search.sampling import Space, holds, states
 from roadproof.engines.search.settle import settle as settled
 from roadproof.library.bind import bind
@@ -22,8 +22,7 @@ from roadproof.library.loading import bundled_library
 from roadproof.library.scenario_references import read_query
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.fragment import is_cubic_state
-from roadproof.logic.rewrite import signals_of
+from roadproof.logic.rewrite import is_cubic_state, signals_of
 from roadproof.logic.terms import Signal, Size
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact.exact import judge
@@ -219,7 +218,7 @@ def test_of_which_claims_states_are_sampled(text, cubic):
 def test_a_state_in_which_the_claim_is_true_is_no_refutation(monkeypatch):
     """A state that nobody has judged is handed on; the drive is judged all the same."""
     monkeypatch.setattr(
-        instant_claims, "states", lambda _, space, most: [{x: low for x, (low, _) in space.ranges.items()}]
+        refute, "states", lambda _, space, most: [{x: low for x, (low, _) in space.ranges.items()}]
     )
     assert sampled(TRUE) is None
 

@@ -9,15 +9,15 @@ import pytest
 
 import roadproof as rp
 from asking import posed, search_for
-from roadproof.engines.encode.circuit import evaluate
 from roadproof.engines.encode.motion import Layout
+from roadproof.engines.encode.problem import evaluate
 from roadproof.engines.encode.unroll import Grid
 from roadproof.engines.search import search
 from roadproof.engines.search.ask import ask
+from roadproof.engines.search.initial_conditions import CLEARLY, differ
 from roadproof.engines.search.question import SearchOptions
 from roadproof.engines.search.search import find_witness, show_none
 from roadproof.engines.search.shape import _with_margin
-from roadproof.engines.search.variety import CLEARLY, differ
 from roadproof.engines.solve.bounds import Affine, Bound
 from roadproof.engines.solve.smooth import minimise
 from roadproof.errors import UsageError

@@ -13,10 +13,24 @@ from hypothesis.errors import NonInteractiveExampleWarning
 
 from encode import cases
 from roadproof.engines.encode.build import NONE, ground
-from roadproof.engines.encode.circuit import All, AnyOf, Leaf, all_of, any_of, evaluate, nodes
 from roadproof.engines.encode.motion import Layout
-from roadproof.engines.encode.polynomial import Inequality, affine, constant, variable
-from roadproof.engines.encode.problem import Column, Problem, Row, Unknown
+from roadproof.engines.encode.problem import (
+    All,
+    AnyOf,
+    Column,
+    Inequality,
+    Leaf,
+    Problem,
+    Row,
+    Unknown,
+    affine,
+    all_of,
+    any_of,
+    constant,
+    evaluate,
+    nodes,
+    variable,
+)
 from roadproof.engines.encode.unroll import unroll
 from roadproof.engines.solve import milp, smooth
 from roadproof.engines.solve.bounds import (

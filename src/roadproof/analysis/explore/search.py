@@ -25,8 +25,7 @@ from roadproof.library.compose import negation
 from roadproof.library.motion import Assumption, value_texts
 from roadproof.library.specification import Library, Query
 from roadproof.logic.formula import Formula
-from roadproof.logic.fragment import intervals_of, is_cubic_state
-from roadproof.logic.rewrite import parameters_of
+from roadproof.logic.rewrite import intervals_of, is_cubic_state, parameters_of
 from roadproof.logic.terms import Parameter, leaves
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.replay import first_overlap
