@@ -99,6 +99,28 @@ def test_an_option_touches_two_files(copy):
     assert "\n".join(remade) + "\n" == (copy / "src/roadproof/frontends/settings/keywords.py").read_text()
 
 
+NOTE = (
+    '    note: str = option("", "--note TEXT", help="print TEXT first", group="output", keyword=False)\n\n\n'
+)
+IN_OTHERS = {
+    "compare": ('folder_for("certificates and drive files", command_line_only=True)\n', "4 4"),
+    "explore": ("pictures_of(command_line_only=True)\n", "4 --vary minSafe=0:1 --steps 2"),
+}
+"""By question: how the last line of its options ends, and what is asked."""
+
+
+@pytest.mark.parametrize("command", IN_OTHERS)
+def test_an_option_of_other_questions_touches_two_files_too(copy, command):
+    last, asked = IN_OTHERS[command]
+    home, before = copy / "src/roadproof/frontends", f"read_definitions(args, {command.capitalize()})\n"
+    forge(home / "settings/questions.py", (last, last + NOTE))
+    forge(home / f"cli/{command}.py", (before, before + "    print(args.note, flush=True)\n"))
+    told = roadproof(copy, 0, f"{command} {asked} --note between").splitlines()
+    assert told[0] == "between"
+    assert len(told) > 1
+    assert "--note TEXT" in roadproof(copy, 0, f"{command} --help")
+
+
 def test_mypy_names_every_reader_that_forgets_a_signal_or_a_node(copy):
     apply(copy, CHANGES[:1])
     add_survey(copy)

@@ -75,8 +75,7 @@ def rederived(changed: Certificate) -> Certificate:
     return certify(
         chosen,
         read_claim(chosen, changed.claim),
-        instances,
-        names,
+        (instances, names),
         changed.lemmas,
         changed.property,
         changed.scenario,
@@ -144,10 +143,10 @@ def test_an_invented_lemma_proves_nothing():
     claim = "fasterThan(SV,POV) -> fasterThan(POV,SV)"
     faster, slower = "fasterThan(SV, POV)", "fasterThan(POV, SV)"
     invented = Lemma(((faster, False), (slower, True)), ("0",))
-    forged = certify(specification(), read_claim(specification(), claim), {}, {}, (invented,))
+    forged = certify(specification(), read_claim(specification(), claim), ({}, {}), (invented,))
     assert ask(forged.queries[0][1]) == "unsat"
     assert "'lemma 1, case 1 of 1' was answered sat" in check(forged)
-    empty = certify(specification(), read_claim(specification(), claim), {}, {}, (Lemma((), ("0",)),))
+    empty = certify(specification(), read_claim(specification(), claim), ({}, {}), (Lemma((), ("0",)),))
     assert "lemma 1" in check(empty)
 
 
@@ -236,7 +235,7 @@ def forge(claim: str, names: list[tuple[Site, str]], instances: list[tuple[Site,
     for site, text in instances:
         listed[site] = (*listed.get(site, ()), text)
     try:
-        return check(certify(specification(), read_claim(specification(), claim), listed, dict(names), ()))
+        return check(certify(specification(), read_claim(specification(), claim), (listed, dict(names)), ()))
     except InputError as error:
         return str(error)
 

@@ -68,8 +68,7 @@ class Certificate:
 def certify(
     specification: Specification,
     query: Query,
-    instances: Mapping[Site, tuple[str, ...]],
-    names: Mapping[Site, str],
+    sites: tuple[Mapping[Site, tuple[str, ...]], Mapping[Site, str]],
     lemmas: tuple[Lemma, ...],
     label: str = "",
     scenario: int | None = None,
@@ -78,12 +77,12 @@ def certify(
 ) -> Certificate:
     """The certificate for a claim, its queries derived here and not by the finder of the proof.
 
-    Raises ``InputError`` where the text of a query that was put together reads as another formula, and where
-    the claim does not pin what is ``pinned``.
+    ``sites``: the instances and the names of sites. Raises ``InputError`` where the text of a query that was
+    put together reads as another formula, and where the claim does not pin what is ``pinned``.
     """
     if not query.written and read_claim(specification, query.text).formula != query.formula:
         raise InputError(f"the claim's text does not mean what was proved: {query.text}")
-    atoms = Atoms()
+    atoms, (instances, names) = Atoms(), sites
     abstracted = f.implication(*goal_of(specification, query, assumed, atoms, pinned))
     bounds = specification.library.bounds
     ground = derive_query(abstracted, atoms, instances, names, lemmas, bounds, query.lanes)
@@ -158,8 +157,7 @@ def rule(certificate: Certificate, library: Library, ask: Callable[[str], str]) 
         derived = certify(
             specification,
             query,
-            certificate.instances,
-            certificate.names,
+            (certificate.instances, certificate.names),
             certificate.lemmas,
             certificate.property,
             certificate.scenario,

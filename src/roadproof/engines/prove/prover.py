@@ -313,7 +313,7 @@ def _certificate(
     abstracted = f.implication(*goal_of(specification, query, assumed, atoms, pinned))
     met = met_sites(abstracted, atoms, _instances(proofs), names, specification.library.bounds, query.lanes)
     made = tuple(Lemma(literals, moments) for literals, moments in lemmas.items())
-    return certify(specification, query, *met, made, label, scenario, assumed, pinned)
+    return certify(specification, query, met, made, label, scenario, assumed, pinned)
 
 
 def _instances(proofs: Sequence[Proof]) -> dict[Site, tuple[str, ...]]:

@@ -2,21 +2,26 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
+from typing import Unpack
 
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.settings import as_road, positive
+from roadproof.frontends.settings import recordings as settings
+from roadproof.frontends.settings.keywords import MotionKeywords
+from roadproof.frontends.settings.signatures import takes
 from roadproof.frontends.settings.value_types import RoadLike
 from roadproof.library.bind import Number, exact, values_with
 from roadproof.world.drive import Drive, Motion
 from roadproof.world.pieces import pieces_of
-from roadproof.world.signals import KINDS, Kind
+from roadproof.world.signals import KINDS
 
 _ALONG, _ACROSS = ("s", "m/s^2", "m/s^3"), ("s", "m/s^2")
 
 
+@takes(settings.Motion)
 def motion(
     s: Number,
     d: Number,
@@ -24,35 +29,35 @@ def motion(
     v_lat: Number = 0,
     along: Iterable[Sequence[Number]] = (),
     across: Iterable[Sequence[Number]] = (),
-    length: Number = Fraction(9, 2),
-    width: Number = Fraction(9, 5),
-    kind: Kind | None = None,
+    **box: Unpack[MotionKeywords],
 ) -> Motion:
     """How a vehicle moves: where its front-left corner is at time 0 (m) and how fast (m/s), and what follows.
 
     ``along``: durations (s), each with the acceleration at its start (m/s^2) and the jerk (m/s^3), one after
-    the other; ``across``: durations with an acceleration. After them there is none. Numbers are exact, and
-    floats the decimals that Python shows. Raises ``InputError``, ``UsageError``.
+    the other; ``across``: durations with an acceleration. After them there is none. ``length``, ``width`` (m)
+    and ``kind``: of its box. Numbers are exact, and floats the decimals that Python shows. Raises
+    ``InputError``, ``UsageError``.
 
     >>> motion(0, 2.6, 30, along=[(1, 0, -4), (2, -4, 0)]).pieces[1].a_lon
     Fraction(-4, 1)
     """
-    if kind is not None and kind not in KINDS:
-        raise UsageError(f"kind={kind!r}: write {', '.join(KINDS)}, or leave it out")
+    given = settings.Motion.of(box)
+    if given.kind is not None and given.kind not in KINDS:
+        raise UsageError(f"kind={given.kind!r}: write {', '.join(KINDS)}, or leave it out")
     try:
         pieces = pieces_of(
             [(a, b, c) for a, b, c in _read("along", along, _ALONG)],
             [(a, b) for a, b in _read("across", across, _ACROSS)],
         )
         return Motion(
-            exact("length", length, "m"),
-            exact("width", width, "m"),
+            exact("length", given.length, "m"),
+            exact("width", given.width, "m"),
             exact("s", s, "m"),
             exact("d", d, "m"),
             exact("v_lon", v_lon, "m/s"),
             exact("v_lat", v_lat, "m/s"),
             pieces,
-            kind,
+            given.kind,
         )
     except ValueError as error:
         raise UsageError(f"motion: {error}") from None

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from roadproof.recordings.simulate.traffic import Ramp
     from roadproof.runtime.executors import Jobs
     from roadproof.semantics.sampled.answers import Convention
+    from roadproof.world.signals import Kind
 
 
 class ModelsKeywords(TypedDict, total=False):
@@ -214,6 +215,12 @@ class SimulateKeywords(WorkersKeywords, total=False):
     ramp_flow: float
     plant: Iterable[JudgedDrive | DriveFile]
     tell: Say | None
+
+
+class MotionKeywords(TypedDict, total=False):
+    length: Number
+    width: Number
+    kind: Kind | None
 
 
 class ExportKeywords(TypedDict, total=False):

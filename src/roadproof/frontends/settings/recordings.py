@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from roadproof.frontends.settings.value_types import RoadLike
     from roadproof.library.bind import Number
     from roadproof.recordings.simulate.traffic import Ramp
+    from roadproof.world.signals import Kind
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -175,6 +176,15 @@ class Simulate(Workers):
     )
     out: str | Path | None = folder_for("recordings", command_line_only=True, required=True)
     tell: Say | None = option(None)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Motion(Settings):
+    """Options of ``motion``, which exists in Python only."""
+
+    length: Number = option(Fraction(9, 2))
+    width: Number = option(Fraction(9, 5))
+    kind: Kind | None = option(None)
 
 
 @dataclass(frozen=True, kw_only=True)
