@@ -32,8 +32,7 @@ from roadproof.frontends.report.drive_data import (
 from roadproof.frontends.report.moving import Scene, draw_moving
 from roadproof.frontends.report.one_trace import draw_strips
 from roadproof.frontends.report.viewer_data import ShownFormula, viewer_data
-from roadproof.frontends.report.viewer_files import viewer_modules, viewer_style
-from roadproof.frontends.report.viewer_page import json_in_html, viewer_page
+from roadproof.frontends.report.viewer_page import json_in_html, viewer_modules, viewer_page, viewer_style
 from roadproof.frontends.report.viewer_recorded import recorded_data
 from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim

@@ -41,12 +41,20 @@ from roadproof.frontends.report.figures import (
     name_rows,
     settle,
 )
-from roadproof.frontends.report.paper import COMPARISON, MARK, RESULTS, VIOLATING_PAIRS
 from roadproof.frontends.report.tables import LOOKS, Table, as_csv, as_latex, as_markdown
 from roadproof.frontends.report.tables import as_text as table_text
-from roadproof.frontends.report.traffic import Share, comparison_table, decimal, percent, results_tables
-from roadproof.frontends.report.traffic_figures import draw_figures
-from roadproof.frontends.report.write_traffic import write_report
+from roadproof.frontends.report.traffic import (
+    COMPARISON,
+    MARK,
+    RESULTS,
+    VIOLATING_PAIRS,
+    Share,
+    comparison_table,
+    decimal,
+    percent,
+    results_tables,
+)
+from roadproof.frontends.report.traffic_figures import draw_figures, write_report
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenario_references import read_query
 from roadproof.library.scenarios import COMPARISON as DETECTORS

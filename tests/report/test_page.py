@@ -13,7 +13,7 @@ import pytest
 import roadproof as rp
 from evidence.folders import some_proofs
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.report.page.page import page as page_of
+from roadproof.frontends.report.page.templates import page as page_of
 from roadproof.frontends.report.page.templates import render
 from roadproof.runtime.package_data import shipped
 

@@ -33,7 +33,6 @@ from roadproof.frontends.api.restricting import drivers_of, restricted
 from roadproof.frontends.api.settings import basis_of, one_of
 from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import catalogue as report
-from roadproof.frontends.report import catalogue_drivers as decisions
 from roadproof.frontends.report.catalogue_drives import DrivePicture, draw_tests
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings import studies as settings
@@ -189,7 +188,7 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record]):
         return report.as_junit(self.tests, self.tested, self.in_force)
 
     def __str__(self) -> str:
-        drivers = decisions.as_lines(self.decisions)
+        drivers = report.driver_lines(self.decisions)
         told = report.as_text(len(self.tests), self.tested, self.notes, self.figures, drivers)
         ranges = report.range_lines(self.spans, self.study.basis.horizon)
         return "\n".join([*ranges, told])

@@ -17,8 +17,7 @@ from roadproof.frontends.api.row import Row
 from roadproof.frontends.report.answers import facts
 from roadproof.frontends.report.tables import as_text
 from roadproof.frontends.report.traffic import comparison_table, drivers_table, results_tables
-from roadproof.frontends.report.traffic_figures import draw_figures
-from roadproof.frontends.report.write_traffic import remove_report, write_report
+from roadproof.frontends.report.traffic_figures import draw_figures, remove_report, write_report
 from roadproof.frontends.settings.keywords import EvaluateKeywords
 from roadproof.frontends.settings.recordings import Evaluate
 from roadproof.frontends.settings.signatures import takes

@@ -10,10 +10,10 @@ from roadproof.evidence.finding import Acceptance, Finding, summary
 from roadproof.evidence.folder import INDEX
 from roadproof.evidence.heading import version
 from roadproof.frontends.api.checking import CheckReport, check
-from roadproof.frontends.report.page.page import page as page_of
 from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.results import Given, Result, read_results
 from roadproof.frontends.report.page.sections import evidence_section, section
+from roadproof.frontends.report.page.templates import page as page_of
 from roadproof.frontends.settings import evidence
 from roadproof.frontends.settings.keywords import CheckKeywords, PageKeywords
 from roadproof.frontends.settings.signatures import takes

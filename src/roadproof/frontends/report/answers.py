@@ -6,11 +6,14 @@ Every sentence is made from counts of this run; where the data cannot answer, th
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 
-from roadproof.frontends.report.paper import COMPARISON, MARK, RECALL_WITHOUT_FILTER, VIOLATING_PAIRS
 from roadproof.frontends.report.traffic import (
+    COMPARISON,
     KINDS,
+    MARK,
     METRICS,
     NONE_FAILED,
+    RECALL_WITHOUT_FILTER,
+    VIOLATING_PAIRS,
     Share,
     decimal,
     missing,

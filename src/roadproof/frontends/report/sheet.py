@@ -5,7 +5,7 @@ CSV files, data frames, tables on terminals and tables of pages are made of it.
 
 import csv
 import io
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Generic, Literal, NamedTuple, TypeAlias, TypeVar
@@ -79,6 +79,31 @@ class Sheet(Generic[T]):
     def columns_of(self, renderer: Renderer) -> list[Column[T]]:
         """The columns that a renderer has."""
         return [x for x in self.columns if x.only in ("", renderer)]
+
+
+class Heading(NamedTuple):
+    """A row or a column of a matrix, with what is said of it; ``key`` tells it apart."""
+
+    key: object
+    name: object
+    told: str | None = None
+
+
+class Linked(NamedTuple):
+    """A verdict in words, and the part of the page with its evidence, if it has any."""
+
+    verdict: str
+    told: str
+    target: str | None
+
+
+@dataclass(frozen=True)
+class Matrix:
+    """A sheet of linked cells, each in a row and a column; places without a cell stay empty."""
+
+    rows: Sequence[Heading]
+    columns: Sequence[Heading]
+    cells: Mapping[tuple[object, object], Linked]
 
 
 def as_csv(sheet: Sheet[T]) -> str:

@@ -1,16 +1,27 @@
-"""Pictures of a traffic evaluation: recall by set, scenario counts, and how scenarios overlap."""
+"""Pictures of a traffic evaluation, and all else that it writes beside its rows: tables, a short text."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
+from pathlib import Path
 from textwrap import wrap
 from typing import Any
 
-from roadproof.frontends.report.figures import count_axis, legend_beside, make_figure
-from roadproof.frontends.report.paper import MARK
-from roadproof.frontends.report.traffic import decimal, ending_of, paper_row
+from roadproof.frontends.report.answers import answer_questions
+from roadproof.frontends.report.figures import as_bytes, count_axis, legend_beside, make_figure
+from roadproof.frontends.report.tables import LOOKS
+from roadproof.frontends.report.traffic import (
+    MARK,
+    comparison_table,
+    decimal,
+    drivers_table,
+    ending_of,
+    paper_row,
+    results_tables,
+)
 from roadproof.library.words import Called
 from roadproof.recordings.evaluate.results import words_in
 from roadproof.recordings.evaluate.totals import Row, Totals
+from roadproof.runtime.files import cannot_write, write_whole
 
 COLOURS = ("#9db8d9", "#4f7fb8", "#1f4a80", "#e0b990", "#c8783c", "#8a4a1c", "#8fb884", "#4b8b3b", "#2b5a20")
 BAR, GREY = "#9db8d9", "#555555"
@@ -115,3 +126,44 @@ def _draw_matrix(axes: Any, row: Row, scenarios: Sequence[int], words: Called) -
     for side in ("top", "right", "bottom", "left"):
         axes.spines[side].set_visible(False)
     return shades
+
+
+def write_report(folder: Path, totals: Totals, failed: Mapping[str, str], pictures: bool = True) -> None:
+    """``results`` of each sector and of drivers, ``comparison``, ``answers.md`` and ``figures/``.
+
+    Tables have four looks, and all files are whole. ``failed`` are the recordings that are left out, and
+    why; tables and text say so. Without ``pictures`` matplotlib is not needed. Raises
+    ``InputError`` where a file cannot be written.
+    """
+    tables = {**results_tables(totals, failed), "comparison": comparison_table(totals, failed)}
+    tables |= {"results-drivers": drivers_table(totals)} if totals.settings.drivers else {}
+    for name, table in tables.items():
+        for ending, look in LOOKS.items():
+            if table is None:  # an earlier run may have had one
+                (folder / f"{name}.{ending}").unlink(missing_ok=True)
+            else:
+                write_whole(folder / f"{name}.{ending}", look(table).encode())
+    write_whole(folder / "answers.md", answer_questions(totals, failed).encode())
+    if pictures:
+        for name, figure in draw_figures(totals):
+            for ending, content in as_bytes(figure).items():
+                write_whole(folder / "figures" / f"{name}.{ending}", content)
+
+
+def remove_report(folder: Path) -> None:
+    """Remove the tables of an earlier run, so that those of other recordings never outlive a run that fails.
+
+    What was found in single recordings stays.
+    """
+    names = ["matches.csv", "pairs.csv", "results.json", "answers.md"]
+    names += [f"{name}.{ending}" for name in ("results", "comparison") for ending in LOOKS]
+    try:
+        for path in (
+            *(folder / name for name in names),
+            *(path for ending in LOOKS for path in folder.glob(f"results-*.{ending}")),
+            *folder.glob("figures/*.png"),
+            *folder.glob("figures/*.svg"),
+        ):
+            path.unlink(missing_ok=True)
+    except OSError as error:
+        raise cannot_write(folder, error) from None

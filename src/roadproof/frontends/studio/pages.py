@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 
-from roadproof.frontends.report.viewer_files import viewer_modules, viewer_style
+from roadproof.frontends.report.viewer_page import viewer_modules, viewer_style
 
 _SCRIPT, _STYLE = "text/javascript; charset=utf-8", "text/css; charset=utf-8"
 _OWN = ("server", "address", "state", "editor", "actions", "live", "bar", "side", "app")

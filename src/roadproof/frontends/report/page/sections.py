@@ -8,7 +8,7 @@ from roadproof.errors import InputError
 from roadproof.evidence.answers import compare, drives
 from roadproof.evidence.codec import read
 from roadproof.evidence.finding import Finding
-from roadproof.frontends.report.page import catalogues, claims, matrices, plates, shares
+from roadproof.frontends.report.page import catalogues, plates, values
 from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.results import Result, Words
 from roadproof.frontends.report.page.templates import render
@@ -27,8 +27,8 @@ def section(result: Result, context: PageContext, words: Words) -> str:
     frame = {"title": title, "set": result.data.get("set"), "rejections": rejected}
     known = {number: x for number, x in words.items() if x}
     try:
-        values = values_of(result, context, known)
-        return render(f"{template}.html", page=context, result=result, words=known, **frame, **values)
+        said = values_of(result, context, known)
+        return render(f"{template}.html", page=context, result=result, words=known, **frame, **said)
     except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
         reason = f"{type(error).__name__}: {error}"[:200]
         raise InputError(
@@ -39,8 +39,8 @@ def section(result: Result, context: PageContext, words: Words) -> str:
 
 def evidence_section(findings: Sequence[Finding], context: PageContext, solver: str) -> str:
     """Evidence that no result names, as HTML."""
-    values = claims.evidence(findings, context)
-    return render("evidence.html", page=context, solver=solver, count=len(findings), **values)
+    said = values.evidence(findings, context)
+    return render("evidence.html", page=context, solver=solver, count=len(findings), **said)
 
 
 @dataclass(frozen=True)
@@ -75,20 +75,20 @@ def _read_as(answer: type) -> Callable[[Result, PageContext, Words], Values]:
 
 
 _SECTIONS: Mapping[str, tuple[str, str, Callable[[Result, PageContext, Words], Values]]] = {
-    "index": ("Claims", "claims", claims.claims),
-    "verdicts": ("Claims", "claims", claims.claims),
+    "index": ("Claims", "claims", values.claims),
+    "verdicts": ("Claims", "claims", values.claims),
     "witness": ("Drives that were looked for", "witness", _read_as(drives.Answer)),
     "compare": ("Two formulas side by side", "compare", _read_as(compare.Answer)),
-    "overlap": ("Which scenarios can hold together", "overlap", matrices.overlap),
-    "coverage": ("Which dangers are missed", "coverage", matrices.coverage),
-    "classify": ("Classes that exclude each other", "classify", shares.classes),
-    "order": ("Which scenarios imply which", "order", matrices.order),
-    "redundancy": ("Which parts could be left out", "redundancy", matrices.redundancy),
-    "explore": ("How far it can go", "explore", matrices.explored),
-    "monitor": ("Where it holds on one trace", "monitor", shares.monitored),
+    "overlap": ("Which scenarios can hold together", "overlap", values.overlap),
+    "coverage": ("Which dangers are missed", "coverage", values.coverage),
+    "classify": ("Classes that exclude each other", "classify", values.classes),
+    "order": ("Which scenarios imply which", "order", values.order),
+    "redundancy": ("Which parts could be left out", "redundancy", values.redundancy),
+    "explore": ("How far it can go", "explore", values.explored),
+    "monitor": ("Where it holds on one trace", "monitor", values.monitored),
     "catalogue": ("What a catalogue of tests covers", "catalogue", catalogues.catalogue),
     "preventable": ("From where a driver prevents a collision", "preventable", plates.plates),
-    "traffic-results": ("Recordings, evaluated", "traffic-results", shares.traffic),
+    "traffic-results": ("Recordings, evaluated", "traffic-results", values.traffic),
 }
 """The title of a section, its template, and the function that gives the values for it."""
 _TITLES = {"list": "What the library holds", "show": "A definition", "check": "Evidence that was checked"}

@@ -1,12 +1,82 @@
-"""The templates of the page: this module alone imports jinja2, and only when a page is written."""
+"""The page and its templates: this module alone imports jinja2, and only when a page is written.
 
+A page is one file with styles, scripts, viewers and all texts, which asks nobody for anything.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from fractions import Fraction
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from roadproof.frontends.report.page.pieces import counted, in_unit, notes, short, sign
+from roadproof.evidence.finding import NO_EVIDENCE, Finding
+from roadproof.frontends.report.explore import show
 
 if TYPE_CHECKING:
     from jinja2 import Environment
+import base64
+import gzip
+import json
+from importlib import resources
+from typing import Any
+
+from roadproof.frontends.report.viewer_page import as_url, hash_of, viewer_modules, viewer_style
+
+
+class Sign(NamedTuple):
+    """How a verdict is drawn: a sign that needs no colour, and the class of its colour."""
+
+    text: str
+    colour: str
+
+
+_UNKNOWN = Sign("?", "doubt")
+SIGNS: Mapping[str, Sign] = {
+    "WITNESSED": Sign("■", "drive"),
+    "IMPOSSIBLE": Sign("·", "none"),
+    "PROVED": Sign("✓", "proof"),
+    "VACUOUS": Sign("∅", "doubt"),
+    "REFUTED": Sign("✗", "against"),
+    "PROVED-BOUNDED": Sign("✓", "doubt"),
+    "NONE-WITHIN": Sign("○", "doubt"),
+    "COVERED": Sign("✓", "proof"),
+    "GAPS": Sign("■", "drive"),
+    "UNKNOWN": _UNKNOWN,
+}
+
+
+def sign(verdict: object) -> Sign:
+    """The sign of a verdict."""
+    return SIGNS.get(str(verdict), _UNKNOWN)
+
+
+def counted(verdicts: Iterable[object]) -> list[tuple[str, int]]:
+    """How often each verdict occurs."""
+    return [*Counter(map(str, verdicts)).items()]
+
+
+def in_unit(value: str, unit: str = "") -> str:
+    """A rational as a decimal, with its unit."""
+    return f"{show(Fraction(value))} {unit if unit != 'unitless' else ''}".rstrip()
+
+
+def notes(finding: Finding) -> str:
+    """What was checked of evidence, and what was not."""
+    if finding.kind == NO_EVIDENCE:
+        return "there is no evidence for it"
+    unchecked = f"not checked: {', '.join(finding.unchecked)}" if finding.unchecked else ""
+    return "; ".join([*finding.checked, *([unchecked] if unchecked else [])])
+
+
+def short(value: object, most: int = 400) -> str:
+    """A value in a line."""
+    if isinstance(value, Mapping):
+        told = ", ".join(f"{k}={short(x, 80)}" for k, x in value.items())
+    elif isinstance(value, Sequence) and not isinstance(value, str):
+        told = ", ".join(short(x, 80) for x in value)
+    else:
+        told = "" if value is None else str(value)
+    return told if len(told) <= most else told[: most - 1] + "…"
 
 
 @cache
@@ -27,3 +97,33 @@ def _environment() -> "Environment":
 def render(template: str, **values: object) -> str:
     """A template of the folder ``templates`` as HTML; it escapes every text in ``values``."""
     return _environment().get_template(template).render(values)
+
+
+def page(title: str, sections: Sequence[str], documents: Sequence[Mapping[str, Any]], made: str) -> str:
+    """The page as a text; ``documents`` are those of the viewers, read by the browser one by one."""
+    modules = {name: as_url(text) for name, text in viewer_modules().items()}
+    imports = json.dumps({"imports": modules})
+    theme, script = _resource("theme.js"), _resource("page.js")
+    return render(
+        "page.html",
+        title=title,
+        made=made,
+        sections=sections,
+        documents=[_packed(x) for x in documents],
+        style=f"{viewer_style()}\n{_resource('page.css')}",
+        theme=theme,
+        imports=imports,
+        script=script,
+        hashes=" ".join(map(hash_of, (theme, imports, script))),
+    )
+
+
+def _packed(document: Mapping[str, Any]) -> str:
+    """A document as gzipped JSON in base64, which the browser unpacks when it is asked for."""
+    text = json.dumps(document, ensure_ascii=False, separators=(",", ":"))
+    return base64.b64encode(gzip.compress(text.encode(), mtime=0)).decode()
+
+
+@cache
+def _resource(name: str) -> str:
+    return resources.files("roadproof.frontends.report.page").joinpath(name).read_text("utf-8")

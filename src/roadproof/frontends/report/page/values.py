@@ -1,0 +1,214 @@
+"""Values of the sections of a page: claims, matrices, recordings, and evidence that lies alone."""
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from roadproof.analysis.study.evidence_store import INDEX
+from roadproof.evidence.answers import classify, monitor
+from roadproof.evidence.answers import coverage as gaps
+from roadproof.evidence.answers import explore as explorations
+from roadproof.evidence.answers import order as implications
+from roadproof.evidence.answers import overlap as pairs
+from roadproof.evidence.answers import redundancy as changes
+from roadproof.evidence.answers import traffic as evaluations
+from roadproof.evidence.answers.proofs import ANSWER_SCHEMA, OWN, Answer, Claim, ClaimAnswer, Index
+from roadproof.evidence.codec import read, write
+from roadproof.evidence.finding import Acceptance, Finding
+from roadproof.evidence.strict import Fields
+from roadproof.frontends.report.classify import sheet_of
+from roadproof.frontends.report.coverage import sheet_of as sheet_of_classes
+from roadproof.frontends.report.page.page_context import PageContext
+from roadproof.frontends.report.page.results import Result, Words
+from roadproof.frontends.report.page.templates import in_unit
+from roadproof.frontends.report.redundancy import sheet_of as sheet_of_changes
+from roadproof.frontends.report.sheet import Heading, Linked, Matrix
+from roadproof.library.motion import statement
+from roadproof.verdict import Verdict
+
+
+def evidence(findings: Sequence[Finding], context: PageContext) -> dict[str, object]:
+    """The findings: what is not accepted, proofs, and drives with their files."""
+    accepted = [x for x in findings if x.outcome is Acceptance.ACCEPTED]
+    paths = {id(finding): path for path, finding in context.findings.items()}
+    return {
+        "accepted": accepted,
+        "wrong": [x for x in findings if x not in accepted],
+        "proofs": [x for x in accepted if x.kind != "drive"],
+        "drives": [(paths[id(x)], x) for x in accepted if x.kind == "drive" and id(x) in paths],
+    }
+
+
+@dataclass(frozen=True)
+class _ShownClaim:
+    """A claim with what was found of its evidence, and the drive that refutes it."""
+
+    verdict: Verdict
+    label: str
+    set: str
+    claim: str
+    finding: Finding | None
+    drive: Path | Mapping[str, Any] | None
+
+    @property
+    def outcome(self) -> str:
+        return "" if self.finding is None else str(self.finding.outcome)
+
+
+def claims(result: Result, context: PageContext, words: Words) -> dict[str, object]:
+    """An index of claims, or the answer of ``prove --json``."""
+    shown = [*_shown_claims(result, context)]
+    accepted = sum(x.outcome == Acceptance.ACCEPTED for x in shown)
+    return {"claims": shown, "accepted": accepted}
+
+
+def _shown_claims(result: Result, context: PageContext) -> Iterator[_ShownClaim]:
+    for number, x in enumerate(_entries_of(result), 1):
+        finding = context.finding(result.folder, x.evidence if isinstance(x, Claim) else x.certificate)
+        if finding is None and result.folder is not None:
+            finding = context.inside.get(f"{result.folder / INDEX}, claim {number}")
+        claim = statement(x.assuming, x.claim)
+        yield _ShownClaim(x.verdict, _label(x), x.set, claim, finding, _drive_against(x, result))
+
+
+def _entries_of(result: Result) -> Sequence[Claim | ClaimAnswer]:
+    if result.schema == ANSWER_SCHEMA:
+        return read(Answer, result.data, result.name).verdicts
+    return read(Index, result.data, result.name).claims
+
+
+def _label(claim: Claim | ClaimAnswer) -> str:
+    if claim.property == OWN:
+        return ""
+    scenario = "" if claim.scenario is None else f" {claim.scenario}"
+    return f"{claim.property}{f'-{claim.part}' if claim.part else ''}{scenario}"
+
+
+def _drive_against(claim: Claim | ClaimAnswer, result: Result) -> Path | Mapping[str, Any] | None:
+    if claim.verdict is not Verdict.REFUTED:
+        return None
+    if isinstance(claim, ClaimAnswer):
+        is_drive = claim.refuted_by == "drive"
+        return Fields(claim.counterexample, "its counterexample").mapping("drive") if is_drive else None
+    return None if claim.evidence is None or result.folder is None else result.folder / str(claim.evidence)
+
+
+def overlap(result: Result, context: PageContext, words: Words) -> dict[str, object]:
+    """Pairs of scenarios, and a matrix of them; ``ends``: each scenario by name, with its number."""
+    found = read(pairs.Index, result.data, result.name).verdicts
+    several = len({x for pair in found for x in (pair.set_a, pair.set_b)}) > 1
+    names: dict[tuple[str, int], str] = {}
+    cells: dict[tuple[object, object], Linked] = {}
+    for k, pair in enumerate(found):
+        one, other = (
+            names.setdefault((of if several else "", n), f"{n} {of if several else ''}".strip())
+            for n, of in ((pair.a, pair.set_a), (pair.b, pair.set_b))
+        )
+        told = f"{pair.a} and {pair.b}: {pair.verdict}"
+        cells[one, other] = Linked(pair.verdict, told, f"pair-{result.id}-{k}")
+        cells.setdefault((other, one), cells[one, other])
+    ends = [(name, number) for (_, number), name in sorted(names.items())]
+    heads = [Heading(name, name, words.get(number)) for name, number in ends]
+    return {"pairs": found, "ends": ends, "matrix": Matrix(heads, heads, cells)}
+
+
+def coverage(result: Result, context: PageContext, words: Words) -> dict[str, object]:
+    """Classes of gaps: a column for each scenario, a row for each part that is false."""
+    index = read(gaps.Index, result.data, result.name)
+    sheet = sheet_of_classes(index, words)
+    cells: dict[tuple[object, object], Linked] = {}
+    for k, x in enumerate(index.classes):
+        numbers = f", gap {', '.join(map(str, x.gaps))}" if x.gaps else ""
+        target = f"gap-{result.id}-{x.gaps[0]}" if x.gaps else f"class-{result.id}-{k}"
+        told = f"{x.description}: {x.verdict}{numbers}"
+        cells[(x.component, x.condition), x.scenario] = Linked(x.verdict, told, target)
+    scenarios = dict.fromkeys(x.scenario for x in index.classes)
+    kinds = dict.fromkeys((x.component, x.condition) for x in index.classes)
+    return {
+        "answer": index,
+        "matrix": Matrix(
+            [Heading(kind, " ".join(filter(None, kind))) for kind in kinds],
+            [Heading(x, x or "other", words.get(x or -1)) for x in scenarios],
+            cells,
+        ),
+        "notes": replace(sheet, entries=[x for x in index.classes if x.reason and x.gaps]),
+    }
+
+
+def order(result: Result, context: PageContext, words: Words) -> dict[str, object]:
+    """Implications, and a matrix of them; ``numbers`` of scenarios by name."""
+    index = read(implications.Index, result.data, result.name)
+    numbers = {kind[0]: int(kind[0].partition("@")[0]) for kind in index.kinds}
+    cells: dict[tuple[object, object], Linked] = {
+        (a, b): Linked("UNKNOWN", f"{a} may imply {b}", None) for a in numbers for b in numbers
+    }
+    cells |= {
+        x.pair: Linked("UNKNOWN", f"{x.above} may imply {x.below}: {x.reason}", None) for x in index.doubts
+    }
+    cells |= {
+        x.pair: Linked("PROVED", f"{x.above} implies {x.below}", f"implied-{result.id}-{k}")
+        for k, x in enumerate(index.proved)
+    }
+    for x in index.missing:
+        told = f"{x.above} does not always imply {x.below}"
+        cells[x.pair] = Linked("REFUTED", told, f"against-{result.id}-{x.drives[0]}")
+    cells |= {(name, name): Linked("=", "itself", None) for name in numbers}
+    heads = [Heading(name, name, words.get(number)) for name, number in numbers.items()]
+    return {
+        "answer": index,
+        "numbers": numbers,
+        "matrix": Matrix(heads, heads, cells),
+        "same": [kind for kind in index.kinds if len(kind) > 1],
+        "edges": {x.pair for x in index.edges},
+        "doubts": len({x.pair for x in index.doubts}),
+    }
+
+
+def redundancy(result: Result, context: PageContext, words: Words) -> dict[str, object]:
+    """Changes of scenarios, those that are needed last."""
+    found = read(changes.Index, result.data, result.name).verdicts
+    entries = sorted(found, key=lambda x: x.redundant is False)
+    said = [x.redundant for x in entries]
+    sheet = sheet_of_changes(entries, words)
+    return {"sheet": sheet, "needed": said.count(False), "spare": said.count(True)}
+
+
+def explored(result: Result, context: PageContext, words: Words) -> dict[str, object]:
+    """Explorations, each with its map: a row for one parameter, a matrix for two."""
+    index = read(explorations.Index, result.data, result.name)
+    return {"explored": [(x, _map(x, f"{result.id}-{k}")) for k, x in enumerate(index.explored)]}
+
+
+def _map(x: explorations.Exploration, place: str) -> Matrix:
+    cells: dict[tuple[object, object], Linked] = {}
+    rows, columns = dict[str, Heading](), dict[str, Heading]()
+    for k, one in enumerate(x.values if x.vary else ()):
+        shown = [f"{y.name} = {in_unit(at, y.unit)}" for y, at in zip(x.vary, one.at, strict=True)]
+        up = shown[1] if len(shown) > 1 else "drive"
+        cells[up, one.at[0]] = Linked(one.verdict, f"{', '.join(shown)}: {one.verdict}", f"value-{place}-{k}")
+        rows.setdefault(up, Heading(up, up))
+        columns.setdefault(one.at[0], Heading(one.at[0], in_unit(one.at[0])))
+    return Matrix([*rows.values()], [*columns.values()], cells)
+
+
+def classes(result: Result, context: PageContext, words: Words) -> dict[str, object]:
+    """Classes; ``claims``: counted by kind."""
+    index = read(classify.Index, result.data, result.name)
+    claims = Counter((x.kind, x.verdict) for x in index.claims)
+    return {"answer": index, "sheet": sheet_of(index.classes), "claims": [*claims.items()]}
+
+
+def traffic(result: Result, context: PageContext, words: Words) -> dict[str, object]:
+    """The results table of recordings; ``numbers``: those of its scenarios, as texts and numbers."""
+    answer = read(evaluations.Answer, result.data, result.name)
+    numbers = dict.fromkeys(n for x in answer.table for n in x.scenarios)
+    return {"answer": answer, "numbers": [(n, int(n)) for n in numbers]}
+
+
+def monitored(result: Result, context: PageContext, words: Words) -> dict[str, object]:
+    """The answer of ``monitor --json``, which holds no trace: its verdict, and when each part is true."""
+    answer = read(monitor.Answer, result.data, result.name)
+    strips = [(x.formula, x.true) for x in answer.parts]
+    return {"answer": answer, "strips": strips, "overruled": [write(x) for x in answer.overruled]}
