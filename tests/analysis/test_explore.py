@@ -508,7 +508,7 @@ def test_an_extreme_is_bracketed_by_proofs() -> None:
 )
 def test_what_is_proved_at_values(text: str, proved: bool) -> None:
     search = search_at(text, rho=F("0.5"))
-    certificate = never(search, search.query, 2.0)
+    certificate = never(search, (), search.query, 2.0)
     assert (certificate is not None) == proved
 
 

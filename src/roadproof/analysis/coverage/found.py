@@ -4,7 +4,7 @@ Simple drives are tried before any solver is asked, since many gaps are found in
 to read. Nothing rests on them: every drive is judged.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations, islice, product
@@ -231,17 +231,14 @@ def find_among_simple(
     road: Road, start: int, step: int, classes: GapClasses, trials: Trials
 ) -> list[FoundGap]:
     """The gaps among every ``step``-th of the simple drives; of those alike the ones with least effort."""
-    specification, car = classes.specification, load_vehicle("car")
-    begins = bind(danger_comes(specification, *PAIR).formula, road, {}, classes.values)
+    specification = classes.specification
     gap = bind(classes.missed(classes.numbers_on(road)).formula, road, {}, classes.values)
     gap = transform(gap, lambda part: part)
     best: dict[tuple[str, tuple[str, ...]], FoundGap] = {}
-    if own_of([begins, gap]):
+    if own_of([gap]):
         return []  # simple drives say nothing of own signals
-    for drive in islice(simple_drives(road, car), start, None, step):
-        if not judge(begins, drive).holds or not judge(gap, drive).holds:
-            continue
-        if first_overlap(drive, HORIZON) or first_breach(drive, dict.fromkeys(drive.vehicles, car), None):
+    for drive in _dangerous(specification, classes.values, road, start, step):
+        if not judge(gap, drive).holds:
             continue
         name, options = specification.set_name, specification.options
         file = DriveFile(None, name, "", HORIZON, {}, classes.values, options, road, drive)
@@ -250,6 +247,19 @@ def find_among_simple(
         if key not in best or found.effort < best[key].effort:
             best[key] = found
     return list(best.values())
+
+
+def _dangerous(
+    specification: Specification, values: Mapping[str, Fraction], road: Road, start: int = 0, step: int = 1
+) -> Iterator[Drive]:
+    """The simple drives on which danger arises, within the limits of cars: every ``step``-th of all."""
+    car = load_vehicle("car")
+    begins = bind(danger_comes(specification, *PAIR).formula, road, {}, values)
+    for drive in islice(simple_drives(road, car), start, None, step):
+        if not judge(begins, drive).holds or first_overlap(drive, HORIZON) is not None:
+            continue
+        if first_breach(drive, dict.fromkeys(drive.vehicles, car), None) is None:
+            yield drive
 
 
 @dataclass(frozen=True)
@@ -291,26 +301,14 @@ def find_need(basis: Basis, name: str) -> Need:
     trials = Trials(replace(basis, specification=basis.specification.in_set(parent)), (wide,))
     kept = tuple(n for n in replaced_by(basis.specification) if n != name)
     without = trials.trial(wide, kept)
-    for road in (load_road("main-2"), WIDE):
-        for drive in _dangerous(trials, road):
+    # Simple drives say nothing of own signals.
+    for road in () if basis.library.freedom else (load_road("main-2"), WIDE):
+        for drive in _dangerous(trials.specification, trials.values, road):
             options = basis.specification.options
             file = DriveFile(None, wide, "", HORIZON, {}, trials.values, options, road, drive)
             if trials.misses(file, wide, kept):
                 return Need(name, parent, Verdict.WITNESSED, _judged(basis, without, file))
     return Need(name, parent, _covers(basis, without))
-
-
-def _dangerous(trials: Trials, road: Road) -> Iterator[Drive]:
-    """The simple drives on which danger arises, within the limits of the vehicles."""
-    if trials.specification.library.freedom:
-        return  # simple drives say nothing of own signals
-    car = load_vehicle("car")
-    begins = bind(danger_comes(trials.specification, *PAIR).formula, road, {}, trials.values)
-    for drive in simple_drives(road, car):
-        if not judge(begins, drive).holds or first_overlap(drive, HORIZON) is not None:
-            continue
-        if first_breach(drive, dict.fromkeys(drive.vehicles, car), None) is None:
-            yield drive
 
 
 def _judged(basis: Basis, without: Specification, file: DriveFile) -> JudgedDrive:

@@ -25,7 +25,6 @@ from roadproof.analysis.explore.answer import (
 from roadproof.analysis.explore.bracket import Bracket, range_of, starting_ranges
 from roadproof.analysis.explore.search import (
     NATURAL_FIRST,
-    NEVER,
     PLAIN_FIRST,
     DriveClaim,
     Reply,
@@ -35,6 +34,7 @@ from roadproof.analysis.explore.search import (
     claim_of,
     dt_of,
     made_for,
+    missed,
     never,
     stages_for,
     values_of,
@@ -135,7 +135,7 @@ class _ExtremeSearch:
             if first is None and self.hard and (proved := self.proved((), None)) is not None:
                 return self.extreme(None, proved, proved)
             if first is None:
-                return self.extreme(None, self.missed((), None, reply), None)
+                return self.extreme(None, missed((), self.sought.query(None), reply), None)
         bracket = Bracket(self.measure.sign, self.sought.precision, first, self.range_end())
         if (
             not self.hard
@@ -151,7 +151,7 @@ class _ExtremeSearch:
                 bracket.hold(found)
             else:
                 proved = self.impossible(value) if self.hard else None
-                bracket.miss(proved or self.missed((value,), value, reply))
+                bracket.miss(proved or missed((value,), self.sought.query(value), reply))
             best = float(bracket.best.at[0])
             self.say(f"{self.measure.sense} so far: {best:g}, {self.searches} searches")
         return self.ended(bracket)
@@ -200,11 +200,6 @@ class _ExtremeSearch:
         self.late |= reply.late
         return reply
 
-    def missed(self, at: Point, value: Fraction | None, reply: Reply) -> PointFinding:
-        verdict = reply.verdict if reply.verdict is Verdict.NONE_WITHIN else Verdict.UNKNOWN
-        reason = reply.reason or "the drive that was found is rejected by the judge"
-        return PointFinding(at, verdict, self.sought.query(value), reason)
-
     def impossible(self, value: Fraction) -> PointFinding | None:
         """A proof that no drive, of any kind, reaches ``value``."""
         return self.proved((value,), value)
@@ -212,9 +207,8 @@ class _ExtremeSearch:
     def proved(self, at: Point, value: Fraction | None, units: float = PROOF) -> PointFinding | None:
         query, effort = self.sought.query(value), self.search.search_options.effort.of(units)
         try:
-            certificate = never(self.search, query, min(QUICK_PROOF, units))
-            if certificate is not None:
-                return PointFinding(at, Verdict.IMPOSSIBLE, query, NEVER, certificate=certificate)
+            if (found := never(self.search, at, query, min(QUICK_PROOF, units))) is not None:
+                return found
             shown = show_impossible(self.search.specification, query, effort)
         except BudgetExceeded:
             self.late = True

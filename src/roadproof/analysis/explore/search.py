@@ -11,13 +11,13 @@ from fractions import Fraction
 from math import ceil, floor
 from typing import Literal, TypeAlias
 
+from roadproof.analysis.explore.answer import Point, PointFinding
 from roadproof.engines.encode.unroll import common_step
 from roadproof.engines.prove.prover import prove
 from roadproof.engines.search.ask import Search, judge_found, telling_values
 from roadproof.engines.search.question import COARSEST, SearchProblem, Setting, coarsest, durations, pose
 from roadproof.engines.search.search import Attempt, find_witness, show_none
 from roadproof.errors import UsageError
-from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.library.bind import values_with
@@ -29,7 +29,7 @@ from roadproof.logic.rewrite import intervals_of, is_cubic_state, parameters_of
 from roadproof.logic.terms import Parameter, leaves
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.replay import first_overlap
-from roadproof.verdict import Verdict
+from roadproof.verdict import DriveVerdict, Verdict
 
 MOST_STEPS = 40  # beyond, searches seldom come to an end
 
@@ -60,6 +60,15 @@ class Reply:
     reason: str
     drives: tuple[JudgedDrive, ...] = ()
     late: bool = False
+
+
+def missed(at: Point, query: Query, reply: Reply) -> PointFinding:
+    """The answer where a search found no drive that is judged to do."""
+    verdict: DriveVerdict = Verdict.UNKNOWN
+    if reply.verdict is Verdict.NONE_WITHIN:
+        verdict = Verdict.NONE_WITHIN
+    reason = reply.reason or "the drive that was found is rejected by the judge"
+    return PointFinding(at, verdict, query, reason)
 
 
 def look(task: SearchTask) -> Reply:
@@ -270,7 +279,7 @@ def stages_for(search: Search, stages: tuple[Stage, ...]) -> tuple[Stage, ...]:
     return tuple(x for x in stages if x != "none") if hard else stages
 
 
-def never(search: Search, query: Query, units: float) -> Certificate | None:
+def never(search: Search, at: Point, query: Query, units: float) -> PointFinding | None:
     """A proof that ``query`` holds in no state with the parameters at the values of ``search``.
 
     Wherever, however fast and how near vehicles are: it needs no limits. None where none is found with
@@ -282,4 +291,5 @@ def never(search: Search, query: Query, units: float) -> Certificate | None:
     there = {name: values[name] for name in parameters_of(query.formula)}
     said = value_texts(search.specification, there)
     effort = search.search_options.effort.of(units)
-    return prove(search.specification, negation(query), effort, assumed=Assumption(said)).certificate
+    proof = prove(search.specification, negation(query), effort, assumed=Assumption(said)).certificate
+    return None if proof is None else PointFinding(at, Verdict.IMPOSSIBLE, query, NEVER, certificate=proof)

@@ -22,7 +22,6 @@ from roadproof.analysis.explore.answer import (
 )
 from roadproof.analysis.explore.search import (
     NATURAL_FIRST,
-    NEVER,
     PLAIN_FIRST,
     DriveClaim,
     Reply,
@@ -33,6 +32,7 @@ from roadproof.analysis.explore.search import (
     dt_of,
     duration_parameters,
     look,
+    missed,
     never,
     stages_for,
 )
@@ -179,27 +179,17 @@ class ExplorationState:
         for point, reply in zip(points, self.look_all(tasks), strict=True):
             self.late |= reply.late
             self.stock.add(reply.drives)
-            findings.append(self.known(point) or self._never(point) or self._missed(point, reply))
+            query = self.claim(point).query
+            findings.append(self.known(point) or self._never(point) or missed(point, query, reply))
         return findings
 
     def _never(self, point: Point) -> PointFinding | None:
         """A proof that there is no drive at a point, for formulas of which a state says all."""
-        query = self.claim(point).query
         try:
-            certificate = never(self.at(point), query, QUICK_PROOF)
+            return never(self.at(point), point, self.claim(point).query, QUICK_PROOF)
         except BudgetExceeded:
             self.late = True
             return None
-        if certificate is None:
-            return None
-        return PointFinding(point, Verdict.IMPOSSIBLE, query, NEVER, certificate=certificate)
-
-    def _missed(self, point: Point, reply: Reply) -> PointFinding:
-        query = self.claim(point).query
-        if reply.verdict is Verdict.NONE_WITHIN:
-            return PointFinding(point, Verdict.NONE_WITHIN, query, reply.reason)
-        reason = reply.reason or "the drive that was found is rejected by the judge"
-        return PointFinding(point, Verdict.UNKNOWN, query, reason)
 
     def spread(self, points: Sequence[Point]) -> list[Point]:
         """``points``, ends first, each as far as can be from those that were searched before it."""

@@ -10,7 +10,7 @@ from roadproof.analysis.classify.shares import Shares
 from roadproof.analysis.classify.study import ClassificationResult
 from roadproof.analysis.classify.text import HEADINGS
 from roadproof.evidence.answers.classify import CountedClass
-from roadproof.frontends.report.figures import count_axis, legend_beside, make_figure
+from roadproof.frontends.report.figures import count_axis, hide_frame, legend_beside, make_figure
 from roadproof.frontends.report.sheet import Bar, Column, Sheet, as_lines
 from roadproof.library.words import Called
 from roadproof.verdict import Verdict
@@ -202,8 +202,7 @@ def draw_classes(examples: Sequence[Example], shares: Shares | None, title: str,
     below.set_ylim(len(numbers) - 0.4, -0.6)
     below.set_xlim(-0.6, len(columns) - 0.4)
     below.tick_params(length=0)
-    for side in ("top", "right", "bottom", "left"):
-        below.spines[side].set_visible(False)
+    hide_frame(below)
     figure.suptitle(title, fontsize=9)
     return figure
 
@@ -220,5 +219,4 @@ def _bars(axes: Any, columns: Sequence[_Row], shares: Shares) -> None:
     count_axis(axes.yaxis)
     axes.tick_params(labelsize=7)
     axes.set_title(f"on {shares.source}", fontsize=8)
-    for side in ("top", "right"):
-        axes.spines[side].set_visible(False)
+    hide_frame(axes, ("top", "right"))

@@ -25,7 +25,7 @@ from roadproof.frontends.report.drive_data import (
     vehicles_of,
     window_of,
 )
-from roadproof.frontends.report.figures import draw_box, legend_beside, make_figure, name_rows
+from roadproof.frontends.report.figures import draw_box, hide_frame, legend_beside, make_figure, name_rows
 from roadproof.library.specification import Library
 from roadproof.world.motion import State, state_at
 from roadproof.world.road import Zone
@@ -110,8 +110,7 @@ def _snapshot(axes: Any, road: ShownRoad, window: Span, when: str) -> None:
     axes.set_yticks([middle for _, middle in road.lanes], [name for name, _ in road.lanes], fontsize=6)
     axes.tick_params(axis="y", length=0)
     axes.set_ylabel(when, rotation=0, fontsize=8, ha="right", va="center")
-    for side in ("top", "right", "left"):
-        axes.spines[side].set_visible(False)
+    hide_frame(axes, ("top", "right", "left"))
 
 
 def _vehicles(

@@ -17,7 +17,7 @@ from roadproof.analysis.explore.answer import (
 )
 from roadproof.analysis.explore.record import ends_of
 from roadproof.frontends.report.drive import draw_drive
-from roadproof.frontends.report.figures import legend_beside, make_figure
+from roadproof.frontends.report.figures import draw_cell, legend_beside, make_figure, name_cells
 from roadproof.frontends.report.overlap import COLOURS, SIGNS
 from roadproof.frontends.report.sheet import Cell, Column, Sheet
 from roadproof.library.words import words_of
@@ -279,19 +279,14 @@ def _draw_map(asked: Explorable, explored: ExplorationResult) -> Any:
     for y, row in enumerate(rows):
         for x, column in enumerate(columns):
             cell = found[column, row]
-            colour = COLOURS[cell.verdict]
-            axes.fill((x, x + 1, x + 1, x), (y, y, y + 1, y + 1), color=colour, ec="white", lw=0.8)
-            if cell.number is not None:
-                place = (x + 0.5, y + 0.5, str(cell.number))
-                axes.text(*place, fontsize=8, color="white", ha="center", va="center")
+            draw_cell(axes, x, y, COLOURS[cell.verdict], cell.number, "white")
             if x and cell.found != found[columns[x - 1], row].found:
                 axes.plot((x, x), (y, y + 1), color="#222222", lw=1.6)
             if y and cell.found != found[column, rows[y - 1]].found:
                 axes.plot((x, x + 1), (y, y), color="#222222", lw=1.6)
     axes.set_xlim(0, len(columns))
     axes.set_ylim(0, len(rows))
-    axes.set_xticks([k + 0.5 for k in range(len(columns))], [show(c) for c in columns], fontsize=7)
-    axes.set_yticks([k + 0.5 for k in range(len(rows))], [show(r) for r in rows], fontsize=7)
+    name_cells(axes, [*map(show, columns)], [*map(show, rows)], 7)
     axes.set_xlabel(f"{across.name}, {_unit(across.unit)}; numbers in cells tell drives apart", fontsize=8)
     axes.set_ylabel(f"{up.name}, {_unit(up.unit)}", fontsize=8)
     _finish(figure, below, asked, explored)

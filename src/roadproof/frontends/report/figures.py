@@ -72,6 +72,25 @@ def name_rows(axes: Any, names: Sequence[str]) -> None:
     axes.set_ylim(len(names) - 0.4, -0.6)
 
 
+def draw_cell(axes: Any, x: int, y: int, colour: str, text: object = None, ink: str = "black") -> None:
+    """A cell of a heat map, one unit wide and high, with a text in it."""
+    axes.fill((x, x + 1, x + 1, x), (y, y, y + 1, y + 1), color=colour, ec="white", lw=0.8)
+    if text is not None:
+        axes.text(x + 0.5, y + 0.5, str(text), fontsize=8, color=ink, ha="center", va="center")
+
+
+def name_cells(axes: Any, columns: Sequence[str], rows: Sequence[str], size: int) -> None:
+    """Names below and beside the middles of cells."""
+    axes.set_xticks([k + 0.5 for k in range(len(columns))], columns, fontsize=size)
+    axes.set_yticks([k + 0.5 for k in range(len(rows))], rows, fontsize=size)
+
+
+def hide_frame(axes: Any, sides: Sequence[str] = ("top", "right", "bottom", "left")) -> None:
+    """Draw no line around ``axes``, or none on some of its sides."""
+    for side in sides:
+        axes.spines[side].set_visible(False)
+
+
 def count_axis(axis: Any) -> None:
     """Ticks of an axis that counts: whole numbers only."""
     from matplotlib.ticker import MaxNLocator

@@ -6,7 +6,7 @@ from textwrap import wrap
 from typing import Any
 
 from roadproof.analysis.overlap import PairVerdict, name_of
-from roadproof.frontends.report.figures import legend_beside, make_figure
+from roadproof.frontends.report.figures import draw_cell, hide_frame, legend_beside, make_figure, name_cells
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.words import Called, Words, legend
 from roadproof.verdict import Verdict
@@ -101,7 +101,8 @@ def draw_overlap(verdicts: Sequence[PairVerdict], title: str, across: bool, word
         for x, column in enumerate(columns):
             if across or column < row:
                 pair = (row, column) if across else (column, row)
-                _draw_cell(axes, x, y, found.get((row, column)), numbers.get(pair))
+                if (verdict := found.get((row, column))) is not None:
+                    draw_cell(axes, x, y, COLOURS[verdict], numbers.get(pair))
     beside = -(8 * 0.56 * max(len(_named(words[row])) for row in rows) + 16)
     _draw_axes(axes, rows, columns, words, across, beside)
     if across:
@@ -124,14 +125,6 @@ def draw_overlap(verdicts: Sequence[PairVerdict], title: str, across: bool, word
     return figure
 
 
-def _draw_cell(axes: Any, x: int, y: int, verdict: Verdict | None, number: int | None) -> None:
-    if verdict is None:
-        return
-    axes.fill((x, x + 1, x + 1, x), (y, y, y + 1, y + 1), color=COLOURS[verdict], ec="white", lw=0.8)
-    if number is not None:
-        axes.text(x + 0.5, y + 0.5, str(number), fontsize=8, ha="center", va="center")
-
-
 def _named(words: Words) -> str:
     return f"{words.number}  {words.title}".rstrip()
 
@@ -142,12 +135,10 @@ def _draw_axes(
     """Numbers below, names beside, and a line where another road sector begins, which is named too."""
     axes.set_xlim(0, len(columns))
     axes.set_ylim(len(rows), 0)
-    axes.set_xticks([k + 0.5 for k in range(len(columns))], [str(c) for c in columns], fontsize=8)
-    axes.set_yticks([k + 0.5 for k in range(len(rows))], [_named(words[row]) for row in rows], fontsize=8)
+    name_cells(axes, [*map(str, columns)], [_named(words[row]) for row in rows], 8)
     axes.tick_params(length=0)
     axes.set_aspect("equal", anchor="NW")
-    for side in ("top", "right", "bottom", "left"):
-        axes.spines[side].set_visible(False)
+    hide_frame(axes)
     style = {"textcoords": "offset points", "fontsize": 9, "ha": "center"}
     line = {"color": "#222222", "lw": 1.4}
     for begin, end, sector in sectors_among(rows, words):

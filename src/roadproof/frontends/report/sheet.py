@@ -8,6 +8,7 @@ import io
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import zip_longest
 from typing import Generic, Literal, NamedTuple, TypeAlias, TypeVar
 
 from roadproof.library.scenarios import Scenario
@@ -123,9 +124,14 @@ def as_lines(sheet: Sheet[T]) -> list[str]:
     """A line of headings and a line for each entry, columns aligned."""
     columns = sheet.columns_of("terminal")
     body = ([str(_value(x.cell(entry))) for x in columns] for entry in sheet.entries)
-    rows = [[x.title for x in columns], *body]
+    return aligned([[x.title for x in columns], *body])
+
+
+def aligned(rows: Sequence[Sequence[str]], right: Sequence[bool] = ()) -> list[str]:
+    """Rows as lines, columns aligned by spaces: to the left, but for those that are ``right``."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return ["  ".join(x.ljust(width) for x, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+    sides = [f"{'>' if one else '<'}{width}" for one, width in zip_longest(right, widths)]
+    return ["  ".join(map(format, row, sides)).rstrip() for row in rows]
 
 
 def csv_text(header: Iterable[object], rows: Iterable[Iterable[object]]) -> str:

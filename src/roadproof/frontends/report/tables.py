@@ -3,23 +3,25 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from roadproof.frontends.report.sheet import csv_text
+from roadproof.frontends.report.sheet import aligned, csv_text
 
-_LATEX = {
-    "\\": r"\textbackslash{}",
-    "&": r"\&",
-    "%": r"\%",
-    "_": r"\_",
-    "#": r"\#",
-    "$": r"\$",
-    "{": r"\{",
-    "}": r"\}",
-    "<": r"\textless{}",
-    ">": r"\textgreater{}",
-    "~": r"\textasciitilde{}",
-    "^": r"\textasciicircum{}",
-    "|": r"\textbar{}",
-}
+_LATEX = str.maketrans(
+    {
+        "\\": r"\textbackslash{}",
+        "&": r"\&",
+        "%": r"\%",
+        "_": r"\_",
+        "#": r"\#",
+        "$": r"\$",
+        "{": r"\{",
+        "}": r"\}",
+        "<": r"\textless{}",
+        ">": r"\textgreater{}",
+        "~": r"\textasciitilde{}",
+        "^": r"\textasciicircum{}",
+        "|": r"\textbar{}",
+    }
+)
 
 
 @dataclass(frozen=True)
@@ -39,19 +41,9 @@ class Table:
 
 def as_text(table: Table) -> str:
     """Columns aligned by spaces: texts to the left, numbers to the right."""
-    widths = [max(map(len, column)) for column in zip(table.columns, *table.rows, strict=True)]
-    numeric = _numeric(table)
-
-    def line(cells: tuple[str, ...]) -> str:
-        padded = (
-            cell.rjust(width) if right else cell.ljust(width)
-            for cell, width, right in zip(cells, widths, numeric, strict=True)
-        )
-        return "  ".join(padded).rstrip()
-
-    rule = "  ".join("-" * width for width in widths)
-    body = [line(table.columns), rule, *map(line, table.rows)]
-    return "\n".join([table.title, "", *body, *_below(table, "")]) + "\n"
+    rule = ["-" * max(map(len, column)) for column in zip(table.columns, *table.rows, strict=True)]
+    body = aligned([table.columns, rule, *table.rows], _numeric(table))
+    return "\n".join([table.title, "", *body, *_below(table)]) + "\n"
 
 
 def as_markdown(table: Table) -> str:
@@ -62,7 +54,7 @@ def as_markdown(table: Table) -> str:
 
     rule = "|" + "|".join("---:" if right else "---" for right in _numeric(table)) + "|"
     body = [line(table.columns), rule, *map(line, table.rows)]
-    return "\n".join([f"## {table.title}", "", *body, *_below(table, "")]) + "\n"
+    return "\n".join([f"## {table.title}", "", *body, *_below(table)]) + "\n"
 
 
 def as_csv(table: Table) -> str:
@@ -114,9 +106,9 @@ def _is_number(cell: str) -> bool:
     return cell in ("", "-") or cell.removesuffix("%").strip().replace(".", "", 1).isdecimal()
 
 
-def _below(table: Table, mark: str) -> list[str]:
-    return ["", *(mark + note for note in table.notes)] if table.notes else []
+def _below(table: Table) -> list[str]:
+    return ["", *table.notes] if table.notes else []
 
 
 def _escape(text: str) -> str:
-    return "".join(_LATEX.get(letter, letter) for letter in text)
+    return text.translate(_LATEX)

@@ -7,7 +7,7 @@ from textwrap import wrap
 from typing import Any
 
 from roadproof.frontends.report.answers import answer_questions
-from roadproof.frontends.report.figures import as_bytes, count_axis, legend_beside, make_figure
+from roadproof.frontends.report.figures import as_bytes, count_axis, hide_frame, legend_beside, make_figure
 from roadproof.frontends.report.tables import LOOKS
 from roadproof.frontends.report.traffic import (
     MARK,
@@ -123,8 +123,7 @@ def _draw_matrix(axes: Any, row: Row, scenarios: Sequence[int], words: Called) -
     axes.set_xticks(range(len(scenarios)), [f"s{i}" for i in scenarios], fontsize=7)
     axes.set_yticks(range(len(scenarios)), names, fontsize=7)
     axes.tick_params(length=0)
-    for side in ("top", "right", "bottom", "left"):
-        axes.spines[side].set_visible(False)
+    hide_frame(axes)
     return shades
 
 
