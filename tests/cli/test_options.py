@@ -31,11 +31,10 @@ from roadproof.frontends.cli.help import COMMANDS, command_parser, jobs
 from roadproof.frontends.cli.main import COMMANDS as SUB_COMMANDS
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.settings import keywords_file
-from roadproof.frontends.settings.evidence import Check
 from roadproof.frontends.settings.flags import add_flags, is_rare, read_keywords
 from roadproof.frontends.settings.groups import Definitions
 from roadproof.frontends.settings.option import Settings
-from roadproof.frontends.settings.questions import Prove, Witness
+from roadproof.frontends.settings.questions import Check, Prove, Witness
 from roadproof.frontends.settings.recordings import Evaluate, Monitor, Simulate
 from roadproof.recordings.simulate.traffic import Ramp
 from roadproof.semantics.sampled.answers import Convention

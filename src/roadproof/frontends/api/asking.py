@@ -14,7 +14,7 @@ from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.frontends.settings.keywords import AskKeywords
-from roadproof.frontends.settings.signatures import takes
+from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.studies import Ask
 from roadproof.library.scenarios import numbers_of
 from roadproof.verdict import Verdict

@@ -37,7 +37,7 @@ from roadproof.frontends.report.catalogue_drives import DrivePicture, draw_tests
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import CatalogueKeywords
-from roadproof.frontends.settings.signatures import takes
+from roadproof.frontends.settings.option import takes
 from roadproof.library.scenarios import number_in, numbers_of
 from roadproof.runtime.executors import Jobs
 from roadproof.verdict import ExitCode, Verdict

@@ -22,9 +22,9 @@ from roadproof.evidence.kernel import coq
 from roadproof.frontends.api import kernel as kernels
 from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import work_of
-from roadproof.frontends.settings.evidence import Check
 from roadproof.frontends.settings.keywords import CheckKeywords
-from roadproof.frontends.settings.signatures import takes
+from roadproof.frontends.settings.option import takes
+from roadproof.frontends.settings.questions import Check
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library
 from roadproof.library.words import called_by, legend

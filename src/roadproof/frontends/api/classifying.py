@@ -30,7 +30,7 @@ from roadproof.frontends.report import classify as report
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import ClassifyKeywords
-from roadproof.frontends.settings.signatures import takes
+from roadproof.frontends.settings.option import takes
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.words import Called, called
 from roadproof.recordings.formats.recording import Recording

@@ -26,8 +26,8 @@ from roadproof.frontends.report import compare as compare_report
 from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.keywords import CompareKeywords
+from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Compare
-from roadproof.frontends.settings.signatures import takes
 from roadproof.library.compose import taken_from
 from roadproof.library.specification import Library, Specification
 from roadproof.runtime.files import make_folder, write_json, write_whole

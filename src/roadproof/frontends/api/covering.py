@@ -27,7 +27,7 @@ from roadproof.frontends.report import coverage as report
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import CoverageKeywords
-from roadproof.frontends.settings.signatures import takes
+from roadproof.frontends.settings.option import takes
 from roadproof.library.words import Called, called
 from roadproof.runtime.executors import Jobs, hands_of
 from roadproof.runtime.files import hold_folder

@@ -28,8 +28,8 @@ from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.report.witness import SearchedFor, as_line, files_of, kinds, sheet_of
 from roadproof.frontends.settings.keywords import WitnessKeywords
+from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Witness
-from roadproof.frontends.settings.signatures import takes
 from roadproof.library.specification import Library
 from roadproof.runtime.files import make_folder, write_whole
 from roadproof.runtime.progress import Listener, listening

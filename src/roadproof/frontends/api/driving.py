@@ -11,7 +11,7 @@ from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.settings import as_road, positive
 from roadproof.frontends.settings import recordings as settings
 from roadproof.frontends.settings.keywords import MotionKeywords
-from roadproof.frontends.settings.signatures import takes
+from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.value_types import RoadLike
 from roadproof.library.bind import Number, exact, values_with
 from roadproof.world.drive import Drive, Motion

@@ -23,8 +23,8 @@ from roadproof.frontends.report import explore as report
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.groups import Run
 from roadproof.frontends.settings.keywords import ExploreKeywords
+from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Explore
-from roadproof.frontends.settings.signatures import takes
 from roadproof.library.bind import Number
 from roadproof.library.scenario_references import names_scenarios
 from roadproof.verdict import ExitCode, Verdict, exit_code

@@ -12,8 +12,8 @@ from roadproof.evidence.strict import read_json
 from roadproof.frontends.api.row import Row
 from roadproof.frontends.report.moving import draw_moving
 from roadproof.frontends.settings.keywords import ExportKeywords
+from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.recordings import Export
-from roadproof.frontends.settings.signatures import takes
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library, unknown
 from roadproof.recordings.export.registry import FORMATS

@@ -22,7 +22,7 @@ from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.sheet import Sheet, as_csv
 from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import PreventableKeywords
-from roadproof.frontends.settings.signatures import takes
+from roadproof.frontends.settings.option import takes
 from roadproof.library.bind import Number, exact
 from roadproof.library.specification import unknown
 from roadproof.verdict import Verdict

@@ -27,8 +27,8 @@ from roadproof.frontends.report import claims as claims_text
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.groups import Run, SearchPlace
 from roadproof.frontends.settings.keywords import ProveKeywords
+from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Prove
-from roadproof.frontends.settings.signatures import takes
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import MOTION, AssumedClaim, at_values, is_moving, limits_of, split
 from roadproof.library.scenario_references import names_scenarios, read_numbers

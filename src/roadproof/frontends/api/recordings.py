@@ -19,8 +19,8 @@ from roadproof.frontends.report.tables import as_text
 from roadproof.frontends.report.traffic import comparison_table, drivers_table, results_tables
 from roadproof.frontends.report.traffic_figures import draw_figures, remove_report, write_report
 from roadproof.frontends.settings.keywords import EvaluateKeywords
+from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.recordings import Evaluate
-from roadproof.frontends.settings.signatures import takes
 from roadproof.library.bind import exact
 from roadproof.library.scenarios import COMPARISON, MIN_DANGER
 from roadproof.recordings.evaluate.evaluate import Findings

@@ -14,9 +14,9 @@ from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.results import Given, Result, read_results
 from roadproof.frontends.report.page.sections import evidence_section, section
 from roadproof.frontends.report.page.templates import page as page_of
-from roadproof.frontends.settings import evidence
+from roadproof.frontends.settings import questions as settings
 from roadproof.frontends.settings.keywords import CheckKeywords, PageKeywords
-from roadproof.frontends.settings.signatures import takes
+from roadproof.frontends.settings.option import takes
 from roadproof.library.loading import load_library
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.specification import Library
@@ -54,7 +54,7 @@ class Page:
         return f"{self.path}: {told}, {size}, in one file that needs no network{bad}"
 
 
-@takes(evidence.Page)
+@takes(settings.Page)
 def page(*results: str | Path, out: str | Path, **options: Unpack[PageKeywords]) -> Page:
     """One HTML file about results: folders of ``out``, evidence, and answers as JSON.
 
@@ -62,7 +62,7 @@ def page(*results: str | Path, out: str | Path, **options: Unpack[PageKeywords])
     specification files that the results were made with. Raises ``InputError`` for what is no result or cannot
     be written, ``UsageError``.
     """
-    asked = evidence.Page.of(options)
+    asked = settings.Page.of(options)
     if not results:
         raise UsageError("name at least one result: a folder, a JSON answer, or evidence")
     paths = [Path(x) for x in results]

@@ -11,8 +11,8 @@ from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.report.sheet import csv_text
 from roadproof.frontends.settings.keywords import SimulateKeywords
+from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.recordings import Simulate
-from roadproof.frontends.settings.signatures import takes
 from roadproof.library.loading import bundled_library
 from roadproof.recordings.export.road_toml import road_toml
 from roadproof.recordings.formats.table import Frame, frame_of

@@ -26,7 +26,7 @@ from roadproof.frontends.report import redundancy as redundancy_report
 from roadproof.frontends.report.sheet import Sheet, as_csv
 from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import OrderKeywords, OverlapKeywords, RedundancyKeywords
-from roadproof.frontends.settings.signatures import takes
+from roadproof.frontends.settings.option import takes
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.words import Called, called, called_in
 from roadproof.verdict import ExitCode, Verdict, exit_code

@@ -21,8 +21,8 @@ from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import as_road, positive
 from roadproof.frontends.report.one_trace import as_text, draw_strips
 from roadproof.frontends.settings.keywords import MonitorKeywords
+from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.recordings import Monitor
-from roadproof.frontends.settings.signatures import takes
 from roadproof.frontends.settings.value_types import RoadLike
 from roadproof.library.bind import bind, values_with
 from roadproof.library.scenarios import SUBJECT, Scenario, lane_owner

@@ -6,8 +6,8 @@ from pathlib import Path
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.options import add_json_option, write_json
 from roadproof.frontends.cli.progress import Counter
-from roadproof.frontends.settings.evidence import Check
 from roadproof.frontends.settings.flags import add_flags, read_keywords
+from roadproof.frontends.settings.questions import Check
 from roadproof.verdict import ExitCode
 
 SUMMARY = "check certificates and drive files again, independently"

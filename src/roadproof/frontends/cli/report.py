@@ -4,8 +4,8 @@ import argparse
 from pathlib import Path
 
 from roadproof.frontends.cli.progress import Counter, clear
-from roadproof.frontends.settings.evidence import Page
 from roadproof.frontends.settings.flags import add_flags, read_keywords
+from roadproof.frontends.settings.questions import Page
 
 SUMMARY = "make one HTML page from results, to be read without a network"
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from roadproof.frontends.settings.groups import Readings, Workers, folder_for
-from roadproof.frontends.settings.option import Settings, option
+from roadproof.frontends.settings.option import Settings, option, output
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -16,10 +16,8 @@ if TYPE_CHECKING:
 class Show(Readings):
     """Options of ``roadproof show``."""
 
-    expand: bool = option(False, "--expand", help="write every definition out, as one formula")
-    format: str = option(
-        "text", "--format", help="default: text", group="output", choices=("text", "latex", "json")
-    )
+    expand: bool = option(False, "--expand", "write every definition out, as one formula")
+    format: str = output("text", "--format", "default: text", choices=("text", "latex", "json"))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,5 +31,5 @@ class Convert(Workers):
 class Studio(Settings):
     """Options of ``roadproof studio``."""
 
-    port: int | None = option(None, "--port N", help="default: 8642, or any that is free", read=int)
-    browser: bool = option(True, "--no-browser", help="print the address, and open nothing")
+    port: int | None = option(None, "--port N", "default: 8642, or any that is free", read=int)
+    browser: bool = option(True, "--no-browser", "print the address, and open nothing")

@@ -7,7 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roadproof.frontends.settings.option import Settings, option
+from roadproof.frontends.settings.option import Settings, definition, option, output, search, work
 from roadproof.frontends.settings.readers import assignment, decimal, named, seconds, set_names, whole
 
 if TYPE_CHECKING:
@@ -29,74 +29,69 @@ def effort_for(what: str, units: float) -> Any:
     """``effort`` of a question that gives so many units of work to each ``what``."""
     text = f"about N solver seconds for {what} (default: {units:g}); counted, so the answer is the same on "
     text += "every machine"
-    return option(units, "--effort N", help=text, group="effort", read=decimal)
+    return option(units, "--effort N", text, group="effort", read=decimal)
 
 
 def folder_for(what: str, command_line_only: bool = False, required: bool = False) -> Any:
     """``out`` of a question that writes ``what``."""
     rules: dict[str, Any] = {"keyword": not command_line_only, "required": required}
-    return option(None, "--out DIR", help=f"write {what}", group="output", read=Path, **rules)
+    return output(None, "--out DIR", f"write {what}", read=Path, **rules)
 
 
 def specifications_of(what: str) -> Any:
     """``specs``, the specification files that ``what`` were made with."""
     text = f"specification file of {what}; may be repeated"
-    return option((), "--spec FILE", help=text, group="definitions", read=Path, gather=tuple)
+    return option((), "--spec FILE", text, group="definitions", read=Path, gather=tuple)
 
 
 def pictures_of(what: str = "pictures", command_line_only: bool = False) -> Any:
     """``pictures`` of a question that draws ``what``."""
     keyword = not command_line_only
-    return option(True, "--no-pictures", help=f"draw no {what}", group="output", keyword=keyword, rare=True)
+    return output(True, "--no-pictures", f"draw no {what}", keyword=keyword, rare=True)
 
 
 def checker_of(what: str) -> Any:
     """``solver``, which checks evidence; ``what`` is its help."""
-    return option("z3", "--solver", help=f"{what} (default: z3)", choices=("z3", "cvc5"))
+    return option("z3", "--solver", f"{what} (default: z3)", choices=("z3", "cvc5"))
 
 
 def driver_model(side: str, does: str, what: str = "scenarios") -> Any:
     """A driver model that restricts ``what`` to those whose first collision it prevents, or cannot."""
     text = f"only {what} whose first collision a driver model (careful) {does}"
-    return option(None, f"--{side} MODEL", help=text, rare=True)
+    return option(None, f"--{side} MODEL", text, rare=True)
 
 
 def scenarios_such_as(example: str = "1,3-8", keyword: bool = False) -> Any:
     """``--among``, which is the first argument in Python where it is no ``keyword``."""
-    return option(None, "--among N-M", help=f"only these scenarios, such as {example}", keyword=keyword)
+    return option(None, "--among N-M", f"only these scenarios, such as {example}", keyword=keyword)
 
 
 def same_or_any(flag: str, what: str) -> Any:
     """A choice between the same for both scenarios, and any."""
-    return option("same", flag, help=f"{what} (default: same)", choices=("same", "any"))
+    return option("same", flag, f"{what} (default: same)", choices=("same", "any"))
 
 
 def fixed_or_any(flag: str, what: str) -> Any:
     """A choice between ``what`` a test fixes, and any."""
     text = f"look at all {what}, not only at those that a test fixes"
-    return option("fixed", flag, help=text, choices=("fixed", "any"))
+    return option("fixed", flag, text, choices=("fixed", "any"))
 
 
 def with_complete(flag: str, what: str, **more: Any) -> Any:
     """An option of the drives that ``--complete`` writes."""
-    return option(None, flag, help=f"with --complete: {what}", group="output", keyword=False, **more)
-
-
-def definition_option(default: object, flag: str, text: str, **rules: Any) -> Any:
-    """An option of the definitions; from Python they are given by ``using``."""
-    return option(default, flag, help=text, group="definitions", keyword=False, **rules)
+    return output(None, flag, f"with --complete: {what}", keyword=False, **more)
 
 
 def one_set(*default: str) -> Any:
     """``--set`` of a question about one spec set."""
     told = f" (default: {default[0]})" if default else ""
-    return definition_option(default, "--set S", f"spec set{told}", read=lambda text: (text,))
+    return definition(default, "--set S", f"spec set{told}", read=lambda text: (text,))
 
 
 def several_sets(*default: str) -> Any:
     """``--set`` of a question about several spec sets."""
     text = f"spec set (default: {','.join(default)}); may be repeated"
-    return definition_option(default, "--set S", text, gather=set_names)
+    return definition(default, "--set S", text, gather=set_names)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,10 +99,10 @@ class Readings(Settings):
     """A spec set, files on top of the library, and readings."""
 
     sets: tuple[str, ...] = one_set("base")
-    specs: Iterable[str | Path] = definition_option(
+    specs: Iterable[str | Path] = definition(
         (), "--spec FILE", "specification file to add; may be repeated", read=Path, gather=list
     )
-    readings: Mapping[str, str] | None = definition_option(
+    readings: Mapping[str, str] | None = definition(
         None,
         "--option NAME=VALUE",
         "choose a reading, such as lateral_sign=literal; may be repeated",
@@ -121,7 +116,7 @@ class Readings(Settings):
 class Definitions(Readings):
     """The definitions that a question is asked in."""
 
-    params: Mapping[str, Number] | None = definition_option(
+    params: Mapping[str, Number] | None = definition(
         None,
         "--param NAME=VALUE",
         "set a parameter, such as rho=3/5; may be repeated",
@@ -141,11 +136,10 @@ class SeveralSets(Definitions):
 class Models(Settings):
     """Vehicle models."""
 
-    vehicles: Vehicles = option(
+    vehicles: Vehicles = search(
         None,
         "--vehicle [NAME=]MODEL",
-        help="vehicle model, or .toml file (default: car)",
-        group="search",
+        "vehicle model, or .toml file (default: car)",
         read=named(""),
         gather=dict,
     )
@@ -155,39 +149,30 @@ class Models(Settings):
 class SearchPlace(Models):
     """Where, with whom and for how long drives are looked for."""
 
-    road: RoadLike | None = option(
-        None, "--road R", help="road, or .toml or .xodr file (default: by formula)", group="search"
-    )
-    lanes: Mapping[str, str] | None = option(
+    road: RoadLike | None = search(None, "--road R", "road, or .toml or .xodr file (default: by formula)")
+    lanes: Mapping[str, str] | None = search(
         None,
         "--lane [L=]LANE",
-        help="lane that L means (default: any, from the right)",
-        group="search",
+        "lane that L means (default: any, from the right)",
         read=named("L"),
         gather=dict,
     )
-    horizon: Number = option(
-        Fraction(6), "--horizon S", help="seconds to search (default: 6)", group="search", read=seconds
-    )
-    dt: Number | None = option(
+    horizon: Number = search(Fraction(6), "--horizon S", "seconds to search (default: 6)", read=seconds)
+    dt: Number | None = search(
         None,
         "--dt S",
-        help="seconds between samples (default: the coarsest that fits, at most 3/5)",
-        group="search",
+        "seconds between samples (default: the coarsest that fits, at most 3/5)",
         read=seconds,
         rare=True,
     )
-    reach: Number = option(
+    reach: Number = search(
         Fraction(80),
         "--reach M",
-        help="largest distance of vehicles at the start in metres (default: 80)",
-        group="search",
+        "largest distance of vehicles at the start in metres (default: 80)",
         read=seconds,
         rare=True,
     )
-    collisions: bool = option(
-        False, "--allow-collisions", help="allow vehicles to overlap", group="search", rare=True
-    )
+    collisions: bool = search(False, "--allow-collisions", "allow vehicles to overlap", rare=True)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -197,29 +182,20 @@ class Traces(Settings):
     end: Convention = option(
         "truncated",
         "--end KIND",
-        help="end of a trace: truncated (default) asks for every continuation, clip cuts windows there",
+        "end of a trace: truncated (default) asks for every continuation, clip cuts windows there",
         choices=("truncated", "clip"),
     )
 
 
 @dataclass(frozen=True, kw_only=True)
-class Solver(Settings):
+class Method(Settings):
     """By whom drives are looked for."""
 
-    engine: Engine = option(
-        "milp",
-        "--engine",
-        help="method of the search (default: milp)",
-        group="search",
-        choices=("milp", "smt"),
-        rare=True,
+    engine: Engine = search(
+        "milp", "--engine", "method of the search (default: milp)", choices=("milp", "smt"), rare=True
     )
-    solver: str = option(
-        "highs",
-        "--solver NAME",
-        help="mixed-integer solver of --engine milp (default: highs)",
-        group="search",
-        rare=True,
+    solver: str = search(
+        "highs", "--solver NAME", "mixed-integer solver of --engine milp (default: highs)", rare=True
     )
 
 
@@ -231,7 +207,7 @@ class Budget(Settings):
     timeout: float | None = option(
         None,
         "--timeout S",
-        help="seconds after which the clock ends a search, whatever work is left; the answer then says so "
+        "seconds after which the clock ends a search, whatever work is left; the answer then says so "
         "(default: 60 for each unit of --effort, at least 600)",
         group="effort",
         read=decimal,
@@ -244,9 +220,9 @@ class Workers(Settings):
     """How many processes do the work."""
 
     jobs: Jobs = option(
-        None, "--jobs N", help="number of processes (default: one per core)", group="work", read=whole(1)
+        None, "--jobs N", "number of processes (default: one per core)", group="work", read=whole(1)
     )
-    quiet: bool = option(False, "--quiet", help="suppress progress output", group="output", keyword=False)
+    quiet: bool = output(False, "--quiet", "suppress progress output", keyword=False)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -268,41 +244,25 @@ class Run(Workers, Listeners):
 class Sharing(Workers):
     """Several runs, or a cluster, that do the work; from Python ``jobs`` says this."""
 
-    shard: str | None = option(
+    shard: str | None = work(
         None,
         "--shard K/N",
-        help="process shard K of N: start N runs with the same --out, then run once without --shard to merge",
-        group="work",
-        keyword=False,
-        rare=True,
+        "process shard K of N: start N runs with the same --out, then run once without --shard to merge",
     )
-    cluster: str | None = option(
+    cluster: str | None = work(
         None,
         "--cluster SCHEDULER|local:N",
-        help="work on a Dask cluster, such as tcp://host:8786, or on a local one of N processes",
-        group="work",
-        keyword=False,
-        rare=True,
+        "work on a Dask cluster, such as tcp://host:8786, or on a local one of N processes",
     )
-    tls_ca: str | None = option(
+    tls_ca: str | None = work(
         None,
         "--tls-ca FILE",
-        help="certificate of the authority (CA) that signed the certificate of the scheduler",
-        group="work",
-        keyword=False,
-        rare=True,
+        "certificate of the authority (CA) that signed the certificate of the scheduler",
     )
-    tls_cert: str | None = option(
-        None,
-        "--tls-cert FILE",
-        help="certificate of this client, if the scheduler asks for one",
-        group="work",
-        keyword=False,
-        rare=True,
+    tls_cert: str | None = work(
+        None, "--tls-cert FILE", "certificate of this client, if the scheduler asks for one"
     )
-    tls_key: str | None = option(
-        None, "--tls-key FILE", help="private key of --tls-cert", group="work", keyword=False, rare=True
-    )
+    tls_key: str | None = work(None, "--tls-key FILE", "private key of --tls-cert")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -49,7 +49,7 @@ class TracesKeywords(TypedDict, total=False):
     end: Convention
 
 
-class SolverKeywords(TypedDict, total=False):
+class MethodKeywords(TypedDict, total=False):
     engine: Engine
     solver: str
 
@@ -85,13 +85,13 @@ class SurveyKeywords(ModelsKeywords, BudgetKeywords, SharingKeywords, RunKeyword
     pass
 
 
-class CompareKeywords(SearchPlaceKeywords, SolverKeywords, BudgetKeywords, WorkersKeywords, total=False):
+class CompareKeywords(SearchPlaceKeywords, MethodKeywords, BudgetKeywords, WorkersKeywords, total=False):
     pass
 
 
 class WitnessKeywords(
     SearchPlaceKeywords,
-    SolverKeywords,
+    MethodKeywords,
     PreventionKeywords,
     BudgetKeywords,
     SharingKeywords,
@@ -105,7 +105,7 @@ class WitnessKeywords(
 
 class ExploreKeywords(
     SearchPlaceKeywords,
-    SolverKeywords,
+    MethodKeywords,
     PreventionKeywords,
     BudgetKeywords,
     SharingKeywords,
@@ -130,6 +130,21 @@ class ProveKeywords(ModelsKeywords, BudgetKeywords, RunKeywords, total=False):
     dt: Number | None
     drive: bool
     kernel: Kernel | None
+
+
+class CheckKeywords(BudgetKeywords, WorkersKeywords, total=False):
+    solver: Solver
+    specs: Iterable[str | Path]
+    kernel: Kernel | None
+    strict: bool
+    progress: Progress | None
+
+
+class PageKeywords(WorkersKeywords, total=False):
+    title: str | None
+    solver: Solver
+    specs: Iterable[str | Path]
+    progress: Progress | None
 
 
 class AskKeywords(SurveyKeywords, total=False):
@@ -226,18 +241,3 @@ class MotionKeywords(TypedDict, total=False):
 class ExportKeywords(TypedDict, total=False):
     rate: int
     specs: Iterable[str | Path]
-
-
-class CheckKeywords(BudgetKeywords, WorkersKeywords, total=False):
-    solver: Solver
-    specs: Iterable[str | Path]
-    kernel: Kernel | None
-    strict: bool
-    progress: Progress | None
-
-
-class PageKeywords(WorkersKeywords, total=False):
-    title: str | None
-    solver: Solver
-    specs: Iterable[str | Path]
-    progress: Progress | None

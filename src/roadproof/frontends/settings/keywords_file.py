@@ -10,10 +10,10 @@ from pathlib import Path
 from types import ModuleType
 from typing import TypeGuard
 
-from roadproof.frontends.settings import evidence, groups, questions, recordings, studies
+from roadproof.frontends.settings import groups, questions, recordings, studies
 from roadproof.frontends.settings.option import Settings
 
-MODULES = (questions, studies, recordings, evidence)
+MODULES = (questions, studies, recordings)
 FILE = Path(__file__).with_name("keywords.py")
 _WIDEST = 111  # characters of a line with its end
 _HEAD = '''"""Keyword arguments of each question; made by ``roadproof.frontends.settings.keywords_file``."""

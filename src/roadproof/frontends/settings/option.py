@@ -1,12 +1,15 @@
-"""What a field of a settings class says of its option: flag, help, group, reader."""
+"""Settings classes: what each field says of its option, and functions that take them as keywords."""
 
 import dataclasses
+import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, Literal, Self, TypeAlias
+from functools import partial
+from typing import Any, Literal, Self, TypeAlias, TypeVar
 
 from roadproof.errors import UsageError
 
+F = TypeVar("F", bound=Callable[..., object])
 Group: TypeAlias = Literal["question", "definitions", "search", "effort", "work", "output"]
 
 
@@ -39,12 +42,21 @@ class Option:
             raise UsageError(f"{name}={value}: write a whole number greater than {self.least - 1}")
 
 
-def option(default: object, flag: str = "", **rules: Any) -> Any:
+def option(default: object, flag: str = "", help: str = "", **rules: Any) -> Any:
     """A field of settings. ``flag`` has its metavar: "--out DIR"; ``rules``: the rest of ``Option``."""
     name, _, metavar = flag.partition(" ")
-    return dataclasses.field(
-        default=default, metadata={"option": Option(name or None, metavar or None, **rules)}
-    )
+    made = Option(name or None, metavar or None, help, **rules)
+    return dataclasses.field(default=default, metadata={"option": made})
+
+
+search = partial(option, group="search")
+"""An option of where and how drives are looked for."""
+output = partial(option, group="output")
+"""An option of what is written."""
+definition = partial(option, group="definitions", keyword=False)
+"""An option of the definitions; from Python they are given by ``using``."""
+work = partial(option, group="work", keyword=False, rare=True)
+"""An option of parallel work; from Python ``jobs`` says this."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,3 +78,21 @@ class Settings:
             if value is not getattr(cls, name):
                 known[name].check(name, value)
         return cls(**given)
+
+
+def takes(settings: type[Settings]) -> Callable[[F], F]:
+    """Marks a function whose ``**options`` are those of ``settings``."""
+
+    def show(function: F) -> F:
+        kinds, options = inspect.Parameter, settings.options()
+        signature = inspect.signature(function)
+        own = [x for x in signature.parameters.values() if x.kind is not kinds.VAR_KEYWORD]
+        more = [
+            kinds(x.name, kinds.KEYWORD_ONLY, default=x.default, annotation=x.type)
+            for x in dataclasses.fields(settings)
+            if options[x.name].keyword
+        ]
+        vars(function).update(__signature__=signature.replace(parameters=[*own, *more]))
+        return function
+
+    return show

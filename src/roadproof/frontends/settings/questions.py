@@ -11,27 +11,30 @@ from roadproof.frontends.settings.groups import (
     OBJECTIVES,
     Budget,
     Definitions,
+    Method,
     Models,
     Prevention,
     Run,
     SearchPlace,
     SeveralSets,
     Sharing,
-    Solver,
     Workers,
+    checker_of,
     effort_for,
     folder_for,
     one_set,
     pictures_of,
+    specifications_of,
 )
-from roadproof.frontends.settings.option import option
+from roadproof.frontends.settings.option import option, output, search
 from roadproof.frontends.settings.readers import named, seconds, text_or_none, whole
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
+    from roadproof.analysis.study.pool import Progress
     from roadproof.engines.search.question import Objective
-    from roadproof.frontends.api.checking import Kernel
+    from roadproof.frontends.api.checking import Kernel, Solver
     from roadproof.frontends.api.definitions import What
     from roadproof.frontends.api.phrases import Term
     from roadproof.frontends.settings.value_types import Assumed, Expected, ProofEngine, RoadLike, Vehicles
@@ -39,53 +42,49 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Compare(SeveralSets, SearchPlace, Solver, Budget, Workers):
+class Compare(SeveralSets, SearchPlace, Method, Budget, Workers):
     """Options of ``compare``."""
 
     out: str | Path | None = folder_for("certificates and drive files", command_line_only=True)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Witness(SeveralSets, SearchPlace, Solver, Prevention, Budget, Sharing, Run):
+class Witness(SeveralSets, SearchPlace, Method, Prevention, Budget, Sharing, Run):
     """Options of ``witness``."""
 
     objective: Objective = option(
         "smooth",
         "--objective KIND",
-        help="any, smooth (default), margin, mild, severe or short",
+        "any, smooth (default), margin, mild, severe or short",
         choices=OBJECTIVES,
     )
     count: int = option(
-        1, "--count K", help="find K clearly different drives (default: 1)", read=whole(1), least=1
+        1, "--count K", "find K clearly different drives (default: 1)", read=whole(1), least=1
     )
     out: str | Path | None = folder_for("drive files, CSV and pictures")
     pictures: bool = pictures_of()
 
 
 @dataclass(frozen=True, kw_only=True)
-class Explore(SeveralSets, SearchPlace, Solver, Prevention, Budget, Sharing, Run):
+class Explore(SeveralSets, SearchPlace, Method, Prevention, Budget, Sharing, Run):
     """Options of ``explore``."""
 
     vary: Mapping[str, tuple[Number, Number]] | None = option(
         None,
         "--vary NAME=LOW:HIGH",
-        help="vary a parameter, or a limit such as POV.a_lon.min; may be given twice",
+        "vary a parameter, or a limit such as POV.a_lon.min; may be given twice",
         gather=list,
     )
     steps: int | None = option(
-        None, "--steps K", help="number of values (default: 11; 6 for each of two)", read=whole(2)
+        None, "--steps K", "number of values (default: 11; 6 for each of two)", read=whole(2)
     )
-    least: Term | None = option(
-        None, "--least TERM", help="find the least value of a term", read=text_or_none
-    )
+    least: Term | None = option(None, "--least TERM", "find the least value of a term", read=text_or_none)
     greatest: Term | None = option(
-        None, "--greatest TERM", help="find the greatest value of a term", read=text_or_none
+        None, "--greatest TERM", "find the greatest value of a term", read=text_or_none
     )
-    when: What | None = option(
-        None, "--when FORMULA", help="measure the term when FORMULA holds, not at time 0"
-    )
+    when: What | None = option(None, "--when FORMULA", "measure the term when FORMULA holds, not at time 0")
     precision: Number | None = option(
-        None, "--precision P", help="width of a bracket in SI units (default: range/60; 0.1 for a term)"
+        None, "--precision P", "width of a bracket in SI units (default: range/60; 0.1 for a term)"
     )
     effort: float = effort_for("a question", 6.0)
     out: str | Path | None = folder_for("drives, certificates, JSON, pictures")
@@ -98,70 +97,83 @@ class Prove(Definitions, Models, Budget, Run):
 
     sets: tuple[str, ...] = one_set()
     file: Path | None = option(
-        None, "--claims FILE", help="read claims from a file, one a paragraph", read=Path, keyword=False
+        None, "--claims FILE", "read claims from a file, one a paragraph", read=Path, keyword=False
     )
     declared: bool = option(
-        False, "--declared", help="use the declared values of all other parameters, not all values"
+        False, "--declared", "use the declared values of all other parameters, not all values"
     )
     expect: Expected = option(
         "PROVED",
         "--expect",
-        help="verdict that you expect of your own claims (default: PROVED)",
+        "verdict that you expect of your own claims (default: PROVED)",
         choices=("PROVED", "REFUTED"),
         rare=True,
     )
     assume: Assumed | None = option(
-        None,
-        "--assume",
-        help="assume that vehicles move: places and speeds are continuous",
-        choices=("motion",),
+        None, "--assume", "assume that vehicles move: places and speeds are continuous", choices=("motion",)
     )
-    vehicles: Vehicles = option(
+    vehicles: Vehicles = search(
         None,
         "--vehicle [NAME=]MODEL",
-        help="with --assume motion, smt or milp: limits of a model, for all vehicles or for NAME",
-        group="search",
+        "with --assume motion, smt or milp: limits of a model, for all vehicles or for NAME",
         read=named(""),
         gather=dict,
     )
-    engine: ProofEngine = option(
+    engine: ProofEngine = search(
         "dense",
         "--engine",
-        help="dense: for all time (default); smt, milp: drives up to a horizon",
-        group="search",
+        "dense: for all time (default); smt, milp: drives up to a horizon",
         choices=("dense", "smt", "milp"),
     )
-    road: RoadLike | None = option(
-        None, "--road R", help="with smt, milp: reference road, .toml or .xodr file", group="search"
+    road: RoadLike | None = search(None, "--road R", "with smt, milp: reference road, .toml or .xodr file")
+    horizon: Number = search(
+        Fraction(6), "--horizon S", "with smt, milp: seconds to search (default: 6)", read=seconds
     )
-    horizon: Number = option(
-        Fraction(6),
-        "--horizon S",
-        help="with smt, milp: seconds to search (default: 6)",
-        group="search",
-        read=seconds,
-    )
-    dt: Number | None = option(
+    dt: Number | None = search(
         None,
         "--dt S",
-        help="with smt, milp: seconds between samples (default: the coarsest that fits)",
-        group="search",
+        "with smt, milp: seconds between samples (default: the coarsest that fits)",
         read=seconds,
         rare=True,
     )
-    drive: bool = option(
-        True, "--no-drive", help="search no drive that refutes a claim", group="search", rare=True
-    )
+    drive: bool = search(True, "--no-drive", "search no drive that refutes a claim", rare=True)
     kernel: Kernel | None = option(
-        None, "--kernel", help="also check each proof with the kernel of Coq, by coqc", choices=("coq",)
+        None, "--kernel", "also check each proof with the kernel of Coq, by coqc", choices=("coq",)
     )
     effort: float = effort_for("a claim", 60.0)
     out: str | Path | None = folder_for("certificates and an index")
-    verbose: bool = option(
-        False,
-        "--verbose",
-        help="print a line for every claim of the list",
-        group="output",
-        keyword=False,
-        rare=True,
+    verbose: bool = output(
+        False, "--verbose", "print a line for every claim of the list", keyword=False, rare=True
     )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Check(Budget, Workers):
+    """Options of ``check``."""
+
+    solver: Solver = checker_of("solver that checks certificates")
+    specs: Iterable[str | Path] = specifications_of("the claims")
+    kernel: Kernel | None = option(
+        None,
+        "--kernel",
+        "check certificates and drives with the kernel of Coq (coqc) instead of a solver",
+        choices=("coq",),
+    )
+    strict: bool = option(
+        False, "--strict", "exit with 20 if an answer has no evidence (UNKNOWN, NONE-WITHIN)"
+    )
+    effort: float = effort_for("a query", 60.0)
+    write: Path | None = output(
+        None, "--write DIR", "only write the files for Coq, with --kernel", read=Path, keyword=False
+    )
+    progress: Progress | None = option(None)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Page(Workers):
+    """Options of ``report``, which is ``page`` in Python."""
+
+    title: str | None = output(None, "--title TEXT", "title of the page")
+    solver: Solver = checker_of("solver that checks certificates")
+    specs: Iterable[str | Path] = specifications_of("the results")
+    progress: Progress | None = option(None)

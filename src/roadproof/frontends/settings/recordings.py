@@ -18,7 +18,7 @@ from roadproof.frontends.settings.groups import (
     several_sets,
     specifications_of,
 )
-from roadproof.frontends.settings.option import Settings, option
+from roadproof.frontends.settings.option import Settings, option, output
 from roadproof.frontends.settings.readers import (
     LARGEST_SEED,
     decimal,
@@ -52,36 +52,28 @@ class Monitor(Definitions, Traces):
     lanes: Mapping[str, str] | None = option(
         None,
         "--lane [L=]LANE",
-        help="lane that L means: its name, or a vehicle in it at the start (default: as the drive file "
-        "says, else the lane of SV; of POV for scenario 7, acceleration behind)",
+        "lane that L means: its name, or a vehicle in it at the start (default: as the drive file says, else "
+        "the lane of SV; of POV for scenario 7, acceleration behind)",
         read=named("L"),
         gather=dict,
     )
     road: RoadLike | None = option(
-        None, "--road R", help="road of samples (default: NAME_road.toml beside the file, else main-2)"
+        None, "--road R", "road of samples (default: NAME_road.toml beside the file, else main-2)"
     )
     view: View | None = option(
-        None,
-        "--view",
-        help="judge a drive in dense time (default), or as samples",
-        choices=("dense", "recorded"),
+        None, "--view", "judge a drive in dense time (default), or as samples", choices=("dense", "recorded")
     )
     dt: Number = option(
-        Fraction(1, 25), "--dt S", help="seconds between samples of a drive (default: 1/25)", read=seconds
+        Fraction(1, 25), "--dt S", "seconds between samples of a drive (default: 1/25)", read=seconds
     )
     frames: tuple[int | None, int | None] = option(
         (None, None),
         "--frames A-B",
-        help="frames of a recording (default: all that the vehicles share)",
+        "frames of a recording (default: all that the vehicles share)",
         read=frame_range,
     )
-    picture: Path | None = option(
-        None,
-        "--picture FILE",
-        help="draw the truth over time into FILE (.png or .svg)",
-        group="output",
-        read=Path,
-        keyword=False,
+    picture: Path | None = output(
+        None, "--picture FILE", "draw the truth over time into FILE (.png or .svg)", read=Path, keyword=False
     )
 
 
@@ -90,46 +82,36 @@ class Evaluate(Definitions, Sharing, Traces):
     """Options of ``evaluate``."""
 
     sets: tuple[str, ...] = several_sets("base", "extA", "ext")
-    among: Among = option(
-        None, "--among N-M", help="only these scenarios (default: all of two or three vehicles)"
-    )
+    among: Among = option(None, "--among N-M", "only these scenarios (default: all of two or three vehicles)")
     min_danger: Iterable[Number] = option(
         (0, "0.6 s"),
         "--min-danger S,S",
-        help="values of minDanger in seconds (default: 0,0.6)",
+        "values of minDanger in seconds (default: 0,0.6)",
         read=items_of("values", read=seconds_or_zero),
     )
     min_safe: Number | None = option(
         None,
         "--min-safe S",
-        help="value of minSafe in seconds (default: 0.6)",
+        "value of minSafe in seconds (default: 0.6)",
         read=seconds_or_zero,
         keyword=False,
     )
     classes: Iterable[str] = option(
-        ("Car",), "--class C", help="vehicle class to evaluate; may be repeated (default: Car)", gather=tuple
+        ("Car",), "--class C", "vehicle class to evaluate; may be repeated (default: Car)", gather=tuple
     )
     drivers: Iterable[str] = option(
         (),
         "--drivers NAME,…",
-        help="say of each match whether driver models (careful, r157, eu1426, rss) prevent a collision, "
-        "from the begin of the manoeuvre; for scenarios 1, 2, 4 and the like on other road sectors",
+        "say of each match whether driver models (careful, r157, eu1426, rss) prevent a collision, from the "
+        "begin of the manoeuvre; for scenarios 1, 2, 4 and the like on other road sectors",
         read=items_of("names", ", such as careful,r157"),
     )
-    detectors: bool = option(
-        True, "--no-detectors", help="leave out the detectors of earlier works", rare=True
-    )
-    check: bool = option(
-        False, "--check", help="compare with the plain recursive evaluator (slow)", rare=True
-    )
-    keep_going: bool = option(False, "--keep-going", help="skip recordings that cannot be used")
+    detectors: bool = option(True, "--no-detectors", "leave out the detectors of earlier works", rare=True)
+    check: bool = option(False, "--check", "compare with the plain recursive evaluator (slow)", rare=True)
+    keep_going: bool = option(False, "--keep-going", "skip recordings that cannot be used")
     out: str | Path | None = folder_for("results", command_line_only=True)
-    list_roads: bool = option(
-        False,
-        "--list",
-        help="only list lanes and zones, and which of them were inferred",
-        group="output",
-        keyword=False,
+    list_roads: bool = output(
+        False, "--list", "only list lanes and zones, and which of them were inferred", keyword=False
     )
     pictures: bool = pictures_of("figures, which need matplotlib")
     tell: Say | None = option(None)
@@ -139,40 +121,31 @@ class Evaluate(Definitions, Sharing, Traces):
 class Simulate(Workers):
     """Options of ``simulate``."""
 
-    recordings: int = option(
-        1, "--recordings N", help="number of recordings (default: 1)", read=whole(1, 999)
-    )
-    seconds: float = option(
-        990.0, "--seconds S", help="seconds of each recording (default: 990)", read=decimal
-    )
-    seed: int = option(
-        1, "--seed K", help="seed from 0 to 2^64 - 1 (default: 1)", read=whole(0, LARGEST_SEED)
-    )
-    lanes: int = option(3, "--lanes N", help="lanes each way (default: 3)", read=whole(1))
-    flow: float = option(3350.0, "--flow F", help="vehicles per hour each way (default: 3350)", read=decimal)
-    truck_share: float = option(0.18, "--truck-share P", help="share of trucks (default: 0.18)", read=float)
-    section: float = option(
-        420.0, "--section M", help="length of the road in metres (default: 420)", read=decimal
-    )
+    recordings: int = option(1, "--recordings N", "number of recordings (default: 1)", read=whole(1, 999))
+    seconds: float = option(990.0, "--seconds S", "seconds of each recording (default: 990)", read=decimal)
+    seed: int = option(1, "--seed K", "seed from 0 to 2^64 - 1 (default: 1)", read=whole(0, LARGEST_SEED))
+    lanes: int = option(3, "--lanes N", "lanes each way (default: 3)", read=whole(1))
+    flow: float = option(3350.0, "--flow F", "vehicles per hour each way (default: 3350)", read=decimal)
+    truck_share: float = option(0.18, "--truck-share P", "share of trucks (default: 0.18)", read=float)
+    section: float = option(420.0, "--section M", "length of the road in metres (default: 420)", read=decimal)
     ramp: Ramp = option(
         "none",
         "--ramp",
-        help="add an on-ramp or an off-ramp to the lower carriageway, with XX_road.toml (default: none)",
+        "add an on-ramp or an off-ramp to the lower carriageway, with XX_road.toml (default: none)",
         choices=("none", "merge", "depart"),
         checked=False,
     )
     ramp_flow: float = option(
-        400.0, "--ramp-flow F", help="vehicles per hour on the ramp (default: 400)", read=decimal
+        400.0, "--ramp-flow F", "vehicles per hour on the ramp (default: 400)", read=decimal
     )
     plant: Iterable[JudgedDrive | DriveFile] = option(
         (),
         "--plant PATH|N,N",
-        help="plant drives: a drive file, a folder of them, or scenarios to search, such as 1-8; may be "
-        "repeated",
+        "plant drives: a drive file, a folder of them, or scenarios to search, such as 1-8; may be repeated",
         gather=tuple,
     )
     plant_set: str = option(
-        "base", "--plant-set S", help="spec set of --plant N,N (default: base)", keyword=False, rare=True
+        "base", "--plant-set S", "spec set of --plant N,N (default: base)", keyword=False, rare=True
     )
     out: str | Path | None = folder_for("recordings", command_line_only=True, required=True)
     tell: Say | None = option(None)
@@ -194,13 +167,13 @@ class Export(Settings):
     to: Iterable[str] = option(
         (),
         "--to FORMAT",
-        help="openscenario, opendrive, commonroad, highd, csv or animation; may be repeated",
+        "openscenario, opendrive, commonroad, highd, csv or animation; may be repeated",
         gather=list,
         keyword=False,
         required=True,
     )
     rate: int = option(
-        25, "--rate N", help="samples per second of commonroad, highd and csv (default: 25)", read=whole(1)
+        25, "--rate N", "samples per second of commonroad, highd and csv (default: 25)", read=whole(1)
     )
     specs: Iterable[str | Path] = specifications_of("the drives")
     out: str | Path | None = folder_for("files", command_line_only=True, required=True)

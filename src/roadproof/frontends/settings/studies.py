@@ -26,7 +26,7 @@ from roadproof.frontends.settings.groups import (
     several_sets,
     with_complete,
 )
-from roadproof.frontends.settings.option import option
+from roadproof.frontends.settings.option import option, output, search
 from roadproof.frontends.settings.readers import (
     driver_models_or_none,
     flat,
@@ -61,12 +61,8 @@ class Overlap(SeveralSets, Survey, Prevention):
     lanes: Same = same_or_any("--lanes", "L is the same lane in both scenarios, or any")
     roles: Same = same_or_any("--roles", "vehicles have the same roles in both, or any")
     start: Same = same_or_any("--start", "both start at time 0, or one at any later time")
-    horizon: Number | None = option(
-        None,
-        "--horizon S",
-        help="seconds to search (default: 6; 9 with --start any)",
-        group="search",
-        read=seconds,
+    horizon: Number | None = search(
+        None, "--horizon S", "seconds to search (default: 6; 9 with --start any)", read=seconds
     )
     effort: float = effort_for("a drive", 60.0)
     out: str | Path | None = folder_for("evidence, CSV, JSON and heat map")
@@ -89,7 +85,7 @@ class Redundancy(Survey):
     """Options of ``redundancy``."""
 
     among: str | None = scenarios_such_as()
-    whole: bool = option(False, "--whole", help="include the parts of simple predicates")
+    whole: bool = option(False, "--whole", "include the parts of simple predicates")
     effort: float = effort_for("a drive", 20.0)
 
 
@@ -100,20 +96,16 @@ class Coverage(Survey, Prevention):
     preventable: str | None = driver_model("preventable", "prevents", "drives")
     unpreventable: str | None = driver_model("unpreventable", "cannot prevent", "drives")
     wider: str | None = option(
-        None, "--wider S", help="set that misses nothing (default: complete, if it extends the set)"
+        None, "--wider S", "set that misses nothing (default: complete, if it extends the set)"
     )
-    roads: Iterable[RoadLike] | None = option(
-        None,
-        "--road R",
-        help="road to search; may be repeated (default: main-2, then main-3)",
-        group="search",
-        gather=list,
+    roads: Iterable[RoadLike] | None = search(
+        None, "--road R", "road to search; may be repeated (default: main-2, then main-3)", gather=list
     )
     needed: bool = option(
-        False, "--needed", help="if the set has no gap: find a drive for each definition that it needs"
+        False, "--needed", "if the set has no gap: find a drive for each definition that it needs"
     )
     on: str | Path | None = option(
-        None, "--on DIR", help="count the classes of gaps in these recordings", read=Path
+        None, "--on DIR", "count the classes of gaps in these recordings", read=Path
     )
     effort: float = effort_for("a search", 10.0)
     out: str | Path | None = folder_for("certificates, drives and pictures")
@@ -126,9 +118,9 @@ class Classify(Survey, Prevention):
 
     among: str | None = scenarios_such_as("1-8")
     on: str | Path | None = option(
-        None, "--on DIR", help="recordings for the shares (default: simulated traffic)", read=Path
+        None, "--on DIR", "recordings for the shares (default: simulated traffic)", read=Path
     )
-    shares: bool = option(True, "--no-shares", help="compute no shares")
+    shares: bool = option(True, "--no-shares", "compute no shares")
     effort: float = effort_for("a drive or a proof", 60.0)
     out: str | Path | None = folder_for("classes.spec, claims, evidence, picture")
     pictures: bool = pictures_of("picture", command_line_only=True)
@@ -141,7 +133,7 @@ class Preventable(Definitions, Budget, Sharing, Run):
     models: Sequence[str] = option(
         (),
         "--model NAME",
-        help="driver model: careful, r157, eu1426, rss or fsm (default: all but fsm)",
+        "driver model: careful, r157, eu1426, rss or fsm (default: all but fsm)",
         read=items_of("names", ", such as careful,r157"),
         gather=flat,
         keyword=False,
@@ -149,18 +141,18 @@ class Preventable(Definitions, Budget, Sharing, Run):
     at: Mapping[str, Number | Sequence[Number]] | None = option(
         None,
         "--at NAME=VALUE[,…]",
-        help="fix an initial value; several values make several plates",
+        "fix an initial value; several values make several plates",
         read=initial_values,
         gather=dict,
     )
     along: tuple[Number, Number] | None = option(
-        None, "--along NAME=LOW:HIGH", help="range of the value along each line"
+        None, "--along NAME=LOW:HIGH", "range of the value along each line"
     )
     across: tuple[Number, Number] | None = option(
-        None, "--across NAME=LOW:HIGH", help="range of the value across the lines"
+        None, "--across NAME=LOW:HIGH", "range of the value across the lines"
     )
-    lines: int = option(100, "--lines K", help="lines of a plate (default: 100)", read=whole(2))
-    lemmas: bool = option(True, "--no-lemmas", help="prove no lemmas")
+    lines: int = option(100, "--lines K", "lines of a plate (default: 100)", read=whole(2))
+    lemmas: bool = option(True, "--no-lemmas", "prove no lemmas")
     effort: float = effort_for("a lemma", 60.0)
     out: str | Path | None = folder_for("drives, certificates, CSV, pictures")
     pictures: bool = pictures_of(command_line_only=True)
@@ -171,12 +163,10 @@ class Catalogue(SeveralSets, Models, Budget, Run, Prevention):
     """Options of ``catalogue``."""
 
     among: Among = scenarios_such_as("1-8", keyword=True)
-    classes: bool = option(True, "--no-classes", help="ask about scenarios only")
-    gaps: bool = option(
-        False, "--gaps", help="also ask for a test of each class of gaps that is not proved empty"
-    )
+    classes: bool = option(True, "--no-classes", "ask about scenarios only")
+    gaps: bool = option(False, "--gaps", "also ask for a test of each class of gaps that is not proved empty")
     explore: bool = option(
-        False, "--explore", help="also ask how drives of each class can begin, and which part no test covers"
+        False, "--explore", "also ask how drives of each class can begin, and which part no test covers"
     )
     roles: Look = fixed_or_any("--roles", "choices of roles")
     lanes: Look = fixed_or_any("--lanes", "lanes")
@@ -184,31 +174,28 @@ class Catalogue(SeveralSets, Models, Budget, Run, Prevention):
     near: float = option(
         0.5,
         "--near X",
-        help="tests that show the same and begin within X m and m/s are duplicates (default: 0.5)",
+        "tests that show the same and begin within X m and m/s are duplicates (default: 0.5)",
         read=float,
         rare=True,
     )
     drivers: Iterable[str] | None = option(
         None,
         "--drivers MODELS",
-        help="driver models that drive each test: careful,r157, or none (default: all)",
+        "driver models that drive each test: careful,r157, or none (default: all)",
         read=driver_models_or_none,
     )
     effort: float = effort_for("a drive", 60.0)
     out: str | Path | None = folder_for("matrix, JUnit, picture, evidence")
     pictures: bool = pictures_of("picture", command_line_only=True)
-    complete: Path | None = option(
+    complete: Path | None = output(
         None,
         "--complete DIR",
-        help="write a drive for each scenario and class without a test",
-        group="output",
+        "write a drive for each scenario and class without a test",
         read=Path,
         keyword=False,
     )
     objective: Objective | None = with_complete(
-        "--objective",
-        "what the drives should be like (default: smooth)",
-        choices=OBJECTIVES,
+        "--objective", "what the drives should be like (default: smooth)", choices=OBJECTIVES
     )
     spread: int | None = with_complete(
         "--spread K", "write drives far from the tests until each class has K tests", read=whole(1)
