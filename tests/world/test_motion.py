@@ -9,10 +9,9 @@ from hypothesis import strategies as st
 
 from planting import plant
 from roadproof.errors import UsageError
-from roadproof.world import pieces
-from roadproof.world.drive import Motion, Piece
+from roadproof.world import drive as pieces
+from roadproof.world.drive import Motion, Piece, motion_of, pieces_of
 from roadproof.world.motion import advance, starts_of, state_at
-from roadproof.world.pieces import motion_of, pieces_of
 
 values = st.fractions(-5, 5, max_denominator=6)
 durations = st.fractions(Fraction(1, 6), 3, max_denominator=6)

@@ -11,7 +11,7 @@ from math import isqrt
 from typing import Literal, TypeAlias
 
 from roadproof.errors import InputError
-from roadproof.world.pieces import Along
+from roadproof.world.drive import Along
 
 _NONE = Fraction(0)
 Joined: TypeAlias = Literal["none", "replace", "max", "add"]

@@ -24,8 +24,7 @@ from roadproof.drivers.manoeuvres import (
 from roadproof.drivers.models import MODELS
 from roadproof.drivers.stepped import course_of
 from roadproof.library.scenarios import SUBJECT
-from roadproof.world.drive import Drive
-from roadproof.world.pieces import Across, Along, motion_of
+from roadproof.world.drive import Across, Along, Drive, motion_of
 from roadproof.world.road import Lanelet, Road, pairs
 
 _STILL = Fraction(0)

@@ -18,7 +18,7 @@ from roadproof.errors import UsageError
 from roadproof.semantics.exact.algebraic import Point, Root, compare, real_roots
 from roadproof.semantics.exact.polynomial import polynomial
 from roadproof.semantics.exact.truth import NEVER, TruthSet, intersection, interval
-from roadproof.world.pieces import Along
+from roadproof.world.drive import Along
 
 RATE = "dGdt"
 """The initial value that asks for it."""

@@ -25,7 +25,7 @@ from roadproof.drivers.manoeuvres import (
     start_of,
 )
 from roadproof.errors import InputError
-from roadproof.world.pieces import Along
+from roadproof.world.drive import Along
 
 PLACES = 121  # of a line
 TOLD = (

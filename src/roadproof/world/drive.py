@@ -4,15 +4,20 @@ Along the road the jerk is constant on each piece, across it the acceleration is
 jerk are those of the piece which begins there, so an acceleration may jump; the last piece lasts for ever.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import accumulate
 from typing import TypeAlias
 
 from roadproof.world.signals import Kind
 
 # Values that are constant from one start to the next.
 Course: TypeAlias = tuple[tuple[Fraction, Fraction], ...]
+# Duration (s), acceleration at its start (m/s²), jerk (m/s³).
+Along: TypeAlias = tuple[Fraction, Fraction, Fraction]
+# Duration (s), acceleration (m/s²).
+Across: TypeAlias = tuple[Fraction, Fraction]
 
 
 def value_at(course: Course, time: Fraction) -> Fraction:
@@ -94,3 +99,42 @@ class Drive:
         for new, old in roles.items():
             own |= {(name, new): course for (name, vehicle), course in self.own.items() if vehicle == old}
         return Drive({new: self.vehicles[old] for new, old in roles.items()}, own)
+
+
+def pieces_of(along: Sequence[Along], across: Sequence[Across] = ()) -> tuple[Piece, ...]:
+    """The pieces of a motion; after the last duration of each direction there is no acceleration in it.
+
+    Accelerations may jump from one entry to the next. Raises ``ValueError`` for a duration that is not > 0.
+    """
+    for duration in (entry[0] for entry in (*along, *across)):
+        if duration <= 0:
+            raise ValueError(f"duration={duration} s: every duration is above 0")
+    ends_along = list(accumulate(duration for duration, _, _ in along))
+    ends_across = list(accumulate(duration for duration, _ in across))
+    times = sorted({Fraction(0), *ends_along, *ends_across})
+    made: list[Piece] = []
+    for time, end in zip(times, [*times[1:], None], strict=True):
+        a_lon, j_lon, a_lat = (Fraction(0),) * 3
+        place = sum(x <= time for x in ends_along)
+        if place < len(along):
+            duration, begun, j_lon = along[place]
+            a_lon = begun + j_lon * (time - ends_along[place] + duration)
+        place = sum(x <= time for x in ends_across)
+        if place < len(across):
+            a_lat = across[place][1]
+        made.append(Piece(None if end is None else end - time, a_lon, a_lat, j_lon))
+    return tuple(made)
+
+
+def motion_of(
+    box: tuple[Fraction, Fraction],
+    place: tuple[Fraction, Fraction],
+    speed: tuple[Fraction, Fraction],
+    along: Sequence[Along],
+    across: Sequence[Across] = (),
+) -> Motion:
+    """A motion from its box (length, width; m), its place (s, d; m) and speed (v_lon, v_lat; m/s) at time 0.
+
+    ``along``, ``across``: as in ``pieces_of``. Raises ``ValueError`` as that does, and for an empty box.
+    """
+    return Motion(*box, *place, *speed, pieces_of(along, across))

@@ -7,20 +7,21 @@ road: ``id``, ``lane``, ``zone``, ``attribute``, ``s = [from, to]`` (``-inf``, `
 
 import dataclasses
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from itertools import combinations, pairwise
 from pathlib import Path
-from typing import Any, cast, get_args
+from typing import Any, TypeAlias, cast, get_args
 
 from roadproof.errors import InputError
 from roadproof.runtime.package_data import shipped
 from roadproof.world.opendrive import read_lanelets
 from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
-from roadproof.world.signals import KINDS, LIMITED
+from roadproof.world.signals import KINDS, LIMITED, Kind
 from roadproof.world.vehicle import Range, Vehicle
 
 LARGEST_MODEL = 1_000_000
+Content: TypeAlias = Mapping[str, Any]
 
 
 def names_of(kind: str) -> tuple[str, ...]:
@@ -35,35 +36,29 @@ def load_road(name_or_path: str | Path) -> Road:
         lanelets = read_lanelets(path)
         check_lanelets(lanelets, str(path))
         return Road(path.stem, lanelets, shared_boundaries(lanelets))
-    path, content = _read("roads", name_or_path)
-    _only(content, {"lanelet", "adjacent", "name"}, f"{path}")
-    return _road(path, content)
+    return load_recorded_road(name_or_path)[0]
 
 
-def load_recorded_road(path: Path, directions: tuple[int, ...] = ()) -> tuple[Road, int]:
+def load_recorded_road(name_or_path: str | Path, directions: tuple[int, ...] = ()) -> tuple[Road, int]:
     """The road of a recording, and its driving direction: one of ``directions``, by default the first.
 
     Where there are no ``directions``, the file must not name one, and it is 0. Raises ``InputError``.
     """
-    path, content = _read("roads", path)
+    path, content = _read("roads", name_or_path)
     _only(content, {"lanelet", "adjacent", "name", *(["direction"] if directions else [])}, f"{path}")
     way = content.get("direction", directions[0] if directions else 0)
     if directions and (isinstance(way, bool) or way not in directions):
         shown = " or ".join(map(str, directions))
         raise InputError(f"{path}: direction={way!r}, but it must be {shown}")
-    return _road(path, content), int(way)
-
-
-def _road(path: Path, content: Mapping[str, Any]) -> Road:
-    entries = content.get("lanelet", [])
+    entries = content.get("lanelet")
     if not isinstance(entries, list) or not entries:
         raise InputError(f"{path}: a road needs at least one [[lanelet]]")
     lanelets = tuple(_lanelet(entry, f"{path}, lanelet {k + 1}") for k, entry in enumerate(entries))
     check_lanelets(lanelets, str(path))
     adjacent = shared_boundaries(lanelets)
     if "adjacent" in content:
-        adjacent = _declared(content["adjacent"], adjacent, str(path))
-    return Road(str(content.get("name", path.stem)), lanelets, adjacent)
+        _check_declared(content.get("adjacent"), adjacent, str(path))
+    return Road(str(content.get("name", path.stem)), lanelets, adjacent), int(way)
 
 
 def load_vehicle(name_or_path: str | Path) -> Vehicle:
@@ -71,14 +66,15 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
     path, content = _read("vehicles", name_or_path)
     fields = [field.name for field in dataclasses.fields(Vehicle) if field.name not in ("name", "kind")]
     _only(content, {*fields, "name", "kind"}, str(path))
-    kind = content.get("kind")
-    if kind is not None and kind not in KINDS:
-        raise InputError(f"{path}: kind={kind!r}, but it must be one of {', '.join(KINDS)}")
+    kind = cast(Kind | None, content.get("kind"))
+    if kind is not None:
+        require_one_of(f"{path}", "kind", kind, KINDS)
     for field in fields:
         if field not in content:
             raise InputError(f"{path}: '{field}' is missing; a vehicle has {', '.join(fields)}")
-    one = {k: _number(content[k], f"{path}, {k}") for k in fields if not isinstance(content[k], list)}
-    two = {k: _range(content[k], f"{path}, {k}") for k in fields if isinstance(content[k], list)}
+    lists = [k for k in fields if isinstance(content[k], list)]
+    one = {k: _number(content[k], f"{path}, {k}") for k in fields if k not in lists}
+    two = {k: _range(content[k], f"{path}, {k}") for k in lists}
     for field in fields:
         wanted = two if field in (*LIMITED, "cruise") else one
         if field not in wanted:
@@ -86,22 +82,21 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
     for field, value in one.items():
         if value <= 0:
             raise InputError(f"{path}: {field}={value}, but it must be greater than 0")
-    if two["v_lon"][0] < 0:
-        raise InputError(
-            f"{path}: v_lon starts at {two['v_lon'][0]}, but a vehicle never reverses: use 0 or more"
-        )
-    if two["cruise"][0] < two["v_lon"][0] or two["cruise"][1] > two["v_lon"][1]:
-        raise InputError(f"{path}: cruise={content['cruise']} is not inside v_lon={content['v_lon']}")
-    for field in [name for name in LIMITED if name != "v_lon"]:
-        low, high = two[field]
+    vehicle = Vehicle(str(content.get("name", path.stem)), **one, **two, kind=kind)  # type: ignore[arg-type]
+    (slowest, fastest), cruise = vehicle.v_lon, vehicle.cruise
+    if slowest < 0:
+        raise InputError(f"{path}: v_lon starts at {slowest}, but a vehicle never reverses: use 0 or more")
+    if cruise[0] < slowest or cruise[1] > fastest:
+        told = f"cruise={content.get('cruise')} is not inside v_lon={content.get('v_lon')}"
+        raise InputError(f"{path}: {told}")
+    for field, (low, high) in ((name, two[name]) for name in LIMITED if name != "v_lon"):
         if not low <= 0 <= high:
-            raise InputError(
-                f"{path}: {field}=[{low}, {high}] leaves out 0, so the vehicle could never drive on"
-            )
-    return Vehicle(str(content.get("name", path.stem)), **one, **two, kind=kind)  # type: ignore[arg-type]
+            told = f"{field}=[{low}, {high}] leaves out 0, so the vehicle could never drive on"
+            raise InputError(f"{path}: {told}")
+    return vehicle
 
 
-def read_toml(path: Path) -> Mapping[str, Any]:
+def read_toml(path: Path) -> Content:
     """The content of a file, its numbers exact. Raises ``InputError``."""
     try:
         with path.open("rb") as file:
@@ -119,16 +114,15 @@ def read_toml(path: Path) -> Mapping[str, Any]:
         raise InputError(f"{path} is no TOML: {error}") from None
 
 
-def _read(kind: str, name_or_path: str | Path) -> tuple[Path, Mapping[str, Any]]:
+def _read(kind: str, name_or_path: str | Path) -> tuple[Path, Content]:
     path = Path(name_or_path)
-    bundled = shipped("models") / kind / f"{name_or_path}.toml"
     if path.suffix != ".toml" and not path.is_file():
         if len(path.parts) != 1 or str(name_or_path) not in names_of(kind):
             raise InputError(
                 f"there is no {kind[:-1]} '{name_or_path}'; there are {', '.join(names_of(kind))}, "
                 f"or give the path of a .toml {'or .xodr ' if kind == 'roads' else ''}file"
             )
-        path = bundled
+        path = shipped("models") / kind / f"{name_or_path}.toml"
     return path, read_toml(path)
 
 
@@ -141,7 +135,13 @@ def _exact(text: str) -> Fraction | float:
     return Fraction(bare)
 
 
-def _only(content: Mapping[str, Any], known: Iterable[str], where: str) -> None:
+def require_one_of(where: str, field: str, value: object, allowed: Sequence[object]) -> None:
+    """Raise ``InputError`` where a field of a file has none of the allowed values."""
+    if value not in allowed:
+        raise InputError(f"{where}: {field}={value!r}, but it must be one of {', '.join(map(str, allowed))}")
+
+
+def _only(content: Content, known: Iterable[str], where: str) -> None:
     for key in content:
         if key not in known:
             raise InputError(f"{where}: '{key}' is unknown; there are {', '.join(sorted(known))}")
@@ -167,7 +167,7 @@ def _range(value: object, where: str) -> Range:
     return low, high
 
 
-def _lanelet(entry: Any, where: str) -> Lanelet:
+def _lanelet(entry: object, where: str) -> Lanelet:
     fields = ("id", "lane", "zone", "attribute", "s", "d")
     if not isinstance(entry, dict):
         raise InputError(f"{where}: write it as [[lanelet]]")
@@ -175,10 +175,9 @@ def _lanelet(entry: Any, where: str) -> Lanelet:
     for field in fields:
         if field not in entry:
             raise InputError(f"{where}: '{field}' is missing; a lanelet has {', '.join(fields)}")
-    for field, allowed in (("zone", get_args(Zone)), ("attribute", get_args(Attribute))):
-        if entry[field] not in allowed:
-            raise InputError(f"{where}: {field}={entry[field]!r}, but it must be one of {', '.join(allowed)}")
-    bounds = entry["s"]
+    name, lane, zone, attribute, bounds, across = (entry[field] for field in fields)
+    require_one_of(where, "zone", zone, get_args(Zone))
+    require_one_of(where, "attribute", attribute, get_args(Attribute))
     if not isinstance(bounds, list) or len(bounds) != 2:
         raise InputError(
             f"{where}: s={bounds!r} is no range; write [from, to], with -inf and inf without bound"
@@ -187,10 +186,7 @@ def _lanelet(entry: Any, where: str) -> Lanelet:
     high = None if bounds[1] == float("inf") else _number(bounds[1], f"{where}, s")
     if low is not None and high is not None and low >= high:
         raise InputError(f"{where}: s=[{low}, {high}] is empty; the first number must be the smaller one")
-    zone, attribute = cast(Zone, entry["zone"]), cast(Attribute, entry["attribute"])
-    return Lanelet(
-        str(entry["id"]), str(entry["lane"]), zone, attribute, (low, high), _range(entry["d"], f"{where}, d")
-    )
+    return Lanelet(str(name), str(lane), zone, attribute, (low, high), _range(across, f"{where}, d"))
 
 
 def check_lanelets(lanelets: tuple[Lanelet, ...], where: str) -> None:
@@ -201,7 +197,8 @@ def check_lanelets(lanelets: tuple[Lanelet, ...], where: str) -> None:
             raise InputError(f"{where}: lanelet id '{lanelet.id}' is given twice")
         seen.add(lanelet.id)
     for lane in dict.fromkeys(x.lane for x in lanelets):
-        chain = sorted((x for x in lanelets if x.lane == lane), key=_begin)
+        ours = (x for x in lanelets if x.lane == lane)
+        chain = sorted(ours, key=lambda x: (x.s[0] is not None, x.s[0] or Fraction(0)))
         for before, after in pairwise(chain):
             if before.attribute != after.attribute:
                 raise InputError(
@@ -218,18 +215,13 @@ def check_lanelets(lanelets: tuple[Lanelet, ...], where: str) -> None:
                 )
 
 
-def _begin(lanelet: Lanelet) -> tuple[bool, Fraction]:
-    return lanelet.s[0] is not None, lanelet.s[0] or Fraction(0)
-
-
 def shared_boundaries(lanelets: tuple[Lanelet, ...]) -> frozenset[frozenset[str]]:
     """Pairs of lanes with lanelets that share a boundary line but do not overlap."""
-    found = [
+    return pairs(
         (a.lane, b.lane)
         for a, b in combinations(lanelets, 2)
         if a.lane != b.lane and (a.d[1] == b.d[0] or b.d[1] == a.d[0]) and _alongside(a, b)
-    ]
-    return pairs(found)
+    )
 
 
 def _alongside(a: Lanelet, b: Lanelet) -> bool:
@@ -238,16 +230,17 @@ def _alongside(a: Lanelet, b: Lanelet) -> bool:
     return not starts or not ends or max(starts) < min(ends)
 
 
-def _declared(entries: object, geometric: frozenset[frozenset[str]], where: str) -> frozenset[frozenset[str]]:
+def _check_declared(entries: object, geometric: frozenset[frozenset[str]], where: str) -> None:
+    """Raise ``InputError`` where lanes are declared adjacent otherwise than they lie."""
     if not isinstance(entries, list) or not all(isinstance(e, list) and len(e) == 2 for e in entries):
         raise InputError(f"{where}: adjacent={entries!r}; write a list of pairs of lanes")
     declared = pairs((str(a), str(b)) for a, b in entries)
     for pair in sorted(declared ^ geometric, key=sorted):
         names = " and ".join(sorted(pair))
-        said = (
-            "are declared adjacent but share no boundary"
-            if pair in declared
-            else ("share a boundary but are not declared adjacent")
+        wrong = (
+            "share a boundary but are not declared adjacent",
+            "are declared adjacent but share no boundary",
         )
-        raise InputError(f"{where}: lanes {names} {said}; correct 'adjacent' or leave it out")
-    return declared
+        raise InputError(
+            f"{where}: lanes {names} {wrong[pair in declared]}; correct 'adjacent' or leave it out"
+        )

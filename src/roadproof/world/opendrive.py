@@ -9,6 +9,7 @@ where a link says so, or where they have the same bounds. Elevation does not mat
 """
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -100,9 +101,8 @@ def _check_straight(road: Element, length: Fraction, where: str) -> None:
             told = " and ".join(shapes) or "nothing"
             raise InputError(f"{at}: {told}: only straight roads are supported, whose geometry is line")
         if abs(_number(piece, "hdg", at) - heading) > Fraction(1, 10**6):
-            raise InputError(
-                f"{at}: hdg={piece.get('hdg')}: the road turns; only straight ones are supported"
-            )
+            told = f"hdg={piece.get('hdg')}: the road turns; only straight ones are supported"
+            raise InputError(f"{at}: {told}")
         if abs(_number(piece, "s", at) - end) > Fraction(1, 10**3):
             raise InputError(f"{at}: s={piece.get('s')}, but the geometry before it ends at {float(end):g}")
         end += _number(piece, "length", at)
@@ -154,7 +154,7 @@ def _section(node: Element, offset: Fraction, where: str) -> list[_Lane]:
 
 def _lanelets(sections: list[list[_Lane]], ends: list[Fraction], where: str) -> Iterator[Lanelet]:
     names: list[dict[int, str]] = [{} for _ in sections]
-    counts: dict[Attribute, int] = {}
+    counts = Counter[Attribute]()
     for k, lanes in enumerate(sections):
         before = sections[k - 1] if k else []
         zone: Zone = next((_ZONES[x.attribute] for x in lanes if x.attribute != "main"), "main")
@@ -162,14 +162,14 @@ def _lanelets(sections: list[list[_Lane]], ends: list[Fraction], where: str) -> 
             known = [names[k - 1][x.id] for x in before if _goes_on(x, lane)]
             if len(known) > 1:
                 raise InputError(f"{where}, laneSection {k + 1}, lane {lane.id}: two lanes go on in it")
-            if known:
-                name = known[0]
-            else:
-                counts[lane.attribute] = counts.get(lane.attribute, 0) + 1
-                name = f"{lane.attribute}-{counts[lane.attribute]}"
+            if not known:
+                counts[lane.attribute] += 1
+                known = [f"{lane.attribute}-{counts[lane.attribute]}"]
+            (name,) = known
             names[k][lane.id] = name
             s = ends[k], ends[k + 1]
-            yield Lanelet(f"{name}{_letter(k)}", name, lane.zone or zone, lane.attribute, s, lane.d)
+            letter = chr(ord("a") + k) if k < 26 else f".{k + 1}"  # of the section
+            yield Lanelet(f"{name}{letter}", name, lane.zone or zone, lane.attribute, s, lane.d)
 
 
 def _zone(lane: Element, where: str) -> Zone | None:
@@ -186,11 +186,6 @@ def _goes_on(before: _Lane, lane: _Lane) -> bool:
     if before.attribute != lane.attribute:
         return False
     return before.d == lane.d if before.successor is None else before.successor == lane.id
-
-
-def _letter(k: int) -> str:
-    """a, b, … for the sections of a road."""
-    return chr(ord("a") + k) if k < 26 else f".{k + 1}"
 
 
 def _constant(node: Element, where: str) -> Fraction:

@@ -14,8 +14,7 @@ from roadproof.frontends.settings.keywords import MotionKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.value_types import RoadLike
 from roadproof.library.bind import Number, exact, values_with
-from roadproof.world.drive import Drive, Motion
-from roadproof.world.pieces import pieces_of
+from roadproof.world.drive import Drive, Motion, pieces_of
 from roadproof.world.signals import KINDS
 
 _ALONG, _ACROSS = ("s", "m/s^2", "m/s^3"), ("s", "m/s^2")

@@ -8,7 +8,7 @@ lane in the depart zone, every other one on the main road. A file NAME_zones.tom
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import cast, get_args
+from typing import get_args
 
 from roadproof.errors import InputError
 from roadproof.recordings.formats.straight import MOST_LANES
@@ -20,7 +20,7 @@ from roadproof.recordings.formats.topology import (
     closure,
     main_way,
 )
-from roadproof.world.models import read_toml
+from roadproof.world.models import read_toml, require_one_of
 from roadproof.world.road import Attribute, Zone
 
 ZONES_ENDING = "_zones.toml"
@@ -61,16 +61,16 @@ class Network:
     notes: tuple[str, ...]
 
 
-def network_of(
-    path: Path, lanelets: Mapping[str, MeasuredLanelet], said: LaneletAttributes | None = None
-) -> Network:
-    """The network of the lanelets of ``path``. Raises ``InputError`` for more than 32 lanes."""
-    told = said or LaneletAttributes()
+def network_of(path: Path, lanelets: Mapping[str, MeasuredLanelet]) -> Network:
+    """The network of the lanelets of ``path``, with the zones in the file beside it.
+
+    Raises ``InputError`` for more than 32 lanes.
+    """
+    told = _read_said(path.with_name(f"{path.stem}{ZONES_ENDING}"), lanelets)
     for lanelet in lanelets.values():
         if not lanelet.length < LONGEST:
-            raise InputError(
-                f"{path}: lanelet {lanelet.id} is {lanelet.length:g} m long; at most {LONGEST:g} m"
-            )
+            length = f"lanelet {lanelet.id} is {lanelet.length:g} m long"
+            raise InputError(f"{path}: {length}; at most {LONGEST:g} m")
     inferred = attributes_of(lanelets)
     attributes = {name: told.attributes.get(name, attribute) for name, (attribute, _) in inferred.items()}
     ways = carriageways_of(lanelets)
@@ -85,7 +85,7 @@ def network_of(
     return Network(lanelets, attributes, zones, lanes, _beside(lanelets, lanes), main, notes)
 
 
-def read_said(path: Path, lanelets: Mapping[str, MeasuredLanelet]) -> LaneletAttributes:
+def _read_said(path: Path, lanelets: Mapping[str, MeasuredLanelet]) -> LaneletAttributes:
     """What a file NAME_zones.toml says; nothing where there is none.
 
     It has ``[[lanelet]]`` with ``id`` and ``zone``, ``attribute`` or both. Raises ``InputError``.
@@ -107,13 +107,12 @@ def read_said(path: Path, lanelets: Mapping[str, MeasuredLanelet]) -> LaneletAtt
             raise InputError(f"{where}: id={name}: there is no such lanelet")
         if name in attributes or name in zones:
             raise InputError(f"{where}: id={name}: this lanelet has an entry already")
-        for key, allowed in (("zone", get_args(Zone)), ("attribute", get_args(Attribute))):
-            if key in entry and entry[key] not in allowed:
-                raise InputError(f"{where}: {key}={entry[key]!r}, but it must be one of {', '.join(allowed)}")
-        if "attribute" in entry:
-            attributes[name] = cast(Attribute, entry["attribute"])
         if "zone" in entry:
-            zones[name] = cast(Zone, entry["zone"])
+            require_one_of(where, "zone", entry["zone"], get_args(Zone))
+            zones[name] = entry["zone"]
+        if "attribute" in entry:
+            require_one_of(where, "attribute", entry["attribute"], get_args(Attribute))
+            attributes[name] = entry["attribute"]
     return LaneletAttributes(attributes, zones)
 
 
