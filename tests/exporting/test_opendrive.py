@@ -15,8 +15,7 @@ from exporting.kept import TURN, kept, motion, subject, subjects
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.recordings.export import commonroad, opendrive, openscenario, points
-from roadproof.recordings.export.layout import MARGIN, lay_out, span_of
-from roadproof.recordings.export.subject import Subject
+from roadproof.recordings.export.subject import MARGIN, Subject, lay_out, span_of
 from roadproof.recordings.formats.commonroad import read_commonroad
 from roadproof.recordings.formats.recording import ZONES, Recording
 from roadproof.world.models import load_road, names_of

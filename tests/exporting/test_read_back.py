@@ -31,10 +31,9 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.scenarios import roles, vehicle_order
 from roadproof.recordings.evaluate.one_trace import OneTrace, read_pair, read_samples, sample_drive
 from roadproof.recordings.export import openscenario, polyline
-from roadproof.recordings.export.layout import span_of
 from roadproof.recordings.export.points import axle_to_centre, centre, heading, rear_axle
 from roadproof.recordings.export.registry import FORMATS
-from roadproof.recordings.export.subject import Subject
+from roadproof.recordings.export.subject import Subject, span_of
 from roadproof.recordings.formats.large import write_large
 from roadproof.recordings.formats.sources import find_source
 from roadproof.semantics.sampled.compiled import compile

@@ -17,9 +17,7 @@ from hypothesis import strategies as st
 
 from roadproof.errors import InputError
 from roadproof.recordings.formats.commonroad import read_commonroad
-from roadproof.recordings.formats.overlaps import find_overlaps
-from roadproof.recordings.formats.plausible import LARGEST_SIZE
-from roadproof.recordings.formats.projection import (
+from roadproof.recordings.formats.measured_roads import (
     boxes_of,
     even_line,
     inside,
@@ -27,6 +25,8 @@ from roadproof.recordings.formats.projection import (
     project,
     triangles_of,
 )
+from roadproof.recordings.formats.overlaps import find_overlaps
+from roadproof.recordings.formats.plausible import LARGEST_SIZE
 from tables import read_table
 from traffic.tiny_commonroad import Car, document, point
 

@@ -41,7 +41,7 @@ from roadproof.recordings.formats.neighbours import NONE, find_neighbours
 from roadproof.recordings.formats.pairs import Pairs
 from roadproof.recordings.formats.recording import Recording, keep_vehicles
 from roadproof.recordings.formats.samples import HEADER
-from roadproof.recordings.simulate.plant import Place, plant
+from roadproof.recordings.simulate.planting import Place, plant
 from roadproof.recordings.simulate.synthetic import simulate
 from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.semantics.sampled import compile

@@ -23,13 +23,13 @@ from roadproof.analysis.classify.text import with_classes, write_classes
 from roadproof.library.bind import default_values
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import COMPARISON
-from roadproof.recordings.evaluate.counting import Counts as RepeatCounts
 from roadproof.recordings.evaluate.evaluate import Findings, Trace
 from roadproof.recordings.evaluate.experiment import Experiment, run_experiment
 from roadproof.recordings.evaluate.foretelling import LABELS
 from roadproof.recordings.evaluate.matching import Match
 from roadproof.recordings.evaluate.questions import Settings, default_settings
 from roadproof.recordings.evaluate.results import driver_cells, foretold_rows
+from roadproof.recordings.evaluate.totals import Counts as RepeatCounts
 from roadproof.recordings.evaluate.totals import Row, Totals, add_findings, begin_totals
 from roadproof.recordings.formats.repeats import STEPS, moments_of
 from roadproof.recordings.formats.sources import find_sources

@@ -16,6 +16,7 @@ from roadproof.errors import InputError
 from roadproof.recordings.formats import large, topology
 from roadproof.recordings.formats import pairs as module
 from roadproof.recordings.formats.believable import _check_lanelets
+from roadproof.recordings.formats.content import plain_text
 from roadproof.recordings.formats.median import Median
 from roadproof.recordings.formats.pairs import (
     DetectionRange,
@@ -24,11 +25,9 @@ from roadproof.recordings.formats.pairs import (
     all_moments,
     common_pairs,
     near_moments,
-    near_pairs,
     pairs_in_sight,
     triples_of,
 )
-from roadproof.recordings.formats.plain import plain_text
 from roadproof.recordings.formats.plausible import _worst
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.repeats import see_pair
@@ -37,7 +36,7 @@ from roadproof.recordings.formats.sources import find_sources
 from roadproof.recordings.simulate.synthetic import simulate
 from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.world.signals import KINDS
-from traffic.make_recording import Track, cruise, make_recording
+from traffic.make_recording import Track, cruise, make_recording, near_pairs
 
 REACH = Reach(rho=0.6, a_max=5.0, b_min=6.0, b_max=8.0, a_max_lat=1.5, b_min_lat=1.5)
 

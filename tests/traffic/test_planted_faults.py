@@ -27,7 +27,7 @@ from roadproof.recordings.formats.pairs import DetectionRange, Reach, common_pai
 from roadproof.recordings.formats.recording import Recording
 from roadproof.verdict import Verdict
 from traffic.faults import faulty_library, plant_fault
-from traffic.make_recording import Track, cruise, make_recording
+from traffic.make_recording import Track, cruise, make_recording, near_pairs
 
 
 @dataclass(frozen=True)
@@ -197,7 +197,7 @@ def test_the_pre_filter_is_sharp_for_cars_and_lorries(
 
     def kept(front: int, gap: float, across: float) -> bool:
         r = two_cars(front, gap, across, (12.0, 2.5))
-        return len(pairs.near_pairs(r, common_pairs(r, np.ones(2, bool)), REACH)) == 1
+        return len(near_pairs(r, common_pairs(r, np.ones(2, bool)), REACH)) == 1
 
     def check() -> None:
         for front in (0, 1):

@@ -19,17 +19,18 @@ from roadproof.recordings.formats.overlaps import find_overlaps
 from roadproof.recordings.formats.recording import ZONES, Recording
 from roadproof.recordings.formats.write_highd import write_highd
 from roadproof.recordings.simulate import simulate as simulating
-from roadproof.recordings.simulate.plant import Place, PlantedDrive, plant
 from roadproof.recordings.simulate.planting import (
     PLANTED_COLUMNS,
+    Place,
+    PlantedDrive,
     lane_width,
+    plant,
     plant_drives,
     plantable,
     rows_of,
 )
-from roadproof.recordings.simulate.ramps import road_of, zone_of
 from roadproof.recordings.simulate.synthetic import markings_of, simulate
-from roadproof.recordings.simulate.traffic import Traffic
+from roadproof.recordings.simulate.traffic import Traffic, road_of, zone_of
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road
 from roadproof.world.motion import state_at

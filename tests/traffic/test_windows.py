@@ -21,13 +21,13 @@ from roadproof.recordings.formats import large, plausible, table, windows
 from roadproof.recordings.formats.converted import same_recording
 from roadproof.recordings.formats.highd import read_highd
 from roadproof.recordings.formats.median import Median
-from roadproof.recordings.formats.plausible import find_doubts
+from roadproof.recordings.formats.plausible import check
 from roadproof.recordings.formats.recording import Recording, keep_vehicles
 from roadproof.recordings.formats.samples import HEADER
 from roadproof.recordings.formats.sources import find_source, find_sources
 from roadproof.recordings.formats.windows import Window, divide
 from roadproof.recordings.formats.write_highd import write_highd
-from roadproof.recordings.simulate.plant import Place, plant
+from roadproof.recordings.simulate.planting import Place, plant
 from roadproof.recordings.simulate.synthetic import simulate
 from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.runtime.package_data import shipped
@@ -93,7 +93,7 @@ def test_windows_that_forget_or_repeat_are_caught(
         monkeypatch.setattr(Window, "has", fault)
         assert evaluate_windows(made, questions) != whole
     monkeypatch.undo()
-    monkeypatch.setattr(evaluating, "_order", lambda match: (match.lane,))
+    monkeypatch.setitem(evaluating._ORDERS, "matches", lambda match: (match.lane,))
     assert evaluate_windows(made, questions) != whole
 
 
@@ -428,4 +428,4 @@ def test_measured_traffic_contradicts_nothing(seed: int) -> None:
     for name, noise in (("s", 0.02), ("d", 0.02), ("v_lon", 0.05), ("v_lat", 0.03)):
         getattr(recording, name)[:] += noise * slow + random.uniform(-0.01, 0.01, count)
     recording.a_lon[:] += 0.1 * slow + random.uniform(-0.2, 0.2, count)
-    assert find_doubts(recording) == []
+    assert check(recording).doubts() == []

@@ -20,9 +20,7 @@ from roadproof.library.specification import Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import with_values
-from roadproof.recordings.evaluate.counting import Counts, without_repeats
 from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
-from roadproof.recordings.evaluate.lane_atoms import OTHER_LANE
 from roadproof.recordings.evaluate.questions import (
     ROLES,
     START,
@@ -32,6 +30,8 @@ from roadproof.recordings.evaluate.questions import (
     ask,
     of_three,
 )
+from roadproof.recordings.evaluate.totals import Counts, without_repeats
+from roadproof.recordings.evaluate.traces import OTHER_LANE
 from roadproof.recordings.formats.recording import Recording
 from roadproof.semantics.sampled.compiled import compile
 

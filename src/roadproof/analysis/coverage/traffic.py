@@ -16,10 +16,10 @@ from roadproof.analysis.coverage.classes import GapClasses
 from roadproof.errors import InputError
 from roadproof.library.bind import bind
 from roadproof.library.scenarios import MIN_DANGER, PAIR
-from roadproof.recordings.evaluate.counting import Counts, without_repeats
 from roadproof.recordings.evaluate.evaluate import evaluate_recording
 from roadproof.recordings.evaluate.one_trace import OneTrace, cut_trace
 from roadproof.recordings.evaluate.questions import Settings, ask
+from roadproof.recordings.evaluate.totals import Counts, without_repeats
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.source import RecordingSource
 from roadproof.recordings.formats.sources import copies_among, find_sources

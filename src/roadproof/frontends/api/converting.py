@@ -11,8 +11,7 @@ from roadproof.errors import InputError
 from roadproof.recordings.formats.converted import FORMAT, HEAD, SAMPLES, samples_in, write_converted
 from roadproof.recordings.formats.large import is_large, write_large
 from roadproof.recordings.formats.source import RecordingSource
-from roadproof.recordings.formats.sources import find_sources
-from roadproof.recordings.formats.tabular import CSV, PARQUET
+from roadproof.recordings.formats.sources import CSV, PARQUET, find_sources
 from roadproof.runtime.files import hold_folder
 
 

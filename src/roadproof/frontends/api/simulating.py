@@ -14,14 +14,13 @@ from roadproof.frontends.settings.keywords import SimulateKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.recordings import Simulate
 from roadproof.library.loading import bundled_library
-from roadproof.recordings.export.road_toml import road_toml
+from roadproof.recordings.export.csv_table import road_toml
 from roadproof.recordings.formats.table import Frame, frame_of
 from roadproof.recordings.formats.write_highd import write_highd
 from roadproof.recordings.simulate.planting import PLANTED_COLUMNS, Truth, lane_width, plant_drives, rows_of
-from roadproof.recordings.simulate.ramps import road_of
 from roadproof.recordings.simulate.synthetic import markings_of
 from roadproof.recordings.simulate.synthetic import simulate as simulate_one
-from roadproof.recordings.simulate.traffic import Traffic
+from roadproof.recordings.simulate.traffic import Traffic, road_of
 from roadproof.runtime.files import write_whole
 
 

@@ -17,8 +17,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare, Formula
 from roadproof.logic.rewrite import signals_of, terms_of, without_names
-from roadproof.recordings.evaluate.lane_atoms import LaneAtom
-from roadproof.recordings.evaluate.traces import gather, rows_of
+from roadproof.recordings.evaluate.traces import LaneAtom, gather, rows_of
 from roadproof.recordings.formats.recording import Bools, Floats, Integers, Recording, Slack
 from roadproof.semantics.sampled.answers import Convention
 from roadproof.semantics.sampled.arithmetic import COMPARISONS, margin_program
@@ -61,7 +60,8 @@ def uncertain(recording: Recording, asked: TraceQuestion) -> Bools:
             relation = COMPARISONS[">" if compare.op in ("<", ">") else ">="]
             given[atom] = relation(shifted, 0.0)
     bounded = Batch(batch.dt, batch.lengths, batch.signals, batch.sizes, given)
-    return ~compile({"sure": plain.formula}).evaluate(bounded, asked.convention).answers["sure"].true
+    (sure,) = compile({"sure": plain.formula}).evaluate(bounded, asked.convention).answers.values()
+    return ~sure.true
 
 
 @dataclass
@@ -118,12 +118,13 @@ def _off(compare: Compare, slack: Slack, rows: Mapping[str, Integers]) -> Floats
     if shares is None:
         return np.full(shape, np.inf)
     off = np.zeros(shape)
-    along = {leaf.vehicle: abs(float(c)) for leaf, c in shares.items() if leaf.name == "s" and c}
-    across = {leaf.vehicle: abs(float(c)) for leaf, c in shares.items() if leaf.name == "d" and c}
-    for vehicle, share in along.items():
-        off += share * slack.along[rows[vehicle]]
-    for vehicle, share in across.items():
-        off += share * slack.across[rows[vehicle]]
+    along, across = (
+        {leaf.vehicle: abs(float(c)) for leaf, c in shares.items() if leaf.name == name and c}
+        for name in PLACES
+    )
+    for each, ends in ((along, slack.along), (across, slack.across)):
+        for vehicle, share in each.items():
+            off += share * ends[rows[vehicle]]
     if len(along) > 1:
         turn = np.stack([slack.turn[rows[vehicle]] for vehicle in along])
         beside = np.stack([slack.off[rows[vehicle]] for vehicle in along])

@@ -140,14 +140,12 @@ def _batch(recording: Recording, questions: Questions, block: Pairs, truth: Bool
 
 def _next(truth: Bools, frames: Integers) -> Integers:
     """For each sample the frame of the first true one from there on, down the rows."""
-    found: Integers = np.minimum.accumulate(np.where(truth, frames, NEVER)[::-1])[::-1]
-    return found
+    return np.minimum.accumulate(np.where(truth, frames, NEVER)[::-1])[::-1]
 
 
 def _last(truth: Bools, frames: Integers) -> Integers:
     """For each sample the frame of the last true one up to there, down the rows."""
-    found: Integers = np.maximum.accumulate(np.where(truth, frames, -1))
-    return found
+    return np.maximum.accumulate(np.where(truth, frames, -1))
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,9 @@
 """The highD experiment on one recording (semantics §7): which disturbance matches which scenario."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from operator import attrgetter
+from typing import Any
 
 import numpy as np
 
@@ -16,12 +18,11 @@ from roadproof.recordings.evaluate.disturbances import (
     find_disturbances,
 )
 from roadproof.recordings.evaluate.foretelling import foretell
-from roadproof.recordings.evaluate.lane_atoms import OTHER_LANE
 from roadproof.recordings.evaluate.matching import Match
 from roadproof.recordings.evaluate.questions import START, MonitorKey, Questions
-from roadproof.recordings.evaluate.traces import gather
+from roadproof.recordings.evaluate.traces import OTHER_LANE, gather
 from roadproof.recordings.formats.overlaps import Overlap, find_overlaps, told_overlap
-from roadproof.recordings.formats.pairs import Pairs, triples_of
+from roadproof.recordings.formats.pairs import Pairs, row_of, triples_of
 from roadproof.recordings.formats.recording import Bools, Integers, Recording
 from roadproof.recordings.formats.repeats import FramePair, see_pair
 from roadproof.recordings.formats.windows import Window
@@ -82,52 +83,26 @@ def evaluate_windows(windows: Iterable[Window], questions: Questions) -> Finding
 
     A pair or triple is looked at where the last of its vehicles comes in, on all of its common frames.
     """
-    parts: list[_Part] = []
-    name, notes = "", tuple[str, ...]()
+    parts, overlaps = list[Findings](), list[Overlap]()
     for window in windows:
-        recording = window.recording
-        if recording.rate != questions.rate:
-            raise ValueError(f"questions for {questions.rate} Hz put to a recording of {recording.rate} Hz")
-        name, notes = recording.name, recording.notes
-        parts.append(_evaluate(window, questions))
-    matches = sorted((x for part in parts for x in part.matches), key=_order)
-    overlaps = sorted((x for part in parts for x in part.overlaps), key=lambda x: x[:2])
-    return Findings(
-        recording=name,
-        vehicles=sum(part.vehicles for part in parts),
-        samples=sum(part.samples for part in parts),
-        violating=tuple(sorted(pair for part in parts for pair in part.violating)),
-        triples=sum(part.triples for part in parts),
-        asked=sum(part.tally.asked for part in parts),
-        undecided=sum(part.tally.undecided for part in parts),
-        differing=sum(part.tally.differing for part in parts),
-        traces=tuple(sorted((x for part in parts for x in part.traces), key=_order_of_traces)),
-        matches=tuple(matches),
-        detections=tuple(sorted((x for part in parts for x in part.detections), key=order_of_detections)),
-        notes=(*notes, *map(told_overlap, overlaps), *_say_uncertain(matches)),
-        sectors=tuple(x.name for x in questions.sectors),
-        seen=tuple(sorted((x for part in parts for x in part.seen), key=lambda x: (x.first, x.second))),
-    )
+        part, overlapping = _evaluate(window, questions)
+        parts.append(part)
+        overlaps += overlapping
+    added = {name: sum(getattr(part, name) for part in parts) for name in _ADDED}
+    rows = {
+        name: tuple(sorted((x for part in parts for x in getattr(part, name)), key=order))
+        for name, order in _ORDERS.items()
+    }
+    told = map(told_overlap, sorted(overlaps, key=lambda x: x[:2]))
+    notes = (*parts[-1].notes, *told, *_say_uncertain([x for part in parts for x in part.matches]))
+    return replace(parts[-1], **added, **rows, notes=notes)  # type: ignore[arg-type]
 
 
-@dataclass(frozen=True)
-class _Part:
-    """What was found in a window; fields as in ``Findings``."""
-
-    vehicles: int
-    samples: int
-    violating: tuple[tuple[int, int], ...]
-    triples: int
-    tally: "_Tally"
-    traces: tuple[Trace, ...]
-    matches: tuple[Match, ...]
-    detections: tuple[Detection, ...]
-    overlaps: tuple[Overlap, ...]
-    seen: tuple[FramePair, ...]
-
-
-def _evaluate(window: Window, questions: Questions) -> _Part:
+def _evaluate(window: Window, questions: Questions) -> tuple[Findings, Iterable[Overlap]]:
+    """The findings of one window, and the boxes that overlap there."""
     recording = window.recording
+    if recording.rate != questions.rate:
+        raise ValueError(f"questions for {questions.rate} Hz put to a recording of {recording.rate} Hz")
     everything = find_disturbances(recording, questions)
     found = everything.choose(window.has(everything.pairs.first, everything.pairs.second))
     tally = _Tally(questions)
@@ -138,18 +113,24 @@ def _evaluate(window: Window, questions: Questions) -> _Part:
         matches += _match_triples(recording, questions, cut, tally)
     meeting = everything.meeting.choose(window.has(everything.meeting.first, everything.meeting.second))
     detections = find_detections(recording, questions, meeting)
-    return _Part(
+    findings = Findings(
+        recording=recording.name,
         vehicles=int(np.count_nonzero(window.new)),
         samples=int(np.diff(recording.start)[window.new].sum()),
         violating=tuple(_ids_of(recording, found.pairs)),
         triples=0 if cut is None else len(cut.triples),
-        tally=tally,
+        asked=tally.asked,
+        undecided=tally.undecided,
+        differing=tally.differing,
         traces=tuple(_traces(recording, questions, found)),
         matches=tuple(foretell(recording, questions, matches)),
         detections=detections,
-        overlaps=tuple(_overlapping(recording, found)),
+        notes=recording.notes,
+        sectors=tuple(x.name for x in questions.sectors),
         seen=tuple(_see(recording, found, detections)) if len(recording.moments) else (),
     )
+    # Boxes that overlap violate the RSS distance, so they are here; CommonRoad's are noted already.
+    return findings, () if len(recording.moments) else find_overlaps(recording, found.pairs)
 
 
 def _ids_of(recording: Recording, pairs: Pairs) -> Iterator[tuple[int, int]]:
@@ -157,11 +138,6 @@ def _ids_of(recording: Recording, pairs: Pairs) -> Iterator[tuple[int, int]]:
     ids = recording.vehicle_id
     for one, other in zip(ids[pairs.first].tolist(), ids[pairs.second].tolist(), strict=True):
         yield min(one, other), max(one, other)
-
-
-def _overlapping(recording: Recording, found: Disturbances) -> Iterator[Overlap]:
-    """Boxes that overlap violate the RSS distance, so they are here; CommonRoad's are noted already."""
-    return find_overlaps(recording, found.pairs) if not len(recording.moments) else iter(())
 
 
 def _say_uncertain(matches: Sequence[Match]) -> Iterator[str]:
@@ -179,12 +155,15 @@ def _see(recording: Recording, found: Disturbances, detections: tuple[Detection,
         yield see_pair(recording, first, second, (first, second) in violating)
 
 
-def _order(match: Match) -> tuple[object, ...]:
-    return (match.sv, match.pov, match.pov2 or 0, match.min_danger, match.set_name, match.scenario)
-
-
-def _order_of_traces(trace: Trace) -> tuple[int, int, int]:
-    return trace.first, trace.second, trace.min_danger
+# What is counted in all windows together, and what is listed, each in which order.
+_ADDED = ("vehicles", "samples", "triples", "asked", "undecided", "differing")
+_ORDERS: Mapping[str, Callable[[Any], Any] | None] = {
+    "violating": None,
+    "traces": attrgetter("first", "second", "min_danger"),
+    "matches": lambda x: (x.sv, x.pov, x.pov2 or 0, x.min_danger, x.set_name, x.scenario),
+    "detections": order_of_detections,
+    "seen": attrgetter("first", "second"),
+}
 
 
 @dataclass
@@ -218,22 +197,11 @@ def _match_pairs(
     if not len(chosen) or not questions.pairs:
         return
     pairs, start = found.pairs.choose(chosen), found.start[chosen]
-    lanes = {
-        LANE: _lane_at(recording, pairs.first, start),
-        OTHER_LANE: _lane_at(recording, pairs.second, start),
-    }
     vehicles = dict(zip(PAIR, (pairs.first, pairs.second), strict=True))
+    at = zip((LANE, OTHER_LANE), vehicles.values(), strict=True)
+    lanes = {lane: _lane_at(recording, vehicle, start) for lane, vehicle in at}
     ends = tuple(x[chosen] for x in found.end)
-    ids = recording.vehicle_id
-    for k, asked, hits in _ask_all(
-        recording, questions, questions.pairs, vehicles, start, ends, lanes, tally
-    ):
-        for p, unsure in hits:
-            pair = int(ids[pairs.first[p]]), int(ids[pairs.second[p]])
-            sv, pov = pair if asked.sv == "first" else pair[::-1]
-            lane = _lane_name(recording, lanes[asked.lane][p])
-            frames = (int(start[p]), int(ends[k][p]))
-            yield Match(sv, pov, None, lane, *frames, k, asked.set_name, asked.number, unsure)
+    yield from _ask_all(recording, questions, questions.pairs, vehicles, start, ends, lanes, tally)
 
 
 def _candidates(window: Window, questions: Questions, found: Disturbances) -> CutTriples:
@@ -261,19 +229,12 @@ def _candidates(window: Window, questions: Questions, found: Disturbances) -> Cu
 def _match_triples(
     recording: Recording, questions: Questions, cut: CutTriples, tally: _Tally
 ) -> Iterator[Match]:
-    triples, start = cut.triples, cut.start
+    triples = cut.triples
     if not len(triples):
-        return
-    lanes = {LANE: _lane_at(recording, triples.sv, start)}
+        return iter(())
+    lanes = {LANE: _lane_at(recording, triples.sv, cut.start)}
     vehicles = dict(zip(TRIPLE, (triples.sv, triples.pov1, triples.pov2), strict=True))
-    ids = recording.vehicle_id
-    hits = _ask_all(recording, questions, questions.triples, vehicles, start, cut.end, lanes, tally)
-    for k, asked, places in hits:
-        for p, unsure in places:
-            sv, pov, pov2 = (int(ids[x[p]]) for x in (triples.sv, triples.pov1, triples.pov2))
-            lane = _lane_name(recording, lanes[LANE][p])
-            frames = (int(start[p]), int(cut.end[k][p]))
-            yield Match(sv, pov, pov2, lane, *frames, k, asked.set_name, asked.number, unsure)
+    return _ask_all(recording, questions, questions.triples, vehicles, cut.start, cut.end, lanes, tally)
 
 
 def _ask_all(
@@ -285,11 +246,9 @@ def _ask_all(
     ends: tuple[Integers, ...],
     lanes: Mapping[str, Integers],
     tally: _Tally,
-) -> Iterator[tuple[int, MonitorKey, list[tuple[int, bool]]]]:
-    """For each minDanger and question the traces that satisfy it, each cut at its own end.
-
-    With each, whether that depends on less than places may be off.
-    """
+) -> Iterator[Match]:
+    """For each minDanger and question the traces that satisfy it, each cut at its own end."""
+    ids = recording.vehicle_id
     last = np.max(ends, axis=0)
     signals = [signal for monitor in monitors for signal in monitor.signals]
     batch = gather(recording, vehicles, start, last, signals, lanes, questions.lane_atoms)
@@ -309,11 +268,17 @@ def _ask_all(
                 questions.lane_atoms,
                 questions.settings.convention,
             )
-            yield k, asked, list(zip(hits.tolist(), uncertain(recording, there).tolist(), strict=True))
+            for p, unsure in zip(hits.tolist(), uncertain(recording, there).tolist(), strict=True):
+                sv, pov, *more = (int(ids[index[p]]) for index in vehicles.values())
+                if asked.sv == "second":
+                    sv, pov = pov, sv
+                place = more[0] if more else None, _lane_name(recording, lanes[asked.lane][p])
+                frames = int(start[p]), int(end[p])
+                yield Match(sv, pov, *place, *frames, k, asked.set_name, asked.number, unsure)
 
 
 def _lane_at(recording: Recording, vehicle: Integers, frame: Integers) -> Integers:
-    lane: Integers = recording.lane[recording.start[vehicle] + frame - recording.first_frame[vehicle]]
+    lane: Integers = recording.lane[row_of(recording, vehicle, frame)]
     return lane
 
 
@@ -323,26 +288,17 @@ def _lane_name(recording: Recording, index: int) -> str:
 
 
 def _traces(recording: Recording, questions: Questions, found: Disturbances) -> Iterator[Trace]:
-    pairs, ids = found.pairs, recording.vehicle_id
     known = np.flatnonzero(found.start != NEVER)
-    sectors = _sectors_at(recording, questions, pairs.choose(known), found.start[known])
-    within = {int(p): tuple(name for name, there in sectors.items() if there[k]) for k, p in enumerate(known)}
-    first_lane, second_lane = np.full(len(pairs), -1), np.full(len(pairs), -1)
-    for lane, vehicle in ((first_lane, pairs.first), (second_lane, pairs.second)):
-        lane[known] = _lane_at(recording, vehicle[known], found.start[known])
+    pairs, start = found.pairs.choose(known), found.start[known]
+    sectors = _sectors_at(recording, questions, pairs, start)
+    lanes = [_lane_at(recording, vehicle, start) for vehicle in (pairs.first, pairs.second)]
     for p in range(len(pairs)):
-        for k, end in enumerate(found.end):
-            if end[p] >= 0:
-                yield Trace(
-                    int(ids[pairs.first[p]]),
-                    int(ids[pairs.second[p]]),
-                    k,
-                    int(found.start[p]),
-                    int(end[p]),
-                    _lane_name(recording, int(first_lane[p])),
-                    _lane_name(recording, int(second_lane[p])),
-                    within[p],
-                )
+        first, second = (int(recording.vehicle_id[x[p]]) for x in (pairs.first, pairs.second))
+        one, other = (_lane_name(recording, lane[p]) for lane in lanes)
+        within = tuple(name for name, there in sectors.items() if there[p])
+        for k, end in enumerate(int(x[known[p]]) for x in found.end):
+            if end >= 0:
+                yield Trace(first, second, k, int(start[p]), end, one, other, within)
 
 
 def _sectors_at(

@@ -71,7 +71,7 @@ def run_experiment(
         digests = {source.name: each for source, each in zip(sources, found, strict=True)}
     marks = {name: fingerprint(question, each) for name, each in digests.items()}
     failed = copies_among(sources, digests)
-    waiting = [s for s in sources if s.name not in failed and not _is_kept(experiment, s, marks[s.name])]
+    waiting = [s for s in sources if s.name not in failed and _known(experiment, s, marks[s.name]) is None]
     kept = len(sources) - len(failed) - len(waiting)
     if kept:
         tell(f"{kept} of {len(sources)} recordings are already evaluated")
@@ -100,12 +100,11 @@ def run_experiment(
         )
 
     def findings() -> Iterator[Findings]:
-        for source in sources:
-            found = None if source.name in failed else _known(experiment, source, marks[source.name])
-            if found is None and source.name not in failed:
+        for source in (x for x in sources if x.name not in failed):
+            found = _known(experiment, source, marks[source.name])
+            if found is None:
                 raise InputError(f"recording {source.name}: its results changed while they were used")
-            if found is not None:
-                yield found
+            yield found
 
     in_order = {source.name: failed[source.name] for source in sources if source.name in failed}
     totals = write_results(experiment.out, experiment.settings, findings(), in_order)
@@ -125,10 +124,6 @@ def saved_findings(
 
 def _path(out: Path, source: RecordingSource) -> Path:
     return out / "recordings" / f"{source.name}.json"
-
-
-def _is_kept(experiment: Experiment, source: RecordingSource, mark: str) -> bool:
-    return _known(experiment, source, mark) is not None
 
 
 def _known(experiment: Experiment, source: RecordingSource, mark: str) -> Findings | None:

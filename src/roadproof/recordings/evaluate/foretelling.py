@@ -99,8 +99,7 @@ def _begun(
         arises[:, danger == k] = answers[Danger(k)].true[:, danger == k]
     before = np.cumsum(arises, axis=0) - arises == 0
     hits = begins & before
-    begun: Integers = np.where(hits.any(axis=0), low + hits.argmax(axis=0), _NEVER)
-    return begun
+    return np.where(hits.any(axis=0), low + hits.argmax(axis=0), _NEVER)
 
 
 def _collides(

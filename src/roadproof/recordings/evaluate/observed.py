@@ -3,12 +3,13 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
 from roadproof.evidence.answers.monitor import Truth, View
 from roadproof.logic.formula import Application, Formula, nesting
+from roadproof.recordings.formats.recording import Bools
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.robust import robustness
@@ -18,6 +19,7 @@ from roadproof.semantics.sampled.batch import Batch
 from roadproof.semantics.sampled.compiled import compile
 from roadproof.world.drive import Drive
 
+_ASKED = "asked"
 Spans: TypeAlias = tuple[tuple[float, float], ...]
 
 
@@ -55,25 +57,25 @@ class FirstAnswer:
 
 def observe_samples(text: str, formula: Formula, batch: Batch, convention: Convention) -> FirstAnswer:
     """The monitor's answer on the one trace of ``batch``. Raises ``InputError``."""
-    monitor = compile({"asked": formula})
+    monitor = compile({_ASKED: formula})
     other: Convention = "clip" if convention == "truncated" else "truncated"
     seen = monitor.observe(batch)
     verdicts = monitor.evaluate(seen, convention, named=True)
     margins = monitor.measure(batch, convention, at="all", named=True)
-    margin = margins.margins["asked"]
+    margin = margins.margins[_ASKED]
     dt = float(batch.dt)
-    spans = _spans(monitor.evaluate(seen, convention, at="all").answers["asked"], dt)
+    spans = _spans(monitor.evaluate(seen, convention, at="all").answers[_ASKED], dt)
     whole = Strip(text, *spans, margins=_sampled(margin))
     return FirstAnswer(
         text,
         "recorded",
-        _said(verdicts.answers["asked"]),
+        _said(verdicts.answers[_ASKED]),
         (float(margin.low[0, 0]), float(margin.high[0, 0])),
         float((batch.samples - 1) * batch.dt),
         batch.dt,
         (whole, *_strips(formula, verdicts.named, margins.named, dt)),
         convention,
-        _said(monitor.evaluate(seen, other).answers["asked"]),
+        _said(monitor.evaluate(seen, other).answers[_ASKED]),
     )
 
 
@@ -99,7 +101,7 @@ def name_of(part: Application) -> str:
 
 def margins_of(formula: Formula, batch: Batch) -> tuple[float | None, ...]:
     """The margin of a formula at each sample of the one trace of ``batch``. Raises ``InputError``."""
-    return _sampled(compile({"asked": formula}).measure(batch, "clip", at="all").margins["asked"])
+    return _sampled(compile({_ASKED: formula}).measure(batch, "clip", at="all").margins[_ASKED])
 
 
 def _sampled(margin: Margin) -> tuple[float | None, ...]:
@@ -130,7 +132,7 @@ def _spans(answer: TruthArrays, dt: float) -> tuple[Spans, Spans]:
     return _runs(true, dt), _runs(~true & ~false, dt)
 
 
-def _runs(truth: Any, dt: float) -> Spans:
+def _runs(truth: Bools, dt: float) -> Spans:
     """First and last time of each run of true samples."""
     edges = np.flatnonzero(np.diff(np.concatenate(([0], truth.astype(np.int8), [0]))))
     return tuple(

@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence, Sized
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, product
 from pathlib import Path
 
 import numpy as np
@@ -19,10 +19,9 @@ from roadproof.library.scenarios import roles
 from roadproof.logic.custom_names import code_of, own_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import signals_of, with_values
-from roadproof.recordings.evaluate.traces import KIND, by_vehicle, gather, refuse_missing
+from roadproof.recordings.evaluate.traces import KIND, by_vehicle, gather_one, refuse_missing
 from roadproof.recordings.formats import openscenario
-from roadproof.recordings.formats.pairs import row_of
-from roadproof.recordings.formats.recording import Bools, Integers, Recording, kind_called, own_numbers
+from roadproof.recordings.formats.recording import Bools, Recording, kind_called, own_numbers
 from roadproof.recordings.formats.samples import (
     DIRECTION,
     HEADER,
@@ -35,13 +34,12 @@ from roadproof.recordings.formats.samples import (
 from roadproof.recordings.formats.source import beside
 from roadproof.recordings.formats.sources import find_source
 from roadproof.recordings.formats.straight import of_road, whole
-from roadproof.recordings.formats.table import Table
 from roadproof.semantics.sampled.batch import Array, Batch
 from roadproof.world.drive import Drive, value_at
 from roadproof.world.models import load_recorded_road, load_road
-from roadproof.world.motion import state_at
+from roadproof.world.motion import states_at
 from roadproof.world.road import Lanelet, Road
-from roadproof.world.signals import FIXED, RECORDED, SIGNALS, SIZES, Kind, SignalName, SizeName
+from roadproof.world.signals import FIXED, RECORDED, SIGNALS, SIZES, SignalName, SizeName
 
 _PAIR = re.compile(r"(?P<path>.+):(?P<ids>\d{1,9}(?:,\d{1,9}){0,2})")
 
@@ -76,8 +74,9 @@ def read_pair(text: str, frames: tuple[int | None, int | None] = (None, None)) -
     named = _PAIR.fullmatch(text)
     if named is None:
         raise InputError(f"{text}: name a pair as highd/01_tracks.csv:12,15, or three vehicles")
-    ids = [int(x) for x in named["ids"].split(",")]
-    recording = find_source(Path(named["path"])).read()
+    path, numbers = named.groups()
+    ids = [int(x) for x in numbers.split(",")]
+    recording = find_source(Path(path)).read()
     index = [_find(recording, number, text) for number in ids]
     if len(set(ids)) < len(ids):
         raise InputError(f"{text}: each vehicle may be named once")
@@ -124,19 +123,14 @@ def cut_trace(
     Lane predicates are decided by the recording, as in an evaluation.
     """
 
-    def one(value: int) -> Integers:
-        return np.array([value])
-
     way = int(recording.direction[next(iter(vehicles.values()))])
     road = _road_of(recording, way)
-    made = gather(
-        recording, {n: one(v) for n, v in vehicles.items()}, one(frames[0]), one(frames[1]), RECORDED
-    )
+    made = gather_one(recording, vehicles, frames, RECORDED)
     given: dict[Formula, Array] = {}
     own: dict[str, dict[str, Array]] = {}
     lanes = {}
     for name, v in vehicles.items():
-        begin = int(row_of(recording, one(v), one(frames[0]))[0])
+        begin = int(recording.start[v]) + frames[0] - int(recording.first_frame[v])
         rows = slice(begin, begin + frames[1] - frames[0] + 1)
         for lanelet, inside in _lanelets(recording, way, rows):
             given[with_values(occupies(name, lanelet), {})] = inside[:, None]
@@ -173,20 +167,17 @@ def sample_drive(drive: Drive, road: Road, horizon: Fraction, dt: Fraction, sour
     if dt <= 0:
         raise InputError(f"dt={dt}: the time between samples must be greater than zero")
     times = [k * dt for k in range(int(horizon / dt) + 1)]
-    columns: dict[tuple[str, str], list[float]] = {}
+    columns: dict[tuple[str, str], Sequence[float]] = {}
     for name, motion in drive.vehicles.items():
-        states = [state_at(motion, time) for time in times]
+        states = states_at(motion, times)
         columns |= {(x, name): [float(getattr(state, x)) for state in states] for x in SIGNALS}
     sizes: dict[tuple[SizeName, str], float] = {
         (x, n): float(getattr(m, x)) for n, m in drive.vehicles.items() for x in SIZES
     }
     kinds = {n: m.kind for n, m in drive.vehicles.items() if m.kind is not None}
-    own = {key: [float(value_at(course, time)) for time in times] for key, course in drive.own.items()}
-    return _one_trace(source, dt, columns, {**sizes, **_codes(kinds)}, road, "0 s", own)
-
-
-def _codes(kinds: Mapping[str, Kind]) -> dict[tuple[SizeName, str], float]:
-    return {(KIND, name): float(code_of(kind)) for name, kind in kinds.items()}
+    sizes |= {(KIND, name): float(code_of(kind)) for name, kind in kinds.items()}
+    columns |= {key: [float(value_at(course, time)) for time in times] for key, course in drive.own.items()}
+    return _one_trace(source, dt, columns, sizes, road, "0 s")
 
 
 def refuse_unmeasured(trace: OneTrace, formula: Formula) -> None:
@@ -215,7 +206,8 @@ def read_samples(path: Path, road: Road | None = None) -> OneTrace:
     if road is None:
         known = beside(path, ROAD_ENDING)
         road = load_recorded_road(known[0])[0] if known else load_road("main-2")
-    made = of_columns(_lists(table), road, str(path))
+    lists = {name: values.tolist() for name, values in table.columns.items()}
+    made = of_columns(lists, road, str(path))
     doubts = doubts_in(table, of_road(road, DIRECTION, path))
     return replace(made, notes=(*doubts, *_overlaps(made)))
 
@@ -223,10 +215,6 @@ def read_samples(path: Path, road: Road | None = None) -> OneTrace:
 def _is_column(values: object, rows: int) -> bool:
     """Whether something beside the columns that are asked for is a column too."""
     return isinstance(values, Sized) and not isinstance(values, str) and len(values) == rows
-
-
-def _lists(table: Table) -> dict[str, list[object]]:
-    return {name: values.tolist() for name, values in table.columns.items()}
 
 
 def of_columns(columns: Mapping[str, Sequence[object]], road: Road, source: str = "columns") -> OneTrace:
@@ -251,23 +239,21 @@ def of_columns(columns: Mapping[str, Sequence[object]], road: Road, source: str 
         raise InputError(f"{source}: columns must be equally long, but have {told} rows")
     keys = [
         (Fraction(repr(round(_finite(source, k, "time", time), 9))), str(name))
-        for k, (time, name) in enumerate(zip(read["time"], read["vehicle"], strict=True))
+        for k, (time, name) in enumerate(zip(*(read[x] for x in HEADER[:2]), strict=True))
     ]
-    cells: list[dict[str, float]] = [
-        {x: _finite(source, k, x, read[x][k]) for x in (*RECORDED, *SIZES)} for k in range(len(keys))
-    ]
-    for name in own:
-        for cell, value in zip(cells, own_numbers(read[name]), strict=True):
-            cell[name] = float(value)
-    for k, cell in enumerate(cells):
-        cell[KIND] = float(code_of(kind_called(str(read[kind[0]][k]) if kind else "car")))
-    return _of_rows(source, keys, cells, own, road)
+    said = (*RECORDED, *SIZES)
+    numbers = [[_finite(source, k, x, read[x][k]) for x in said] for k in range(len(keys))]
+    kinds = map(str, read[kind[0]]) if kind else ["car"] * len(keys)
+    values: dict[str, Sequence[float]] = {x: [row[k] for row in numbers] for k, x in enumerate(said)}
+    values |= {name: own_numbers(read[name]).tolist() for name in own}
+    values[KIND] = [float(code_of(kind_called(name))) for name in kinds]
+    return _of_rows(source, keys, values, own, road)
 
 
 def _of_rows(
     source: str,
     keys: Sequence[tuple[Fraction, str]],
-    cells: Sequence[Mapping[str, float]],
+    values: Mapping[str, Sequence[float]],
     own: Sequence[str],
     road: Road,
 ) -> OneTrace:
@@ -286,24 +272,18 @@ def _of_rows(
             f"{source}: {len(keys)} rows for {len(times)} times and {len(names)} vehicles: every vehicle "
             "needs exactly one row at every time"
         )
-    said = (*RECORDED, *FIXED, *own)
-    columns: dict[tuple[str, str], list[float]] = {(x, n): [] for x in said for n in names}
-    for (_, name), row in sorted(zip(keys, cells, strict=True), key=lambda x: x[0][0]):
-        for x in said:
-            columns[x, name].append(row[x])
+    place = {key: k for k, key in enumerate(keys)}
+    rows = {name: [place[time, name] for time in times] for name in names}
     sizes: dict[tuple[SizeName, str], float] = {}
-    for name in names:
-        for size in FIXED:
-            values = columns.pop((size, name))
-            if len(set(values)) > 1:
-                what = "class" if size == KIND else "size"
-                raise InputError(
-                    f"{source}: {size} of {name} changes; the {what} of a vehicle stays the same"
-                )
-            sizes[size, name] = values[0]
-    measured = {x: {n: np.array(columns.pop((x, n))) for n in names} for x in own}
-    made = {key: values.tolist() for key, values in by_vehicle(measured)}
-    return _one_trace(source, dt, columns, sizes, road, f"{float(times[0]):g} s", made)
+    for name, size in product(names, FIXED):
+        sizes[size, name], *others = {values[size][k] for k in rows[name]}
+        if others:
+            what = "class" if size == KIND else "size"
+            raise InputError(f"{source}: {size} of {name} changes; the {what} of a vehicle stays the same")
+    columns = {x: {n: np.array([values[x][k] for k in rows[n]]) for n in names} for x in (*RECORDED, *own)}
+    signals: dict[tuple[str, str], Array] = {(x, n): columns[x][n] for x in RECORDED for n in names}
+    signals |= by_vehicle({x: columns[x] for x in own})
+    return _one_trace(source, dt, signals, sizes, road, f"{float(times[0]):g} s")
 
 
 def _finite(source: str, row: int, column: str, value: object) -> float:
@@ -319,21 +299,19 @@ def _finite(source: str, row: int, column: str, value: object) -> float:
 def _one_trace(
     source: str,
     dt: Fraction,
-    columns: Mapping[tuple[str, str], Sequence[float]],
+    columns: Mapping[tuple[str, str], Sequence[float] | Array],
     sizes: Mapping[tuple[SizeName, str], float],
     road: Road,
     first: str,
-    own: Mapping[tuple[str, str], Sequence[float]],
 ) -> OneTrace:
-    length = len(next(iter(columns.values())))
     batch = Batch(
         dt,
-        np.array([length]),
-        {key: np.array(values)[:, None] for key, values in {**columns, **own}.items()},
+        np.array([len(next(iter(columns.values())))]),
+        {key: np.array(values)[:, None] for key, values in columns.items()},
         {key: np.array([value]) for key, value in sizes.items()},
         source=source,
     )
-    names = dict.fromkeys(name for _, name in columns)
+    names = dict.fromkeys(name for _, name in sizes)
     lanes = {n: _lane_of(road, columns["s", n][0], columns["d", n][0], sizes["width", n]) for n in names}
     return OneTrace(source, batch, road, lanes, first)
 

@@ -39,8 +39,8 @@ from roadproof.library.specification import Library, Query, Specification, unkno
 from roadproof.logic.formula import Formula, disjunction, is_state
 from roadproof.logic.rewrite import all_with_values, horizon, with_values, without_names
 from roadproof.recordings.evaluate.courses import Course, courses_of
-from roadproof.recordings.evaluate.lane_atoms import OTHER_LANE, LaneAtom, lane_atoms
 from roadproof.recordings.evaluate.sectors import Sector, is_possible, sectors_of
+from roadproof.recordings.evaluate.traces import OTHER_LANE, LaneAtom, lane_atoms
 from roadproof.recordings.formats.pairs import DetectionRange, Reach
 from roadproof.recordings.formats.recording import ZONES
 from roadproof.semantics.sampled.answers import Convention, Key
@@ -96,17 +96,8 @@ def default_settings(library: Library | None = None) -> Settings:
     return Settings(chosen, {}, default_values(chosen))
 
 
-@dataclass(frozen=True)
-class Condition:
-    """What traces are cut by beside danger: an rssViolation, or initSafe.
-
-    ``start``: what every scenario of three cars needs at its start.
-    """
-
-    what: Literal["violation", "safe", "start"]
-
-    def __str__(self) -> str:
-        return self.what
+Condition: TypeAlias = Literal["violation", "safe", "start"]
+"""What traces are cut by: an rssViolation, initSafe, and what every scenario of three cars starts with."""
 
 
 @dataclass(frozen=True)
@@ -143,7 +134,9 @@ class DetectorKey:
         return f"{self.detector}/{self.sv}"
 
 
-VIOLATION, SAFE, START = Condition("violation"), Condition("safe"), Condition("start")
+VIOLATION: Condition = "violation"
+SAFE: Condition = "safe"
+START: Condition = "start"
 
 
 @dataclass(frozen=True)

@@ -1,25 +1,19 @@
 """Answers of an evaluation asked once more, one by one, of the plain recursive evaluator."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from types import MappingProxyType
-
-import numpy as np
 
 from roadproof.library.scenarios import LANE, PAIR, TRIPLE, endangered
 from roadproof.logic.formula import Formula, transform
-from roadproof.logic.terms import Own
 from roadproof.recordings.evaluate.courses import BEGINS
 from roadproof.recordings.evaluate.evaluate import Findings
 from roadproof.recordings.evaluate.foretelling import LABELS
-from roadproof.recordings.evaluate.lane_atoms import OTHER_LANE, LaneAtom
 from roadproof.recordings.evaluate.matching import Match
 from roadproof.recordings.evaluate.questions import Danger, MonitorKey, Questions, of_three
-from roadproof.recordings.evaluate.traces import gather
-from roadproof.recordings.formats.recording import Integers, Recording
+from roadproof.recordings.evaluate.traces import OTHER_LANE, gather_one
+from roadproof.recordings.formats.recording import Recording
 from roadproof.semantics.sampled.batch import Batch
 from roadproof.semantics.sampled.compiled import Monitor
 from roadproof.semantics.sampled.recursive import ReadAs, Trace, TraceReader
-from roadproof.world.signals import SignalName
 
 
 def recheck(recording: Recording, questions: Questions, findings: Findings) -> Iterator[str]:
@@ -53,7 +47,10 @@ def recheck(recording: Recording, questions: Questions, findings: Findings) -> I
     for match in findings.matches:
         if match.pov2 is not None:
             formula = triples[match.min_danger][of_three(match.set_name, match.scenario)]
-            if not _holds_for_three(recording, questions, match, formula, place, names):
+            vehicles = dict(zip(TRIPLE, (place[x] for x in (match.sv, match.pov, match.pov2)), strict=True))
+            frames = (match.start_frame, match.end_frame)
+            reading = _read(recording, questions, vehicles, {LANE: names.index(match.lane)}, frames)
+            if not reading.holds(formula, 0, _view(questions)):
                 yield _line(recording, match, True)
         if match.labels:
             begun, labels = _foretold(recording, questions, match, place)
@@ -73,9 +70,9 @@ def _foretold(
     vehicles = dict(zip(course.vehicles, (place[x] for x in ids), strict=True))
     frames = match.start_frame, match.end_frame
     signals = (*course.begins.signals, *course.collides.signals)
-    reading = _reading(recording, vehicles, frames, signals)
+    reading = TraceReader(trace_of(gather_one(recording, vehicles, frames, signals)))
     pair = dict(zip(PAIR, (vehicles[x] for x in endangered(course.vehicles)), strict=True))
-    near = _reading(recording, pair, frames, questions.danger.signals)
+    near = TraceReader(trace_of(gather_one(recording, pair, frames, questions.danger.signals)))
     danger = questions.danger.formulas[Danger(match.min_danger)]
     for k in range(frames[1] - frames[0] + 1):
         if reading.holds(course.begins.formulas[BEGINS], k, "strong"):
@@ -104,21 +101,6 @@ def _shared(monitors: Iterable[Monitor[MonitorKey]]) -> list[dict[MonitorKey, Fo
     ]
 
 
-def _holds_for_three(
-    recording: Recording,
-    questions: Questions,
-    match: Match,
-    formula: Formula,
-    place: Mapping[int, int],
-    names: list[str],
-) -> bool:
-    assert match.pov2 is not None
-    vehicles = dict(zip(TRIPLE, (place[x] for x in (match.sv, match.pov, match.pov2)), strict=True))
-    lanes = {LANE: names.index(match.lane)}
-    reading = _read(recording, questions, vehicles, lanes, (match.start_frame, match.end_frame))
-    return reading.holds(formula, 0, _view(questions))
-
-
 def _read(
     recording: Recording,
     questions: Questions,
@@ -127,29 +109,7 @@ def _read(
     frames: tuple[int, int],
 ) -> TraceReader:
     signals = [signal for monitor in (*questions.pairs, *questions.triples) for signal in monitor.signals]
-    return _reading(recording, vehicles, frames, signals, lanes, questions.lane_atoms)
-
-
-def _reading(
-    recording: Recording,
-    vehicles: Mapping[str, int],
-    frames: tuple[int, int],
-    signals: Iterable[SignalName | Own],
-    lanes: Mapping[str, int] = MappingProxyType({}),
-    atoms: Mapping[Formula, LaneAtom] = MappingProxyType({}),
-) -> TraceReader:
-    def one(value: int) -> Integers:
-        return np.array([value])
-
-    batch = gather(
-        recording,
-        {name: one(k) for name, k in vehicles.items()},
-        one(frames[0]),
-        one(frames[1]),
-        signals,
-        {name: one(k) for name, k in lanes.items()},
-        atoms,
-    )
+    batch = gather_one(recording, vehicles, frames, signals, lanes, questions.lane_atoms)
     return TraceReader(trace_of(batch))
 
 

@@ -9,7 +9,6 @@ import hashlib
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
 from fractions import Fraction
 from importlib.metadata import version
 from io import TextIOWrapper
@@ -23,13 +22,21 @@ from roadproof.evidence.codec import write
 from roadproof.evidence.heading import heading
 from roadproof.library.scenarios import MIN_DANGER
 from roadproof.library.words import Called, called_in
-from roadproof.recordings.evaluate.counting import Counts, Repeat, without_repeats
 from roadproof.recordings.evaluate.detectors import Detection
 from roadproof.recordings.evaluate.evaluate import Findings, Trace
 from roadproof.recordings.evaluate.foretelling import LABELS
 from roadproof.recordings.evaluate.matching import Match
 from roadproof.recordings.evaluate.questions import Settings
-from roadproof.recordings.evaluate.totals import Foretold, Row, Totals, add_findings, begin_totals
+from roadproof.recordings.evaluate.totals import (
+    Counts,
+    Foretold,
+    Repeat,
+    Row,
+    Totals,
+    add_findings,
+    begin_totals,
+    without_repeats,
+)
 from roadproof.recordings.formats.repeats import FramePair
 from roadproof.runtime.files import make_folder, whole_file
 
@@ -78,24 +85,20 @@ def _kept_settings(settings: Settings) -> kept.Settings:
 
 def save_findings(path: Path, findings: Findings, mark: str) -> None:
     """Write the findings of one recording; ``mark`` is their fingerprint."""
-    found: dict[str, Any] = {**vars(findings)}
-    for name in _ROWS:
-        found[name] = [_saved(row) for row in found[name]]
-    found["seen"] = [list(vars(pair).values()) for pair in findings.seen]
+    rows = {name: [_saved(row) for row in getattr(findings, name)] for name in _ROWS}
+    found = {**vars(findings), **rows}
     told = {"schema": RECORDING_SCHEMA, "fingerprint": mark, "seal": seal(mark, found), "findings": found}
     with whole_text(path) as file:
         file.write(json.dumps(told) + "\n")
 
 
-def _saved(row: Match | Trace | Detection) -> list[Any]:
+def _saved(row: Match | Trace | Detection | FramePair) -> list[object]:
     """The fields of a row; those about driver models where there are any."""
-    fields = vars(row)
-    if isinstance(row, Match) and not row.labels:
-        fields = {name: value for name, value in fields.items() if name not in ("begun", "labels")}
-    return list(fields.values())
+    without = ("begun", "labels") if isinstance(row, Match) and not row.labels else ()
+    return [value for name, value in vars(row).items() if name not in without]
 
 
-def seal(mark: str, found: Mapping[str, Any]) -> str:
+def seal(mark: str, found: Mapping[str, object]) -> str:
     """What findings that were saved must still have: a digest of them and their fingerprint."""
     return _digest([mark, found])
 
@@ -103,27 +106,30 @@ def seal(mark: str, found: Mapping[str, Any]) -> str:
 def load_findings(path: Path, mark: str) -> Findings | None:
     """Findings that were saved under the same fingerprint and not changed since, else None."""
     try:
-        told = json.loads(path.read_text())
-        found = told["findings"]
-        if told["schema"] != RECORDING_SCHEMA or told["fingerprint"] != mark:
-            return None
-        if told["seal"] != seal(mark, found):
-            return None
-        made = {name: tuple(kind(*row) for row in found[name]) for name, kind in _ROWS.items()}
-        made["traces"] = tuple(replace(x, sectors=tuple(x.sectors)) for x in made["traces"])
-        made["violating"] = tuple((one, other) for one, other in found["violating"])
-        made["matches"] = tuple(replace(x, labels=tuple(x.labels)) for x in made["matches"])
-        seen = tuple(FramePair(one, other, low, v, tuple(k)) for one, other, low, v, k in found["seen"])
-        return Findings(**{**found, **made, **_texts(found, "notes", "sectors"), "seen": seen})
+        match json.loads(path.read_text()):
+            case {"schema": schema, "fingerprint": of, "seal": sealed, "findings": found}:
+                if (schema, of, sealed) != (RECORDING_SCHEMA, mark, seal(mark, found)):
+                    return None
+                made = {
+                    name: tuple(kind(*map(_frozen, x)) for x in found[name]) for name, kind in _ROWS.items()
+                }
+                return Findings(**{**{name: _frozen(x) for name, x in found.items()}, **made})
     except (OSError, ValueError, KeyError, TypeError):
-        return None
+        pass
+    return None
 
 
-def _texts(found: Mapping[str, Any], *names: str) -> dict[str, tuple[str, ...]]:
-    return {name: tuple(found[name]) for name in names}
+def _frozen(value: object) -> Any:
+    """A value of JSON with tuples as its lists."""
+    return tuple(map(_frozen, value)) if isinstance(value, list) else value
 
 
-_ROWS: Mapping[str, Callable[..., Any]] = {"traces": Trace, "matches": Match, "detections": Detection}
+_ROWS: Mapping[str, Callable[..., object]] = {
+    "traces": Trace,
+    "matches": Match,
+    "detections": Detection,
+    "seen": FramePair,
+}
 
 
 @contextmanager
@@ -231,18 +237,16 @@ def foretold_rows(totals: Totals) -> Iterator[tuple[Fraction, str, int, str, tup
 
 
 def _predictions(totals: Totals) -> tuple[kept.Prediction, ...]:
+    labels = [label.replace(" ", "_") for label in LABELS]
     return tuple(
         kept.Prediction(
             min_danger=str(danger),
             set=set_name,
             scenario=number,
             driver=driver,
-            preventable=preventable,
-            unpreventable=unpreventable,
-            not_foreseen=not_foreseen,
+            **dict(zip(labels, counts, strict=True)),
         )
         for danger, set_name, number, driver, counts in foretold_rows(totals)
-        for preventable, unpreventable, not_foreseen in (counts,)
     )
 
 
@@ -253,10 +257,8 @@ def driver_columns(settings: Settings) -> list[str]:
 
 def driver_cells(settings: Settings, match: Match) -> list[str | int | None]:
     """Their values for a match; None where a model says nothing of the scenario."""
-    cells: list[str | int | None] = []
-    for label in match.labels or ("",) * len(settings.drivers):
-        cells += [label or None, match.begun if label else None]
-    return cells
+    labels = match.labels or ("",) * len(settings.drivers)
+    return [cell for label in labels for cell in ((label, match.begun) if label else (None, None))]
 
 
 def words_in(settings: Settings) -> Called:

@@ -1,18 +1,45 @@
 """Vehicles of a recording as traces for the monitor: time-major arrays, lane predicates decided."""
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
+from typing import Literal
 
 import numpy as np
 
 from roadproof.errors import InputError
+from roadproof.library.scenarios import LANE, PAIR, TRIPLE, beside_lane, in_lane, in_zone
+from roadproof.library.specification import Specification
 from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import without_names
 from roadproof.logic.terms import Own
-from roadproof.recordings.evaluate.lane_atoms import LaneAtom
 from roadproof.recordings.formats.pairs import row_of
 from roadproof.recordings.formats.recording import ZONES, Bools, Integers, Recording
 from roadproof.semantics.sampled.batch import Array, Batch
 from roadproof.world.signals import RECORDED, SIGNALS, SIZES, SignalName, SizeName
+
+OTHER_LANE = "L1"
+"""What the lane of a pair's second vehicle is called."""
+
+
+@dataclass(frozen=True)
+class LaneAtom:
+    """A state formula that the data layer decides: a vehicle in a lane, beside it, or in a zone."""
+
+    kind: Literal["at", "beside", "zone"]
+    vehicle: str
+    of: str
+
+
+def lane_atoms(spec: Specification) -> Iterator[tuple[Formula, LaneAtom]]:
+    """The lane predicates of a specification, for the vehicles of pairs and triples and the lanes L, L1."""
+    for vehicle in dict.fromkeys((*PAIR, *TRIPLE)):
+        for lane in (LANE, OTHER_LANE):
+            yield without_names(in_lane(spec, vehicle, lane).formula), LaneAtom("at", vehicle, lane)
+            yield without_names(beside_lane(spec, vehicle, lane).formula), LaneAtom("beside", vehicle, lane)
+        for zone in ZONES:
+            yield without_names(in_zone(spec, vehicle, zone).formula), LaneAtom("zone", vehicle, zone)
+
 
 KIND: SizeName = "kind"
 
@@ -34,6 +61,20 @@ def gather(
     """
     rows = {name: rows_of(recording, index, low, high) for name, index in vehicles.items()}
     return gather_rows(recording, vehicles, rows, high - low + 1, signals, lanes, atoms)
+
+
+def gather_one(
+    recording: Recording,
+    vehicles: Mapping[str, int],
+    frames: tuple[int, int],
+    signals: Iterable[SignalName | Own],
+    lanes: Mapping[str, int] | None = None,
+    atoms: Mapping[Formula, LaneAtom] | None = None,
+) -> Batch:
+    """As ``gather``, the one trace from the first of the ``frames`` to the last."""
+    index, at = ({name: np.array([k]) for name, k in x.items()} for x in (vehicles, lanes or {}))
+    low, high = (np.array([frame]) for frame in frames)
+    return gather(recording, index, low, high, signals, at, atoms)
 
 
 def gather_rows(

@@ -10,9 +10,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from roadproof.library.scenarios import SUBJECT
-from roadproof.recordings.export.layout import Layout, Section, together
 from roadproof.recordings.export.points import centre
-from roadproof.recordings.export.subject import WRITTEN, Subject, kind_of
+from roadproof.recordings.export.subject import WRITTEN, Layout, Section, Subject, kind_of, together
 from roadproof.recordings.export.xml import Element, decimal, document, element
 from roadproof.world.drive import Motion
 from roadproof.world.motion import State
@@ -25,6 +24,7 @@ MOTORCYCLE_WIDTH = Fraction(6, 5)
 FIRST_LANELET, PROBLEM = 1001, 9001
 """Ids: vehicles count from 1, lanelets from 1001; ids differ among all of them."""
 
+_NOWHERE = {"geoNameId": "-999", "gpsLatitude": "999", "gpsLongitude": "999"}
 # Kinds that CommonRoad calls otherwise.
 _OBSTACLES: Mapping[Kind, str] = {"other": "unknown"}
 
@@ -43,7 +43,7 @@ def files(subject: Subject) -> dict[str, bytes]:
     layout = subject.layout
     root = element(
         "commonRoad",
-        _location(),
+        element("location", *(element(tag, text=text) for tag, text in _NOWHERE.items())),
         element("scenarioTags", element("highway"), element("simulated")),
         *_lanelets(layout),
         *(_obstacle(subject, name, motion) for name, motion in subject.vehicles.items()),
@@ -59,11 +59,6 @@ def files(subject: Subject) -> dict[str, bytes]:
     return {f"{subject.name}.xml": document(root)}
 
 
-def _location() -> Element:
-    place = {"geoNameId": "-999", "gpsLatitude": "999", "gpsLongitude": "999"}
-    return element("location", *(element(tag, text=text) for tag, text in place.items()))
-
-
 def _lanelets(layout: Layout) -> Iterator[Element]:
     rows: list[list[_Cell]] = []
     for section in layout.sections:
@@ -73,14 +68,10 @@ def _lanelets(layout: Layout) -> Iterator[Element]:
         before = {x.lanelet.lane: x.id for x in rows[k - 1]} if k else {}
         after = {x.lanelet.lane: x.id for x in rows[k + 1]} if k + 1 < len(rows) else {}
         for place, cell in enumerate(row):
-            left = row[place - 1] if place else None
-            right = row[place + 1] if place + 1 < len(row) else None
-            links = [
-                ("predecessor", before.get(cell.lanelet.lane)),
-                ("successor", after.get(cell.lanelet.lane)),
-            ]
+            lane = cell.lanelet.lane
+            links = (("predecessor", before.get(lane)), ("successor", after.get(lane)))
             refs = [element(tag, ref=str(other)) for tag, other in links if other is not None]
-            sides = {"left": left, "right": right}
+            sides = {"left": row[place - 1] if place else None, "right": [*row, None][place + 1]}
             near = {
                 side: x for side, x in sides.items() if x and together(cell.lanelet, x.lanelet, layout.road)
             }
@@ -105,16 +96,17 @@ def _bound(tag: str, cell: _Cell, across: Fraction, crossed: bool) -> Element:
     return element(tag, *points, element("lineMarking", text="dashed" if crossed else "solid"))
 
 
-def _point(x: Fraction, y: Fraction) -> Element:
-    return element("point", element("x", text=decimal(x)), element("y", text=decimal(y)))
+def _point(x: Fraction, y: Fraction, tag: str = "point") -> Element:
+    return element(tag, element("x", text=decimal(x)), element("y", text=decimal(y)))
+
+
+def _box(motion: Motion) -> Element:
+    sizes = {"length": motion.length, "width": motion.width}
+    return element("rectangle", *(element(tag, text=decimal(size)) for tag, size in sizes.items()))
 
 
 def _obstacle(subject: Subject, name: str, motion: Motion) -> Element:
-    box = element(
-        "rectangle",
-        element("length", text=decimal(motion.length)),
-        element("width", text=decimal(motion.width)),
-    )
+    box = _box(motion)
     first, *others = (
         _state("state" if k else "initialState", k, state, motion)
         for k, state in enumerate(subject.samples[name])
@@ -168,14 +160,9 @@ def _problem(subject: Subject) -> Element:
         _exact("slipAngle", Fraction(0)),
         _exact("time", Fraction(0)),
     )
-    place = element(
-        "rectangle",
-        element("length", text=decimal(motion.length)),
-        element("width", text=decimal(motion.width)),
-        element("orientation", text="0"),
-    )
-    x, y = centre(end, motion.length, motion.width)
-    place.append(element("center", element("x", text=decimal(x)), element("y", text=decimal(y))))
+    place = _box(motion)
+    place.append(element("orientation", text="0"))
+    place.append(_point(*centre(end, motion.length, motion.width), "center"))
     steps = len(states) - 1
     begin, last = element("intervalStart", text=str(steps)), element("intervalEnd", text=str(steps + 1))
     goal = element("goalState", element("time", begin, last), element("position", place))

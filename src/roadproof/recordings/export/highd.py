@@ -11,8 +11,8 @@ from math import ceil, floor
 
 import numpy as np
 
+from roadproof.recordings.export.csv_table import road_toml
 from roadproof.recordings.export.points import upper_left
-from roadproof.recordings.export.road_toml import road_toml
 from roadproof.recordings.export.subject import Subject, class_of
 from roadproof.recordings.formats.highd import LOWER, lanes_of_markings
 from roadproof.recordings.formats.recording import Floats, Recording, offsets
@@ -62,12 +62,10 @@ def recording_of(subject: Subject, name: str, shift: Shift) -> Recording:
     motions = [*subject.vehicles.values()]
     counts = np.full(len(motions), len(subject.times))
     length, width = (np.array([float(getattr(m, x)) for m in motions]) for x in ("length", "width"))
-    corners = [
-        upper_left(state, motion.length)
-        for motion, rows in zip(motions, subject.samples.values(), strict=True)
-        for state in rows
+    rows = [
+        (state, motion) for motion, x in zip(motions, subject.samples.values(), strict=True) for state in x
     ]
-    rows = [state for each in subject.samples.values() for state in each]
+    corners = [upper_left(state, motion.length) for state, motion in rows]
     d = _floats([-y + shift.d for _, y in corners])
     direction = np.full(len(motions), LOWER)
     s = _floats([x + shift.s for x, _ in corners]) + np.repeat(length, counts)
@@ -85,10 +83,10 @@ def recording_of(subject: Subject, name: str, shift: Shift) -> Recording:
         start=offsets(counts),
         s=s,
         d=d,
-        v_lon=_floats([x.v_lon for x in rows]),
-        v_lat=_floats([x.v_lat for x in rows]),
-        a_lon=_floats([x.a_lon for x in rows]),
-        a_lat=_floats([x.a_lat for x in rows]),
+        v_lon=_floats([x.v_lon for x, _ in rows]),
+        v_lat=_floats([x.v_lat for x, _ in rows]),
+        a_lon=_floats([x.a_lon for x, _ in rows]),
+        a_lat=_floats([x.a_lat for x, _ in rows]),
         **vars(place(road, np.repeat(direction, counts), s, d, *sizes)),
     )
 

@@ -9,8 +9,7 @@ from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from math import ceil
 
-from roadproof.recordings.export.layout import Layout, Section, together
-from roadproof.recordings.export.subject import WRITTEN, Subject
+from roadproof.recordings.export.subject import WRITTEN, Layout, Section, Subject, together
 from roadproof.recordings.export.xml import Element, decimal, document, element
 from roadproof.world.motion import monotone_starts, state_at
 from roadproof.world.road import Attribute, Lanelet

@@ -12,8 +12,6 @@ from roadproof.recordings.formats.plausible import (
     LARGEST_SPEED,
     ContradictionChecks,
     Implausible,
-    of_those_on_road,
-    on_road,
 )
 from roadproof.recordings.formats.recording import (
     ZONES,
@@ -24,11 +22,10 @@ from roadproof.recordings.formats.recording import (
     Recording,
     beside_by_order,
 )
+from roadproof.recordings.formats.samples import LARGEST_PLACE, LARGEST_RATE
 from roadproof.recordings.formats.straight import Placement, StraightRoad, place
-from roadproof.world.signals import STARTING
+from roadproof.world.signals import RECORDED
 
-LARGEST_RATE = 1000
-LARGEST_PLACE = 1_000_000.0
 _TURNED = 1.5
 """Components of a velocity grow by at most the root of 2 where they are turned along a measured road."""
 _ROUNDING = 0.015
@@ -43,7 +40,6 @@ class PlausibilityChecks:
         if not 1 <= rate <= LARGEST_RATE:
             raise InputError(f"{head}, rate={rate}: must lie between 1 and {LARGEST_RATE}")
         self.doubting = ContradictionChecks(rate, lanes)
-        self.on_road: list[Bools] = []
         self.ids: list[Integers] = []
         self.frames: list[tuple[Integers, Integers]] = []
         self.rows = 0
@@ -53,7 +49,6 @@ class PlausibilityChecks:
         _check_cells(self.head, recording)
         _check_places(self.head, recording)
         self.doubting.add(recording)
-        self.on_road.append(on_road(recording))
         self.ids.append(recording.vehicle_id)
         self.frames.append((recording.start[:-1] + self.rows, recording.first_frame))
         self.rows += len(recording.s)
@@ -68,7 +63,7 @@ class PlausibilityChecks:
     def _doubts(self, ids: Integers) -> Iterator[tuple[str, str]]:
         for doubt in self.doubting.doubts():
             yield self._told(self._at(doubt, ids), doubt.told, doubt.refused), doubt.told
-        off = of_those_on_road(np.concatenate(self.on_road))
+        off = self.doubting.off_road()
         if off is not None:
             told = f"on no lane at any time, like {off.count} vehicles"
             yield self._told(f"vehicle {ids[off.vehicle]}", told, off.refused), f"like {off.count} "
@@ -87,15 +82,12 @@ class PlausibilityChecks:
 
 def _check_cells(head: Path, recording: Recording) -> None:
     """No cell says what no vehicle does, and none is of a lane or zone that is not there."""
-    turned = 1.0 if recording.slack is None else _TURNED
     straight = recording.slack is None
-    place = LARGEST_PLACE if straight else np.inf
-    limits: dict[str, float] = dict(
-        zip(STARTING, (place, place, LARGEST_SPEED * turned, LARGEST_SPEED * turned), strict=True)
+    turned, place, across = (
+        (1.0, LARGEST_PLACE, LARGEST_ACCELERATION) if straight else (_TURNED, np.inf, np.inf)
     )
-    limits["a_lon"] = LARGEST_ACCELERATION * turned
-    limits["a_lat"] = LARGEST_ACCELERATION if straight else np.inf
-    for column, most in limits.items():
+    speed, along = LARGEST_SPEED * turned, LARGEST_ACCELERATION * turned
+    for column, most in zip(RECORDED, (place, place, speed, speed, along, across), strict=True):
         values: Floats = getattr(recording, column)
         fine = np.isfinite(values) & (np.abs(values) <= most)
         _require(head, recording, fine, column, f"must be finite and lie between {-most:g} and {most:g}")
@@ -103,10 +95,10 @@ def _check_cells(head: Path, recording: Recording) -> None:
         size: Floats = getattr(recording, name)
         if not (np.isfinite(size) & (size > 0) & (size <= LARGEST_SIZE)).all():
             raise InputError(f"{head}, {name}: sizes are greater than 0 and at most {LARGEST_SIZE:g} m")
-    lanes, masks = len(recording.lanes), (("occupancy", len(recording.lanes)), ("zones", len(ZONES)))
+    lanes = len(recording.lanes)
     there = (recording.lane >= -1) & (recording.lane < lanes)
     _require(head, recording, there, "lane", f"there are {lanes} lanes")
-    for name, bits in masks:
+    for name, bits in (("occupancy", lanes), ("zones", len(ZONES))):
         _require(head, recording, getattr(recording, name).astype(np.int64) >> bits == 0, name, "no such bit")
 
 

@@ -6,24 +6,24 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from roadproof.errors import InputError
-from roadproof.recordings.formats.lanelets import ZONES_ENDING, network_of, read_said
+from roadproof.recordings.formats.lanelets import ZONES_ENDING, network_of
 from roadproof.recordings.formats.measured_roads import MeasuredTraffic, place_traffic
 from roadproof.recordings.formats.overlaps import describe_overlaps
 from roadproof.recordings.formats.plausible import (
     LARGEST_ACCELERATION,
     LARGEST_SIZE,
     LARGEST_SPEED,
-    find_doubts,
-    off_road,
+    check,
 )
 from roadproof.recordings.formats.recording import Floats, Integers, Recording, offsets, with_notes
 from roadproof.recordings.formats.repeats import moments_of
-from roadproof.recordings.formats.source import Files, Format, beside, with_suffix
+from roadproof.recordings.formats.source import Format, find_files
 from roadproof.recordings.formats.topology import MeasuredLanelet
 from roadproof.runtime.xml_reader import Element, by_id, number_in, read_xml
 from roadproof.world.road import Attribute
@@ -38,6 +38,18 @@ ATTRIBUTES: Mapping[str, Attribute] = {
 
 LARGEST_PLACE, LARGEST_ORIENTATION = 1e8, 100.0
 """m, as in all coordinates of maps, and rad, which need not be one turn."""
+
+
+_STATE = {
+    "time": ("time/exact", math.inf),
+    "x": ("position/point/x", LARGEST_PLACE),
+    "y": ("position/point/y", LARGEST_PLACE),
+    "orientation": ("orientation/exact", LARGEST_ORIENTATION),
+    "velocity": ("velocity/exact", LARGEST_SPEED),
+    "acceleration": ("acceleration/exact", LARGEST_ACCELERATION),
+    "velocityY": ("velocityY/exact", LARGEST_SPEED),
+}
+"""What a state has, where, and how large it is at most; ``velocityY`` may be missing."""
 
 
 @dataclass(frozen=True)
@@ -63,14 +75,19 @@ def read_commonroad(path: Path, truck_length: float = 7.0) -> Recording:
     sets such as NGSIM's label every vehicle a car. ``notes`` tell of overlapping vehicles, of noise
     and of obstacles that were left out. Raises ``InputError`` for files that are no such recording.
     """
-    root = _parse(path)
+    root = read_xml(path, "commonRoad")
+    if root.get("commonRoadVersion") != "2020a":
+        told = f"commonRoadVersion={root.get('commonRoadVersion')}"
+        raise InputError(f"{path}: {told}: commonRoad of version 2020a is needed")
     step = number_in(path, root.get("timeStepSize"), "timeStepSize of commonRoad")
     rate = round(1 / step) if step > 0 else 0
     if rate < 1 or not math.isclose(rate * step, 1):
         raise InputError(f"{path}: timeStepSize={step}: a whole number of steps a second is needed")
-    lanelets = _read_lanelets(path, root)
-    said = read_said(path.with_name(f"{path.stem}{ZONES_ENDING}"), lanelets)
-    network = network_of(path, lanelets, said)
+    nodes = by_id(path, root.findall("lanelet"))
+    if not nodes:
+        raise InputError(f"{path}: the file has no lanelet; a road is needed to place vehicles on")
+    lanelets = {name: _read_lanelet(path, node, nodes) for name, node in nodes.items()}
+    network = network_of(path, lanelets)
     obstacles, notes = _read_obstacles(path, root, truck_length)
     traffic = _traffic(path.stem, rate, obstacles, notes)
     if _is_made(root):
@@ -128,45 +145,28 @@ def _change(drift: Floats, start: Integers, rate: int) -> Floats:
 
 def _check_plausible(path: Path, recording: Recording) -> Iterator[str]:
     """Notes on what the file contradicts itself in. Raises ``InputError`` where that is too much."""
-    for doubt in find_doubts(recording):
-        vehicle, step = recording.row_vehicle[doubt.row], recording.row_frame[doubt.row]
-        who = f"dynamicObstacle {recording.vehicle_id[vehicle]}, time step {step}"
-        if doubt.refused:
-            raise InputError(f"{path}: {who}: {doubt.told}")
-        yield f"{who}: {doubt.told}"
-    off = off_road(recording)
+    checks, ids = check(recording), recording.vehicle_id[recording.row_vehicle]
+    found = [
+        (f"{ids[x.row]}, time step {recording.row_frame[x.row]}: {x.told}", x.refused)
+        for x in checks.doubts()
+    ]
+    off = checks.off_road()
     if off is not None:
-        told = f"on no lanelet at any time, like {off.count} obstacles"
-        who = f"dynamicObstacle {recording.vehicle_id[off.vehicle]}"
-        if off.refused:
-            raise InputError(f"{path}: {who}: {told}")
-        yield f"{who}: {told}"
+        found.append((f"{ids[off.row]}: on no lanelet at any time, like {off.count} obstacles", off.refused))
+    for told, refused in found:
+        if refused:
+            raise InputError(f"{path}: dynamicObstacle {told}")
+        yield f"dynamicObstacle {told}"
 
 
-def _describe(recording: Recording) -> tuple[str, ...]:
+def _describe(recording: Recording) -> Iterator[str]:
     """Notes on overlaps, noise and vehicles beside the road."""
-    noisy = np.percentile(recording.a_lon, [0.5, 99.5])
+    yield from describe_overlaps(recording)
+    low, high = np.percentile(recording.a_lon, [0.5, 99.5])
+    yield f"accelerations: 99 % within {low:.1f} and {high:.1f} m/s²"
     off = int(np.count_nonzero(recording.lane < 0))
-    notes = list(describe_overlaps(recording))
-    notes.append(f"accelerations: 99 % within {noisy[0]:.1f} and {noisy[1]:.1f} m/s²")
     if off:
-        notes.append(f"{off} of {len(recording.s)} samples have the centre of the box on no lane")
-    return tuple(notes)
-
-
-def _parse(path: Path) -> Element:
-    root = read_xml(path, "commonRoad")
-    version = root.get("commonRoadVersion")
-    if version != "2020a":
-        raise InputError(f"{path}: commonRoadVersion={version}: commonRoad of version 2020a is needed")
-    return root
-
-
-def _read_lanelets(path: Path, root: Element) -> dict[str, MeasuredLanelet]:
-    nodes = by_id(path, root.findall("lanelet"))
-    if not nodes:
-        raise InputError(f"{path}: the file has no lanelet; a road is needed to place vehicles on")
-    return {name: _read_lanelet(path, node, nodes) for name, node in nodes.items()}
+        yield f"{off} of {len(recording.s)} samples have the centre of the box on no lane"
 
 
 def _read_lanelet(path: Path, node: Element, known: Mapping[str, Element]) -> MeasuredLanelet:
@@ -229,17 +229,13 @@ def _read_obstacle(path: Path, node: Element, number: int, truck_length: float) 
         number_in(path, node.findtext(f"shape/rectangle/{x}"), f"{x} of {where}") for x in ("length", "width")
     )
     if length <= 0 or width <= 0:
-        raise InputError(
-            f"{path}: {where} has length={length}, width={width}; both must be greater than zero"
-        )
+        told = f"{where} has length={length}, width={width}"
+        raise InputError(f"{path}: {told}; both must be greater than zero")
     if max(length, width) > LARGEST_SIZE:
         told = f"{where} has length={length:g}, width={width:g}"
         raise InputError(f"{path}: {told}; no vehicle is larger than {LARGEST_SIZE:g} m")
-    rows = [
-        _read_state(path, x, where)
-        for x in (*node.findall("initialState"), *node.findall("trajectory/state"))
-    ]
-    states = np.array(rows)
+    nodes = (*node.findall("initialState"), *node.findall("trajectory/state"))
+    states = np.array([_read_state(path, x, where) for x in nodes])
     states[:, 1:3] += _middle(path, node, states[:, 3], where)
     if (np.diff(states[:, 0]) != 1).any():
         k = int(np.argmax(np.diff(states[:, 0]) != 1))
@@ -269,40 +265,25 @@ def _middle(path: Path, node: Element, heading: Floats, where: str) -> Floats:
 
 
 def _read_state(path: Path, node: Element, where: str) -> list[float]:
-    places = {
-        "time": "time/exact",
-        "x": "position/point/x",
-        "y": "position/point/y",
-        "orientation": "orientation/exact",
-        "velocity": "velocity/exact",
-        "acceleration": "acceleration/exact",
-    }
+    def number(what: str, place: str) -> float:
+        return number_in(path, node.findtext(place), f"{what} in a state of {where}")
+
+    aside = node.find("velocityY") is not None
     state = {
-        what: number_in(path, node.findtext(place), f"{what} in a state of {where}")
-        for what, place in places.items()
+        what: number(what, place) if aside or what != "velocityY" else 0.0
+        for what, (place, _) in _STATE.items()
     }
-    aside = node.find("velocityY")
-    told = f"velocityY in a state of {where}"
-    state["velocityY"] = 0.0 if aside is None else number_in(path, aside.findtext("exact"), told)
-    limits = {"x": LARGEST_PLACE, "y": LARGEST_PLACE, "orientation": LARGEST_ORIENTATION}
-    limits |= {"velocity": LARGEST_SPEED, "velocityY": LARGEST_SPEED, "acceleration": LARGEST_ACCELERATION}
-    for what, most in limits.items():
+    for what, (_, most) in _STATE.items():
         if abs(state[what]) > most:
             at = f"{what}={state[what]:g} of {where} at time step {state['time']:g}"
             raise InputError(f"{path}: {at}: must lie between {-most:g} and {most:g}")
     return list(state.values())
 
 
-def _find(path: Path) -> dict[str, Files]:
-    return {x.stem: (*beside(x, ZONES_ENDING), x) for x in with_suffix(path, ".xml")}
-
-
-def _read(files: Files) -> Recording:
-    return read_commonroad(files[-1])
-
-
-def _rate_at(files: Files, rate: int) -> str:
-    return f"{files[-1]}: timeStepSize={1 / rate:g}"
-
-
-FORMAT = Format("CommonRoad", "NAME.xml of CommonRoad 2020a", _find, _read, _rate_at)
+FORMAT = Format(
+    "CommonRoad",
+    "NAME.xml of CommonRoad 2020a",
+    partial(find_files, suffix=".xml", ending=ZONES_ENDING),
+    read_commonroad,
+    "{0}: timeStepSize={step:g}",
+)

@@ -1,14 +1,15 @@
 """What a file contradicts itself in: a note where it happens seldom, and refused where it happens often."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
 
 from roadproof.errors import InputError
-from roadproof.recordings.formats.plausible import SHARE, Implausible, OffRoad, find_doubts, off_road
-from roadproof.recordings.formats.recording import Bools, Integers, Recording
+from roadproof.recordings.formats.plausible import SHARE, ContradictionChecks
+from roadproof.recordings.formats.recording import Bools
 from roadproof.recordings.formats.table import Table
+from roadproof.world.signals import SignalName, SizeName
 
 
 def seldom(table: Table, wrong: Bools, column: str, rule: str, advice: str) -> Iterator[str]:
@@ -24,46 +25,26 @@ def seldom(table: Table, wrong: Bools, column: str, rule: str, advice: str) -> I
     yield _noted(table.path, table.cell(int(np.argmax(wrong)), column), told, refused)
 
 
-def contradictions(path: Path, recording: Recording, at: Callable[[Implausible], str]) -> Iterator[str]:
-    """Notes on what ``plausible`` finds; ``at`` says where in the file that is.
-
-    Raises ``InputError`` where it is too much.
-    """
-    return noted_doubts(path, find_doubts(recording), at)
-
-
-def noted_doubts(
-    path: Path, doubts: Iterable[Implausible], at: Callable[[Implausible], str]
-) -> Iterator[str]:
-    """As ``contradictions``, of what was found already."""
-    for doubt in doubts:
-        yield _noted(path, at(doubt), doubt.told, doubt.refused)
-
-
-def nowhere(
-    path: Path, recording: Recording, at: Callable[[int], str], lanelets: str, advice: str = ""
-) -> Iterator[str]:
-    """A note on vehicles that are on no lane; ``at`` says where in the file a sample is.
-
-    ``lanelets``: what they are on none of, in words. Raises ``InputError``, which ends with ``advice``, where
-    they are too many.
-    """
-    return noted_nowhere(path, off_road(recording), recording.start, at, lanelets, advice)
-
-
-def noted_nowhere(
+def contradictions(
     path: Path,
-    off: OffRoad | None,
-    start: Integers,
-    at: Callable[[int], str],
+    checks: ContradictionChecks,
+    at: Callable[[int, SignalName | SizeName], str],
+    vehicle_at: Callable[[int], str],
     lanelets: str,
     advice: str = "",
 ) -> Iterator[str]:
-    """As ``nowhere``, of what was found already; ``start``: the first sample of each vehicle."""
+    """Notes on what ``checks`` found, and on vehicles that are on none of the ``lanelets``, so in words.
+
+    ``at`` says where in the file the signal of a sample is, ``vehicle_at`` the vehicle of a sample. Raises
+    ``InputError`` where it is too much, for vehicles on no lanelet with ``advice``.
+    """
+    for doubt in checks.doubts():
+        yield _noted(path, at(doubt.row, doubt.signal), doubt.told, doubt.refused)
+    off = checks.off_road()
     if off is not None:
         told = f"on no {lanelets} at any time, like {off.count} vehicles"
         told += f"; {advice}" if advice and off.refused else ""
-        yield _noted(path, at(int(start[off.vehicle])), told, off.refused)
+        yield _noted(path, vehicle_at(off.row), told, off.refused)
 
 
 def _noted(path: Path, where: str, told: str, refused: bool) -> str:

@@ -15,11 +15,12 @@ from dataclasses import fields
 from fractions import Fraction
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from roadproof.errors import InputError
+from roadproof.evidence.codec import write
 from roadproof.recordings.formats import windows
 from roadproof.recordings.formats.believable import PlausibilityChecks
 from roadproof.recordings.formats.content import require_unchanged, stamp_of
@@ -45,6 +46,8 @@ HEAD, SAMPLES = ".recording.json", CONVERTED
 _UNFIT = (ValueError, KeyError, TypeError, AttributeError, RecursionError)
 _NEAR = 100_000  # rows between those of two vehicles that are read with them
 _LARGEST_HEAD = 200_000_000  # bytes; two thousand vehicles take 0.3 MB
+Head: TypeAlias = Mapping[str, Any]
+"""What NAME.recording.json says."""
 _OF_VEHICLES: Mapping[str, type[Any]] = {
     "vehicle_id": np.int64,
     "direction": np.int64,
@@ -84,9 +87,7 @@ def write_converted(source: RecordingSource, folder: Path) -> Recording:
     return recording
 
 
-def head_of(
-    recording: Recording, form: str, digests: Mapping[str, str], rows: int, digest: str
-) -> dict[str, Any]:
+def head_of(recording: Recording, form: str, digests: Mapping[str, str], rows: int, digest: str) -> Head:
     """What NAME.recording.json says of so many ``rows``; their file has the ``digest``.
 
     ``digests``: of the files of the format called ``form`` that it was made of.
@@ -101,7 +102,7 @@ def head_of(
     return {**said, "sha256": digest_of(said)}
 
 
-def digest_of(said: Mapping[str, Any]) -> str:
+def digest_of(said: Head) -> str:
     """The digest of what NAME.recording.json says beside its digest."""
     plain = {name: value for name, value in said.items() if name != "sha256"}
     return hashlib.sha256(json.dumps(plain, sort_keys=True).encode()).hexdigest()
@@ -114,15 +115,9 @@ def frame_of_samples(recording: Recording) -> Frame:
     return frame
 
 
-def same_frame(one: Frame, other: Frame) -> bool:
-    """Whether two frames have the same columns and values, NaN included."""
-    if one.columns != other.columns:
-        return False
-    return all(_same(one[name].to_numpy(), other[name].to_numpy()) for name in one.columns)
-
-
-def read_converted(head: Path) -> Recording:
-    """The recording of NAME.recording.json. Raises ``InputError``."""
+def read_converted(path: Path) -> Recording:
+    """The recording of NAME.recording.json, or of the samples beside it. Raises ``InputError``."""
+    head = _head_of(path)
     with _as_written(head):
         said = _read_head(head)
         recording = _recording(said, _read_samples(_table_of(head), said["samples"]["sha256"], _rows(said)))
@@ -137,12 +132,13 @@ def samples_in(head: Path) -> int:
         return _rows(_read_head(head))
 
 
-def divide_converted(head: Path, checked: bool = False) -> WindowedRecording | None:
+def divide_converted(path: Path, checked: bool = False) -> WindowedRecording | None:
     """The recording of NAME.recording.json in windows of time, None where it is small. Raises ``InputError``.
 
     Each is read from the rows of its vehicles. Raises ``InputError`` where the file changes meanwhile.
     ``checked``: this run has written the files and need not repeat the checks.
     """
+    head = _head_of(path)
     with _as_written(head):
         said, table = _read_head(head), _table_of(head)
         if _rows(said) <= windows.MOST_SAMPLES:
@@ -168,7 +164,7 @@ def divide_converted(head: Path, checked: bool = False) -> WindowedRecording | N
     return WindowedRecording(int(said["rate"]), zones_in(zones), read)
 
 
-def _checked_in_parts(head: Path, said: Mapping[str, Any], start: Integers) -> tuple[str, ...]:
+def _checked_in_parts(head: Path, said: Head, start: Integers) -> tuple[str, ...]:
     """The notes that the checks of the whole add, some vehicles at a time. Raises ``InputError``."""
     believing: PlausibilityChecks | None = None
     group = start[:-1] // windows.MOST_SAMPLES
@@ -180,7 +176,7 @@ def _checked_in_parts(head: Path, said: Mapping[str, Any], start: Integers) -> t
     return () if believing is None else believing.notes(said["notes"])
 
 
-def _of_vehicles(said: Mapping[str, Any], vehicles: Integers) -> dict[str, Any]:
+def _of_vehicles(said: Head, vehicles: Integers) -> Head:
     """What is said, of some of the vehicles."""
     chosen = vehicles.tolist()
     counts = [said["counts"][v] for v in chosen]
@@ -214,21 +210,26 @@ def _as_written(head: Path) -> Iterator[None]:
         told = f"{type(error).__name__}: {error}"[:120]
         raise InputError(f"{head}: it is not what convert writes ({told}); convert again") from None
     except OSError as error:
-        raise InputError(
-            f"{_table_of(head)}: the file cannot be read ({error.strerror}); convert again"
-        ) from None
+        told = f"{_table_of(head)}: the file cannot be read ({error.strerror})"
+        raise InputError(f"{told}; convert again") from None
 
 
 def _table_of(head: Path) -> Path:
     return head.with_name(f"{head.name.removesuffix(HEAD)}{SAMPLES}")
 
 
-def _rows(said: Mapping[str, Any]) -> int:
+def _head_of(path: Path) -> Path:
+    """The head of a table; another path stays as it is."""
+    is_table = path.name.endswith(SAMPLES)
+    return path.with_name(f"{path.name.removesuffix(SAMPLES)}{HEAD}") if is_table else path
+
+
+def _rows(said: Head) -> int:
     return int(said["samples"]["rows"])
 
 
-def _read_head(head: Path) -> dict[str, Any]:
-    said: dict[str, Any] = json.loads(read_limited(head, _LARGEST_HEAD, "it is none of ours"))
+def _read_head(head: Path) -> Head:
+    said: Head = json.loads(read_limited(head, _LARGEST_HEAD, "it is none of ours"))
     if said["schema"] != SCHEMA:
         raise InputError(f"{head}: schema={said['schema']!r}, but must be {SCHEMA!r}")
     if said["roadproof"] != version("roadproof"):
@@ -245,21 +246,9 @@ def _read_head(head: Path) -> dict[str, Any]:
 
 def same_recording(one: Recording, other: Recording) -> bool:
     """Whether two recordings say the same, NaN in columns of users' own included."""
-    return all(_same(getattr(one, x.name), getattr(other, x.name)) for x in fields(Recording))
-
-
-def _same(one: Any, other: Any) -> bool:
-    match one:
-        case np.ndarray():
-            ours, theirs = np.asarray(one), np.asarray(other)
-            exact = ours.dtype.kind == theirs.dtype.kind and ours.shape == theirs.shape
-            return exact and bool(np.array_equal(ours, theirs, equal_nan=ours.dtype.kind == "f"))
-        case Slack():
-            return other is not None and all(_same(getattr(one, x), getattr(other, x)) for x in _SLACK)
-        case dict():
-            return one.keys() == other.keys() and all(_same(one[x], other[x]) for x in one)
-        case _:
-            return bool(one == other)
+    ours, theirs = frame_of_samples(one), frame_of_samples(other)
+    same = len(one.moments) == len(other.moments) and _said(one) == _said(other)
+    return same and ours.schema == theirs.schema and ours.equals(theirs)
 
 
 def _samples(recording: Recording) -> dict[str, Column]:
@@ -273,27 +262,21 @@ def _samples(recording: Recording) -> dict[str, Column]:
     return found | {f"own:{name}": values for name, values in recording.own.items()}
 
 
-def _said(recording: Recording) -> dict[str, Any]:
+def _said(recording: Recording) -> Head:
     """All that is said once, or of vehicles."""
     return {
         "name": recording.name,
         "rate": recording.rate,
-        "lanes": [{"name": x.name, "direction": x.direction, "d": x.d} for x in recording.lanes],
+        "lanes": list(map(write, recording.lanes)),
         "beside": sorted(sorted(pair) for pair in recording.beside),
-        "lanelets": [_lanelet_data(x) for x in recording.lanelets],
+        "lanelets": list(map(write, recording.lanelets)),
         "counts": np.diff(recording.start).tolist(),
         "vehicles": {name: getattr(recording, name).tolist() for name in _OF_VEHICLES},
         "notes": list(recording.notes),
     }
 
 
-def _lanelet_data(lanelet: Lanelet) -> dict[str, Any]:
-    bounds = {"s": lanelet.s, "d": lanelet.d}
-    plain = {name: [None if x is None else str(x) for x in ends] for name, ends in bounds.items()}
-    return {x: getattr(lanelet, x) for x in ("id", "lane", "zone", "attribute")} | plain
-
-
-def _lanelet(data: Mapping[str, Any]) -> Lanelet:
+def _lanelet(data: Head) -> Lanelet:
     low, high = (None if x is None else Fraction(x) for x in data["s"])
     right, left = map(Fraction, data["d"])
     return Lanelet(data["id"], data["lane"], data["zone"], data["attribute"], s=(low, high), d=(right, left))
@@ -313,11 +296,9 @@ def _require_digest(path: Path, found: str, digest: str) -> None:
         raise InputError(f"{path}: its content is not what {path.stem} was converted to; convert again")
 
 
-def _recording(said: Mapping[str, Any], columns: Mapping[str, Column]) -> Recording:
+def _recording(said: Head, columns: Mapping[str, Column]) -> Recording:
     def group(prefix: str) -> dict[str, Column]:
-        return {
-            name.removeprefix(prefix): values for name, values in columns.items() if name.startswith(prefix)
-        }
+        return {x.removeprefix(prefix): values for x, values in columns.items() if x.startswith(prefix)}
 
     plain = {name: columns[name].astype(kind) for name, kind in _OF_SAMPLES.items() if name in columns}
     vehicles = {name: np.array(said["vehicles"][name], kind) for name, kind in _OF_VEHICLES.items()}
@@ -346,26 +327,15 @@ def _recording(said: Mapping[str, Any], columns: Mapping[str, Column]) -> Record
 
 
 def _find(path: Path) -> dict[str, Files]:
-    if path.name.endswith(SAMPLES):
-        path = path.with_name(f"{path.name.removesuffix(SAMPLES)}{HEAD}")
-    found = with_suffix(path, HEAD)
-    return {
-        x.name.removesuffix(HEAD): (x, x.with_name(f"{x.name.removesuffix(HEAD)}{SAMPLES}")) for x in found
-    }
-
-
-def _read(files: Files) -> Recording:
-    return read_converted(files[0])
-
-
-def _divide(files: Files) -> WindowedRecording | None:
-    return divide_converted(files[0])
-
-
-def _rate_at(files: Files, rate: int) -> str:
-    return f"{files[0]}, rate={rate}"
+    found = with_suffix(_head_of(path), HEAD)
+    return {x.name.removesuffix(HEAD): (x, _table_of(x)) for x in found}
 
 
 FORMAT = Format(
-    "converted", f"NAME{HEAD} and NAME{SAMPLES}, of roadproof convert", _find, _read, _rate_at, _divide
+    "converted",
+    f"NAME{HEAD} and NAME{SAMPLES}, of roadproof convert",
+    _find,
+    read_converted,
+    "{1}, rate={rate}",
+    divide_converted,
 )

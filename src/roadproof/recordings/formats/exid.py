@@ -8,30 +8,28 @@ which lanelets are of ramps. Further columns are passed over, as versions of the
 
 import re
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from roadproof.recordings.formats.contradictions import contradictions, nowhere, seldom
-from roadproof.recordings.formats.lanelets import ZONES_ENDING, network_of, read_said
+from roadproof.recordings.formats.contradictions import contradictions, seldom
+from roadproof.recordings.formats.lanelets import ZONES_ENDING, network_of
 from roadproof.recordings.formats.measured_roads import MeasuredTraffic, place_traffic
 from roadproof.recordings.formats.osm import read_osm
-from roadproof.recordings.formats.plausible import (
-    LARGEST_ACCELERATION,
-    LARGEST_SIZE,
-    LARGEST_SPEED,
-    Implausible,
-)
+from roadproof.recordings.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED, check
 from roadproof.recordings.formats.recording import Integers, Recording, with_notes
-from roadproof.recordings.formats.source import Files, Format, beside, rate_in_meta
+from roadproof.recordings.formats.source import Files, Format, beside
 from roadproof.recordings.formats.table import Table, kinds_of, read_named
 from roadproof.recordings.formats.tracks import (
+    RATE_AT,
     by_id,
     files_of,
     find_recordings,
     in_order,
     match_vehicles,
     rate_of,
+    read_tracks,
 )
 
 RECORDING_KINDS = kinds_of(
@@ -63,7 +61,6 @@ def read_exid(folder: Path, name: str) -> Recording:
     notes += tuple(_check_velocities(tracks))
     path = _map_of(folder, int(about["locationId"][0]), about)
     lanelets, told = read_osm(path, (about["xUtmOrigin"][0], about["yUtmOrigin"][0]))
-    said = read_said(path.with_name(f"{path.stem}{ZONES_ENDING}"), lanelets)
     heading = np.radians(tracks["heading"])
     traffic = MeasuredTraffic(
         name=name,
@@ -80,7 +77,7 @@ def read_exid(folder: Path, name: str) -> Recording:
         acceleration=np.stack((tracks["xAcceleration"], tracks["yAcceleration"]), axis=1),
         notes=(*notes, *told),
     )
-    recording = place_traffic(traffic, network_of(path, lanelets, said))
+    recording = place_traffic(traffic, network_of(path, lanelets))
     more = (*_check_plausible(tracks, recording), *_check_lanelets(tracks, recording, path))
     return with_notes(recording, more)
 
@@ -115,11 +112,11 @@ def _check_velocities(tracks: Table) -> Iterator[str]:
 def _check_plausible(tracks: Table, recording: Recording) -> Iterator[str]:
     """Notes on what the file contradicts itself in. Raises ``InputError`` where that is too much."""
 
-    def at(doubt: Implausible) -> str:
-        return f"{tracks.cell(doubt.row, 'frame')}, trackId={tracks['trackId'][doubt.row]}"
+    def at(row: int, signal: str) -> str:
+        return f"{tracks.cell(row, 'frame')}, trackId={tracks['trackId'][row]}"
 
-    yield from contradictions(tracks.path, recording, at)
-    yield from nowhere(tracks.path, recording, lambda row: tracks.cell(row, "trackId"), "lanelet of the map")
+    vehicle_at = partial(tracks.cell, column="trackId")
+    return contradictions(tracks.path, check(recording), at, vehicle_at, "lanelet of the map")
 
 
 def _check_lanelets(tracks: Table, recording: Recording, path: Path) -> Iterator[str]:
@@ -166,14 +163,10 @@ def _files(folder: Path, name: str) -> Files:
     return (*maps, *files_of(folder, name))
 
 
-def _find(path: Path) -> dict[str, Files]:
-    return find_recordings(path, True, _files)
-
-
-def _read(files: Files) -> Recording:
-    return read_exid(files[-1].parent, files[-1].name.removesuffix("_tracks.csv"))
-
-
 FORMAT = Format(
-    "exiD", "the files of highD with a column recordingId, and maps in .osm", _find, _read, rate_in_meta
+    "exiD",
+    "the files of highD with a column recordingId, and maps in .osm",
+    partial(find_recordings, with_ids=True, files=_files),
+    partial(read_tracks, read_exid),
+    RATE_AT,
 )

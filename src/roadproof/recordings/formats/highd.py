@@ -4,35 +4,59 @@ The format's own names mislead: ``width`` is a vehicle's length and ``height`` i
 the upper-left corner of the box, and y grows down. Direction 1 drives towards -x on the upper lanes.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
 from roadproof.errors import InputError
-from roadproof.recordings.formats.blockwise import blockwise
-from roadproof.recordings.formats.highd_checks import (
-    check_boxes,
-    check_direction,
-    check_lanes,
-    check_limits,
-    check_plausible,
-    check_sight,
+from roadproof.recordings.formats.contradictions import contradictions, seldom
+from roadproof.recordings.formats.plausible import (
+    LARGEST_ACCELERATION,
+    LARGEST_SIZE,
+    LARGEST_SPEED,
+    OFF_CENTRE,
+    check,
 )
-from roadproof.recordings.formats.recording import Bools, Floats, Lane, Recording, with_notes
-from roadproof.recordings.formats.source import Files, Format, rate_in_meta
+from roadproof.recordings.formats.recording import (
+    Bools,
+    Floats,
+    Integers,
+    Lane,
+    Recording,
+    blockwise,
+    with_notes,
+)
+from roadproof.recordings.formats.source import Files, Format
 from roadproof.recordings.formats.straight import StraightRoad, of_bands, of_road, place
-from roadproof.recordings.formats.table import Table, kinds_of, names_in, read_table
+from roadproof.recordings.formats.table import Table, kinds_of, names_in, read_table, sample_rows
 from roadproof.recordings.formats.tracks import (
+    RATE_AT,
     by_id,
     files_of,
     find_recordings,
     in_order,
     match_vehicles,
     rate_of,
+    read_tracks,
 )
 from roadproof.world.models import load_recorded_road
+from roadproof.world.signals import SignalName, SizeName
+
+LARGEST_PLACE = 10_000.0
+"""x and y (m) of a section that one camera sees."""
+_COLUMNS: Mapping[SignalName | SizeName, str] = {
+    "s": "x",
+    "d": "y",
+    "v_lon": "xVelocity",
+    "v_lat": "yVelocity",
+    "a_lon": "xAcceleration",
+    "length": "width",
+    "width": "height",
+}
+"""The columns of the signals that rules of ``plausible`` are about."""
 
 RECORDING_COLUMNS = names_in(
     "id frameRate locationId speedLimit month weekDay startTime duration totalDrivenDistance totalDrivenTime",
@@ -66,12 +90,85 @@ SAMPLE_KINDS = kinds_of(
 )
 
 
-def find_highd(path: Path) -> dict[str, Files]:
-    """The highD recordings (01, 02, …) of a folder, in order, or that of one of its files.
+def _check_cells(meta: Table, tracks: Table, start: Integers) -> None:
+    """Both files must say the same of the size of a vehicle, and no cell what no vehicle does.
 
-    A recording counts when any one of its three files is there.
+    One of them would decide the pairs that are looked at.
     """
-    return find_recordings(path, False, highd_files)
+    for column in ("width", "height"):
+        expected = np.repeat(meta[column], np.diff(start))
+        tracks.require(tracks[column] > 0, column, "the size of a vehicle is greater than zero")
+        same = np.abs(tracks[column] - expected) < 0.015  # both files round to hundredths
+        tracks.require(same, column, f"{meta.path.name} has another size for the vehicle")
+    tracks.require_within(LARGEST_PLACE, "x", "y")
+    tracks.require_within(LARGEST_SPEED, "xVelocity", "yVelocity")
+    tracks.require_within(LARGEST_ACCELERATION, "xAcceleration", "yAcceleration")
+    tracks.require_within(LARGEST_SIZE, "width", "height")
+
+
+def _check_direction(meta: Table, tracks: Table, s: Floats, start: Integers) -> None:
+    """No vehicle may end further back than its own length from where it began. Raises ``InputError``."""
+    backwards = s[start[1:] - 1] - s[start[:-1]] < -meta["width"]
+    if backwards.any():
+        k = int(np.argmax(backwards))
+        where = f"vehicle id={meta['id'][k]}, column drivingDirection={meta['drivingDirection'][k]}"
+        raise InputError(f"{meta.path}, {where}: in {tracks.path.name} the vehicle moves the other way")
+
+
+def _check_lanes(tracks: Table, recording: Recording, marked: Bools) -> Iterator[str]:
+    """laneId must be the lane of the centre of most boxes.
+
+    ``marked``: the samples whose lanes come from the markings, which laneId counts. Raises ``InputError``.
+    """
+    names = np.array([int(x.name) if x.name.isdecimal() else 0 for x in recording.lanes] + [0])
+    other = marked & (names[recording.lane] != tracks["laneId"])
+    rule = "laneId is not the lane of the box's centre"
+    return seldom(tracks, other, "laneId", rule, "do markings and positions fit?")
+
+
+def _check_sight(meta: Table, tracks: Table) -> tuple[str, ...]:
+    """x against the distance to the end of the section, which the format counts from the box's centre.
+
+    x + width/2 less that distance is one number for short and long vehicles, unless x is not the left edge.
+    """
+    names = ("id", "x", "width", "frontSightDistance", "backSightDistance")
+    rows = np.array(sample_rows(tracks.path, SAMPLE_COLUMNS, names, 400)).reshape(-1, len(names))
+    rows = rows[(rows[:, 3] > 0) & (rows[:, 4] > 0)]
+    rows = rows[np.argsort(rows[:, 2], kind="stable")]
+    third = len(rows) // 3
+    if third < 15:
+        return ()
+    spread = float(np.median(rows[-third:, 2]) - np.median(rows[:third, 2])) / 2
+    if spread < 0.2:
+        return ()
+    up = meta["drivingDirection"][np.searchsorted(meta["id"], rows[:, 0])] == UPPER
+    west = rows[:, 1] + rows[:, 2] / 2 - np.where(up, rows[:, 3], rows[:, 4])
+    slope = float(np.median(west[-third:]) - np.median(west[:third])) / spread
+    if abs(slope) <= OFF_CENTRE[0]:
+        return ()
+    told = (
+        f"column x: x + width/2 and the distances to the ends of the section differ by {slope:.2f} half "
+        "lengths: is x the left edge of the box?"
+    )
+    if abs(slope) > OFF_CENTRE[1]:
+        raise InputError(f"{tracks.path}, {told}")
+    return (f"{tracks.path.name}, {told}",)
+
+
+def _check_plausible(recording: Recording, tracks: Table) -> Iterator[str]:
+    """Notes on what the recording contradicts itself in; each vehicle must be at least once on a lane.
+
+    Raises ``InputError`` where that is too much.
+    """
+
+    def at(row: int, signal: SignalName | SizeName) -> str:
+        return f"{tracks.cell(row, _COLUMNS[signal])} of vehicle {tracks['id'][row]}"
+
+    def vehicle_at(row: int) -> str:
+        return f"vehicle id={tracks['id'][row]}, column y={tracks['y'][row]}"
+
+    lanes, advice = "lane of its direction", "the markings do not fit"
+    return contradictions(tracks.path, check(recording), at, vehicle_at, lanes, advice)
 
 
 def highd_files(folder: Path, name: str) -> Files:
@@ -93,8 +190,7 @@ def read_highd(folder: Path, name: str) -> Recording:
     tracks, notes = in_order(tracks, "id")
     start = match_vehicles(meta, tracks, "id", 1)
     sizes = np.diff(start)
-    check_boxes(meta, tracks, start)
-    check_limits(tracks)
+    _check_cells(meta, tracks, start)
     road, way = _read_road(folder / f"{name}_road.toml", bands)
 
     direction = np.repeat(meta["drivingDirection"], sizes)
@@ -103,7 +199,7 @@ def read_highd(folder: Path, name: str) -> Recording:
     # Rounding undoes what binary floats add: sums of the file's decimals are decimals again.
     s = blockwise(lambda up, x, length: np.where(up, -x, np.round(x + length, 6)), up, tracks["x"], length)
     d = blockwise(lambda up, y, width: np.where(up, np.round(y + width, 6), -y), up, tracks["y"], width)
-    check_direction(meta, tracks, s, start)
+    _check_direction(meta, tracks, s, start)
     placed = place(road, direction, s, d, length, width)
     recording = Recording(
         name=name,
@@ -125,8 +221,8 @@ def read_highd(folder: Path, name: str) -> Recording:
         notes=notes,
         **vars(placed),
     )
-    more = (*check_plausible(recording, tracks), *check_lanes(tracks, recording, direction != way))
-    return with_notes(recording, (*more, *check_sight(meta, tracks, SAMPLE_COLUMNS, UPPER)))
+    more = (*_check_plausible(recording, tracks), *_check_lanes(tracks, recording, direction != way))
+    return with_notes(recording, (*more, *_check_sight(meta, tracks)))
 
 
 def _turned(backwards: Bools, values: Floats) -> Floats:
@@ -157,15 +253,11 @@ def _read_recording(path: Path, name: str) -> tuple[int, tuple[Lane, ...], Mappi
         meta.require(meta[column] >= 0, column, "a count is never negative")
     if meta["numVehicles"][0] != meta["numCars"][0] + meta["numTrucks"][0]:
         raise meta.refuse(0, "numVehicles", "must be numCars + numTrucks")
-    upper = _read_markings(meta, "upperLaneMarkings")
-    lower = _read_markings(meta, "lowerLaneMarkings")
+    upper, lower = (_read_markings(meta, x) for x in ("upperLaneMarkings", "lowerLaneMarkings"))
     if upper[-1] > lower[0]:
         raise meta.refuse(0, "lowerLaneMarkings", f"must lie below the last upper marking {upper[-1]}")
-    return (
-        rate,
-        lanes_of_markings(upper, lower),
-        {"Car": meta["numCars"][0], "Truck": meta["numTrucks"][0]},
-    )
+    counts = {"Car": meta["numCars"][0], "Truck": meta["numTrucks"][0]}
+    return rate, lanes_of_markings(upper, lower), counts
 
 
 def _read_markings(meta: Table, column: str) -> tuple[float, ...]:
@@ -174,9 +266,8 @@ def _read_markings(meta: Table, column: str) -> tuple[float, ...]:
     except ValueError:
         raise meta.refuse(0, column, "y values joined by ';' are needed") from None
     if len(values) < 2 or not np.isfinite(values).all() or (np.diff(values) <= 0).any():
-        raise meta.refuse(
-            0, column, "at least two finite y values, each greater than the one before, are needed"
-        )
+        rule = "at least two finite y values, each greater than the one before, are needed"
+        raise meta.refuse(0, column, rule)
     return values
 
 
@@ -192,16 +283,17 @@ def _read_vehicles(path: Path, counts: Mapping[str, int]) -> Table:
     for kind, expected in counts.items():
         found = int(np.count_nonzero(kinds == kind))
         if found != expected:
-            raise InputError(
-                f"{path}: {found} vehicles of class {kind}, but the recordingMeta file counts {expected}"
-            )
+            told = f"{found} vehicles of class {kind}, but the recordingMeta file counts {expected}"
+            raise InputError(f"{path}: {told}")
     return ordered
 
 
-def _read(files: Files) -> Recording:
-    return read_highd(files[-1].parent, files[-1].name.removesuffix("_tracks.csv"))
-
-
+find_highd = partial(find_recordings, with_ids=False, files=highd_files)
+"""The recordings (01, 02, …) of a folder, or that of a file; each counts when one of its files is there."""
 FORMAT = Format(
-    "highD", "XX_recordingMeta.csv, XX_tracksMeta.csv and XX_tracks.csv", find_highd, _read, rate_in_meta
+    "highD",
+    "XX_recordingMeta.csv, XX_tracksMeta.csv and XX_tracks.csv",
+    find_highd,
+    partial(read_tracks, read_highd),
+    RATE_AT,
 )

@@ -16,17 +16,16 @@ import numpy as np
 from roadproof.errors import InputError
 from roadproof.recordings.formats import windows
 from roadproof.recordings.formats.content import require_unchanged, stamp_of
-from roadproof.recordings.formats.contradictions import noted_doubts, noted_nowhere
+from roadproof.recordings.formats.contradictions import contradictions
 from roadproof.recordings.formats.converted import (
     HEAD,
     SAMPLES,
     divide_converted,
     frame_of_samples,
     head_of,
-    same_frame,
 )
-from roadproof.recordings.formats.plausible import ContradictionChecks, Implausible, of_those_on_road, on_road
-from roadproof.recordings.formats.recording import Integers, Recording, offsets
+from roadproof.recordings.formats.plausible import ContradictionChecks
+from roadproof.recordings.formats.recording import OF_SAMPLES, OF_VEHICLES, Integers, Recording, offsets
 from roadproof.recordings.formats.samples import (
     ORDER,
     Clock,
@@ -38,16 +37,14 @@ from roadproof.recordings.formats.samples import (
     road_beside,
     vehicles_of,
 )
-from roadproof.recordings.formats.source import Files
 from roadproof.recordings.formats.straight import StraightRoad
 from roadproof.recordings.formats.table import Table, polars_module
 from roadproof.recordings.formats.windows import Window, WindowedRecording
 from roadproof.runtime.files import write_json
-from roadproof.world.signals import RECORDED
 
 _LEAST = 24
 """Bytes of a row of a CSV file, at least."""
-_PLACE = "place in the file"
+_PLACE, _GROUP = "place in the file", "group of vehicles"
 
 
 def is_large(path: Path) -> bool:
@@ -57,12 +54,11 @@ def is_large(path: Path) -> bool:
     return count_samples(path) > windows.MOST_SAMPLES
 
 
-def divide_large(files: Files) -> WindowedRecording | None:
+def divide_large(path: Path) -> WindowedRecording | None:
     """A file of samples in windows of time, None where it is small. Raises ``InputError``.
 
     It is converted into a temporary folder, which is gone when the windows are.
     """
-    path = files[-1]
     if not path.is_file() or not is_large(path):
         return None
     folder = tempfile.TemporaryDirectory()
@@ -90,24 +86,17 @@ def write_large(path: Path, folder: Path, digests: Mapping[str, str], form: str)
         require_unchanged(path, stamp)
         read = _GroupReader(path, road, survey, groups)
         doubting = ContradictionChecks(survey.clock.rate, road.lanes)
-        heads, placed, parts = [], [], []
+        heads, parts = [], []
         for number in range(len(groups)):
             recording = read.recording(number)
             doubting.add(recording)
-            placed.append(on_road(recording))
             part = Path(temporary) / f"{number}{SAMPLES}"
             frame_of_samples(recording).write_parquet(part, compression="zstd", statistics=False)
             parts.append(part)
             heads.append(_without_samples(recording))
         whole = _joined(heads)
-        doubts = doubting.doubts()
-        off = of_those_on_road(np.concatenate(placed))
-        notes = (
-            *survey.notes,
-            *survey.clock.notes,
-            *noted_doubts(path, doubts, read.place_of),
-            *noted_nowhere(path, off, whole.start, read.vehicle_at, "lanelet of the road"),
-        )
+        doubts = contradictions(path, doubting, read.place_of, read.vehicle_at, "lanelet of the road")
+        notes = (*survey.notes, *survey.clock.notes, *doubts)
         table, head = folder / f"{path.stem}{SAMPLES}", folder / f"{path.stem}{HEAD}"
         head.unlink(missing_ok=True)  # it is there when the samples are
         _join(parts, Path(temporary) / "whole", table)
@@ -192,12 +181,15 @@ def _divide_rows(path: Path, survey: _Survey, folder: Path) -> list[Path]:
         if not survey.index.keys() >= {*names}:
             raise InputError(f"{path}: the file changed while it was read; ask again when it is whole")
         vehicle = np.array([survey.index[name] for name in names])[index]
-        where = group[vehicle]
         columns = {name: pl.Series(name, values) for name, values in table.columns.items()}
-        columns |= {"vehicle": pl.Series(vehicle), _PLACE: pl.Series(places)}
-        frame = pl.DataFrame(columns)
-        for k in np.unique(where).tolist():
-            frame.filter(pl.Series(where == k)).write_parquet(groups[k] / f"{number:06d}", compression="lz4")
+        columns |= {
+            "vehicle": pl.Series(vehicle),
+            _PLACE: pl.Series(places),
+            _GROUP: pl.Series(group[vehicle]),
+        }
+        parts = pl.DataFrame(columns).partition_by(_GROUP, as_dict=True, include_key=False)
+        for (k,), part in parts.items():
+            part.write_parquet(groups[k] / f"{number:06d}", compression="lz4")
     return groups
 
 
@@ -216,9 +208,7 @@ class _GroupReader:
         The column ``vehicle`` has its place in the survey.
         """
         pl = polars_module()
-        frame = pl.concat(
-            [pl.read_parquet(part, glob=False) for part in sorted(self.groups[number].iterdir())]
-        )
+        frame = pl.read_parquet(sorted(self.groups[number].iterdir()), glob=False)
         columns = {name: frame[name].to_numpy() for name in frame.columns}
         places = columns.pop(_PLACE)
         table = Table(self.path, columns, frame.height, places)
@@ -241,8 +231,8 @@ class _GroupReader:
             row -= table.rows
         raise IndexError(row)
 
-    def place_of(self, doubt: Implausible) -> str:
-        cell, vehicle = self.cell(doubt.row, doubt.signal)
+    def place_of(self, row: int, signal: str) -> str:
+        cell, vehicle = self.cell(row, signal)
         return f"{cell} of vehicle {vehicle}"
 
     def vehicle_at(self, row: int) -> str:
@@ -251,15 +241,13 @@ class _GroupReader:
 
 def _without_samples(recording: Recording) -> Recording:
     """What a recording says once, or of vehicles."""
-    nothing = np.zeros(0)
-    signals = dict.fromkeys(RECORDED, nothing)
-    masks = {"occupancy": nothing, "lane": nothing, "zones": nothing, "inside": np.zeros((0, 0), np.bool_)}
-    return replace(recording, **signals, **masks, own={})  # type: ignore[arg-type]
+    nothing = {name: getattr(recording, name)[:0].copy() for name in (*OF_SAMPLES, "inside")}
+    return replace(recording, **nothing, own={})
 
 
 def _joined(parts: list[Recording]) -> Recording:
     """Recordings without samples, whose vehicles follow each other, as one."""
-    names = ("vehicle_id", "direction", "kind", "length", "width", "first_frame", "label")
+    names = (*OF_VEHICLES, "label")
     joined = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
     counts = np.concatenate([np.diff(part.start) for part in parts])
     return replace(parts[0], **joined, start=offsets(counts))  # type: ignore[arg-type]
@@ -275,7 +263,7 @@ def _join(parts: list[Path], temporary: Path, table: Path) -> None:
     for part in parts:
         expected = pl.read_parquet(part, glob=False)
         found = pl.scan_parquet(temporary, glob=False).slice(begin, expected.height).collect()
-        if not same_frame(found, expected):
+        if not found.equals(expected):
             raise RuntimeError(f"the samples of {table} do not come back")
         begin += expected.height
     os.replace(temporary, table)

@@ -85,14 +85,12 @@ class _Places:
         return preceding, alongside, following
 
     def _overlaps(self, other: Integers) -> Bools:
-        rows: Bools = (other >= 0) & (self.rear[other] < self.front) & (self.rear < self.front[other])
-        return rows
+        return (other >= 0) & (self.rear[other] < self.front) & (self.rear < self.front[other])
 
     def _at(self, place: Integers, group: Integers) -> Integers:
         inside = (place >= 0) & (place < len(self.order))
         at = np.where(inside, place, 0)
-        found: Integers = np.where(inside & (self.sorted_group[at] == group), self.order[at], NONE)
-        return found
+        return np.where(inside & (self.sorted_group[at] == group), self.order[at], NONE)
 
 
 def _rank(recording: Recording, lane: int) -> int:

@@ -99,9 +99,8 @@ def _text(path: Path, node: Element | None, attribute: str, what: str) -> str:
     if not value:
         raise InputError(f"{path}: {what} with {attribute} is needed")
     if "$" in value:
-        raise InputError(
-            f"{path}: {what} has {attribute}={value}: parameters are not supported; write it out"
-        )
+        told = f"{what} has {attribute}={value}"
+        raise InputError(f"{path}: {told}: parameters are not supported; write it out")
     return value
 
 
@@ -161,10 +160,9 @@ def _check_begin(path: Path, node: Element, first: float, told: str) -> None:
         clock = condition.find("ByValueCondition/SimulationTimeCondition")
         if clock is None or clock.get("rule") not in ("greaterThan", "greaterOrEqual"):
             return False
-        begin = _number(path, clock, "value", f"a StartTrigger of {told}")
-        delay = (
-            _number(path, condition, "delay", f"a StartTrigger of {told}") if condition.get("delay") else 0.0
-        )
+        trigger = f"a StartTrigger of {told}"
+        begin = _number(path, clock, "value", trigger)
+        delay = _number(path, condition, "delay", trigger) if condition.get("delay") else 0.0
         return begin + delay <= first
 
     groups = node.findall("StartTrigger/ConditionGroup")
@@ -271,14 +269,10 @@ def _find(path: Path) -> dict[str, Files]:
     return {x.stem: (x,) for x in with_suffix(path, ".xosc")}
 
 
-def _read(files: Files) -> Recording:
-    return read_recording(files[-1])
-
-
-def _rate_at(files: Files, rate: int) -> str:
-    return f"{files[-1]}, sampled {rate} times a second"
-
-
 FORMAT = Format(
-    "OpenSCENARIO", "NAME.xosc, in which all vehicles follow polylines in time", _find, _read, _rate_at
+    "OpenSCENARIO",
+    "NAME.xosc, in which all vehicles follow polylines in time",
+    _find,
+    read_recording,
+    "{0}, sampled {rate} times a second",
 )

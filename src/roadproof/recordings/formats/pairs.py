@@ -5,14 +5,26 @@ The pre-filter keeps every pair that may violate the RSS distance; what it drops
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
 from roadproof.recordings.formats.recording import Bools, Floats, Integers, Masks, Recording, offsets
 
 
+class _Columns:
+    """Columns of equal length, the fields of a dataclass."""
+
+    def __len__(self) -> int:
+        return len(next(iter(vars(self).values())))
+
+    def choose(self, wanted: Bools | Integers | slice) -> Self:
+        """The rows at ``wanted``: a mask, indices or a slice."""
+        return type(self)(*(column[wanted] for column in vars(self).values()))
+
+
 @dataclass(frozen=True)
-class Pairs:
+class Pairs(_Columns):
     """Unordered pairs of vehicle indices, ``first`` < ``second``, and their common frames low … high."""
 
     first: Integers
@@ -20,18 +32,10 @@ class Pairs:
     low: Integers
     high: Integers
 
-    def __len__(self) -> int:
-        return len(self.first)
-
     @property
     def samples(self) -> Integers:
         """How many common frames each pair has."""
-        counts: Integers = self.high - self.low + 1
-        return counts
-
-    def choose(self, wanted: Bools | Integers | slice) -> "Pairs":
-        """The pairs at ``wanted``: a mask, indices or a slice."""
-        return Pairs(self.first[wanted], self.second[wanted], self.low[wanted], self.high[wanted])
+        return self.high - self.low + 1
 
 
 @dataclass(frozen=True)
@@ -84,16 +88,13 @@ def _meeting(recording: Recording, vehicles: Integers) -> tuple[Integers, Intege
 
 
 @dataclass(frozen=True)
-class Moments:
+class Moments(_Columns):
     """Moments of pairs: of the pair at index ``pair`` at ``frame``, the samples ``first`` and ``second``."""
 
     pair: Integers
     frame: Integers
     first: Integers
     second: Integers
-
-    def __len__(self) -> int:
-        return len(self.pair)
 
 
 def all_moments(recording: Recording, pairs: Pairs, samples: int = 300_000) -> Iterator[Moments]:
@@ -133,12 +134,6 @@ def near_moments(
         pieces = _pieces_of(recording, max(1, recording.rate))
         for part in _parts(pairs, samples):
             yield _near(recording, pieces, pairs, part, reach)
-
-
-def near_pairs(recording: Recording, pairs: Pairs, reach: Reach) -> Pairs:
-    """The pairs that are near enough for an RSS violation at some moment."""
-    found = [x.pair for x in near_moments(recording, pairs, reach)]
-    return pairs.choose(np.unique(np.concatenate(found))) if found else pairs
 
 
 @dataclass(frozen=True)
@@ -206,7 +201,7 @@ def _near(recording: Recording, pieces: _Pieces, pairs: Pairs, part: slice, reac
         apart = position[found.second] - position[found.first]
         inside &= apart <= np.repeat(above, counts)
         inside &= apart >= np.repeat(-below, counts)
-    return Moments(*(x[inside] for x in (found.pair, found.frame, found.first, found.second)))
+    return found.choose(inside)
 
 
 def _spread(low: Integers, high: Integers) -> tuple[Integers, Integers]:
@@ -272,14 +267,12 @@ def _across(pieces: _Pieces, reach: Reach, first: Integers, second: Integers) ->
 def _bound_along(reach: Reach, greatest_rear: Floats, least_front: Floats) -> Floats:
     braking = (greatest_rear + reach.a_max * reach.rho) ** 2 / (2 * reach.b_min)
     way = greatest_rear * reach.rho + reach.a_max * reach.rho**2 / 2
-    bound: Floats = np.maximum(0, way + braking - least_front**2 / (2 * reach.b_max)) + 0.001
-    return bound
+    return np.maximum(0, way + braking - least_front**2 / (2 * reach.b_max)) + 0.001
 
 
 def _bound_across(reach: Reach, greatest: Floats) -> Floats:
     braking = 2 * (greatest + reach.rho * reach.a_max_lat) ** 2 / (2 * reach.b_min_lat)
-    bound: Floats = 2 * greatest * reach.rho + reach.a_max_lat * reach.rho**2 + braking + 0.001
-    return bound
+    return 2 * greatest * reach.rho + reach.a_max_lat * reach.rho**2 + braking + 0.001
 
 
 def ever_within(
@@ -313,8 +306,7 @@ def ever_within(
 
 def row_of(recording: Recording, vehicle: Integers, frame: Integers) -> Integers:
     """The sample of each vehicle at each frame."""
-    rows: Integers = recording.start[vehicle] + frame - recording.first_frame[vehicle]
-    return rows
+    return recording.start[vehicle] + frame - recording.first_frame[vehicle]
 
 
 def _parts(pairs: Pairs, samples: int) -> Iterator[slice]:
@@ -329,7 +321,7 @@ def _parts(pairs: Pairs, samples: int) -> Iterator[slice]:
 
 
 @dataclass(frozen=True)
-class Triples:
+class Triples(_Columns):
     """Ordered triples for scenario 2: SV, the first POV and the second, common frames low … high."""
 
     sv: Integers
@@ -337,12 +329,6 @@ class Triples:
     pov2: Integers
     low: Integers
     high: Integers
-
-    def __len__(self) -> int:
-        return len(self.sv)
-
-    def choose(self, wanted: Bools | Integers) -> "Triples":
-        return Triples(*(x[wanted] for x in (self.sv, self.pov1, self.pov2, self.low, self.high)))
 
 
 def triples_of(recording: Recording, endangered: Pairs, meeting: Pairs) -> Triples:

@@ -8,36 +8,28 @@ from typing import Any
 import numpy as np
 
 from roadproof.errors import InputError
-from roadproof.recordings.formats.table import RULES, Column, Kind, Table, cell_error, polars_module
+from roadproof.recordings.formats.table import RULES, Column, Frame, Kind, Table, cell_error, polars_module
 
 PIECE = 250_000
 """Rows of a large file that are in memory at once."""
 
 
-def read_parquet(
-    path: Path, wanted: Mapping[str, Kind], optional: Mapping[str, Kind], others: Kind | None = None
-) -> Table:
+def read_parquet(path: Path, wanted: Mapping[str, Kind], optional: Mapping[str, Kind]) -> Table:
     """The columns of a Parquet file with ``wanted`` and perhaps ``optional`` columns, in any order.
 
-    Whole numbers may stand for texts. ``others``: what all further columns are read as, where there may be
-    any; in a list, cells may be empty. Raises ``InputError``.
+    Whole numbers may stand for texts; further columns are read as lists. Raises ``InputError``.
     """
     with _readable(path):
         frame = polars_module().read_parquet(path, use_pyarrow=False, glob=False)
-    return _table(path, frame, wanted, optional, others)
+    return _table(path, frame, wanted, optional)
 
 
-def parquet_pieces(
-    path: Path,
-    wanted: Mapping[str, Kind],
-    optional: Mapping[str, Kind],
-    others: Kind | None = None,
-) -> Iterator[Table]:
+def parquet_pieces(path: Path, wanted: Mapping[str, Kind], optional: Mapping[str, Kind]) -> Iterator[Table]:
     """As ``read_parquet``, in pieces of PIECE rows, of which one at a time is in memory."""
     for begin in range(0, max(1, count_rows(path)), PIECE):
         with _readable(path):
             frame = polars_module().scan_parquet(path, glob=False).slice(begin, PIECE).collect()
-        yield _table(path, frame, wanted, optional, others, begin)
+        yield _table(path, frame, wanted, optional, begin)
 
 
 def count_rows(path: Path) -> int:
@@ -61,28 +53,23 @@ def _readable(path: Path) -> Iterator[None]:
 
 
 def _table(
-    path: Path,
-    frame: Any,
-    wanted: Mapping[str, Kind],
-    optional: Mapping[str, Kind],
-    others: Kind | None,
-    before: int = 0,
+    path: Path, frame: Frame, wanted: Mapping[str, Kind], optional: Mapping[str, Kind], before: int = 0
 ) -> Table:
     """The columns of rows of a file, of which there are others ``before``."""
-    if others is not None:
-        rest: dict[str, Kind] = {
-            name: others for name in frame.columns if name not in wanted and name.isidentifier()
-        }
-        optional = {**rest, **optional}
+    others = [name for name in frame.columns if name not in wanted and name.isidentifier()]
+    known: dict[str, Kind] = {**wanted, **dict.fromkeys(others, "list"), **optional}
     missing = [name for name in wanted if name not in frame.columns]
-    extra = [name for name in frame.columns if name not in (*wanted, *optional)]
+    extra = [name for name in frame.columns if name not in known]
     if missing or extra:
         told = f"missing columns {', '.join(missing)}" if missing else f"unknown columns {', '.join(extra)}"
-        raise InputError(f"{path}: {told}; the format has {', '.join((*wanted, *optional))}")
+        raise InputError(f"{path}: {told}; the format has {', '.join(known)}")
     if not frame.height:
         raise InputError(f"{path}: the file has no rows; get it again from its source")
-    kinds = {name: kind for name, kind in {**wanted, **optional}.items() if name in frame.columns}
-    columns = {name: _parquet_column(path, frame[name], name, kind, before) for name, kind in kinds.items()}
+    columns = {
+        name: _parquet_column(path, frame[name], name, kind, before)
+        for name, kind in known.items()
+        if name in frame.columns
+    }
     places = np.arange(before, before + frame.height) if before else None
     return Table(path, columns, frame.height, places)
 

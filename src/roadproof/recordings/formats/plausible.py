@@ -10,10 +10,16 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from roadproof.recordings.formats.blockwise import blocks_of, blockwise
-from roadproof.recordings.formats.median import Median
-from roadproof.recordings.formats.recording import Bools, Floats, Integers, Lane, Recording
-from roadproof.recordings.formats.scale import Scale, integrate
+from roadproof.recordings.formats.median import Median, Scale, integrate
+from roadproof.recordings.formats.recording import (
+    Bools,
+    Floats,
+    Integers,
+    Lane,
+    Recording,
+    blocks_of,
+    blockwise,
+)
 from roadproof.recordings.formats.windows import MOST_SAMPLES
 from roadproof.world.signals import SignalName, SizeName
 
@@ -58,37 +64,24 @@ class Implausible:
         return f"{self.rule} ({self.broken} of {self.asked} {self.unit})"
 
 
-def find_doubts(recording: Recording) -> list[Implausible]:
-    """Everything in which ``recording`` contradicts itself, the gravest first."""
-    found = ContradictionChecks(recording.rate, recording.lanes)
-    found.add(recording)
-    return found.doubts()
+def check(recording: Recording) -> "ContradictionChecks":
+    """The checks of a whole recording."""
+    checks = ContradictionChecks(recording.rate, recording.lanes)
+    checks.add(recording)
+    return checks
 
 
 @dataclass(frozen=True)
 class OffRoad:
-    """How many vehicles are on no lane at any time, the first of them, and whether they are too many."""
+    """How many vehicles are on no lane at any time, and the first, with its first sample.
+
+    ``refused`` where they are too many.
+    """
 
     vehicle: int
+    row: int
     count: int
     refused: bool
-
-
-def off_road(recording: Recording) -> OffRoad | None:
-    """The vehicles that are never on a lane; None where there are none."""
-    return of_those_on_road(on_road(recording))
-
-
-def on_road(recording: Recording) -> Bools:
-    """For each vehicle whether it is ever on a lane."""
-    found: Bools = np.logical_or.reduceat(recording.occupancy != 0, recording.start[:-1])
-    return found
-
-
-def of_those_on_road(on_road: Bools) -> OffRoad | None:
-    """The others, if there are any."""
-    count = int(np.count_nonzero(~on_road))
-    return OffRoad(int(np.argmin(on_road)), count, count > SHARE * len(on_road)) if count else None
 
 
 @dataclass(frozen=True)
@@ -180,14 +173,31 @@ def _worst(signal: Floats, total: Floats, begin: int, end: int) -> int:
 
 @dataclass
 class _Jumps:
-    """What no vehicle does from one frame to the next, of which ``most`` of all may be."""
+    """What no vehicle does from one frame to the next: a signal changes by more than ``limit``.
+
+    With a ``rate``, by more than that beside its integral. The share ``most`` of all steps may.
+    """
 
     rule: str
     signal: SignalName
+    limit: float
+    rate: SignalName | None = None
     most: float = SHARE_OF_JUMPS
     broken: int = 0
     asked: int = 0
     row: int = 0
+
+    def compare(self, recording: Recording, inner: Bools, before: int) -> None:
+        """Look at the steps that are ``inner``: within a vehicle; ``before``: how many rows there were."""
+        signal, broken = getattr(recording, self.signal), np.empty(len(inner), bool)
+        for part in blocks_of(len(signal), overlap=1):
+            steps = slice(part.start, part.stop - 1)
+            change = np.diff(signal[part])
+            if self.rate is not None:
+                rate = getattr(recording, self.rate)[part]
+                change -= (rate[1:] + rate[:-1]) * (1 / recording.rate / 2)
+            broken[steps] = inner[steps] & (np.abs(change) > self.limit)
+        self.add(broken, before + 1, int(np.count_nonzero(inner)))
 
     def add(self, broken: Bools, first: int, asked: int) -> None:
         """``broken`` has an entry a row from row ``first`` on; of ``asked`` steps."""
@@ -202,57 +212,20 @@ class _Jumps:
             yield Implausible(self.rule, self.signal, self.row, self.broken, self.asked, "steps", refused)
 
 
-class _Steps:
-    """The rules about steps from one frame to the next."""
-
-    def __init__(self, rate: int) -> None:
-        self.step = step = 1 / rate
-        moves = f"a vehicle does not move by more than {LARGEST_STEP:g} m from one frame to the next"
-        differ = "a position and the velocity differ by more than {:g} m from one frame to the next"
-        changes = "a velocity changes by more than {:.2g} m/s from one frame to the next"
-        along, across = 30 * step + 0.5, 10 * step + 0.5
-        self.ways: tuple[tuple[SignalName, SignalName, float, _Jumps, _Jumps], ...] = (
-            ("s", "v_lon", 1.0, _Jumps(moves, "s", 0), _Jumps(differ.format(1.0), "s")),
-            ("d", "v_lat", 0.5, _Jumps(moves, "d", 0), _Jumps(differ.format(0.5), "d")),
-        )
-        self.speeds = (
-            (along, _Jumps(changes.format(along), "v_lon")),
-            (across, _Jumps(changes.format(across), "v_lat")),
-        )
-        self.hard = _Jumps("an acceleration is above 15 m/s²", "a_lon")
-
-    def add(self, recording: Recording, before: int) -> None:
-        inner = np.ones(max(0, len(recording.s) - 1), bool)
-        inner[recording.start[1:-1] - 1] = False
-        asked = int(np.count_nonzero(inner))
-        for name, along, most, far, apart in self.ways:
-            place, speed = getattr(recording, name), getattr(recording, along)
-            jumps, differ = np.empty(len(inner), bool), np.empty(len(inner), bool)
-            for part in blocks_of(len(place), overlap=1):
-                steps = slice(part.start, part.stop - 1)
-                way, velocity = np.diff(place[part]), speed[part]
-                jumps[steps] = inner[steps] & (np.abs(way) > LARGEST_STEP)
-                way -= (velocity[1:] + velocity[:-1]) * (self.step / 2)
-                differ[steps] = inner[steps] & (np.abs(way) > most)
-            far.add(jumps, before + 1, asked)
-            apart.add(differ, before + 1, asked)
-        for most, rule in self.speeds:
-            speed, broken = getattr(recording, rule.signal), np.empty(len(inner), bool)
-            for part in blocks_of(len(speed), overlap=1):
-                steps = slice(part.start, part.stop - 1)
-                broken[steps] = inner[steps] & (np.abs(np.diff(speed[part])) > most)
-            rule.add(broken, before + 1, asked)
-        first = 0 if before else 1  # the first of all is no step
-        hard = blockwise(lambda a_lon: np.abs(a_lon) > 15, recording.a_lon[first:])
-        self.hard.add(hard, before + first, asked)
-
-    def doubts(self) -> Iterator[Implausible]:
-        for *_, far, apart in self.ways:
-            yield from far.doubts()
-            yield from apart.doubts()
-        for _, rule in self.speeds:
-            yield from rule.doubts()
-        yield from self.hard.doubts()
+def _steps(rate: int) -> tuple[_Jumps, ...]:
+    moves = f"a vehicle does not move by more than {LARGEST_STEP:g} m from one frame to the next"
+    differ = "a position and the velocity differ by more than {:g} m from one frame to the next"
+    changes = "a velocity changes by more than {:.2g} m/s from one frame to the next"
+    along, across = 30 * (1 / rate) + 0.5, 10 * (1 / rate) + 0.5
+    return (
+        _Jumps(moves, "s", LARGEST_STEP, most=0),
+        _Jumps(differ.format(1.0), "s", 1.0, "v_lon"),
+        _Jumps(moves, "d", LARGEST_STEP, most=0),
+        _Jumps(differ.format(0.5), "d", 0.5, "v_lat"),
+        _Jumps(changes.format(along), "v_lon", along),
+        _Jumps(changes.format(across), "v_lat", across),
+        _Jumps("an acceleration is above 15 m/s²", "a_lon", 15),
+    )
 
 
 @dataclass(frozen=True)
@@ -349,9 +322,10 @@ class ContradictionChecks:
         self.lanes = lanes
         self.motion = [_Motion(rule) for rule in _RATES]
         self.scale = Scale()
-        self.steps = _Steps(rate)
+        *self.steps, self.hard = _steps(rate)
         self.places = _Places(lanes)
         self.vehicles: list[_Vehicles] = []
+        self.on_road: list[Bools] = []
         self.rows = 0
 
     def add(self, recording: Recording) -> None:
@@ -362,10 +336,17 @@ class ContradictionChecks:
         for rule in self.motion:
             rule.add(recording, self.rows, windows)
         self.scale.add(recording, self.rows)
-        self.steps.add(recording, self.rows)
+        inner = np.ones(max(0, len(recording.s) - 1), bool)
+        inner[recording.start[1:-1] - 1] = False
+        for step in self.steps:
+            step.compare(recording, inner, self.rows)
+        first = 0 if self.rows else 1  # the first of all is no step
+        hard = blockwise(lambda a_lon: np.abs(a_lon) > self.hard.limit, recording.a_lon[first:])
+        self.hard.add(hard, self.rows + first, int(np.count_nonzero(inner)))
         self.places.add(recording, self.rows)
         of = (recording.length, recording.width, recording.kind, recording.direction)
         self.vehicles.append(_Vehicles(*of, recording.start[:-1] + self.rows))
+        self.on_road.append(np.logical_or.reduceat(recording.occupancy != 0, recording.start[:-1]))
         self.rows += len(recording.s)
 
     def doubts(self) -> list[Implausible]:
@@ -379,5 +360,15 @@ class ContradictionChecks:
         if scale is not None:
             counts = self.scale.vehicles, len(whole.length)
             found.append(Implausible(scale, "v_lon", self.scale.row, *counts, "vehicles", False))
-        found += [*self.steps.doubts(), *_sizes(whole, self.lanes), *self.places.doubts(whole)]
+        found += [doubt for step in (*self.steps, self.hard) for doubt in step.doubts()]
+        found += [*_sizes(whole, self.lanes), *self.places.doubts(whole)]
         return sorted(found, key=lambda doubt: not doubt.refused)
+
+    def off_road(self) -> OffRoad | None:
+        """The vehicles that are never on a lane; None where there are none."""
+        on_road = np.concatenate(self.on_road)
+        count, first = int(np.count_nonzero(~on_road)), int(np.argmin(on_road))
+        if not count:
+            return None
+        row = int(np.concatenate([x.start for x in self.vehicles])[first])
+        return OffRoad(first, row, count, count > SHARE * len(on_road))

@@ -7,7 +7,7 @@ Samples are grouped by vehicle and consecutive within one: vehicle v owns rows
 """
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
@@ -16,9 +16,38 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from roadproof.recordings.formats.blockwise import blocks_of
 from roadproof.world.road import Lanelet, Zone
 from roadproof.world.signals import KINDS, RECORDED, Kind
+
+Column: TypeAlias = npt.NDArray[Any]
+
+ROWS = 1 << 14
+"""So many rows of a few columns of doubles fit the cache of a core."""
+
+
+def blocks_of(rows: int, overlap: int = 0) -> Iterator[slice]:
+    """Slices that cover so many rows; each begins ``overlap`` rows before the end of the one before."""
+    for begin in range(0, max(1, rows - overlap), ROWS):
+        yield slice(begin, min(begin + ROWS + overlap, rows))
+
+
+def blockwise(function: Callable[..., Column], *columns: Column) -> Column:
+    """What ``function`` makes of columns of equal length, where row k of it depends on rows k alone.
+
+    >>> blockwise(np.add, np.array([1, 2]), np.array([10, 20])).tolist()
+    [11, 22]
+    """
+    rows = len(columns[0])
+    first = function(*(x[:ROWS] for x in columns))
+    if rows <= ROWS:
+        return first
+    made = np.empty((rows, *first.shape[1:]), first.dtype)
+    made[:ROWS] = first
+    for begin in range(ROWS, rows, ROWS):
+        part = slice(begin, begin + ROWS)
+        made[part] = function(*(x[part] for x in columns))
+    return made
+
 
 Floats: TypeAlias = npt.NDArray[np.float64]
 Integers: TypeAlias = npt.NDArray[np.int64]
@@ -36,6 +65,9 @@ _CLASSES: Mapping[str, Kind] = {
     "motorbike": "motorcycle",
 }
 ZONES: tuple[Zone, ...] = ("main", "merge", "depart")
+OF_VEHICLES = ("vehicle_id", "direction", "kind", "length", "width", "first_frame")
+OF_SAMPLES = (*RECORDED, "occupancy", "lane", "zones")
+"""The fields of ``Recording`` that every recording has for each vehicle, and for each sample."""
 
 
 @dataclass(frozen=True)
@@ -125,8 +157,7 @@ class Recording:
     @property
     def last_frame(self) -> Integers:
         """The last frame of each vehicle."""
-        last: Integers = self.first_frame + np.diff(self.start) - 1
-        return last
+        return self.first_frame + np.diff(self.start) - 1
 
     @property
     def row_vehicle(self) -> Integers:
@@ -182,24 +213,19 @@ def _own_number(value: object) -> float:
 
 def keep_vehicles(recording: Recording, wanted: Bools) -> Recording:
     """The recording with only the vehicles for which ``wanted`` (one entry a vehicle) is true."""
-    rows = np.repeat(wanted, np.diff(recording.start))
-    counts = np.diff(recording.start)[wanted]
+    counts = np.diff(recording.start)
+    rows = np.repeat(wanted, counts)
+    fields = ((wanted, (*OF_VEHICLES, "label")), (rows, (*OF_SAMPLES, "moments", "inside")))
     changed: dict[str, Any] = {
-        name: getattr(recording, name)[wanted]
-        for name in ("vehicle_id", "direction", "kind", "length", "width", "first_frame")
+        name: getattr(recording, name)[of]
+        for of, names in fields
+        for name in names
+        if len(getattr(recording, name))
     }
-    changed |= {name: getattr(recording, name)[rows] for name in (*RECORDED, "occupancy", "lane", "zones")}
-    if len(recording.moments):
-        changed["moments"] = recording.moments[rows]
-    if recording.lanelets:
-        changed["inside"] = recording.inside[rows]
-    if len(recording.label):
-        changed["label"] = recording.label[wanted]
-    if recording.own:
-        changed["own"] = {name: values[rows] for name, values in recording.own.items()}
     if recording.slack is not None:
         changed["slack"] = Slack(*(values[rows] for values in vars(recording.slack).values()))
-    return replace(recording, **changed, start=offsets(counts))
+    own = {name: values[rows] for name, values in recording.own.items()}
+    return replace(recording, **changed, own=own, start=offsets(counts[wanted]))
 
 
 def join_vehicles(recording: Recording, guests: Recording) -> Recording:
@@ -218,10 +244,9 @@ def join_vehicles(recording: Recording, guests: Recording) -> Recording:
         raise ValueError("recordings with own signals or labels cannot be joined")
     if recording.vehicles and guests.vehicle_id.min() <= recording.vehicle_id.max():
         raise ValueError("the ids of the guests must be greater than those of the recording")
-    per_vehicle = ("vehicle_id", "direction", "kind", "length", "width", "first_frame")
     changed: dict[str, Any] = {
         name: np.concatenate((getattr(recording, name), getattr(guests, name)))
-        for name in (*per_vehicle, *RECORDED, "occupancy", "lane", "zones", "inside")
+        for name in (*OF_VEHICLES, *OF_SAMPLES, "inside")
     }
     changed["start"] = np.concatenate((recording.start, recording.start[-1] + guests.start[1:]))
     return replace(recording, **changed)

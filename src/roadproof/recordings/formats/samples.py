@@ -8,22 +8,17 @@ NAME_road.toml beside NAME.csv or NAME.parquet, in the form of models/roads, say
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from roadproof.errors import InputError
 from roadproof.library.scenarios import vehicle_order
-from roadproof.recordings.formats.contradictions import contradictions, nowhere
+from roadproof.recordings.formats.contradictions import contradictions
 from roadproof.recordings.formats.parquet import count_rows, parquet_pieces, read_parquet
-from roadproof.recordings.formats.plausible import (
-    LARGEST_ACCELERATION,
-    LARGEST_SIZE,
-    LARGEST_SPEED,
-    Implausible,
-)
+from roadproof.recordings.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED, check
 from roadproof.recordings.formats.recording import Floats, Integers, Recording, own_numbers, with_notes
 from roadproof.recordings.formats.source import first_line
 from roadproof.recordings.formats.straight import StraightRoad, of_road, place
@@ -51,14 +46,14 @@ _KINDS: dict[str, Kind] = {name: "text" if name == "vehicle" else "number" for n
 def read_columns(path: Path) -> Table:
     """The columns of a file, with ``kind`` and own signals where it has them. Raises ``InputError``."""
     if path.suffix == ".parquet":
-        return read_parquet(path, _KINDS, {"kind": "text"}, others="list")
+        return read_parquet(path, _KINDS, {"kind": "text"})
     return read_table(path, *_header_of(path))
 
 
 def column_pieces(path: Path) -> Iterator[Table]:
     """The same in pieces, of which one at a time is in memory. Raises ``InputError``."""
     if path.suffix == ".parquet":
-        return parquet_pieces(path, _KINDS, {"kind": "text"}, others="list")
+        return parquet_pieces(path, _KINDS, {"kind": "text"})
     return read_pieces(path, *_header_of(path))
 
 
@@ -100,10 +95,7 @@ def road_beside(path: Path) -> StraightRoad:
 
 def recording_of(columns: Table, road: StraightRoad, name: str, notes: tuple[str, ...] = ()) -> Recording:
     """The recording of columns called as in ``HEADER``, and ``kind``, on a road. Raises ``InputError``."""
-    names, index = np.unique(columns["vehicle"].astype(np.str_), return_inverse=True)
-    number, numbered = number_vehicles(names)
-    table, ids = by_vehicle(columns, number[index])
-    clock = _read_clock(table, ids)
+    table, ids, clock, numbered = _in_order(columns)
     recording = vehicles_of(table, ids, clock, road, name)
     told = with_notes(recording, (*notes, *numbered, *clock.notes))
     return with_notes(told, _check_plausible(table, recording))
@@ -115,9 +107,7 @@ def doubts_in(columns: Table, road: StraightRoad) -> tuple[str, ...]:
     Samples that are not a whole number a second have one note: that nothing was compared. Raises
     ``InputError`` where the contradictions are too large or too many.
     """
-    names, index = np.unique(columns["vehicle"].astype(np.str_), return_inverse=True)
-    table, ids = by_vehicle(columns, number_vehicles(names)[0][index])
-    clock = _read_clock(table, ids)
+    table, ids, clock, _ = _in_order(columns)
     if abs(clock.rate * clock.step - 1) > _UNEVEN:
         return (
             f"samples are {clock.step:g} s apart, not a whole number a second: places, speeds and "
@@ -139,7 +129,6 @@ def vehicles_of(table: Table, ids: Integers, clock: "Clock", road: StraightRoad,
     placed = place(
         road, np.full(table.rows, DIRECTION), *(table[x] for x in ("s", "d")), *(table[x] for x in SIZES)
     )
-    moving: dict[str, Any] = {name: table[name] for name in RECORDED}
     return Recording(
         name=name,
         rate=clock.rate,
@@ -151,7 +140,12 @@ def vehicles_of(table: Table, ids: Integers, clock: "Clock", road: StraightRoad,
         width=table["width"][first],
         first_frame=frames[first],
         start=start,
-        **moving,
+        s=table["s"],
+        d=table["d"],
+        v_lon=table["v_lon"],
+        v_lat=table["v_lat"],
+        a_lon=table["a_lon"],
+        a_lat=table["a_lat"],
         **vars(placed),
         label=table[LABEL].astype(np.str_)[first] if LABEL in table.columns else np.zeros(0, np.str_),
         own={name: own_numbers(table[name].tolist()) for name in own_columns(table.columns)},
@@ -188,13 +182,17 @@ class Clock:
         return (f"frame 0 is time {self.begin:g} s",) if self.begin else ()
 
 
-def _read_clock(table: Table, ids: Integers) -> Clock:
+def _in_order(columns: Table) -> tuple[Table, Integers, Clock, tuple[str, ...]]:
+    """The rows by vehicle, the number of each row's, the clock, and a note on numbers."""
+    names, index = np.unique(columns["vehicle"].astype(np.str_), return_inverse=True)
+    number, notes = number_vehicles(names)
+    table, ids = by_vehicle(columns, number[index])
     time = table["time"]
     same = np.diff(ids, prepend=-1) == 0
     ahead = np.diff(time, prepend=0.0)
     table.require(~same | (ahead > 0), "time", ORDER)
     steps, counts = np.unique(ahead[same], return_counts=True)
-    return clock_of(table.path, float(time.min()), steps, counts)
+    return table, ids, clock_of(table.path, float(time.min()), steps, counts), notes
 
 
 ORDER = "the rows of a vehicle come in order of time, each time once"
@@ -245,8 +243,8 @@ def _check_cells(table: Table, start: Integers) -> None:
 def _check_plausible(table: Table, recording: Recording) -> Iterator[str]:
     """Notes on what the file contradicts itself in. Raises ``InputError`` where that is too much."""
 
-    def at(doubt: Implausible) -> str:
-        return f"{table.cell(doubt.row, doubt.signal)} of vehicle {table['vehicle'][doubt.row]}"
+    def at(row: int, signal: str) -> str:
+        return f"{table.cell(row, signal)} of vehicle {table['vehicle'][row]}"
 
-    yield from contradictions(table.path, recording, at)
-    yield from nowhere(table.path, recording, lambda row: table.cell(row, "vehicle"), "lanelet of the road")
+    vehicle_at = partial(table.cell, column="vehicle")
+    return contradictions(table.path, check(recording), at, vehicle_at, "lanelet of the road")

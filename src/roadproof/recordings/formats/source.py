@@ -15,8 +15,8 @@ TRACK_FILES = re.compile(r"(\d+)_(?:recordingMeta|tracksMeta|tracks)\.csv")
 """The names of the files of highD and exiD, with the name of the recording."""
 
 
-def as_a_whole(files: Files) -> WindowedRecording | None:
-    """What a format does that is never read in windows."""
+def as_a_whole(path: Path) -> WindowedRecording | None:
+    """Of a format that is never read in windows."""
     return None
 
 
@@ -26,17 +26,18 @@ class Format:
 
     ``find``: the recordings of this kind, by name, that a folder holds or that a file is of; for each all
     files that it is read from, that of its samples last. A recording of which files are missing is found,
-    so that reading it is refused. ``read`` raises ``InputError``. ``rate_at``: where the files say how many
-    samples a second there are. ``told``: the files in words. ``divide``: a recording that is
-    too large to be read as a whole, in windows; None for others.
+    so that reading it is refused. ``read`` takes the file of its samples and raises ``InputError``.
+    ``rate_at``: where the files, {0} being the last, say the ``rate`` (1/s) and ``step`` (s) of samples.
+    ``told``: the files in words. ``divide``: a recording that is too large to be read as a whole, in windows;
+    None for others.
     """
 
     name: str
     told: str
     find: Callable[[Path], dict[str, Files]]
-    read: Callable[[Files], Recording]
-    rate_at: Callable[[Files, int], str]
-    divide: Callable[[Files], WindowedRecording | None] = as_a_whole
+    read: Callable[[Path], Recording]
+    rate_at: str
+    divide: Callable[[Path], WindowedRecording | None] = as_a_whole
 
 
 @dataclass(frozen=True)
@@ -49,11 +50,11 @@ class RecordingSource:
 
     def read(self) -> Recording:
         """Read and check it. Raises ``InputError``."""
-        return self.format.read(self.files)
+        return self.format.read(self.files[-1])
 
     def divided(self) -> WindowedRecording:
         """The recording in windows, one where it is small enough. Raises ``InputError``, reading them too."""
-        return self.format.divide(self.files) or undivided(self.read())
+        return self.format.divide(self.files[-1]) or undivided(self.read())
 
     def digests(self) -> list[str]:
         """A digest of the content of each file, empty for one that cannot be read."""
@@ -61,7 +62,7 @@ class RecordingSource:
 
     def place_of_rate(self, rate: int) -> str:
         """Where the files say how many samples a second there are."""
-        return self.format.rate_at(self.files, rate)
+        return self.format.rate_at.format(*reversed(self.files), rate=rate, step=1 / rate)
 
 
 def with_suffix(path: Path, suffix: str) -> list[Path]:
@@ -87,9 +88,9 @@ def beside(path: Path, ending: str) -> Files:
     return (other,) if other.is_file() else ()
 
 
-def rate_in_meta(files: Files, rate: int) -> str:
-    """Where a recording in files of highD and exiD says how many samples a second it has."""
-    return f"{files[-3]}, row 2, column frameRate={rate}"
+def find_files(path: Path, suffix: str, ending: str) -> dict[str, Files]:
+    """The files that end in ``suffix``, by name, each after that beside it with ``ending``."""
+    return {x.stem: (*beside(x, ending), x) for x in with_suffix(path, suffix)}
 
 
 def _digest(path: Path) -> str:

@@ -4,16 +4,42 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from roadproof.errors import InputError
-from roadproof.recordings.formats import commonroad, converted, exid, highd, openscenario, tabular
-from roadproof.recordings.formats.source import Format, RecordingSource
+from roadproof.recordings.formats import commonroad, converted, exid, highd, openscenario, samples
+from roadproof.recordings.formats.large import divide_large
+from roadproof.recordings.formats.source import (
+    TRACK_FILES,
+    Files,
+    Format,
+    RecordingSource,
+    find_files,
+    first_line,
+)
 
+
+def _find_csv(path: Path) -> dict[str, Files]:
+    """In a folder the files with the header of samples, perhaps one that has to be put right."""
+    found = find_files(path, ".csv", samples.ROAD_ENDING)
+    if path.is_dir():
+        wanted = {"time", "vehicle"}
+        return {x: y for x, y in found.items() if wanted <= set(first_line(y[-1]).split(","))}
+    return {x: y for x, y in found.items() if not TRACK_FILES.fullmatch(path.name)}
+
+
+def _find_parquet(path: Path) -> dict[str, Files]:
+    found = find_files(path, ".parquet", samples.ROAD_ENDING)
+    return {x: y for x, y in found.items() if not y[-1].name.endswith(samples.CONVERTED)}
+
+
+_OF_SAMPLES = samples.read_recording, "{0}, column time in steps of 1/{rate} s", divide_large
+CSV = Format("CSV", f"NAME.csv with the header {','.join(samples.HEADER)}", _find_csv, *_OF_SAMPLES)
+PARQUET = Format("Parquet", "NAME.parquet with the same columns", _find_parquet, *_OF_SAMPLES)
 FORMATS: tuple[Format, ...] = (
     highd.FORMAT,
     exid.FORMAT,
     commonroad.FORMAT,
     openscenario.FORMAT,
-    tabular.CSV,
-    tabular.PARQUET,
+    CSV,
+    PARQUET,
     converted.FORMAT,
 )
 

@@ -15,6 +15,7 @@ import math
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -45,8 +46,7 @@ class MeasuredLanelet:
     @property
     def centre(self) -> Floats:
         """The line in the middle of the bounds."""
-        middle: Floats = (self.left + self.right) / 2
-        return middle
+        return (self.left + self.right) / 2
 
     @property
     def length(self) -> float:
@@ -56,10 +56,9 @@ class MeasuredLanelet:
 
 @dataclass(frozen=True)
 class _Links:
-    """Each direction of following, all lanelets beside each other, and those that are across the road."""
+    """Lanelets, what each follows on, and those that are across the road from it."""
 
     lanelets: Mapping[str, MeasuredLanelet]
-    successors: Mapping[str, tuple[str, ...]]
     predecessors: Mapping[str, tuple[str, ...]]
     across: Mapping[str, tuple[str, ...]]
 
@@ -88,7 +87,11 @@ def carriageways_of(lanelets: Mapping[str, MeasuredLanelet]) -> tuple[tuple[str,
 def chains_of(lanelets: Mapping[str, MeasuredLanelet]) -> tuple[tuple[str, ...], ...]:
     """All lanelets, in chains along which each is the straightest successor and predecessor of the next."""
     links = _links(lanelets)
-    after = {x: y for x, y in _straightest(links).items() if _straightest_before(links, y) == x}
+    after = {}
+    for name, x in lanelets.items():
+        following = min(x.successors, key=partial(_turn, links, name), default=None)
+        if following is not None and _straightest_before(links, following) == name:
+            after[name] = following
     begun = [x for x in lanelets if x not in after.values()]
     chains, seen = [], set[str]()
     for first in (*begun, *lanelets):  # what is left is a ring, begun anywhere
@@ -160,9 +163,9 @@ def _infer(links: _Links, chains: list[tuple[str, ...]]) -> dict[str, tuple[Attr
 def _merges(links: _Links, chain: tuple[str, ...], with_main: list[bool]) -> str:
     """Why a chain merges; "" where it does not."""
     last = chain[-1]
-    if links.successors[last]:
-        return f"leads into {links.successors[last][0]}"
-    if any(links.successors[other] for other in links.across[last]):
+    if links.lanelets[last].successors:
+        return f"leads into {links.lanelets[last].successors[0]}"
+    if any(links.lanelets[other].successors for other in links.across[last]):
         return f"ends at {last} beside lanelets that go on"
     if not with_main[0] and True in with_main:
         return f"comes to the side of the main road at {chain[with_main.index(True)]}"
@@ -177,12 +180,9 @@ def _departs(links: _Links, chain: tuple[str, ...], with_main: list[bool]) -> st
     if any(links.predecessors[other] for other in links.across[first]):
         return f"begins at {first} beside lanelets that were there before"
     if not with_main[-1] and True in with_main:
-        return f"goes away from the side of the main road after {_last_beside(chain, with_main)}"
+        last = [name for name, held in zip(chain, with_main, strict=True) if held][-1]
+        return f"goes away from the side of the main road after {last}"
     return ""
-
-
-def _last_beside(chain: tuple[str, ...], with_main: list[bool]) -> str:
-    return next(name for name, held in zip(reversed(chain), reversed(with_main), strict=True) if held)
 
 
 def _middle(links: _Links, chain: tuple[str, ...], with_main: list[bool]) -> int:
@@ -203,19 +203,9 @@ def _links(lanelets: Mapping[str, MeasuredLanelet]) -> _Links:
             predecessors[other].append(x.id)
     return _Links(
         lanelets,
-        {name: x.successors for name, x in lanelets.items()},
         {name: tuple(predecessors[name]) for name in lanelets},
         closure(lanelets, ((x.id, other) for x in lanelets.values() for other in x.beside)),
     )
-
-
-def _straightest(links: _Links) -> dict[str, str]:
-    """The successor that each lanelet goes on in; none where it has none."""
-    return {
-        name: min(others, key=lambda other, name=name: _turn(links, name, other))  # type: ignore[misc]
-        for name, others in links.successors.items()
-        if others
-    }
 
 
 def _straightest_before(links: _Links, name: str) -> str:

@@ -6,14 +6,23 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.errors import InputError
-from roadproof.recordings.formats.recording import Integers
+from roadproof.recordings.formats.recording import Integers, Recording
 from roadproof.recordings.formats.source import TRACK_FILES, Files, first_line, with_suffix
 from roadproof.recordings.formats.table import Table
+
+TRACKS = "_tracks.csv"
+RATE_AT = "{2}, row 2, column frameRate={rate}"
+"""Where a recording says its rate: in the third file from the end."""
 
 
 def files_of(folder: Path, name: str) -> Files:
     """The files of a recording, that of its samples last."""
     return tuple(folder / f"{name}_{x}.csv" for x in ("recordingMeta", "tracksMeta", "tracks"))
+
+
+def read_tracks(read: Callable[[Path, str], Recording], path: Path) -> Recording:
+    """The recording whose tracks are in ``path``, which ``read`` reads from its folder and name."""
+    return read(path.parent, path.name.removesuffix(TRACKS))
 
 
 def find_recordings(path: Path, with_ids: bool, files: Callable[[Path, str], Files]) -> dict[str, Files]:

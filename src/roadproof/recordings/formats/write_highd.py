@@ -52,7 +52,7 @@ def _sample_columns(recording: Recording, decimals: int) -> Columns:
     neighbours = find_neighbours(recording)
     dhw, thw, ttc, leader_speed = gaps_ahead(recording, neighbours.preceding)
     ids = np.append(recording.vehicle_id[vehicle], 0)  # no neighbour is row -1
-    west, east = _ends(recording, x, length)
+    west, east = float(x.min()), float((x + length).max())
     middle = x + length / 2
     columns: Columns = {
         "frame": recording.row_frame,
@@ -82,11 +82,6 @@ def _sample_columns(recording: Recording, decimals: int) -> Columns:
 def _rounded(values: npt.NDArray[Any], decimals: int) -> npt.NDArray[Any]:
     """Floats with so many decimals and no negative zero; whole numbers as they are."""
     return np.round(values, decimals) + 0.0 if values.dtype.kind == "f" else values
-
-
-def _ends(recording: Recording, x: Floats, length: Floats) -> tuple[float, float]:
-    """The x of both ends of the section that was seen."""
-    return float(x.min()), float((x + length).max())
 
 
 def _vehicle_columns(recording: Recording, samples: Columns) -> Columns:

@@ -14,8 +14,17 @@ import numpy as np
 import numpy.typing as npt
 
 from roadproof.recordings.formats.recording import Bools, Floats, Integers, offsets
-from roadproof.recordings.simulate.ramps import in_time, leavers, may_change, room_ahead, wish
-from roadproof.recordings.simulate.traffic import Drivers, Random, Traffic, draw_arrivals
+from roadproof.recordings.simulate.traffic import (
+    Drivers,
+    Random,
+    Traffic,
+    draw_arrivals,
+    in_time,
+    leavers,
+    may_change,
+    room_ahead,
+    wish,
+)
 
 
 @dataclass(frozen=True)
@@ -161,8 +170,7 @@ class _Road:
         a = self._brake_at_random(step, a)
         if len(now):
             self._change_lanes(step, queue, a)
-        capped: Floats = np.maximum(np.clip(a, -_HARDEST_BRAKING, None), -self.v[now] / STEP_SECONDS)
-        return capped
+        return np.maximum(np.clip(a, -_HARDEST_BRAKING, None), -self.v[now] / STEP_SECONDS)
 
     def _follow(self, vehicle: Integers, leader: Integers) -> Floats:
         """IDM acceleration of ``vehicle`` behind ``leader`` (-1: free road)."""
@@ -171,8 +179,7 @@ class _Road:
         gap = np.where(leader >= 0, self.s[leader] - drivers.length[leader] - self.s[vehicle], np.inf)
         approach = v * (v - self.v[leader]) / (2 * np.sqrt(limit * drivers.braking[vehicle]))
         wished = 2.0 + np.maximum(0, v * drivers.headway[vehicle] + np.where(leader >= 0, approach, 0))
-        a: Floats = limit * (1 - (v / drivers.desired[vehicle]) ** 4 - (wished / np.maximum(gap, 0.1)) ** 2)
-        return a
+        return limit * (1 - (v / drivers.desired[vehicle]) ** 4 - (wished / np.maximum(gap, 0.1)) ** 2)
 
     def _stop(self, vehicle: Integers, gap: Floats) -> Floats:
         """IDM acceleration of ``vehicle`` before a place that it may not pass."""
@@ -189,8 +196,7 @@ class _Road:
             chosen = now[self.random.integers(len(now))]
             self.brake_until[chosen] = step + self.random.integers(4, 16)
             self.brake_by[chosen] = self.random.uniform(1, 4)
-        held: Floats = np.where(self.brake_until[now] > step, np.minimum(a, -self.brake_by[now]), a)
-        return held
+        return np.where(self.brake_until[now] > step, np.minimum(a, -self.brake_by[now]), a)
 
     def _change_lanes(self, step: int, queue: "_Queue", a: Floats) -> None:
         """MOBIL: at most one vehicle of each direction begins to change lanes at a time."""
@@ -245,12 +251,10 @@ class _Queue:
         """The vehicle at each ``place`` if it is in ``lane``, else -1."""
         inside = (place >= 0) & (place < len(self.vehicle))
         at = np.where(inside, place, 0)
-        found: Integers = np.where(inside & (self.lane[at] == lane), self.vehicle[at], -1)
-        return found
+        return np.where(inside & (self.lane[at] == lane), self.vehicle[at], -1)
 
     follower = leader
 
 
 def _where_known(vehicle: Integers, value: Floats, otherwise: float = 0.0) -> Floats:
-    known: Floats = np.where(vehicle >= 0, value, otherwise)
-    return known
+    return np.where(vehicle >= 0, value, otherwise)

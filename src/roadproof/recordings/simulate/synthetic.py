@@ -66,8 +66,7 @@ def simulate(traffic: Traffic, seed: int, number: int = 1) -> Recording:
 
 
 def _two_decimals(values: Floats) -> Floats:
-    rounded: Floats = np.round(values, 2) + 0.0  # no negative zero
-    return rounded
+    return np.round(values, 2) + 0.0  # no negative zero
 
 
 def markings_of(traffic: Traffic) -> tuple[tuple[float, ...], tuple[float, ...]]:
