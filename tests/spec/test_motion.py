@@ -1,12 +1,17 @@
 """Facts about motion are true on every drive; faults planted in them are not; nothing else can be assumed."""
 
+import csv
+import re
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
 
+from roadproof.engines.prove.prover import prove
 from roadproof.errors import InputError
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import (
+    ALL_SCHEMAS,
     SCHEMAS,
     Assumption,
     Axiom,
@@ -17,8 +22,10 @@ from roadproof.library.motion import (
     under,
 )
 from roadproof.logic import formula as f
-from roadproof.logic import motion
+from roadproof.logic import motion, show
 from roadproof.logic import terms as t
+from roadproof.logic.restore import as_syntax
+from roadproof.verdict import Verdict
 from spec.motions import ABOUT, AXIOMS, holds, random_drive, specification
 from tables import read_table
 
@@ -213,3 +220,36 @@ def test_what_is_assumed_is_read_as_it_is_written():
     assert found.said == ("motion", "a_lon(SV) <= 3 m/s^2")
     assert split(statement(found.said, claim.strip()))[0] == found.said
     assert split("danger(SV,POV)") == ((), "danger(SV,POV)")
+
+
+# --- the page ------------------------------------------------------------------------------------
+
+DATA = Path(__file__).parents[2] / "docs" / "data"
+ROWS = [
+    row
+    for name in ("motion", "inductions")
+    for row in csv.DictReader((DATA / f"{name}.csv").open("r", -1, "utf-8"))
+]
+TERMS = {
+    "x": "s(SV)", "x'": "v_lon(SV)", "x''": "a_lon(SV)",
+    "y": "s(POV)", "y'": "v_lon(POV)", "y''": "a_lon(POV)",
+    "p": "(s(SV) < s(POV))", "v": "(3 m/s)", "d": "(4 s)", "a": "(1 s)", "b": "(2 s)",
+}  # fmt: skip
+LETTERS = {"left": "x", "right": "y", "inside": "p", "time": "d", "low": "a", "high": "b", "growth": "r"}
+
+
+def test_every_schema_is_on_the_page() -> None:
+    assert [row["schema"].strip("`") for row in ROWS] == [*ALL_SCHEMAS]
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row["schema"])
+def test_a_schema_says_what_the_page_says(row: dict[str, str]) -> None:
+    """An instance of the page's formula is proved equivalent to the one that proofs use."""
+    name = row["schema"].strip("`")
+    twice = "growth" in ALL_SCHEMAS[name]
+    terms = {**TERMS, "r": "(2 m/s^2)" if twice else "(2 m/s)"}
+    letters = {**LETTERS, "speed": "v" if twice else "r"}
+    axiom = Axiom(name, tuple(terms[letters[x]] for x in ALL_SCHEMAS[name]))
+    said = re.sub(r"(?<![\w'])([xy]'{0,2}|[pvrdab])(?![\w'])", lambda m: terms[m[1]], row["says"].strip("`"))
+    claim = f"({said}) <-> ({show.text(as_syntax(formula(axiom)))})"
+    assert prove(specification, read_claim(specification, claim)).verdict is Verdict.PROVED
