@@ -1,9 +1,11 @@
 """Random formulas and traces on a grid, and a reading of formulas there by definition."""
 
+import operator
 from fractions import Fraction
 
 from hypothesis import strategies as st
 
+from definition import Definition
 from roadproof.engines.encode.unroll import Grid
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
@@ -12,6 +14,7 @@ from roadproof.world.drive import Drive, Motion, Piece
 DT = Fraction(1, 2)
 STEPS = 5
 GRID = Grid(DT, STEPS)
+OPERATORS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge}
 SIGNALS = (("a_lon", "A"), ("a_lat", "A"), ("a_lon", "B"))
 
 
@@ -64,44 +67,13 @@ def value_at(trace, signal, vehicle, sample):
 
 
 def holds(formula, trace, k=0):
-    """Truth at sample k by definition (semantics §1); the last sample stands for every later one."""
+    """Truth at sample k by definition."""
 
-    def samples(window):
-        low = window.low.value / DT
-        high = None if window.high is None else window.high.value / DT
-        last = max(k + low, STEPS) if high is None else k + high
-        return [min(j, STEPS) for j in range(int(k + low), int(last) + 1)]
+    def atom(comparison, at):
+        left = comparison.left
+        return OPERATORS[comparison.op](value_at(trace, left.name, left.vehicle, at), comparison.right.value)
 
-    match formula:
-        case f.Truth(value):
-            return value
-        case f.Compare(left, op, right):
-            value = value_at(trace, left.name, left.vehicle, k)
-            return {
-                "<": value < right.value,
-                "<=": value <= right.value,
-                ">": value > right.value,
-                ">=": value >= right.value,
-            }[op]
-        case f.Not(body):
-            return not holds(body, trace, k)
-        case f.And(parts):
-            return all(holds(p, trace, k) for p in parts)
-        case f.Or(parts):
-            return any(holds(p, trace, k) for p in parts)
-        case f.Application(_, _, body):
-            return holds(body, trace, k)
-        case f.Eventually(window, body):
-            return any(holds(body, trace, j) for j in samples(window))
-        case f.Always(window, body):
-            return all(holds(body, trace, j) for j in samples(window))
-        case f.Until(left, window, right):
-            inside = samples(window)
-            return any(
-                holds(right, trace, j) and all(holds(left, trace, i) for i in inside[:n])
-                for n, j in enumerate(inside)
-            )
-    raise AssertionError(formula)
+    return Definition(STEPS, DT, atom).holds(formula, k)
 
 
 def as_drive(trace):

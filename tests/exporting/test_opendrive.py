@@ -287,27 +287,6 @@ def test_planted_fault_another_reference_point_is_noticed(tag: str, planted: flo
     assert faults(made, read_commonroad(path))
 
 
-def test_what_the_format_demands_is_there() -> None:
-    made = subject("merge", SV=TURN, POV=motion((None, "0", "0"), start=("60", "3", "20", "0")))
-    root = commonroad_root(made)
-    assert {"commonRoadVersion": "2020a", "timeStepSize": "0.04"}.items() <= root.attrib.items()
-    kinds = ["location", "scenarioTags", *["lanelet"] * 7, *["dynamicObstacle"] * 2, "planningProblem"]
-    assert [x.tag for x in root] == kinds
-    ids = [x.get("id") for x in root if x.get("id")]
-    assert len(set(ids)) == len(ids)
-    refs = {x.get("ref") for x in root.iter() if x.get("ref")}
-    assert refs < {*ids}
-    types = {x.get("id"): [y.text for y in x.findall("laneletType")] for x in root.findall("lanelet")}
-    assert [types[str(1001 + k)][1] for k in range(7)].count("accessRamp") == 1
-    for node in root.findall("dynamicObstacle"):
-        steps = [int(x.text or "") for x in node.findall(".//time/exact")]
-        assert steps == [*range(101)]
-    problem = root.find("planningProblem")
-    assert problem is not None
-    assert problem.findtext("initialState/velocity/exact") == "30"
-    assert problem.findtext("goalState/time/intervalStart") == "100"
-
-
 def test_neighbours_are_those_of_one_zone() -> None:
     """After the departure zone the ramp lies beside the road, but is no part of it."""
     lanelets = commonroad_root(subject("depart")).findall("lanelet")
@@ -415,24 +394,6 @@ def test_boxes_are_those_of_the_drive_and_corners_are_as_far_off_as_said() -> No
     assert said is not None
     corner = math.hypot(4.5, 1.8) / 2
     assert 2 * math.sin(turned / 2) * corner == pytest.approx(float(said[1]), abs=2e-3)
-
-
-def test_what_openscenario_demands_is_there() -> None:
-    made = subject(SV=TURN)
-    root = openscenario_root(made)
-    header = only(root, "FileHeader")
-    assert [header.get(x) for x in ("revMajor", "revMinor")] == ["1", "2"]
-    assert only(root, "RoadNetwork/LogicFile").get("filepath") == "made.xodr"
-    assert {*openscenario.files(made)} == {"made.xosc", "made.xodr"}
-    assert {x.get("domainAbsoluteRelative") for x in root.iter("Timing")} == {"absolute"}
-    assert {x.get("followingMode") for x in root.iter("TrajectoryFollowingMode")} == {"position"}
-    assert {x.get("priority") for x in root.iter("Event")} == {"override"}
-    starts = [x for node in root.iter("StartTrigger") for x in node.iter("SimulationTimeCondition")]
-    assert {(x.get("value"), x.get("rule")) for x in starts} == {("0", "greaterOrEqual")}
-    assert only(root, "Storyboard/StopTrigger//SimulationTimeCondition").get("value") == "4"
-    assert only(root, ".//Init//AbsoluteTargetSpeed").get("value") == "30"
-    first = only(root, ".//Init//WorldPosition").attrib
-    assert first == next(root.iter("Vertex")).find("Position/WorldPosition").attrib  # type: ignore[union-attr]
 
 
 def test_a_name_that_xml_cannot_hold_is_written_plainly(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from fuzz.case import Disagreement
-from fuzz.definition import DT, Definition, Held
+from fuzz.definition import DT, Held, definition_of
 from logic.test_show import canonical
 from roadproof.engines.encode.problem import evaluate
 from roadproof.engines.encode.unroll import Grid, unroll
@@ -181,7 +181,7 @@ def check(case: tuple[Formula, list[tuple[dict[str, tuple[Fraction, ...]], dict[
         raise Disagreement(f"read back from its text as {text(as_syntax(read))}", (formula, []))
     bound = bound_to_the_road(read)
     traces = [Held(*data) for data in given]
-    answers = [Definition(trace).holds(bound, 0) for trace in traces]
+    answers = [definition_of(trace).holds(bound, 0) for trace in traces]
     for complaints in (judged, unrolled, monitored):
         for i, complaint in complaints(bound, traces, answers):
             raise Disagreement(f"{complaint}; by definition {answers[i]}", (formula, [given[i]]))
@@ -205,7 +205,7 @@ def judged(formula: Formula, traces: list[Held], answers: list[bool]):
 
 def unrolled(formula: Formula, traces: list[Held], answers: list[bool]):
     for i, trace in enumerate(traces):
-        definition = Definition(trace)
+        definition = definition_of(trace)
         circuit = unroll(formula, Grid(DT, definition.last))
         if (
             evaluate(circuit, lambda at, definition=definition: definition.holds(at.atom, at.step))

@@ -1,7 +1,7 @@
 """What a batch refuses and ignores, steps, packing and blocks."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 
@@ -10,6 +10,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from definition import Definition
 from monitoring.cases import DT, IN_LANE, ON_MAIN, formulas, interval, intervals, random_batch, trace_of
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
@@ -214,41 +215,10 @@ def test_given_truth_is_found_whatever_its_definitions_are_called() -> None:
 # last change on, every formula keeps its value. The exact judge is asked the same on drives.
 
 
-@dataclass(frozen=True)
-class Endless:
-    """A trace whose last sample lasts for ever."""
-
-    trace: Trace
-
-    def holds(self, formula: Formula, k: int) -> bool:
-        last = self.trace.length - 1
-        k = min(k, last)
-        match formula:
-            case f.Not(body):
-                return not self.holds(body, k)
-            case f.And(parts):
-                return all(self.holds(p, k) for p in parts)
-            case f.Or(parts):
-                return any(self.holds(p, k) for p in parts)
-            case f.Application(_, _, body) if formula not in self.trace.given:
-                return self.holds(body, k)
-            case f.Eventually(interval, body):
-                return any(self.holds(body, j) for j in self.window(interval, k))
-            case f.Always(interval, body):
-                return all(self.holds(body, j) for j in self.window(interval, k))
-            case f.Until(left, interval, right):
-                window = self.window(interval, k)
-                return any(
-                    self.holds(right, j) and all(self.holds(left, i) for i in window if i < j) for j in window
-                )
-            case _:
-                return TraceReader(self.trace).holds(formula, k, "clip")
-
-    def window(self, interval: f.Interval, k: int) -> range:
-        low, high = (None if x is None else x / DT for x in bounds_of(interval))
-        assert low is not None
-        first = k + int(low)
-        return range(first, (max(first, self.trace.length) if high is None else k + int(high)) + 1)
+def endless(trace: Trace) -> Definition:
+    """The reading of a trace whose last sample lasts for ever."""
+    reader = TraceReader(trace)
+    return Definition(trace.length - 1, DT, lambda x, k: reader.holds(x, k, "clip"), trace.given)
 
 
 def _continued(batch: Batch, seed: int) -> list[Trace]:
@@ -270,7 +240,7 @@ def test_decided_answers_hold_for_every_continuation(formula: Formula, seed: int
     found = compile({"it": formula}).evaluate(batch).answers["it"]
     for other in range(3):
         for i, trace in enumerate(_continued(batch, seed + 1 + other)):
-            holds = Endless(trace).holds(formula, 0)
+            holds = endless(trace).holds(formula)
             assert not (found.true[i] and not holds), trace
             assert not (found.false[i] and holds), trace
 
@@ -280,8 +250,8 @@ def test_endless_traces_refute_clipped_answers() -> None:
     formula = f.Always(f.FOREVER, IN_LANE)
     batch = random_batch(3, 40, 2)
     found = compile({"it": formula}).evaluate(batch, "clip").answers["it"]
-    endless = [Endless(x).holds(formula, 0) for x in _continued(batch, 7)]
-    assert any(found.true[i] and not holds for i, holds in enumerate(endless))
+    truths = [endless(x).holds(formula) for x in _continued(batch, 7)]
+    assert any(found.true[i] and not holds for i, holds in enumerate(truths))
 
 
 def test_every_answer_occurs_and_undecided_is_needed() -> None:
@@ -291,7 +261,7 @@ def test_every_answer_occurs_and_undecided_is_needed() -> None:
     assert found.true.any()
     assert found.false.any()
     undecided = np.flatnonzero(found.undecided)
-    both = {Endless(_continued(batch, k)[i]).holds(formula, 0) for k in range(20) for i in undecided[:5]}
+    both = {endless(_continued(batch, k)[i]).holds(formula) for k in range(20) for i in undecided[:5]}
     assert both == {True, False}
 
 

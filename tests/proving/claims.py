@@ -4,9 +4,9 @@ import re
 from collections.abc import Mapping
 from fractions import Fraction
 from functools import cache
-from math import prod
 
 from asking import prove
+from definition import of_values
 from roadproof.engines.prove.prover import Result
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.refutation import Countermodel
@@ -176,51 +176,7 @@ def _with_numbers(formula: Formula, parameters: Mapping[str, Fraction]) -> Formu
 
 def holds(formula: Formula, values: Mapping[str, Fraction]) -> bool:
     """A formula about one instant and no road; names are as countermodels write them."""
-    match formula:
-        case f.Truth(value):
-            return value
-        case f.Not(body):
-            return not holds(body, values)
-        case f.And(parts):
-            return all(holds(part, values) for part in parts)
-        case f.Or(parts):
-            return any(holds(part, values) for part in parts)
-        case f.Application(_, _, body):
-            return holds(body, values)
-        case f.Compare(left, op, right):
-            x, y = value_of(left, values), value_of(right, values)
-            return {"<": x < y, "<=": x <= y, ">": x > y, ">=": x >= y}[op]
-    raise AssertionError(formula)
-
-
-def value_of(term: t.Term, values: Mapping[str, Fraction]) -> Fraction | float:
-    match term:
-        case t.Number(value, _):
-            return value
-        case t.Parameter(name, _) | t.Variable(name, _):
-            return values.get(name, Fraction(0))
-        case t.Signal(name, vehicle):
-            return values.get(f"{name}({vehicle})", Fraction(0))
-        case t.Size(name, vehicle):
-            return values.get(f"{name}({vehicle})", {"length": Fraction(9, 2), "width": Fraction(9, 5)}[name])
-        case t.Inverse(inner):
-            below = value_of(inner, values)
-            return 1 / below if below else float("inf")
-        case t.Power(inner, exponent):
-            return value_of(inner, values) ** exponent
-        case t.Quotient(upper, lower):
-            return value_of(upper, values) / value_of(lower, values)
-    parts = [value_of(child, values) for child in t.children(term)]
-    match term:
-        case t.Sum():
-            return sum(parts, Fraction(0))
-        case t.Product():
-            return prod(parts, start=Fraction(1))
-        case t.Maximum():
-            return max(parts)
-        case t.Minimum():
-            return min(parts)
-    raise AssertionError(term)
+    return of_values([values]).holds(formula)
 
 
 def speaks_of_all_lanes(claim: str) -> bool:

@@ -5,24 +5,23 @@ nothing of the encoder is used. Thresholds are values of the drive itself, so th
 and nearly nowhere else.
 """
 
-import operator
 import random
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cache, reduce
+from functools import cache
 from itertools import combinations
 
+from definition import of_values
 from roadproof.engines.encode.build import Assumptions
 from roadproof.engines.encode.unroll import Grid
 from roadproof.engines.search.question import SearchProblem, assignments
 from roadproof.library.bind import bind, default_values
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
-from roadproof.logic import formula as f
-from roadproof.logic import terms as t
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road, load_vehicle
 from roadproof.world.motion import state_at
+from roadproof.world.signals import RECORDED
 
 LIBRARY = bundled_library()
 BASE = LIBRARY.select("base")
@@ -32,7 +31,6 @@ ROADS = {name: load_road(name) for name in ("main-2", "main-3", "merge", "depart
 DT = Fraction(3, 5)
 REACH = Fraction(80)
 NAMES = ("SV", "POV", "POV2")
-OPERATORS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge}
 
 
 @dataclass(frozen=True)
@@ -181,7 +179,7 @@ class _Telling:
         return text if self.holds(text, k) else f"not ({text})"
 
     def holds(self, text, k):
-        return _holds(_bound(text, self.road, tuple(self.lanes.items())), self.states, k)
+        return of_values(self.states, DT).holds(_bound(text, self.road, tuple(self.lanes.items())), k)
 
     def some_atom(self, k):
         """A comparison with a value of the drive, or a state of the library."""
@@ -191,10 +189,9 @@ class _Telling:
             state = [f"atLane({a}, L)", f"inMergeZone({a})", f"inDepartZone({a})", f"s({a}) > 0 m"]
             pairs = [f"danger({a}, {b})", f"aheadOf({a}, {b})", f"sameLane({a}, {b}, L)"]
             return self.dice.choice(state + (pairs if a != b else []))
-        at, other = (self.states[k][name][1] for name in (a, b))
         signal = self.dice.choice(("s", "s", "d", "v_lon", "v_lat", "a_lon"))
         unit = {"s": "1 m", "d": "1 m", "a_lon": "1 m/s^2"}.get(signal, "1 m/s")
-        x, y = getattr(at, signal), getattr(other, signal)
+        x, y = (self.states[k][f"{signal}({name})"] for name in (a, b))
         term, value = self.dice.choice(
             (
                 (f"{signal}({a})", x),
@@ -216,7 +213,7 @@ def _seconds(steps):
 
 def holds_on_samples(text, road, drive, grid, lanes, k=0):
     """Truth at sample k by definition."""
-    return _holds(_bound(text, road, tuple(lanes.items())), _states(drive, grid), k)
+    return of_values(_states(drive, grid), DT).holds(_bound(text, road, tuple(lanes.items())), k)
 
 
 @cache
@@ -226,65 +223,14 @@ def _bound(text, road, lanes):
 
 
 def _states(drive, grid):
-    """Motion and state of every vehicle at every sample."""
+    """The values of signals and sizes at every sample."""
     return [
-        {name: (motion, state_at(motion, k * grid.dt)) for name, motion in drive.vehicles.items()}
+        {
+            f"{name}({vehicle})": getattr(x, name)
+            for vehicle, motion in drive.vehicles.items()
+            for state in [state_at(motion, k * grid.dt)]
+            for x, names in ((state, RECORDED), (motion, ("length", "width")))
+            for name in names
+        }
         for k in range(grid.steps + 1)
     ]
-
-
-def _holds(formula, states, k):
-    match formula:
-        case f.Truth(value):
-            return value
-        case f.Compare(left, op, right):
-            return OPERATORS[op](_value(left, states[k]), _value(right, states[k]))
-        case f.Not(body):
-            return not _holds(body, states, k)
-        case f.And(parts):
-            return all(_holds(p, states, k) for p in parts)
-        case f.Or(parts):
-            return any(_holds(p, states, k) for p in parts)
-        case f.Application(_, _, body):
-            return _holds(body, states, k)
-        case f.Eventually(window, body):
-            return any(_holds(body, states, j) for j in _samples(window, states, k))
-        case f.Always(window, body):
-            return all(_holds(body, states, j) for j in _samples(window, states, k))
-        case f.Until(left, window, right):
-            inside = _samples(window, states, k)
-            return any(
-                _holds(right, states, j) and all(_holds(left, states, i) for i in inside[:n])
-                for n, j in enumerate(inside)
-            )
-    raise AssertionError(formula)
-
-
-def _samples(window, states, k):
-    last = len(states) - 1
-    low = t.constant_value(window.low) / DT
-    high = last if window.high is None else t.constant_value(window.high) / DT + k
-    return [min(j, last) for j in range(int(low) + k, max(int(low) + k, int(high)) + 1)]
-
-
-def _value(term, state):
-    match term:
-        case t.Number(number, _):
-            return number
-        case t.Size(name, vehicle):
-            return getattr(state[vehicle][0], name)
-        case t.Signal(name, vehicle):
-            return getattr(state[vehicle][1], name)
-        case t.Sum(parts):
-            return sum(_value(p, state) for p in parts)
-        case t.Product(parts):
-            return reduce(operator.mul, (_value(p, state) for p in parts))
-        case t.Maximum(parts):
-            return max(_value(p, state) for p in parts)
-        case t.Minimum(parts):
-            return min(_value(p, state) for p in parts)
-        case t.Power(base, exponent):
-            return _value(base, state) ** exponent
-        case t.Quotient(a, b):
-            return _value(a, state) / _value(b, state)
-    raise AssertionError(term)

@@ -496,6 +496,7 @@ CUSTOMS = {
     "quoted, CRLF": lambda x: quoted(x).replace(b"\n", b"\r\n"),
     "some quoted": quoted_names,
     "mark of UTF-8": lambda x: b"\xef\xbb\xbf" + quoted(x),
+    "mark of UTF-8, CRLF": lambda x: b"\xef\xbb\xbf" + x.replace(b"\n", b"\r\n"),
 }
 
 

@@ -20,7 +20,6 @@ from roadproof.recordings.evaluate.questions import ask, default_settings
 from roadproof.recordings.formats import large, plausible, table, windows
 from roadproof.recordings.formats.converted import same_recording
 from roadproof.recordings.formats.highd import read_highd
-from roadproof.recordings.formats.median import Median
 from roadproof.recordings.formats.plausible import check
 from roadproof.recordings.formats.recording import Recording, keep_vehicles
 from roadproof.recordings.formats.samples import HEADER
@@ -318,16 +317,6 @@ def test_parts_that_go_wrong_are_caught(
     monkeypatch.undo()
     monkeypatch.setattr(large._GroupReader, "cell", lambda self, row, column: (f"row {row}", ""))
     assert in_windows(path, monkeypatch) != expected
-
-
-@pytest.mark.parametrize("count", [1, 2, 5, 1000, 4001])
-def test_a_median_that_does_not_fit(count: int) -> None:
-    random = np.random.default_rng(count)
-    for numbers in (random.normal(size=count), np.round(random.normal(size=count), 1), np.zeros(count)):
-        found = Median(100)
-        for part in np.array_split(numbers, 7):
-            found.add(part)
-        assert found.value() == np.median(numbers)
 
 
 def test_the_command_says_how_many(
