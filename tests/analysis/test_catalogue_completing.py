@@ -178,7 +178,7 @@ def test_a_gap_that_is_proved_empty_and_shown_is_a_contradiction(asked: Question
     answer = show(Concrete("x", str(BRAKING)), asked, Freedom())
     assert asked.gaps is not None
     name = next(x for x in sorted(answer.names) if x.startswith(gaps.PREFIX))
-    empty = {name: ClassAnswer(asked.gaps.parts[name], Verdict.IMPOSSIBLE)}
+    empty = {name: ClassAnswer(asked.gaps.parts[name], verdict=Verdict.IMPOSSIBLE)}
     made = tested.tested(asked, [answer], [], [], tested.targets_of(asked), 0.5, empty)
     assert [x.told for x in made.contradictions] == [f"shows {name}, though that is proved to be empty"]
 

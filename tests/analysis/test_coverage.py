@@ -426,21 +426,21 @@ TRAFFIC = GapTraffic(Path("recordings"), 7, (GAP, GAP, ALONE), 0)
 
 
 def test_how_often_a_class_occurs_and_where() -> None:
-    answer = ClassAnswer(FIRST, Verdict.UNKNOWN, reason="none on main-2")
+    answer = ClassAnswer(FIRST, verdict=Verdict.UNKNOWN, reason="none on main-2")
     seen = with_counts(answer, TRAFFIC)
     where = "recording 01, vehicles 3 and 5, frames 10 to 40"
     assert (seen.verdict, seen.in_traffic, seen.trace) == (Verdict.UNKNOWN, 2, where)
     assert seen.reason == f"occurs in {where}"
-    assert with_counts(ClassAnswer(None, Verdict.WITNESSED), TRAFFIC).in_traffic == 1
-    never = with_counts(ClassAnswer(SECOND, Verdict.IMPOSSIBLE), TRAFFIC)
+    assert with_counts(ClassAnswer(None, verdict=Verdict.WITNESSED), TRAFFIC).in_traffic == 1
+    never = with_counts(ClassAnswer(SECOND, verdict=Verdict.IMPOSSIBLE), TRAFFIC)
     assert (never.verdict, never.in_traffic, never.trace) == (Verdict.IMPOSSIBLE, 0, "")
 
 
 def test_what_is_proved_not_to_be_and_occurs_is_our_fault() -> None:
-    broken = with_counts(ClassAnswer(FIRST, Verdict.IMPOSSIBLE), TRAFFIC)
+    broken = with_counts(ClassAnswer(FIRST, verdict=Verdict.IMPOSSIBLE), TRAFFIC)
     assert broken.verdict is Verdict.CROSSCHECK_FAILED
     assert verdict_on([], [broken], TRAFFIC) is Verdict.CROSSCHECK_FAILED
-    proved = [ProofResult(claim, Verdict.PROVED) for claim in claims_of(BASIS.specification)]
+    proved = [ProofResult(claim, verdict=Verdict.PROVED) for claim in claims_of(BASIS.specification)]
     assert verdict_on(proved, [], None) is Verdict.COVERED
     assert verdict_on(proved, [], TRAFFIC) is Verdict.CROSSCHECK_FAILED
 

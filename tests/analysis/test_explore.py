@@ -282,7 +282,7 @@ def test_the_range_of_a_term_holds_its_values() -> None:
 
 def test_a_doubt_is_looked_past_before_it_is_the_end() -> None:
     def at(value: int, verdict: Verdict) -> PointFinding:
-        return PointFinding((F(value),), verdict, read_claim(BASE, "true"))
+        return PointFinding((F(value),), read_claim(BASE, "true"), verdict=verdict)
 
     bracket = Bracket(-1, F(1), at(10, Verdict.WITNESSED), F(30))
     assert bracket.next() == 30

@@ -251,7 +251,7 @@ def test_the_command_writes_what_it_promises_and_goes_on(
 def verdict(a: int, b: int, name: str, *core: str) -> PairVerdict:
     query = read_claim(BASE, "aheadOf(SV,POV) and true")
     cores = (Core(query, tuple(read_claim(BASE, part).formula for part in core)),) if core else ()
-    return PairVerdict(node(a), node(b), Verdict(name), query, cores=cores)
+    return PairVerdict(node(a), node(b), query, cores, verdict=Verdict(name))
 
 
 def test_the_matrix_is_symmetric_within_a_set_only() -> None:

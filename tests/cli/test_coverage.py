@@ -207,9 +207,9 @@ def test_a_doubt_says_what_was_not_tried(few: list[str]) -> None:
     [piece, _] = coverage.pieces(answers)
     assert isinstance(piece, study.Component)
     assert piece.lost[0] == "some of the simple drives were not looked through: its process ended twice"
-    doubtful = study.ClassAnswer(None, Verdict.UNKNOWN, reason="none on main-2")
+    doubtful = study.ClassAnswer(None, verdict=Verdict.UNKNOWN, reason="none on main-2")
     assert study._with_lost(doubtful, piece.lost[:1]).reason == f"none on main-2; {piece.lost[0]}"
-    sure = study.ClassAnswer(None, Verdict.IMPOSSIBLE)
+    sure = study.ClassAnswer(None, verdict=Verdict.IMPOSSIBLE)
     assert study._with_lost(sure, piece.lost) == sure
 
 

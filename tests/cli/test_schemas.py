@@ -292,7 +292,9 @@ def of_coverage(run: Run, out: Path, traffic: Path) -> None:
         patch.setattr(study, "claims_of", claims("danger(SV,POV) -> danger(SV,POV)"))
         patch.setattr(study, "replaced_by", lambda _: ("cutIn",))
         drive = JudgedDrive(load_drive(DRIVE), bundled_library())
-        patch.setattr(study, "find_need", lambda _, name: Need(name, "ext", Verdict.WITNESSED, drive))
+        patch.setattr(
+            study, "find_need", lambda _, name: Need(name, "ext", verdict=Verdict.WITNESSED, drive=drive)
+        )
         told = run("coverage", "--set", "complete", "--needed", *asked, "--out", out / "needs")
         assert told["needs"]
         examine(told, folder=out / "needs")

@@ -104,7 +104,11 @@ def one(happens: tuple[int, ...], place: str | None, verdict: Verdict = Verdict.
     name = f"class_{what}" if place is None else f"class_{what}_{place}"
     cell = Cell(happens, happens, ())
     reason = "" if verdict is Verdict.WITNESSED else "none was found"
-    return Example(Class(name, ("SV", "POV"), happens, cell, None, place, f"what {what} is"), verdict, reason)
+    return Example(
+        Class(name, ("SV", "POV"), happens, cell, None, place, f"what {what} is"),
+        verdict=verdict,
+        reason=reason,
+    )
 
 
 def shares_of(**situations: int) -> Shares:
@@ -174,7 +178,7 @@ MEASURE = read_measure(BASE, "least", "v_lon(SV)")
 
 
 def finding(at: str, verdict: Verdict, reason: str = "", number: int | None = None) -> PointFinding:
-    return PointFinding(tuple(map(F, at.split())), verdict, QUERY, reason, number=number)
+    return PointFinding(tuple(map(F, at.split())), QUERY, verdict=verdict, reason=reason, number=number)
 
 
 def exploration(**changed: Any) -> ExplorationResult:

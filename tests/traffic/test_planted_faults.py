@@ -315,7 +315,7 @@ def test_shares_are_of_situations_with_as_many_vehicles(
     def one(number: int, vehicles: tuple[str, ...]) -> Example:
         cell = Cell((number,), (number,), ())
         named = Class(f"class_{number}", vehicles, (number,), cell, None, "main road", f"{number} happens")
-        return Example(named, Verdict.WITNESSED)
+        return Example(named, verdict=Verdict.WITNESSED)
 
     examples = [one(1, PAIR), one(4, PAIR), one(2, TRIPLE)]
     situations = Counter({"class_1": 6, "class_4": 2, "class_2": 4})

@@ -10,7 +10,7 @@ from roadproof.engines.prove.induction import prove_of_scenarios
 from roadproof.engines.prove.prover import Result
 from roadproof.engines.search.ask import Search
 from roadproof.engines.search.question import Objective, SearchOptions, Setting
-from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.settled import Settled
 from roadproof.library.bind import values_with
 from roadproof.library.specification import Library, Query, Specification
 from roadproof.runtime.budget import BudgetExceeded, Effort
@@ -22,19 +22,10 @@ Claim = TypeVar("Claim")
 
 
 @dataclass(frozen=True)
-class ProofResult(Generic[Claim]):
+class ProofResult(Settled[ProofVerdict], Generic[Claim]):
     """The verdict on a claim: a certificate where it is proved, else a reason."""
 
     claim: Claim
-    verdict: ProofVerdict
-    reason: str = ""
-    certificate: Certificate | None = None
-    seconds: float = 0.0
-
-    @property
-    def holds(self) -> bool:
-        """Whether the claim is proved, be it because its premise never holds."""
-        return self.verdict in (Verdict.PROVED, Verdict.VACUOUS)
 
 
 @dataclass(frozen=True)
@@ -102,6 +93,12 @@ class Basis:
         try:
             result = self.proof_of(query, units, label)
         except BudgetExceeded as late:
-            return ProofResult(claim, Verdict.UNKNOWN, str(late), seconds=late.seconds)
+            return ProofResult(claim, verdict=Verdict.UNKNOWN, reason=str(late), seconds=late.seconds)
         assert result.verdict is not Verdict.PROVED_BOUNDED
-        return ProofResult(claim, result.verdict, result.reason, result.certificate, result.seconds)
+        return ProofResult(
+            claim,
+            verdict=result.verdict,
+            reason=result.reason,
+            certificate=result.certificate,
+            seconds=result.seconds,
+        )

@@ -208,7 +208,13 @@ class Claims:
         trace = read_trace(said.counterexample, name) if refuted and drive is None else None
         if refuted and name in self.named:
             self._check_refuted(name, record.asked, drive)
-        result = Result(verdict, record.reason, record.seconds, 0.0, certificate, trace)
+        result = Result(
+            countermodel=trace,
+            verdict=verdict,
+            reason=record.reason,
+            certificate=certificate,
+            seconds=record.seconds,
+        )
         return name, ClaimResult(task, Settlement(result, drive, None, refuted and self.within is not None))
 
     @property

@@ -19,8 +19,7 @@ from roadproof.engines.search.ask import ask
 from roadproof.engines.search.impossible import explain, parts, told_parts
 from roadproof.evidence.answers import overlap as kept_answers
 from roadproof.evidence.answers.overlap import SCHEMA
-from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.judged import JudgedDrive
+from roadproof.evidence.settled import Settled
 from roadproof.library.compose import both, either, eventually, negation
 from roadproof.library.elaborate import read_claim
 from roadproof.library.scenarios import LANE, Scenario, applied, likes_of, numbers_of, vehicles_of
@@ -92,7 +91,7 @@ class Core:
 
 
 @dataclass(frozen=True)
-class PairVerdict:
+class PairVerdict(Settled[DriveVerdict]):
     """The answer for one pair: WITNESSED with a drive, IMPOSSIBLE with certificate and cores, or a reason.
 
     ``query`` is what the drive satisfies, or the claim that was proved, or what is in doubt.
@@ -100,13 +99,8 @@ class PairVerdict:
 
     a: Scenario
     b: Scenario
-    verdict: DriveVerdict
     query: Query | None = None
-    reason: str = ""
     cores: tuple[Core, ...] = ()
-    certificate: Certificate | None = None
-    drive: JudgedDrive | None = None
-    seconds: float = 0.0
 
 
 Pair = tuple[Scenario, Scenario]
@@ -181,7 +175,7 @@ class Overlap:
 
     def doubt(self, piece: Group, reason: str) -> dict[str, PairVerdict]:
         ordered = [self._ordered(pair) for pair in piece.pairs]
-        return {name_of(a, b): PairVerdict(a, b, Verdict.UNKNOWN, None, reason) for a, b in ordered}
+        return {name_of(a, b): PairVerdict(a, b, verdict=Verdict.UNKNOWN, reason=reason) for a, b in ordered}
 
     def _ordered(self, pair: Pair) -> Pair:
         a, b = sorted(pair, key=lambda x: (self.basis.set_names.index(x.set_name), x.number))
@@ -214,13 +208,13 @@ class Overlap:
         return name_of(a, b), PairVerdict(
             a,
             b,
-            kept.verdict,
             self._read(kept.formula),
-            kept.reason,
             cores,
-            shelf.read_certificate(kept.certificate),
-            shelf.read_drive(kept.drive),
-            kept.seconds,
+            verdict=kept.verdict,
+            reason=kept.reason,
+            certificate=shelf.read_certificate(kept.certificate),
+            drive=shelf.read_drive(kept.drive),
+            seconds=kept.seconds,
         )
 
     def _read(self, text: str) -> Query:
@@ -273,7 +267,7 @@ class _DecisionJobs:
         for query in left:
             outcome = ask(self.basis.search(query))
             if outcome.drives:
-                return PairVerdict(*pair, Verdict.WITNESSED, query, drive=outcome.drives[0])
+                return PairVerdict(*pair, query, verdict=Verdict.WITNESSED, drive=outcome.drives[0])
         return self._explain(pair, queries, left)
 
     def follow(self, pair: Pair, seed: Pair, first: PairVerdict) -> PairVerdict | None:
@@ -286,7 +280,7 @@ class _DecisionJobs:
             return None
         chosen = queries[self.queries(seed).index(first.query)]
         shown = placed(first.drive.file, chosen, self.basis.library)
-        return None if shown is None else PairVerdict(*pair, Verdict.WITNESSED, chosen, drive=shown)
+        return None if shown is None else PairVerdict(*pair, chosen, verdict=Verdict.WITNESSED, drive=shown)
 
     def _impossible(
         self, pair: Pair, queries: Sequence[Query], cores: tuple[Core, ...], known: Result | None = None
@@ -297,7 +291,7 @@ class _DecisionJobs:
         if not result.holds or result.certificate is None:
             return None
         certificate = replace(result.certificate, property=f"overlap-{pair[0]}-{pair[1]}")
-        return PairVerdict(*pair, Verdict.IMPOSSIBLE, claim, "", cores, certificate)
+        return PairVerdict(*pair, claim, cores, verdict=Verdict.IMPOSSIBLE, certificate=certificate)
 
     def _explain(self, pair: Pair, queries: Sequence[Query], left: Sequence[Query]) -> PairVerdict:
         """No drive was found: say within which limits there is none, or prove it after all."""
@@ -306,7 +300,7 @@ class _DecisionJobs:
         for query in left:
             outcome = ask(self.basis.search(query, explain=True))
             if outcome.drives:
-                return PairVerdict(*pair, Verdict.WITNESSED, query, drive=outcome.drives[0])
+                return PairVerdict(*pair, query, verdict=Verdict.WITNESSED, drive=outcome.drives[0])
             verdicts.append(outcome.verdict)
             reasons.append(outcome.told(("--horizon",)) or f"proved impossible: {query.text}")
         if all(verdict is Verdict.IMPOSSIBLE for verdict in verdicts):
@@ -315,7 +309,7 @@ class _DecisionJobs:
                 return found
         sure = all(verdict in (Verdict.IMPOSSIBLE, Verdict.NONE_WITHIN) for verdict in verdicts)
         verdict: DriveVerdict = Verdict.NONE_WITHIN if sure else Verdict.UNKNOWN
-        return PairVerdict(*pair, verdict, either(*left), "; ".join(dict.fromkeys(reasons)))
+        return PairVerdict(*pair, either(*left), verdict=verdict, reason="; ".join(dict.fromkeys(reasons)))
 
     def _core(self, query: Query, proof: Result | None = None) -> Core:
         """``proof``: that ``query`` never holds, where it is known."""
@@ -332,4 +326,4 @@ class _DecisionJobs:
 
 
 def _doubt(pair: Pair, queries: Sequence[Query], reason: str) -> PairVerdict:
-    return PairVerdict(*pair, Verdict.UNKNOWN, either(*queries), reason)
+    return PairVerdict(*pair, either(*queries), verdict=Verdict.UNKNOWN, reason=reason)

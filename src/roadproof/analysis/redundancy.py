@@ -17,9 +17,9 @@ from roadproof.engines.search.ask import Search, ask
 from roadproof.engines.search.question import usual_road
 from roadproof.errors import InputError
 from roadproof.evidence.answers.redundancy import SCHEMA, Finding, Index, Record, Word
-from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.refutation import Countermodel, read_trace, trace_data
+from roadproof.evidence.settled import Settled
 from roadproof.library.bind import bind
 from roadproof.library.compose import both, equivalence, implication, negation
 from roadproof.library.elaborate import elaborate, read_claim
@@ -61,7 +61,7 @@ class Change:
 
 
 @dataclass(frozen=True)
-class ChangeFinding:
+class ChangeFinding(Settled[Word]):
     """PROVED: the change may be made. REFUTED: it matters, as a drive shows, or else a trace. UNKNOWN.
 
     ``trace`` is a judged countermodel over points in time, where no drive was found. ``assuming``: a
@@ -70,12 +70,8 @@ class ChangeFinding:
     """
 
     change: Change
-    verdict: Word
     claim: Query
-    certificate: Certificate | None = None
-    drive: JudgedDrive | None = None
     trace: Countermodel | None = None
-    reason: str = ""
     assuming: Query | None = None
     late: bool = False
 
@@ -259,14 +255,14 @@ class Redundancy:
             raise InputError(f"a finding on {said.changed}, where one on {change.changed.text} was kept")
         return ChangeFinding(
             change,
-            said.verdict,
             read_claim(specification, said.claim),
-            shelf.read_certificate(said.certificate),
-            shelf.read_drive(said.drive),
-            None if said.trace is None else read_trace(said.trace, change.part),
-            said.reason,
-            read_claim(specification, said.assuming) if said.assuming else None,
-            said.late,
+            verdict=said.verdict,
+            certificate=shelf.read_certificate(said.certificate),
+            drive=shelf.read_drive(said.drive),
+            trace=None if said.trace is None else read_trace(said.trace, change.part),
+            reason=said.reason,
+            assuming=read_claim(specification, said.assuming) if said.assuming else None,
+            late=said.late,
         )
 
     def index(self, records: Mapping[str, Record], seconds: float) -> Index:
@@ -308,7 +304,7 @@ class _ExaminationJobs:
     def doubt(self, change: Change, reason: str) -> ChangeFinding:
         """What is said of a change that nothing is known of."""
         claim = equivalence(self.query, change.changed)
-        return ChangeFinding(change, Verdict.UNKNOWN, claim, reason=reason, late=True)
+        return ChangeFinding(change, claim, verdict=Verdict.UNKNOWN, reason=reason, late=True)
 
     def _collect(self) -> None:
         """Drives of this scenario, and drives for earlier ones put on a road of its sector."""
@@ -339,11 +335,11 @@ class _ExaminationJobs:
         for judged, elsewhere in self._candidates(change):
             told = self._tells_apart(judged, apart, elsewhere)
             if told is not None:
-                return ChangeFinding(change, Verdict.REFUTED, apart, drive=told)
+                return ChangeFinding(change, apart, verdict=Verdict.REFUTED, drive=told)
         claim, label = equivalence(self.query, change.changed), f"redundancy-{self.scenario}"
         result = self.basis.proof_of(claim, label=label)
         if result.holds and result.certificate is not None:
-            return ChangeFinding(change, Verdict.PROVED, claim, result.certificate)
+            return ChangeFinding(change, claim, verdict=Verdict.PROVED, certificate=result.certificate)
         moving = self._redundant_in_motion(change)
         if moving is not None:
             return moving
@@ -351,14 +347,16 @@ class _ExaminationJobs:
         drives = () if vain else ask(self._search(apart)).drives
         if drives:
             self.mine.append(drives[0])
-            return ChangeFinding(change, Verdict.REFUTED, apart, drive=drives[0])
+            return ChangeFinding(change, apart, verdict=Verdict.REFUTED, drive=drives[0])
         units, horizon = self.basis.effort.units, self.basis.horizon
         within = f"no drive was found with {units:g} units of work, {horizon} s ahead"
         within += ", for the same scenario on another road" if vain else ""
         if result.countermodel is not None:
-            return ChangeFinding(change, Verdict.REFUTED, claim, trace=result.countermodel, reason=within)
+            return ChangeFinding(
+                change, claim, verdict=Verdict.REFUTED, trace=result.countermodel, reason=within
+            )
         reason = f"{within}, and no proof with {self.basis.proof:g}: {result.reason}"
-        return ChangeFinding(change, Verdict.UNKNOWN, claim, reason=reason)
+        return ChangeFinding(change, claim, verdict=Verdict.UNKNOWN, reason=reason)
 
     def _redundant_in_motion(self, change: Change) -> ChangeFinding | None:
         """A proof for traces on which a vehicle that leaves L has a first moment outside it.
@@ -373,7 +371,9 @@ class _ExaminationJobs:
         result = self.basis.proof_of(claim, label=label)
         if result.verdict is not Verdict.PROVED or result.certificate is None:
             return None
-        return ChangeFinding(change, Verdict.PROVED, claim, result.certificate, assuming=both(*moving))
+        return ChangeFinding(
+            change, claim, verdict=Verdict.PROVED, certificate=result.certificate, assuming=both(*moving)
+        )
 
     def _tells_apart(self, judged: JudgedDrive, query: Query, elsewhere: bool) -> JudgedDrive | None:
         """The drive judged on ``query`` where it is, or also on roads of other zones."""

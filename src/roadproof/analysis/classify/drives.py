@@ -14,6 +14,7 @@ from roadproof.engines.search.ask import ask
 from roadproof.engines.search.question import usual_road, zones_of
 from roadproof.evidence.answers.classify import Word
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.evidence.settled import Settled
 from roadproof.library.compose import both
 from roadproof.library.scenarios import sector
 from roadproof.library.specification import Query
@@ -28,13 +29,10 @@ PLAIN_ROAD = "main-2"
 
 
 @dataclass(frozen=True)
-class Example:
+class Example(Settled[Word]):
     """A judged drive of a class, or the reason why there is none to show."""
 
     one: Class
-    verdict: Word
-    reason: str = ""
-    drive: JudgedDrive | None = None
 
 
 def find_examples(
@@ -60,26 +58,28 @@ class _DriveJobs:
         try:
             return self._find(one)
         except BudgetExceeded as late:
-            return Example(one, Verdict.UNKNOWN, str(late))
+            return Example(one, verdict=Verdict.UNKNOWN, reason=str(late))
 
     def _find(self, one: Class) -> Example:
         query = with_parts(one.query(self.basis.specification), self.more)
         for judged in self.found:
             here = self._elsewhere(judged, query)
             if here is not None:
-                return Example(one, Verdict.WITNESSED, drive=here)
+                return Example(one, verdict=Verdict.WITNESSED, drive=here)
         if self.failures == MOST_FAILURES:
-            return Example(one, Verdict.UNKNOWN, "no drive was found for the same in other places")
+            return Example(
+                one, verdict=Verdict.UNKNOWN, reason="no drive was found for the same in other places"
+            )
         reasons = []
         for road in self._roads(one, query):
             outcome = ask(self.basis.search(query, road))
             if outcome.drives:
                 self.found.append(outcome.drives[0])
-                return Example(one, Verdict.WITNESSED, drive=outcome.drives[0])
+                return Example(one, verdict=Verdict.WITNESSED, drive=outcome.drives[0])
             told = outcome.reason or "a proof that the class is empty was found late, and is not kept"
             reasons.append(f"{told} (road {outcome.road}, {self.basis.effort.units:g} units of work)")
         self.failures += 1
-        return Example(one, Verdict.UNKNOWN, "; ".join(reasons))
+        return Example(one, verdict=Verdict.UNKNOWN, reason="; ".join(reasons))
 
     def _elsewhere(self, judged: JudgedDrive, query: Query) -> JudgedDrive | None:
         """The motions of a drive on another road, or on their own with other zones."""

@@ -102,9 +102,11 @@ class Classification:
     def doubt(self, piece: Alike | ProofClaims, reason: str) -> dict[str, Example | ProofResult[ClassClaim]]:
         match piece:
             case Alike(classes):
-                return {one.name: Example(one, Verdict.UNKNOWN, reason) for one in classes}
+                return {one.name: Example(one, verdict=Verdict.UNKNOWN, reason=reason) for one in classes}
             case ProofClaims(claims):
-                return {claim.name: ProofResult(claim, Verdict.UNKNOWN, reason) for claim in claims}
+                return {
+                    claim.name: ProofResult(claim, verdict=Verdict.UNKNOWN, reason=reason) for claim in claims
+                }
 
     def is_sure(self, answer: Example | ProofResult[ClassClaim]) -> bool:
         return answer.verdict in (Verdict.WITNESSED, Verdict.PROVED, Verdict.VACUOUS)
@@ -113,7 +115,7 @@ class Classification:
         self, name: str, answer: Example | ProofResult[ClassClaim], shelf: EvidenceStore
     ) -> kept.Record:
         match answer:
-            case Example(one, verdict, reason, drive):
+            case Example(one):
                 kept_class = kept.KeptClass(
                     name=name,
                     vehicles=one.vehicles,
@@ -122,20 +124,20 @@ class Classification:
                     where=one.place,
                     description=one.description,
                     formula=one.formula,
-                    verdict=verdict,
-                    reason=reason,
-                    drive=shelf.drive(f"drives/{name}.json", drive),
+                    verdict=answer.verdict,
+                    reason=answer.reason,
+                    drive=shelf.drive(f"drives/{name}.json", answer.drive),
                 )
                 return kept.Record(classes=(kept_class,), claims=())
-            case ProofResult(claim, verdict, reason, certificate, seconds):
+            case ProofResult(claim):
                 kept_claim = kept.Claim(
                     name=name,
                     kind=claim.kind,
                     claim=claim.query.text,
-                    verdict=verdict,
-                    reason=reason,
-                    certificate=shelf.certificate(f"proofs/{name}.json", certificate),
-                    seconds=seconds,
+                    verdict=answer.verdict,
+                    reason=answer.reason,
+                    certificate=shelf.certificate(f"proofs/{name}.json", answer.certificate),
+                    seconds=answer.seconds,
                 )
                 return kept.Record(classes=(), claims=(kept_claim,))
 
@@ -148,10 +150,18 @@ class Classification:
         (entry,) = entries
         match entry, self._named.get(entry.name):
             case kept.KeptClass(), Class() as one if entry.formula == one.formula:
-                return entry.name, Example(one, entry.verdict, entry.reason, shelf.read_drive(entry.drive))
+                return entry.name, Example(
+                    one, verdict=entry.verdict, reason=entry.reason, drive=shelf.read_drive(entry.drive)
+                )
             case kept.Claim(), ClassClaim() as claim if entry.claim == claim.query.text:
                 certificate = shelf.read_certificate(entry.certificate)
-                return entry.name, ProofResult(claim, entry.verdict, entry.reason, certificate, entry.seconds)
+                return entry.name, ProofResult(
+                    claim,
+                    verdict=entry.verdict,
+                    reason=entry.reason,
+                    certificate=certificate,
+                    seconds=entry.seconds,
+                )
             case _:
                 raise InputError(f"there is no class and no claim like this '{entry.name}'")
 

@@ -12,8 +12,8 @@ from roadproof.analysis.study.evidence_store import EvidenceStore
 from roadproof.errors import InputError
 from roadproof.evidence.answers import coverage as kept
 from roadproof.evidence.answers.coverage import MissedTrace, SetVerdict, Traffic
-from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.evidence.settled import Settled
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Query, Specification
 from roadproof.verdict import Verdict
@@ -37,7 +37,7 @@ class Gap:
 
 
 @dataclass(frozen=True)
-class ClassAnswer:
+class ClassAnswer(Settled[kept.CountedVerdict]):
     """What came out for one class; ``part`` None is the class for which no single condition is to blame.
 
     WITNESSED with gaps that differ in the wider set that catches them first, ``none_for`` being the sets
@@ -47,11 +47,8 @@ class ClassAnswer:
     """
 
     part: Part | None
-    verdict: kept.CountedVerdict
     gaps: tuple[Gap, ...] = ()
     claim: Query | None = None
-    certificate: Certificate | None = None
-    reason: str = ""
     none_for: tuple[str, ...] = ()
     in_traffic: int | None = None
     trace: str = ""
@@ -124,12 +121,12 @@ def _read_class(
 ) -> ClassAnswer:
     return ClassAnswer(
         part,
-        said.verdict,
-        tuple(_read_gap(gap, shelf) for gap in said.gaps),
-        read_claim(specification, said.claim) if said.claim else None,
-        shelf.read_certificate(said.certificate),
-        said.reason,
-        said.none_for,
+        verdict=said.verdict,
+        gaps=tuple(_read_gap(gap, shelf) for gap in said.gaps),
+        claim=read_claim(specification, said.claim) if said.claim else None,
+        certificate=shelf.read_certificate(said.certificate),
+        reason=said.reason,
+        none_for=said.none_for,
     )
 
 

@@ -24,6 +24,7 @@ from roadproof.engines.prove.prover import prove
 from roadproof.evidence.answers.coverage import NeedVerdict
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.evidence.settled import Settled
 from roadproof.library.bind import bind
 from roadproof.library.scenarios import PAIR, danger_comes
 from roadproof.library.specification import Specification
@@ -263,7 +264,7 @@ def _dangerous(
 
 
 @dataclass(frozen=True)
-class Need:
+class Need(Settled[NeedVerdict]):
     """WITNESSED: ``drive`` is missed without the definition, as it is in ``parent``, and caught with it.
 
     PROVED: the set covers everything without it, too. UNKNOWN: neither was found. The formula of the drive
@@ -272,8 +273,6 @@ class Need:
 
     definition: str
     parent: str
-    verdict: NeedVerdict
-    drive: JudgedDrive | None = None
 
 
 # Two cars fit side by side in its lane, as they do not on the reference roads.
@@ -307,8 +306,8 @@ def find_need(basis: Basis, name: str) -> Need:
             options = basis.specification.options
             file = DriveFile(None, wide, "", HORIZON, {}, trials.values, options, road, drive)
             if trials.misses(file, wide, kept):
-                return Need(name, parent, Verdict.WITNESSED, _judged(basis, without, file))
-    return Need(name, parent, _covers(basis, without))
+                return Need(name, parent, verdict=Verdict.WITNESSED, drive=_judged(basis, without, file))
+    return Need(name, parent, verdict=_covers(basis, without))
 
 
 def _judged(basis: Basis, without: Specification, file: DriveFile) -> JudgedDrive:

@@ -62,7 +62,7 @@ class ClassGroup:
         try:
             return self._settle(part, wider)
         except BudgetExceeded as late:
-            return ClassAnswer(part, Verdict.UNKNOWN, reason=str(late))
+            return ClassAnswer(part, verdict=Verdict.UNKNOWN, reason=str(late))
 
     def _settle(self, part: Part | None, wider: Sequence[str] = ()) -> ClassAnswer:
         """A gap for the class, or a proof; with ``wider``, a gap for each set that may be the first."""
@@ -73,7 +73,9 @@ class ClassGroup:
                 return proved
             reason = self._look(part, "", self.survey.roads, units)
             if reason:
-                return self._prove(part, LONG_PROOF) or ClassAnswer(part, Verdict.UNKNOWN, reason=reason)
+                return self._prove(part, LONG_PROOF) or ClassAnswer(
+                    part, verdict=Verdict.UNKNOWN, reason=reason
+                )
         for first in wider:
             if all(found.first != first for found in self._of(part)):
                 self._look(part, first, self.survey.roads[:1], units / 2)
@@ -85,7 +87,9 @@ class ClassGroup:
         order = [*self.survey.wider, ""]
         chosen = sorted(best.values(), key=lambda found: order.index(found.first))
         gaps = tuple(self._gap(part, found) for found in chosen)
-        return ClassAnswer(part, Verdict.WITNESSED, gaps, none_for=tuple(x for x in wider if x not in best))
+        return ClassAnswer(
+            part, verdict=Verdict.WITNESSED, gaps=gaps, none_for=tuple(x for x in wider if x not in best)
+        )
 
     def _of(self, part: Part | None) -> list[FoundGap]:
         """The known gaps of the class."""
@@ -102,7 +106,9 @@ class ClassGroup:
             claim = both(*claims)
             result = self.basis.proof_of(claim, max(LONG_PROOF, units) * len(self.classes.sectors), "gap")
             if result.holds and result.certificate is not None:
-                return ClassAnswer(part, Verdict.IMPOSSIBLE, (), claim, result.certificate)
+                return ClassAnswer(
+                    part, verdict=Verdict.IMPOSSIBLE, claim=claim, certificate=result.certificate
+                )
         return None
 
     def _is_redundant(self, part: Part) -> list[Query]:

@@ -134,14 +134,14 @@ class Coverage:
         answer: Kept
         match piece:
             case CoverageClaim(_, query):
-                answer = ProofResult(query, Verdict.UNKNOWN, reason)
+                answer = ProofResult(query, verdict=Verdict.UNKNOWN, reason=reason)
             case NeededDefinition(name):
-                answer = Need(name, parent_of(self.survey.basis.specification), Verdict.UNKNOWN)
+                answer = Need(name, parent_of(self.survey.basis.specification), verdict=Verdict.UNKNOWN)
             case Chunk():
                 answer = GapScan((), f"some of the simple drives were not looked through: {reason}")
             case Component(name):
                 parts = self.groups[name].parts
-                answer = tuple(ClassAnswer(part, Verdict.UNKNOWN, reason=reason) for part in parts)
+                answer = tuple(ClassAnswer(part, verdict=Verdict.UNKNOWN, reason=reason) for part in parts)
         return {name_of(piece): answer}
 
     # --- answers that are kept -------------------------------------------------------------------
@@ -160,18 +160,23 @@ class Coverage:
 
     def record(self, name: str, answer: Kept, shelf: EvidenceStore) -> kept.Record:
         match answer:
-            case ProofResult(claim, verdict, reason, certificate):
-                file = shelf.certificate(f"{name}.json", certificate)
-                said = kept.Claim(claim=claim.text, verdict=verdict, certificate=file, reason=reason)
+            case ProofResult(claim):
+                said = kept.Claim(
+                    claim=claim.text,
+                    verdict=answer.verdict,
+                    certificate=shelf.certificate(f"{name}.json", answer.certificate),
+                    reason=answer.reason,
+                )
                 return kept.Record(claim=said)
-            case Need(definition, parent, verdict, drive):
+            case Need(definition, parent):
+                file = None if answer.drive is None else answer.drive.file
                 need = kept.Need(
                     definition=definition,
                     extends=parent,
-                    verdict=verdict,
-                    road="" if drive is None else drive.file.road.name,
-                    formula="" if drive is None else drive.file.formula,
-                    drive=shelf.drive(f"{name}.json", drive),
+                    verdict=answer.verdict,
+                    road="" if file is None else file.road.name,
+                    formula="" if file is None else file.formula,
+                    drive=shelf.drive(f"{name}.json", answer.drive),
                 )
                 return kept.Record(need=need)
             case GapScan():
@@ -184,7 +189,7 @@ class Coverage:
             return self._recalled_claim(record.claim, shelf)
         if record.need is not None:
             drive = shelf.read_drive(record.need.drive)
-            need = Need(record.need.definition, record.need.extends, record.need.verdict, drive)
+            need = Need(record.need.definition, record.need.extends, verdict=record.need.verdict, drive=drive)
             return name_of(NeededDefinition(need.definition)), need
         for name, group in self.groups.items():
             if group.title == record.group:
@@ -195,7 +200,9 @@ class Coverage:
         for claim in self.claims:
             if claim.query.text == said.claim:
                 certificate = shelf.read_certificate(said.certificate)
-                return name_of(claim), ProofResult(claim.query, said.verdict, said.reason, certificate)
+                return name_of(claim), ProofResult(
+                    claim.query, verdict=said.verdict, reason=said.reason, certificate=certificate
+                )
         raise InputError(f"coverage does not rest on this claim: {said.claim[:120]}")
 
     # --- all together ----------------------------------------------------------------------------
@@ -217,7 +224,7 @@ class Coverage:
         none = is_covered(self._proved(answers))
 
         def find(part: Part | None) -> ClassAnswer | None:
-            return ClassAnswer(part, Verdict.IMPOSSIBLE) if none else known.get(part and part.key)
+            return ClassAnswer(part, verdict=Verdict.IMPOSSIBLE) if none else known.get(part and part.key)
 
         return find
 
@@ -274,4 +281,4 @@ def _with_lost(answer: ClassAnswer, lost: tuple[str, ...]) -> ClassAnswer:
     """A doubt that also says which drives were not tried."""
     if answer.verdict is not Verdict.UNKNOWN or not lost:
         return answer
-    return ClassAnswer(answer.part, answer.verdict, reason="; ".join((answer.reason, *lost)))
+    return ClassAnswer(answer.part, verdict=answer.verdict, reason="; ".join((answer.reason, *lost)))

@@ -8,8 +8,7 @@ from typing import Literal, TypeAlias
 
 from roadproof.engines.search.ask import Search
 from roadproof.errors import UsageError
-from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.judged import JudgedDrive
+from roadproof.evidence.settled import Settled
 from roadproof.library.compose import always, both, comparison, eventually
 from roadproof.library.elaborate import read_claim, read_term
 from roadproof.library.specification import Query, Specification
@@ -183,7 +182,7 @@ class Explorable:
 
 
 @dataclass(frozen=True)
-class PointFinding:
+class PointFinding(Settled[DriveVerdict]):
     """The answer at one point. ``query`` is what the drive satisfies, or what has no drive.
 
     ``number`` tells drives apart; ``certificate`` proves that there is none: for all values, or for those
@@ -191,12 +190,8 @@ class PointFinding:
     """
 
     at: Point
-    verdict: DriveVerdict
     query: Query
-    reason: str = ""
-    drive: JudgedDrive | None = None
     number: int | None = None
-    certificate: Certificate | None = None
 
     @property
     def found(self) -> bool:

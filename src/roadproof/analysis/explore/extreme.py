@@ -108,7 +108,7 @@ def find_extreme(
 
 def unsought(sought: ExtremeQuestion, reason: str) -> Extreme:
     """What is said of an extreme that nothing is known of."""
-    missed = PointFinding((), Verdict.UNKNOWN, sought.query(None), reason)
+    missed = PointFinding((), sought.query(None), verdict=Verdict.UNKNOWN, reason=reason)
     return Extreme(sought.measure, sought.point, None, missed, None, 0, late=True)
 
 
@@ -216,7 +216,9 @@ class _ExtremeSearch:
         if shown is None:
             return None
         reason = f"proved for all time; core: {' and '.join(shown.told)}"
-        return PointFinding(at, Verdict.IMPOSSIBLE, query, reason, certificate=shown.certificate)
+        return PointFinding(
+            at, query, verdict=Verdict.IMPOSSIBLE, reason=reason, certificate=shown.certificate
+        )
 
     def best_of(self, drives: Sequence[JudgedDrive]) -> PointFinding | None:
         """The best value that is judged on one of the drives."""
@@ -225,7 +227,9 @@ class _ExtremeSearch:
             value = self.at_moment(drive.file) if self.measure.when else self.at_start(drive.file)
             shown = None if value is None else self.shown(drive, value)
             if value is not None and shown is not None:
-                found.append(PointFinding((value,), Verdict.WITNESSED, self.sought.query(value), drive=shown))
+                found.append(
+                    PointFinding((value,), self.sought.query(value), verdict=Verdict.WITNESSED, drive=shown)
+                )
         return min(found, key=lambda finding: finding.at[0] * self.measure.sign, default=None)
 
     def claim(self, value: Fraction) -> DriveClaim:

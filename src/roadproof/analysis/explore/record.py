@@ -168,12 +168,12 @@ class _Reader:
             raise InputError(f"a finding on {said.formula}, where one on {query.text} was asked for")
         return PointFinding(
             _at(said),
-            said.verdict,
             query,
-            said.reason,
-            self.shelf.read_drive(said.drive),
-            said.number,
-            self.shelf.read_certificate(said.certificate),
+            verdict=said.verdict,
+            reason=said.reason,
+            drive=self.shelf.read_drive(said.drive),
+            number=said.number,
+            certificate=self.shelf.read_certificate(said.certificate),
         )
 
 

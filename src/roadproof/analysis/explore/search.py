@@ -68,7 +68,7 @@ def missed(at: Point, query: Query, reply: Reply) -> PointFinding:
     if reply.verdict is Verdict.NONE_WITHIN:
         verdict = Verdict.NONE_WITHIN
     reason = reply.reason or "the drive that was found is rejected by the judge"
-    return PointFinding(at, verdict, query, reason)
+    return PointFinding(at, query, verdict=verdict, reason=reason)
 
 
 def look(task: SearchTask) -> Reply:
@@ -292,4 +292,8 @@ def never(search: Search, at: Point, query: Query, units: float) -> PointFinding
     said = value_texts(search.specification, there)
     effort = search.search_options.effort.of(units)
     proof = prove(search.specification, negation(query), effort, assumed=Assumption(said)).certificate
-    return None if proof is None else PointFinding(at, Verdict.IMPOSSIBLE, query, NEVER, certificate=proof)
+    return (
+        None
+        if proof is None
+        else PointFinding(at, query, verdict=Verdict.IMPOSSIBLE, reason=NEVER, certificate=proof)
+    )

@@ -91,7 +91,9 @@ class Exploration:
 
     def doubt(self, piece: str, reason: str) -> dict[str, ExplorationResult]:
         asked = self.named[piece]
-        findings = (PointFinding(x, Verdict.UNKNOWN, asked.query(x), reason) for x in asked.points)
+        findings = (
+            PointFinding(x, asked.query(x), verdict=Verdict.UNKNOWN, reason=reason) for x in asked.points
+        )
         explored = ExplorationResult(tuple(findings), late=True)
         soughts = (x for measure in asked.measures for x in soughts_of(asked, explored, measure))
         return {piece: replace(explored, extremes=tuple(unsought(x, reason) for x in soughts))}

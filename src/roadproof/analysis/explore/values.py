@@ -162,11 +162,15 @@ class ExplorationState:
         if self.impossibility is not None:
             core = f"proved for all values; core: {' and '.join(self.impossibility.told)}"
             certificate = self.impossibility.certificate
-            return PointFinding(point, Verdict.IMPOSSIBLE, claim.query, core, certificate=certificate)
+            return PointFinding(
+                point, claim.query, verdict=Verdict.IMPOSSIBLE, reason=core, certificate=certificate
+            )
         shown = self.stock.show(claim, since)
         if shown is None:
             return None
-        return PointFinding(point, Verdict.WITNESSED, claim.query, drive=shown.drive, number=shown.number)
+        return PointFinding(
+            point, claim.query, verdict=Verdict.WITNESSED, drive=shown.drive, number=shown.number
+        )
 
     def settle(
         self, points: Sequence[Point], stages: tuple[Stage, ...] = NATURAL_FIRST

@@ -27,8 +27,8 @@ from roadproof.drivers.stepped import TOLD, beside_change, labels_of, places_of,
 from roadproof.engines.prove.prover import prove
 from roadproof.errors import InputError
 from roadproof.evidence.answers import plates as kept
-from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.evidence.settled import Settled
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import Assumption, statement, value_texts
 from roadproof.runtime.budget import BudgetExceeded
@@ -82,14 +82,11 @@ class Plate:
 
 
 @dataclass(frozen=True)
-class LemmaResult:
+class LemmaResult(Settled[ClaimVerdict]):
     """A lemma with its verdict."""
 
     lemma: Lemma
-    verdict: ClaimVerdict
     assuming: tuple[str, ...] = ()
-    certificate: Certificate | None = None
-    reason: str = ""
 
 
 Answer: TypeAlias = Plate | LemmaResult
@@ -169,7 +166,9 @@ class Preventable:
     def doubt(self, piece: Piece, reason: str) -> dict[str, Answer]:
         if isinstance(piece, Lemma):
             return {
-                f"lemma-{piece.name}": LemmaResult(piece, Verdict.UNKNOWN, self._said(piece), reason=reason)
+                f"lemma-{piece.name}": LemmaResult(
+                    piece, self._said(piece), verdict=Verdict.UNKNOWN, reason=reason
+                )
             }
         return {piece.name: Plate(piece.name, piece.model.name, piece.fixed, self.along, reason=reason)}
 
@@ -245,8 +244,10 @@ class Preventable:
             query, effort = read_claim(home, lemma.claim), self.basis.effort.of(20)
             result = prove(home, query, effort, assumed=Assumption(said))
         except BudgetExceeded as late:
-            return LemmaResult(lemma, Verdict.UNKNOWN, said, reason=str(late))
-        return LemmaResult(lemma, result.verdict, said, result.certificate, result.reason)
+            return LemmaResult(lemma, said, verdict=Verdict.UNKNOWN, reason=str(late))
+        return LemmaResult(
+            lemma, said, verdict=result.verdict, certificate=result.certificate, reason=result.reason
+        )
 
     # --- answers as plain data -------------------------------------------------------------------
 
@@ -289,7 +290,13 @@ class Preventable:
                 raise InputError(f"{name} is no lemma of this question")
             certificate = shelf.read_certificate(record.lemma.certificate)
             known, assuming = self.lemmas[name], record.lemma.assuming
-            return name, LemmaResult(known, record.lemma.verdict, assuming, certificate, record.lemma.reason)
+            return name, LemmaResult(
+                known,
+                assuming,
+                verdict=record.lemma.verdict,
+                certificate=certificate,
+                reason=record.lemma.reason,
+            )
         plate = record.plate
         if plate is None:
             raise InputError("a kept answer has neither a plate nor a lemma")

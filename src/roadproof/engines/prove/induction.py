@@ -86,5 +86,5 @@ def prove_of_scenarios(specification: Specification, query: Query, effort: Effor
     if outline is not None:
         first = prove(outline, read_claim(outline, query.text), effort, label)
         if not first.holds:
-            return Result(Verdict.UNKNOWN, _OPEN, first.seconds, first.work)
+            return Result(first.work, verdict=Verdict.UNKNOWN, reason=_OPEN, seconds=first.seconds)
     return prove(specification, query, effort, label)

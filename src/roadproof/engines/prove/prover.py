@@ -17,6 +17,7 @@ from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.certificate import Certificate, certify, goal_of
 from roadproof.evidence.derivation import derive_query, met_sites
 from roadproof.evidence.refutation import Countermodel
+from roadproof.evidence.settled import Settled
 from roadproof.evidence.sites import Lemma, Site, prefix_form
 from roadproof.evidence.times import ZERO
 from roadproof.library.bind import default_values
@@ -59,26 +60,17 @@ NO_PROOF = "no proof was found from what is known of motion"
 
 
 @dataclass(frozen=True)
-class Result:
+class Result(Settled[ClaimVerdict]):
     """A verdict over dense, unbounded time; ``reason`` says why where it is UNKNOWN or VACUOUS.
 
     ``work``: the units spent on the search. There is a ``certificate`` with PROVED and VACUOUS, and with
     nothing else. Of an UNKNOWN ``stop`` says where the search stopped, and ``doubt`` its cause.
     """
 
-    verdict: ClaimVerdict
-    reason: str
-    seconds: float
     work: float = 0.0
-    certificate: Certificate | None = None
     countermodel: Countermodel | None = None
     stop: Stop | None = None
     doubt: Doubt | None = None
-
-    @property
-    def holds(self) -> bool:
-        """Whether the claim is proved, be it because its premise never holds."""
-        return self.verdict in (Verdict.PROVED, Verdict.VACUOUS)
 
 
 def prove(
@@ -108,7 +100,8 @@ def prove(
     attempt = _Attempt(query, states, meter, is_moving(assumed.said))
 
     def result(verdict: ClaimVerdict, reason: str = "", certificate: Certificate | None = None) -> Result:
-        return Result(verdict, reason, since(begun), meter.spent, certificate)
+        spent, seconds = meter.spent, since(begun)
+        return Result(spent, verdict=verdict, reason=reason, certificate=certificate, seconds=seconds)
 
     names: dict[Site, str] = {}
     proofs: list[Proof] = []

@@ -4,23 +4,18 @@ from dataclasses import dataclass, replace
 
 from roadproof.engines.search.ask import Search, ask
 from roadproof.engines.search.limits import PROVE_OPTIONS, Limits
-from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.judged import JudgedDrive
+from roadproof.evidence.settled import Settled
 from roadproof.library.compose import negation
 from roadproof.verdict import ClaimVerdict, Verdict
 
 
 @dataclass(frozen=True)
-class BoundedResult:
+class BoundedResult(Settled[ClaimVerdict]):
     """PROVED-BOUNDED with its limits, REFUTED with a judged drive, or UNKNOWN with a reason.
 
     PROVED where the negation is shown to be impossible for all time; ``certificate`` says how.
     """
 
-    verdict: ClaimVerdict
-    reason: str = ""
-    drive: JudgedDrive | None = None
-    certificate: Certificate | None = None
     limits: Limits | None = None
 
 
@@ -33,10 +28,10 @@ def check_bounded(search: Search) -> BoundedResult:
     setting = replace(search.setting, natural=False)
     outcome = ask(replace(search, query=negation(search.query), setting=setting, count=1))
     if outcome.drives:
-        return BoundedResult(Verdict.REFUTED, drive=outcome.drives[0])
+        return BoundedResult(verdict=Verdict.REFUTED, drive=outcome.drives[0])
     if outcome.impossibility is not None:
-        return BoundedResult(Verdict.PROVED, certificate=outcome.impossibility.certificate)
+        return BoundedResult(verdict=Verdict.PROVED, certificate=outcome.impossibility.certificate)
     if outcome.verdict is Verdict.NONE_WITHIN and outcome.limits is not None:
         reason = outcome.limits.text(PROVE_OPTIONS)
-        return BoundedResult(Verdict.PROVED_BOUNDED, reason, limits=outcome.limits)
-    return BoundedResult(Verdict.UNKNOWN, outcome.reason)
+        return BoundedResult(verdict=Verdict.PROVED_BOUNDED, reason=reason, limits=outcome.limits)
+    return BoundedResult(verdict=Verdict.UNKNOWN, reason=outcome.reason)

@@ -10,8 +10,9 @@ from roadproof.engines.search.constant_motion import steady_drive
 from roadproof.engines.search.refute import sampled_drive
 from roadproof.evidence.answers import compare as kept
 from roadproof.evidence.answers.compare import Relation
-from roadproof.evidence.certificate import Certificate, certificate_data
+from roadproof.evidence.certificate import certificate_data
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.evidence.settled import Settled
 from roadproof.library.bind import values_with
 from roadproof.library.compose import both, implication, negation
 from roadproof.library.motion import Assumption, value_texts
@@ -30,14 +31,10 @@ PROOF = 5.0  # units of work for a proof before a drive is looked for
 
 
 @dataclass(frozen=True)
-class Direction:
+class Direction(Settled[ClaimVerdict]):
     """``claim`` is ``F1 -> F2``: PROVED with a certificate, REFUTED with a drive, or neither."""
 
     claim: Query
-    verdict: ClaimVerdict
-    reason: str = ""
-    certificate: Certificate | None = None
-    drive: JudgedDrive | None = None
 
     @property
     def kept(self) -> kept.Direction:
@@ -125,7 +122,7 @@ class _Question:
         return implication(self.one, self.other)
 
     def doubt(self, reason: str) -> Direction:
-        return Direction(self.claim, Verdict.UNKNOWN, reason)
+        return Direction(self.claim, verdict=Verdict.UNKNOWN, reason=reason)
 
 
 def _relation(forward: Direction, backward: Direction) -> Relation:
@@ -172,11 +169,11 @@ def _at_values(against: Search, claim: Query, effort: Effort) -> Direction | Non
     result = prove(specification, claim, effort, assumed=Assumption(said))
     if result.holds:
         reason = "; ".join(x for x in (result.reason, f"with {', '.join(said)}" if said else "") if x)
-        return Direction(claim, Verdict.PROVED, reason, certificate=result.certificate)
+        return Direction(claim, verdict=Verdict.PROVED, reason=reason, certificate=result.certificate)
     if result.countermodel is None:
         return None
     drive = steady_drive(specification, claim, result.countermodel, known)
-    return None if drive is None else Direction(claim, Verdict.REFUTED, drive=drive)
+    return None if drive is None else Direction(claim, verdict=Verdict.REFUTED, drive=drive)
 
 
 def _decide(against: Search, claim: Query) -> Direction:
@@ -185,22 +182,22 @@ def _decide(against: Search, claim: Query) -> Direction:
     meter = effort.meter()
     drive = _constant(against, claim)
     if drive is not None:
-        return Direction(claim, Verdict.REFUTED, drive=drive)
+        return Direction(claim, verdict=Verdict.REFUTED, drive=drive)
     proof = prove(against.specification, claim, effort.of(min(PROOF, effort.units)))
     if proof.holds and proof.certificate is not None:
-        return Direction(claim, Verdict.PROVED, proof.reason, certificate=proof.certificate)
+        return Direction(claim, verdict=Verdict.PROVED, reason=proof.reason, certificate=proof.certificate)
     left = Effort(effort.units, meter.seconds_left())
     if is_state(claim.formula) and not reads_all(against):
         direction = _at_values(against, claim, left)
         return direction or Direction(
-            claim, Verdict.UNKNOWN, "neither a proof nor a state against it was found"
+            claim, verdict=Verdict.UNKNOWN, reason="neither a proof nor a state against it was found"
         )
     found = ask(replace(against, search_options=replace(against.search_options, effort=left)))
     if found.drives:
-        return Direction(claim, Verdict.REFUTED, drive=found.drives[0])
+        return Direction(claim, verdict=Verdict.REFUTED, drive=found.drives[0])
     if found.impossibility is not None:
-        return Direction(claim, Verdict.PROVED, certificate=found.impossibility.certificate)
+        return Direction(claim, verdict=Verdict.PROVED, certificate=found.impossibility.certificate)
     verdict: ClaimVerdict = (
         Verdict.PROVED_BOUNDED if found.verdict is Verdict.NONE_WITHIN else Verdict.UNKNOWN
     )
-    return Direction(claim, verdict, found.reason)
+    return Direction(claim, verdict=verdict, reason=found.reason)

@@ -207,11 +207,11 @@ def settle_bounded(search: "Search") -> Settlement:
         return replace(in_doubt(str(late), begun), bounded=True)
     if found.verdict is Verdict.PROVED:
         return settle(search.specification, search.query, search.search_options.effort)
-    result = Result(found.verdict, found.reason, since(begun))
+    result = Result(verdict=found.verdict, reason=found.reason, seconds=since(begun))
     return Settlement(result, found.drive, found.limits, bounded=True)
 
 
 def in_doubt(reason: str, begun: float | None = None, stop: Stop = Stop.CLOCK) -> Settlement:
     """What is said of a claim that nothing is known of; ``begun``: since when it was asked."""
     seconds = 0.0 if begun is None else since(begun)
-    return Settlement(Result(Verdict.UNKNOWN, reason, seconds, stop=stop))
+    return Settlement(Result(verdict=Verdict.UNKNOWN, reason=reason, seconds=seconds, stop=stop))

@@ -123,7 +123,7 @@ def _gaps(index: Fields, study: Meanings) -> Iterator[tuple[str, Kept]]:
         if said.claim not in claims:
             raise InputError(f"{where}: coverage does not rest on this claim")
         claim = claims[said.claim]
-        answer = ProofResult(claim.query, said.verdict, said.reason)
+        answer = ProofResult(claim.query, verdict=said.verdict, reason=said.reason)
         yield GAPS + name_of(claim), AboutGaps(answer)
     parts = (
         {}
@@ -136,7 +136,7 @@ def _gaps(index: Fields, study: Meanings) -> Iterator[tuple[str, Kept]]:
         key = tuple(getattr(one, name) for name in names_of(None))
         if key not in parts:
             raise InputError(f"{where}: there is no such class of gaps, or it is said twice")
-        answers = (ClassAnswer(parts.pop(key), one.verdict, reason=one.reason),)
+        answers = (ClassAnswer(parts.pop(key), verdict=one.verdict, reason=one.reason),)
         yield f"{GAPS}class-{number}", AboutGaps(answers)
 
 
