@@ -10,19 +10,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from roadproof.errors import InputError, RoadproofError
+from roadproof.evidence.answers import read
 from roadproof.evidence.answers.entry import Entry, mismatch, read_evidence, stray_evidence
-from roadproof.evidence.answers.read import (
-    faults_of,
-    faults_of_head,
-    index_fields,
-    lines_of,
-    read_index,
-    read_record,
-    said_of,
-    stands_alone,
-    unchecked_fields,
-    unchecked_of_kept,
-)
 from roadproof.evidence.answers.reader import FindLabel
 from roadproof.evidence.checking import without_place
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
@@ -66,9 +55,9 @@ class FolderStatements:
     def not_checked(self) -> tuple[str, ...]:
         """The fields of index and kept answers, and the files beside, that nothing is compared with."""
         has_drives = any(x.shows in ("drive", "counterexample") for x in self.entries)
-        fields = () if self.index is None else unchecked_fields(self.index, has_drives)
+        fields = () if self.index is None else read.unchecked_fields(self.index, has_drives)
         if self.question is not None:
-            fields += unchecked_of_kept(self.question, self.kept_in_index, has_drives)
+            fields += read.unchecked_of_kept(self.question, self.kept_in_index, has_drives)
         return (*dict.fromkeys(fields), *sorted(self.others))
 
 
@@ -142,14 +131,14 @@ def _read_told(home: Path, given: tuple[Path, ...], find_label: FindLabel) -> Fo
     try:
         if (home / INDEX).exists():
             content = read_json(home / INDEX, LARGEST_INDEX)
-            told.index = index_fields(content, str(home / INDEX))
-        named = told.index if told.index is not None else said_of(journal.head) if journal else None
+            told.index = read.index_fields(content, str(home / INDEX))
+        named = told.index if told.index is not None else read.said_of(journal.head) if journal else None
         told.library, told.specs = read_beside(named, home, given)
-        told.alone = journal is not None and told.index is None and stands_alone(journal.head)
+        told.alone = journal is not None and told.index is None and read.stands_alone(journal.head)
         if told.index is not None:
             if library_of(told.index) not in (None, told.library.fingerprint):
                 told.unchecked = (OTHER_LIBRARY,)
-            told.entries += _without_twins(told, read_index(told.index, told.library, find_label))
+            told.entries += _without_twins(told, read.read_index(told.index, told.library, find_label))
     except RoadproofError as error:
         told.problems.append(_unreadable(home / INDEX, str(error)))
         told.index = None
@@ -176,7 +165,7 @@ def _add_journal(told: FolderStatements, journal: Journal, library: Library, fin
     """The answers of a journal that the index does not say in the same words; of one file each the last."""
     index = None if told.index is None else _IndexLines(told.index)
     try:
-        for fault in () if told.index is None else faults_of_head(journal.head, told.index):
+        for fault in () if told.index is None else read.faults_of_head(journal.head, told.index):
             told.problems.append(_rejected(journal.path, fault))
     except RoadproofError as error:
         told.problems.append(_unreadable(journal.path, str(error)))
@@ -189,8 +178,8 @@ def _add_journal(told: FolderStatements, journal: Journal, library: Library, fin
         if line.fault:
             told.problems.append(_rejected(line.path, line.fault))
         try:
-            entries = read_record(journal.head, line.record, library, find_label)
-            said = index is not None and all(map(index.has, lines_of(journal.head, line.record)))
+            entries = read.read_record(journal.head, line.record, library, find_label)
+            said = index is not None and all(map(index.has, read.lines_of(journal.head, line.record)))
             in_index = said and {*map(_words_of, entries)} <= known
             for fault in faults_of_line(journal, line, line.record, entries, library, in_index):
                 told.problems.append(_rejected(line.path, fault))
@@ -334,7 +323,7 @@ def _of_whole(told: FolderStatements, found: Mapping[Path, Finding]) -> Iterator
     }
     where = str(told.folder / INDEX)
     try:
-        for fault in faults_of(told.index, told.library, formulas):
+        for fault in read.faults_of(told.index, told.library, formulas):
             yield Finding(where, "index", Acceptance.REJECTED, fault)
     except RoadproofError as error:
         yield Finding(where, "index", Acceptance.UNREADABLE, str(error))

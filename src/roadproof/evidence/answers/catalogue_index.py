@@ -4,22 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Final, Literal, TypeAlias
 
-from roadproof.evidence.answers import coverage
-from roadproof.evidence.answers.shared import (
-    Count,
-    Dense,
-    Formula,
-    Heading,
-    KeptCertificate,
-    KeptDrive,
-    Number,
-    Options,
-    Parameters,
-    Reason,
-    Seconds,
-    SetName,
-    Specifications,
-)
+from roadproof.evidence.answers import coverage, shared
 from roadproof.evidence.codec import Doc, Rule
 from roadproof.verdict import Verdict
 
@@ -145,7 +130,7 @@ class AbstractTest:
 
     id: Name
     title: str
-    formula: Annotated[Formula, Doc("With its ranges.")]
+    formula: Annotated[shared.Formula, Doc("With its ranges.")]
     claims: Names
 
 
@@ -169,7 +154,7 @@ class Gaps:
     """Classes of gaps: those that tests show or claim; with --gaps all of them."""
 
     asked: Annotated[bool, Doc("Whether each is to be tested: --gaps.")]
-    classes_in_all: Annotated[Count, Doc("0 where no test shows one and none is asked for.")]
+    classes_in_all: Annotated[shared.Count, Doc("0 where no test shows one and none is asked for.")]
     targets: Annotated[tuple[Target, ...], Doc("Those that are not proved empty.")]
     empty: Annotated[Names, Doc("Those that are proved empty.")]
     open: Annotated[Mapping[str, str], Doc("Those of which it is not known, and why.")]
@@ -184,11 +169,11 @@ class Gaps:
 class Figure:
     """How much of one kind is tested, in all or in a road sector."""
 
-    set_name: SetName
+    set_name: shared.SetName
     kind: Kind
     sector: Annotated[str, Doc("Empty for all.")]
-    tested: Count
-    total: Count
+    tested: shared.Count
+    total: shared.Count
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -239,13 +224,13 @@ class KeptFact:
     test: Annotated[str, Doc("Empty where it is about no test: reaches.")]
     other: str
     relation: Relation
-    premise: Annotated[Formula, Doc("The formula of the test; of reaches that of the other.")]
+    premise: Annotated[shared.Formula, Doc("The formula of the test; of reaches that of the other.")]
     conclusion: Annotated[str | None, Doc("That of the other.")]
-    formula: Annotated[Formula, Doc("What the evidence is about.")]
+    formula: Annotated[shared.Formula, Doc("What the evidence is about.")]
     verdict: FactVerdict
-    reason: Reason
-    certificate: KeptCertificate = None
-    drive: KeptDrive = None
+    reason: shared.Reason
+    certificate: shared.KeptCertificate = None
+    drive: shared.KeptDrive = None
     also: Annotated[Names, Doc("All that the drive shows.")]
     term: Annotated[str, Doc("Of reaches: the number at the start that is least or greatest.")] = ""
     sense: Literal["", "least", "greatest"] = ""
@@ -267,19 +252,19 @@ Remarks: TypeAlias = tuple[Remark, ...]
 class Preamble:
     """What an index says once for all tests."""
 
-    set: SetName
-    scenarios: Annotated[tuple[Number, ...], Doc("Numbers of the scenarios that were asked about.")]
-    options: Options
-    parameters: Parameters
-    specs: Specifications
+    set: shared.SetName
+    scenarios: Annotated[tuple[shared.Number, ...], Doc("Numbers of the scenarios that were asked about.")]
+    options: shared.Options
+    parameters: shared.Parameters
+    specs: shared.Specifications
 
 
 @dataclass(frozen=True, kw_only=True)
-class Index(Preamble, Heading):
+class Index(Preamble, shared.Heading):
     """What tests show and mean."""
 
     schema: Literal["roadproof/catalogue/1"] = SCHEMA
-    view: Annotated[Dense, Doc("Of what is proved, and of drives; samples are monitored.")] = "dense"
+    view: Annotated[shared.Dense, Doc("Of what is proved, and of drives; samples are monitored.")] = "dense"
     request: Annotated[KeptRequest | None, Doc("What was asked; check asks it again.")] = None
     tests: tuple[ConcreteTest | AbstractTest, ...]
     targets: tuple[Target, ...]
@@ -300,7 +285,7 @@ class Index(Preamble, Heading):
     alike: Annotated[Remarks, Doc("Tests that say the same.")]
     contradictions: Annotated[Remarks, Doc("What was seen although it is proved never to be.")]
     notes: tuple[str, ...]
-    seconds: Seconds
+    seconds: shared.Seconds
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,24 +5,10 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Annotated, Final, Literal, TypeAlias
 
+from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows_of, shows_of_claim
 from roadproof.evidence.answers.proofs import unchecked_of
 from roadproof.evidence.answers.reader import Background, Reader, read_kept, unchecked
-from roadproof.evidence.answers.shared import (
-    Count,
-    Dense,
-    Heading,
-    KeptCertificate,
-    KeptDrive,
-    Number,
-    Options,
-    Parameters,
-    Reason,
-    Seconds,
-    SetName,
-    Specifications,
-)
-from roadproof.evidence.answers.shared import Formula as FormulaText
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Key, Rule, read
 from roadproof.evidence.strict import Fields
 from roadproof.library.compose import both, either, equivalence, implication, negation
@@ -36,7 +22,7 @@ SCHEMA: Final = "roadproof/classify/1"
 CLASSES = "classes"  # the spec set of the file that defines them
 Word: TypeAlias = Literal[Verdict.WITNESSED, Verdict.UNKNOWN]
 Kind: TypeAlias = Literal["exclusive", "covers", "empty"]
-Numbers: TypeAlias = Annotated[tuple[Number, ...], Doc("Numbers of scenarios.")]
+Numbers: TypeAlias = Annotated[tuple[shared.Number, ...], Doc("Numbers of scenarios.")]
 _BEGINNING: Mapping[Kind, str] = {"exclusive": "exclusive-", "covers": "covers-scenario-", "empty": "empty-"}
 
 
@@ -58,10 +44,10 @@ class KeptClass:
         Doc("The road sectors, such as main; null where they make no difference."),
     ]
     description: Annotated[str, UNCHECKED, Doc("What happens, in words.")]
-    formula: Annotated[FormulaText, Doc("The definition applied to the vehicles and L.")]
+    formula: Annotated[shared.Formula, Doc("The definition applied to the vehicles and L.")]
     verdict: Word
-    reason: Reason = ""
-    drive: KeptDrive = None
+    reason: shared.Reason = ""
+    drive: shared.KeptDrive = None
 
     def expected(self, common: Common) -> list[Formula]:
         """That the definition of its name holds of its vehicles and L."""
@@ -76,10 +62,10 @@ class CountedClass(KeptClass):
 
     scenarios: Annotated[Numbers, Doc("The scenarios that hold in the class.")]
     situations: Annotated[
-        Count | None, UNCHECKED, Doc("Situations of the class; null where no shares are counted.")
+        shared.Count | None, UNCHECKED, Doc("Situations of the class; null where no shares are counted.")
     ] = None
     traces: Annotated[
-        Count | None, UNCHECKED, Doc("Traces with such a situation; null where no shares are counted.")
+        shared.Count | None, UNCHECKED, Doc("Traces with such a situation; null where no shares are counted.")
     ] = None
 
 
@@ -92,11 +78,11 @@ class Claim:
         Kind,
         Doc("Classes exclude each other; they cover the same as the scenarios; a combination never occurs."),
     ]
-    claim: FormulaText
+    claim: shared.Formula
     verdict: ProofVerdict
-    reason: Reason = ""
-    certificate: KeptCertificate = None
-    seconds: Seconds = 0.0
+    reason: shared.Reason = ""
+    certificate: shared.KeptCertificate = None
+    seconds: shared.Seconds = 0.0
 
     @property
     def scenario(self) -> int | None:
@@ -148,8 +134,8 @@ class Claim:
 class Situations:
     """Situations by how many vehicles they are of."""
 
-    pairs: Annotated[Count, Key("2"), LEFT_OUT, Doc("Of two vehicles.")] = 0
-    triples: Annotated[Count, Key("3"), LEFT_OUT, Doc("Of three vehicles.")] = 0
+    pairs: Annotated[shared.Count, Key("2"), LEFT_OUT, Doc("Of two vehicles.")] = 0
+    triples: Annotated[shared.Count, Key("3"), LEFT_OUT, Doc("Of three vehicles.")] = 0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -159,9 +145,9 @@ class Shares:
     source: Annotated[str, Doc("What was counted, in words.")]
     recordings: Annotated[tuple[str, ...], Doc("The names of the recordings.")]
     end: Annotated[Literal["clip"], Doc("Traces are read to their end and no further.")] = "clip"
-    traces: Annotated[Count, Doc("Traces on which danger arises.")]
-    covered: Annotated[Count, Doc("Those with a class.")]
-    repeated: Annotated[Count, Doc("Traces that an earlier recording shows, left out.")] = 0
+    traces: Annotated[shared.Count, Doc("Traces on which danger arises.")]
+    covered: Annotated[shared.Count, Doc("Those with a class.")]
+    repeated: Annotated[shared.Count, Doc("Traces that an earlier recording shows, left out.")] = 0
     situations: Situations
     broken: Annotated[tuple[str, ...], Doc("Situations that are not of one class: our fault.")]
 
@@ -171,26 +157,26 @@ class Doubt:
     """What would be known of the division if a job had not been lost, or cut off by the clock."""
 
     about: Annotated[str, UNCHECKED, Doc("What is in doubt.")]
-    reason: Reason
+    reason: shared.Reason
 
 
 @dataclass(frozen=True, kw_only=True)
 class Preamble:
     """What an index says once for all classes."""
 
-    set: SetName
-    options: Options
-    parameters: Parameters
-    specs: Specifications
+    set: shared.SetName
+    options: shared.Options
+    parameters: shared.Parameters
+    specs: shared.Specifications
     scenarios: Annotated[Numbers, Doc("The scenarios that are divided.")]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Index(Preamble, Heading):
+class Index(Preamble, shared.Heading):
     """Classes of scenarios that exclude each other, and what is proved of them."""
 
     schema: Literal["roadproof/classify/1"] = SCHEMA
-    view: Dense = "dense"
+    view: shared.Dense = "dense"
     text: Annotated[
         str, Doc("The classes as a specification file; empty where the division was cut off.")
     ] = ""
@@ -200,7 +186,7 @@ class Index(Preamble, Heading):
     doubts: Annotated[
         tuple[Doubt, ...], Rule(least=1), LEFT_OUT, Doc("About the division; left out where there is none.")
     ] = ()
-    seconds: Seconds = 0.0
+    seconds: shared.Seconds = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)

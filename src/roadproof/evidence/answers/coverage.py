@@ -6,25 +6,11 @@ from functools import partial
 from typing import Annotated, ClassVar, Final, Literal, TypeAlias
 
 from roadproof.errors import InputError
+from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.entry import PROOFS, Common, Entry, evidence_name, shows_of, shows_of_claim
 from roadproof.evidence.answers.gaps import claims_of, fault_of_gap
 from roadproof.evidence.answers.proofs import unchecked_of
 from roadproof.evidence.answers.reader import Background, Reader, read_kept, unchecked
-from roadproof.evidence.answers.shared import (
-    Count,
-    Dense,
-    Heading,
-    KeptCertificate,
-    KeptDrive,
-    OneScenario,
-    Options,
-    Parameters,
-    Reason,
-    Seconds,
-    SetName,
-    Specifications,
-)
-from roadproof.evidence.answers.shared import Formula as FormulaText
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule, read
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.strict import Fields
@@ -48,10 +34,10 @@ Position: TypeAlias = Annotated[int, Rule(minimum=1)]
 class Claim:
     """One of the claims that together say that there is no gap."""
 
-    claim: FormulaText
+    claim: shared.Formula
     verdict: ProofVerdict
-    certificate: KeptCertificate = None
-    reason: Reason = ""
+    certificate: shared.KeptCertificate = None
+    reason: shared.Reason = ""
 
     def expected(self, common: Common, numbers: Sequence[int]) -> list[Formula]:
         """All claims that together say that there is no gap of the scenarios ``numbers``."""
@@ -63,7 +49,7 @@ class Gap:
     """A drive that the set misses, near to the scenario of a class."""
 
     road: Road
-    formula: FormulaText
+    formula: shared.Formula
     first: Annotated[
         str,
         UNCHECKED,
@@ -75,8 +61,10 @@ class Gap:
         Doc("The smallest choices of definitions of that set which catch it."),
     ]
     classes: Annotated[Names, UNCHECKED, Doc("The parts for which it is a near miss.")]
-    drive: KeptDrive = None
-    elsewhere: Annotated[Mapping[str, KeptDrive], Doc("The same motions as gaps on other roads, by road.")]
+    drive: shared.KeptDrive = None
+    elsewhere: Annotated[
+        Mapping[str, shared.KeptDrive], Doc("The same motions as gaps on other roads, by road.")
+    ]
 
     def expected(self, common: Common, numbers: Sequence[int]) -> list[Formula]:
         """Its formula, where that says that none of the scenarios ``numbers`` holds between two vehicles."""
@@ -99,7 +87,7 @@ class NumberedGap(Gap, OrderedEntry):
 class GapClass:
     """A class of gaps, by what of a scenario is false."""
 
-    scenario: Annotated[OneScenario, UNCHECKED]
+    scenario: Annotated[shared.OneScenario, UNCHECKED]
     component: Annotated[
         str,
         UNCHECKED,
@@ -110,8 +98,8 @@ class GapClass:
     verdict: CountedVerdict
     gaps: tuple[Gap | int, ...]
     claim: Annotated[str, Doc("Of an IMPOSSIBLE: that the class is empty.")] = ""
-    certificate: KeptCertificate = None
-    reason: Reason = ""
+    certificate: shared.KeptCertificate = None
+    reason: shared.Reason = ""
     none_for: Annotated[
         Names, UNCHECKED, Doc("Wider sets for which no gap was found that they catch first.")
     ] = ()
@@ -135,7 +123,7 @@ class CountedClass(GapClass):
 
     gaps: Annotated[tuple[Position, ...], Doc("Numbers of its gaps.")]
     in_traffic: Annotated[
-        Count | None, UNCHECKED, LEFT_OUT, Doc("With --on: disturbances of the class in recordings.")
+        shared.Count | None, UNCHECKED, LEFT_OUT, Doc("With --on: disturbances of the class in recordings.")
     ] = None
     trace: Annotated[
         str, Rule(least=1), UNCHECKED, LEFT_OUT, Doc("With --on: where the first of these is.")
@@ -151,7 +139,7 @@ class Need:
     verdict: Annotated[NeedVerdict, Doc("PROVED: without the definition the set covers as much.")]
     road: Road
     formula: Annotated[str, Doc("What holds on the drive; empty where there is none.")]
-    drive: KeptDrive = None
+    drive: shared.KeptDrive = None
 
     def expected(self, common: Common) -> list[Formula]:
         """The formula as it is read; whether the set without the definition misses it is not compared."""
@@ -173,8 +161,8 @@ class Traffic:
 
     recordings: Annotated[str, Doc("Their folder.")]
     view: Literal["recorded"] = "recorded"
-    disturbances: Annotated[Count, Doc("Disturbances between two vehicles.")]
-    repeats: Annotated[Count, Doc("Disturbances that an earlier window has shown already.")] = 0
+    disturbances: Annotated[shared.Count, Doc("Disturbances between two vehicles.")]
+    repeats: Annotated[shared.Count, Doc("Disturbances that an earlier window has shown already.")] = 0
     missed: Annotated[tuple[MissedTrace, ...], Doc("Those that the set misses.")]
 
 
@@ -182,19 +170,19 @@ class Traffic:
 class Preamble:
     """What an index says once for all classes."""
 
-    set: SetName
+    set: shared.SetName
     wider: Annotated[Names, UNCHECKED, Doc("Wider sets, from the next to the widest.")]
-    options: Options
-    parameters: Parameters
-    specs: Specifications
+    options: shared.Options
+    parameters: shared.Parameters
+    specs: shared.Specifications
 
 
 @dataclass(frozen=True, kw_only=True)
-class Index(Preamble, Heading):
+class Index(Preamble, shared.Heading):
     """Which disturbances a set misses."""
 
     schema: Literal["roadproof/coverage/1"] = SCHEMA
-    view: Dense = "dense"
+    view: shared.Dense = "dense"
     verdict: SetVerdict
     claims: Annotated[tuple[Claim, ...], Doc("Together they say that there is no gap.")]
     classes: Annotated[tuple[CountedClass, ...], Doc("Classes of gaps, by what of a scenario is false.")]
@@ -204,7 +192,7 @@ class Index(Preamble, Heading):
         Doc("With --needed, of a set that covers: a drive for each definition that it needs."),
     ] = ()
     traffic: Annotated[Traffic | None, UNCHECKED, Doc("With --on: what recordings hold.")] = None
-    seconds: Seconds = 0.0
+    seconds: shared.Seconds = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,22 +5,10 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Annotated, Final, Literal, TypeAlias
 
+from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows_of
 from roadproof.evidence.answers.proofs import shown
 from roadproof.evidence.answers.reader import Background, Reader, read_kept, unchecked
-from roadproof.evidence.answers.shared import Formula as FormulaText
-from roadproof.evidence.answers.shared import (
-    Heading,
-    KeptFile,
-    KeptLimits,
-    OneScenario,
-    Options,
-    Parameters,
-    Reason,
-    Seconds,
-    SetName,
-    Specifications,
-)
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
 from roadproof.evidence.json_schema import File, Whole
 from roadproof.evidence.strict import Fields, rational
@@ -33,7 +21,7 @@ SCHEMA: Final = "roadproof/witness/1"
 Road: TypeAlias = Annotated[str, UNCHECKED, Doc("Name of the road on which was searched.")]
 Natural: TypeAlias = Annotated[bool, UNCHECKED, Doc("Whether the first drive was found among natural ones.")]
 Stages: TypeAlias = Annotated[
-    Mapping[str, Seconds], UNCHECKED, Doc("By stage of the search, and all together, in s.")
+    Mapping[str, shared.Seconds], UNCHECKED, Doc("By stage of the search, and all together, in s.")
 ]
 Sizes: TypeAlias = Annotated[
     Mapping[str, Annotated[int, Rule(minimum=0)]],
@@ -47,15 +35,15 @@ Core: TypeAlias = Annotated[tuple[str, ...], UNCHECKED, Doc("Of an IMPOSSIBLE on
 class OutcomeRecord:
     """An outcome that a run has kept, with its evidence in files."""
 
-    scenario: OneScenario
-    set: SetName
-    formula: FormulaText
-    parameters: Parameters
+    scenario: shared.OneScenario
+    set: shared.SetName
+    formula: shared.Formula
+    parameters: shared.Parameters
     road: Road
     verdict: DriveVerdict
-    reason: Reason
+    reason: shared.Reason
     natural: Natural
-    drives: tuple[KeptFile, ...]
+    drives: tuple[shared.KeptFile, ...]
     certificate: Annotated[object, File(), Doc("Of an IMPOSSIBLE only.")]
     core: Core
     minimal: Annotated[bool, UNCHECKED, Doc("Whether no part of the core can be left out.")]
@@ -86,24 +74,24 @@ class Record:
 class Preamble:
     """What is said once for all kept answers."""
 
-    options: Options
-    specs: Specifications
+    options: shared.Options
+    specs: shared.Specifications
 
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome:
     """What came of a search for drives."""
 
-    scenario: OneScenario
-    set: SetName
-    formula: FormulaText
+    scenario: shared.OneScenario
+    set: shared.SetName
+    formula: shared.Formula
     road: Road
     verdict: DriveVerdict
     view: Annotated[Literal["dense", "grid"], Doc("grid: on samples up to a horizon, within the limits.")]
-    reason: Reason
+    reason: shared.Reason
     natural: Natural
     drives: tuple[Annotated[object, Whole("drive.json")], ...]
-    limits: Annotated[KeptLimits | None, LEFT_OUT, Doc("Of a NONE-WITHIN only.")] = None
+    limits: Annotated[shared.KeptLimits | None, LEFT_OUT, Doc("Of a NONE-WITHIN only.")] = None
     core: Annotated[Core, LEFT_OUT] = ()
     certificate: Annotated[
         object,
@@ -116,7 +104,7 @@ class Outcome:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer(Heading):
+class Answer(shared.Heading):
     """Drives for scenarios and formulas."""
 
     schema: Literal["roadproof/witness/1"] = SCHEMA

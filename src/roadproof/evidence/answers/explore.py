@@ -6,25 +6,10 @@ from fractions import Fraction
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.errors import InputError
+from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.entry import Common, Entry, file_of, shows_of
 from roadproof.evidence.answers.proofs import unchecked_of
 from roadproof.evidence.answers.reader import Background, Reader, read_kept
-from roadproof.evidence.answers.shared import (
-    Assuming,
-    Dense,
-    Heading,
-    KeptCertificate,
-    KeptDrive,
-    OneScenario,
-    Options,
-    Parameters,
-    Rational,
-    Reason,
-    Seconds,
-    SetName,
-    Specifications,
-)
-from roadproof.evidence.answers.shared import Formula as FormulaText
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule, read
 from roadproof.evidence.strict import Fields, rational
 from roadproof.library.bind import values_with
@@ -55,8 +40,8 @@ class Variation:
 
     name: Annotated[str, Doc("A parameter, or a limit such as POV.a_lon.min.")]
     unit: Annotated[str, Doc("Unit of all its values here.")]
-    low: Rational
-    high: Rational
+    low: shared.Rational
+    high: shared.Rational
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,16 +49,16 @@ class Finding:
     """Whether there is a drive at a value."""
 
     at: Annotated[
-        tuple[Rational, ...],
+        tuple[shared.Rational, ...],
         Doc("Values of what is varied, in its units; of an extreme the value of the measure."),
     ]
     verdict: DriveVerdict
-    formula: FormulaText
-    reason: Reason = ""
+    formula: shared.Formula
+    reason: shared.Reason = ""
     number: Annotated[int | None, UNCHECKED, Doc("Tells drives apart; null where there is none.")] = None
-    drive: KeptDrive = None
-    certificate: KeptCertificate = None
-    assuming: Annotated[Assuming, LEFT_OUT] = ()
+    drive: shared.KeptDrive = None
+    certificate: shared.KeptCertificate = None
+    assuming: Annotated[shared.Assuming, LEFT_OUT] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,7 +80,7 @@ class Extreme:
     measure: Annotated[str, Rule(least=1), Doc("A term.")]
     when: Annotated[str, Doc("At a moment at which this formula holds; empty is at time 0.")]
     unit: Annotated[str, Doc("Of the measure, SI; empty where it has none.")]
-    point: Annotated[tuple[Rational, ...], Doc("Values of what is varied.")]
+    point: Annotated[tuple[shared.Rational, ...], Doc("Values of what is varied.")]
     best: Annotated[Finding | None, Doc("The value that a drive reaches; null where there is no drive.")] = (
         None
     )
@@ -116,16 +101,16 @@ class Extreme:
 class Exploration:
     """For which values a formula has a drive, and how far measures can go."""
 
-    scenario: OneScenario
-    set: SetName
-    formula: FormulaText
+    scenario: shared.OneScenario
+    set: shared.SetName
+    formula: shared.Formula
     vary: tuple[Variation, ...]
     values: tuple[Finding, ...]
     boundaries: tuple[Boundary, ...]
     searches: Annotated[Count, Doc("How many searches it took.")] = 0
     drives: Annotated[Count, Doc("How many drives serve the values.")] = 0
     extremes: tuple[Extreme, ...]
-    seconds: Seconds = 0.0
+    seconds: shared.Seconds = 0.0
     stem: Annotated[
         str,
         UNCHECKED,
@@ -139,18 +124,18 @@ class Exploration:
 class Preamble:
     """What an index says once for all explorations."""
 
-    options: Options
-    parameters: Annotated[Parameters, Doc("All that are not varied, in SI units.")]
-    specs: Specifications
+    options: shared.Options
+    parameters: Annotated[shared.Parameters, Doc("All that are not varied, in SI units.")]
+    specs: shared.Specifications
 
 
 @dataclass(frozen=True, kw_only=True)
-class Index(Preamble, Heading):
+class Index(Preamble, shared.Heading):
     """For which values there is a drive."""
 
     schema: Literal["roadproof/explore/1"] = SCHEMA
-    view: Dense = "dense"
-    seconds: Seconds = 0.0
+    view: shared.Dense = "dense"
+    seconds: shared.Seconds = 0.0
     explored: tuple[Exploration, ...]
 
 

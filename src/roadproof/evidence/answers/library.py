@@ -3,13 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated, Final, Literal
 
-from roadproof.evidence.answers.shared import (
-    KeptBinding,
-    KeptWords,
-    PlainHeading,
-    Rational,
-    SetName,
-)
+from roadproof.evidence.answers import shared
 from roadproof.evidence.codec import Doc, Rule
 from roadproof.logic.syntax import ParameterBound
 
@@ -23,7 +17,7 @@ class Scenario:
     name: Annotated[str, Rule(least=1), Doc("Its definition, such as that of number 4.")]
     arguments: Annotated[tuple[str, ...], Doc("Vehicles and lane that it is about.")]
     doc: str
-    words: KeptWords
+    words: shared.KeptWords
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,7 +25,7 @@ class Definition:
     """A definition that is no scenario."""
 
     name: str
-    parameters: tuple[KeptBinding, ...]
+    parameters: tuple[shared.KeptBinding, ...]
     doc: str
 
 
@@ -39,7 +33,7 @@ class Definition:
 class SpecificationSet:
     """A spec set."""
 
-    name: SetName
+    name: shared.SetName
     extends: Annotated[str, Doc("The set whose definitions it replaces; empty where there is none.")]
     doc: str
 
@@ -59,18 +53,18 @@ class Parameter:
     """A parameter with its declared value."""
 
     name: str
-    value: Annotated[Rational, Doc("The declared value, in unit.")]
+    value: Annotated[shared.Rational, Doc("The declared value, in unit.")]
     unit: Annotated[str, Doc("Such as s or m/s^2; empty where it has none.")]
     bound: Annotated[ParameterBound, Doc("Its declared bound against 0.")]
     doc: str
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer(PlainHeading):
+class Answer(shared.PlainHeading):
     """What the library holds."""
 
     schema: Literal["roadproof/list/1"] = SCHEMA
-    set: SetName
+    set: shared.SetName
     scenarios: tuple[Scenario, ...]
     definitions: tuple[Definition, ...]
     sets: tuple[SpecificationSet, ...]

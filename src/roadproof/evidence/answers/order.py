@@ -8,22 +8,9 @@ from itertools import permutations, product
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.errors import InputError, TextError
+from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.entry import Common, Entry, file_of
 from roadproof.evidence.answers.reader import Background, Reader, read_kept
-from roadproof.evidence.answers.shared import (
-    Dense,
-    Heading,
-    KeptCertificate,
-    KeptDrive,
-    Options,
-    Parameters,
-    Reason,
-    ScenarioName,
-    Seconds,
-    SetNames,
-    Specifications,
-)
-from roadproof.evidence.answers.shared import Formula as FormulaText
 from roadproof.evidence.codec import Doc, Key, Rule, read
 from roadproof.evidence.strict import Fields
 from roadproof.library.compose import both, implication, negation
@@ -43,8 +30,8 @@ Position: TypeAlias = Annotated[int, Rule(minimum=1)]
 class Implication:
     """That one scenario implies another."""
 
-    above: Annotated[ScenarioName, Key("from")]
-    below: Annotated[ScenarioName, Key("to")]
+    above: Annotated[shared.ScenarioName, Key("from")]
+    below: Annotated[shared.ScenarioName, Key("to")]
 
     @property
     def pair(self) -> tuple[str, str]:
@@ -56,8 +43,8 @@ class Implication:
 class Edge(Implication):
     """A proof that one scenario implies another."""
 
-    claim: FormulaText
-    certificate: KeptCertificate = None
+    claim: shared.Formula
+    certificate: shared.KeptCertificate = None
 
     def expected(self, common: Common) -> list[Formula]:
         """That the one implies the other, for all ways in which they share vehicles."""
@@ -73,11 +60,11 @@ class Edge(Implication):
 class Refutation:
     """A drive on which one scenario holds and others do not."""
 
-    holds: ScenarioName
+    holds: shared.ScenarioName
     fails: Annotated[
-        tuple[ScenarioName, ...], Rule(least=1), Doc("The scenarios that are false on the drive.")
+        tuple[shared.ScenarioName, ...], Rule(least=1), Doc("The scenarios that are false on the drive.")
     ]
-    drive: KeptDrive = None
+    drive: shared.KeptDrive = None
 
     def expected(self, common: Common) -> list[Formula]:
         """That the one holds and no other does, for each choice of the vehicles that they share."""
@@ -119,27 +106,27 @@ class MissingImplication(Implication):
 class Doubt(Implication):
     """An implication that is neither proved nor refuted."""
 
-    reason: Reason
+    reason: shared.Reason
 
 
 @dataclass(frozen=True, kw_only=True)
 class Preamble:
     """What an index says once for all implications."""
 
-    sets: SetNames
-    options: Options
-    parameters: Parameters
-    specs: Specifications
+    sets: shared.SetNames
+    options: shared.Options
+    parameters: shared.Parameters
+    specs: shared.Specifications
 
 
 @dataclass(frozen=True, kw_only=True)
-class Index(Preamble, Heading):
+class Index(Preamble, shared.Heading):
     """Which scenarios imply which."""
 
     schema: Literal["roadproof/order/1"] = SCHEMA
-    view: Dense = "dense"
+    view: shared.Dense = "dense"
     kinds: Annotated[
-        tuple[Annotated[tuple[ScenarioName, ...], Rule(least=1)], ...],
+        tuple[Annotated[tuple[shared.ScenarioName, ...], Rule(least=1)], ...],
         Doc("Scenarios that are one formula; the first stands for all."),
     ]
     proved: tuple[Edge, ...]
@@ -147,7 +134,7 @@ class Index(Preamble, Heading):
     missing: tuple[MissingImplication, ...]
     drives: tuple[ListedRefutation, ...]
     doubts: tuple[Doubt, ...]
-    seconds: Seconds = 0.0
+    seconds: shared.Seconds = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)

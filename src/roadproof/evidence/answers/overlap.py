@@ -6,25 +6,10 @@ from functools import partial
 from itertools import combinations, permutations
 from typing import Annotated, Final, Literal, TypeAlias
 
+from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.entry import Common, Entry, file_of, shows_of
 from roadproof.evidence.answers.proofs import unchecked_of
 from roadproof.evidence.answers.reader import Background, Reader, read_kept
-from roadproof.evidence.answers.shared import (
-    Dense,
-    Heading,
-    KeptCertificate,
-    KeptDrive,
-    Number,
-    Options,
-    Parameters,
-    Reason,
-    Seconds,
-    SetName,
-    Specifications,
-)
-from roadproof.evidence.answers.shared import (
-    Formula as FormulaText,
-)
 from roadproof.evidence.codec import UNCHECKED, Doc, Rule, read
 from roadproof.evidence.json_schema import Shared
 from roadproof.evidence.strict import Fields
@@ -45,7 +30,7 @@ Choice: TypeAlias = Annotated[
 class Clash:
     """Parts of a conjunction that contradict each other."""
 
-    formula: FormulaText
+    formula: shared.Formula
     parts: tuple[str, ...]
 
 
@@ -53,10 +38,10 @@ class Clash:
 class Pair:
     """Whether two scenarios can hold together."""
 
-    a: Number
-    b: Number
-    set_a: SetName
-    set_b: SetName
+    a: shared.Number
+    b: shared.Number
+    set_a: shared.SetName
+    set_b: shared.SetName
     verdict: DriveVerdict
     formula: Annotated[
         str,
@@ -71,10 +56,10 @@ class Pair:
         UNCHECKED,
         Doc("For each way in which the two can meet, parts that clash."),
     ]
-    certificate: KeptCertificate
-    drive: KeptDrive
-    reason: Reason = ""
-    seconds: Seconds = 0.0
+    certificate: shared.KeptCertificate
+    drive: shared.KeptDrive
+    reason: shared.Reason = ""
+    seconds: shared.Seconds = 0.0
 
     @property
     def scenarios(self) -> tuple[Scenario, Scenario]:
@@ -98,18 +83,18 @@ class Preamble:
     lanes: Annotated[Choice, Doc("Whether both speak of one lane, or each of its own.")]
     roles: Annotated[Choice, Doc("Whether vehicles play the same parts in both.")]
     start: Annotated[Choice, Doc("Whether both start at 0, or one then or later.")]
-    options: Options
-    parameters: Parameters
-    specs: Specifications
+    options: shared.Options
+    parameters: shared.Parameters
+    specs: shared.Specifications
 
 
 @dataclass(frozen=True, kw_only=True)
-class Index(Preamble, Heading):
+class Index(Preamble, shared.Heading):
     """Which pairs of scenarios can hold together."""
 
     schema: Literal["roadproof/overlap/1"] = SCHEMA
-    view: Dense = "dense"
-    seconds: Seconds = 0.0
+    view: shared.Dense = "dense"
+    seconds: shared.Seconds = 0.0
     verdicts: tuple[Pair, ...]
 
 

@@ -8,27 +8,13 @@ from typing import Annotated, ClassVar, Final, Literal, TypeAlias
 from roadproof.drivers import lines as drawn
 from roadproof.drivers.claims import Side
 from roadproof.drivers.manoeuvres import ManoeuvreName
-from roadproof.evidence.answers.shared import (
-    Assuming,
-    Dense,
-    Formula,
-    Heading,
-    KeptCertificate,
-    KeptDrive,
-    Options,
-    Parameters,
-    Rational,
-    Reason,
-    Seconds,
-    SetName,
-    Specifications,
-)
+from roadproof.evidence.answers import shared
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
 from roadproof.verdict import ClaimVerdict, Verdict
 
 SCHEMA: Final = "roadproof/preventable/1"
 Name: TypeAlias = Annotated[str, Rule(least=1)]
-Values: TypeAlias = Annotated[Mapping[str, Rational], Doc("Initial values by name, in SI units.")]
+Values: TypeAlias = Annotated[Mapping[str, shared.Rational], Doc("Initial values by name, in SI units.")]
 SideVerdict: TypeAlias = Literal[Verdict.WITNESSED, Verdict.UNKNOWN]
 
 
@@ -46,7 +32,7 @@ class End:
 class Line:
     """Where along a line a collision is unpreventable."""
 
-    at: Rational
+    at: shared.Rational
     unpreventable: Annotated[
         tuple[tuple[End, End], ...],
         Doc(
@@ -91,8 +77,8 @@ class SideDrive:
             "none."
         ),
     ]
-    drive: KeptDrive
-    reason: Reason
+    drive: shared.KeptDrive
+    reason: shared.Reason
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,7 +90,7 @@ class Plate:
     fixed: Values
     verdict: Annotated[SideVerdict, Doc("Whether each side that the plane has is shown by a drive.")]
     formula: Annotated[
-        Formula,
+        shared.Formula,
         Doc(
             "What is true where a collision is unpreventable: of the state there, or, on a stepped plate, of "
             "the drive from there."
@@ -127,7 +113,7 @@ class Plate:
     ]
     lines: tuple[Line, ...]
     shown: tuple[SideDrive, ...]
-    reason: Reason
+    reason: shared.Reason
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,48 +122,51 @@ class Lemma:
 
     name: Name
     title: Annotated[str, Rule(least=1), UNCHECKED, Doc("What it says, in words.")]
-    claim: Formula
-    assuming: Assuming
+    claim: shared.Formula
+    assuming: shared.Assuming
     verdict: ClaimVerdict
-    certificate: KeptCertificate
-    reason: Reason
+    certificate: shared.KeptCertificate
+    reason: shared.Reason
 
 
 @dataclass(frozen=True, kw_only=True)
 class Preamble:
     """What an index says once for all plates."""
 
-    set: SetName
+    set: shared.SetName
     manoeuvre: ManoeuvreName
     scenario: Annotated[
         Literal[1, 2, 4, 5, 6, 8] | None,
         Doc("The scenario that drives should be of, where the manoeuvre was asked for by its number."),
     ]
     along: Annotated[
-        tuple[Name, Rational, Rational],
+        tuple[Name, shared.Rational, shared.Rational],
         Doc("The initial value that each line runs along, with its range (SI)."),
     ]
     across: Annotated[
         tuple[
-            Name, Rational, Rational, Annotated[str, Rule(pattern="^[0-9]{1,6}$", called="number of lines")]
+            Name,
+            shared.Rational,
+            shared.Rational,
+            Annotated[str, Rule(pattern="^[0-9]{1,6}$", called="number of lines")],
         ],
         Doc(
             "The initial value that differs from line to line, with its range (SI), and how many lines "
             "there are."
         ),
     ]
-    options: Options
-    parameters: Parameters
-    specs: Specifications
+    options: shared.Options
+    parameters: shared.Parameters
+    specs: shared.Specifications
 
 
 @dataclass(frozen=True, kw_only=True)
-class Index(Preamble, Heading):
+class Index(Preamble, shared.Heading):
     """From which initial values a driver prevents a collision."""
 
     schema: Literal["roadproof/preventable/1"] = SCHEMA
-    view: Dense = "dense"
-    seconds: Seconds = 0.0
+    view: shared.Dense = "dense"
+    seconds: shared.Seconds = 0.0
     idle: Annotated[
         tuple[Name, ...],
         Doc("Options and parameters that were chosen, and on which no boundary here depends."),

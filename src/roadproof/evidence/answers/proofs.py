@@ -5,22 +5,9 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Annotated, Final, Literal, TypeAlias
 
+from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows_of
 from roadproof.evidence.answers.reader import Background, Reader, read_kept
-from roadproof.evidence.answers.shared import (
-    Assuming,
-    Heading,
-    KeptKernel,
-    KeptLimits,
-    KernelWord,
-    OneScenario,
-    Options,
-    Reason,
-    Seconds,
-    SetName,
-    Specifications,
-)
-from roadproof.evidence.answers.shared import Formula as FormulaText
 from roadproof.evidence.answers.trace import KeptCounterexample, KeptTrace
 from roadproof.evidence.codec import ABSENT, LEFT_OUT, UNCHECKED, Doc, Rule, read
 from roadproof.evidence.json_schema import File
@@ -46,10 +33,10 @@ class Claim:
 
     property: Property
     part: Part
-    scenario: OneScenario
-    set: SetName
-    claim: FormulaText
-    assuming: Annotated[Assuming, LEFT_OUT] = ()
+    scenario: shared.OneScenario
+    set: shared.SetName
+    claim: shared.Formula
+    assuming: Annotated[shared.Assuming, LEFT_OUT] = ()
     verdict: ClaimVerdict
     evidence: Annotated[object, File(), Doc("Certificate or drive file beside the index.")]
     counterexample: Annotated[
@@ -75,12 +62,12 @@ def _trace_of(claim: Claim) -> object:
 class Preamble:
     """What an index says once for all claims; indices of earlier versions do not."""
 
-    options: Options = field(default_factory=dict)
-    specs: Specifications = ()
+    options: shared.Options = field(default_factory=dict)
+    specs: shared.Specifications = ()
 
 
 @dataclass(frozen=True, kw_only=True)
-class Index(Preamble, Heading):
+class Index(Preamble, shared.Heading):
     """Claims with the files that show them.
 
     Folders of earlier versions have no roadproof, library, options, specs.
@@ -95,8 +82,8 @@ class Record:
     """A kept answer."""
 
     claim: Claim
-    reason: Reason
-    seconds: Seconds
+    reason: shared.Reason
+    seconds: shared.Seconds
     asked: Annotated[
         str,
         UNCHECKED,
@@ -197,8 +184,8 @@ class Doubt:
 class KernelSays:
     """What Coq says of the proof, with --kernel."""
 
-    says: KernelWord
-    reason: Reason
+    says: shared.KernelWord
+    reason: shared.Reason
     premises: Annotated[int, Rule(minimum=0), Doc("How many limits and facts about motion are premises.")]
 
 
@@ -208,11 +195,11 @@ class ClaimAnswer:
 
     property: Property
     part: Part
-    scenario: OneScenario
-    set: SetName
-    claim: FormulaText
+    scenario: shared.OneScenario
+    set: shared.SetName
+    claim: shared.Formula
     assuming: Annotated[
-        tuple[FormulaText, ...],
+        tuple[shared.Formula, ...],
         Doc("What the claim is said under; empty where it is about all traces."),
     ]
     expected: Annotated[ClaimVerdict, Doc("The verdict with which the exit code is 0.")]
@@ -226,10 +213,10 @@ class ClaimAnswer:
         Doc("How a refuting drive leaves the limits of the shipped vehicles; null where it keeps them."),
     ]
     view: Annotated[Literal["dense", "grid"], Doc("grid: on samples up to a horizon, within the limits.")]
-    seconds: Seconds
-    reason: Reason
+    seconds: shared.Seconds
+    reason: shared.Reason
     doubt: Annotated[Doubt | None, LEFT_OUT] = None
-    limits: Annotated[KeptLimits | None, LEFT_OUT, Doc("Of a PROVED-BOUNDED only.")] = None
+    limits: Annotated[shared.KeptLimits | None, LEFT_OUT, Doc("Of a PROVED-BOUNDED only.")] = None
     assumptions: Annotated[tuple[str, ...], Doc("Declared bounds that the proof used.")]
     premises: Annotated[
         tuple[str, ...],
@@ -246,9 +233,9 @@ class ClaimAnswer:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer(Heading):
+class Answer(shared.Heading):
     """Claims, proved or refuted."""
 
     schema: Literal["roadproof/verdicts/1"] = ANSWER_SCHEMA
     verdicts: tuple[ClaimAnswer, ...]
-    kernel: Annotated[KeptKernel | None, LEFT_OUT] = None
+    kernel: Annotated[shared.KeptKernel | None, LEFT_OUT] = None

@@ -5,22 +5,9 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Annotated, Final, Literal, TypeAlias
 
+from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.entry import Common, Entry, file_of, shows_of
 from roadproof.evidence.answers.reader import Background, Reader, read_kept
-from roadproof.evidence.answers.shared import (
-    Dense,
-    Heading,
-    KeptCertificate,
-    KeptDrive,
-    Number,
-    Options,
-    Parameters,
-    Reason,
-    Seconds,
-    SetName,
-    Specifications,
-)
-from roadproof.evidence.answers.shared import Formula as FormulaText
 from roadproof.evidence.answers.trace import KeptTrace
 from roadproof.evidence.codec import UNCHECKED, Doc, Key, read
 from roadproof.evidence.strict import Fields
@@ -39,7 +26,7 @@ Word: TypeAlias = Literal[Verdict.PROVED, Verdict.REFUTED, Verdict.UNKNOWN]
 class Finding:
     """What becomes of a scenario where one occurrence of a part is replaced by a truth value."""
 
-    scenario: Number
+    scenario: shared.Number
     part: Annotated[str, UNCHECKED, Doc("The part that is replaced by a truth value.")]
     where: Annotated[tuple[str, ...], UNCHECKED, Doc("The definitions around it, from the outside in.")]
     value: Annotated[bool, Key("as"), UNCHECKED, Doc("The truth value.")]
@@ -50,11 +37,11 @@ class Finding:
         str,
         Doc("Of motion: that a vehicle which leaves L has a first moment outside it; else empty."),
     ]
-    claim: Annotated[FormulaText, Doc("That the scenario stays what it is.")]
-    certificate: KeptCertificate = None
-    drive: KeptDrive = None
+    claim: Annotated[shared.Formula, Doc("That the scenario stays what it is.")]
+    certificate: shared.KeptCertificate = None
+    drive: shared.KeptDrive = None
     trace: KeptTrace | None = None
-    reason: Reason = ""
+    reason: shared.Reason = ""
     late: Annotated[
         bool, UNCHECKED, Doc("Whether the clock cut it off, so that the next run asks again.")
     ] = False
@@ -83,19 +70,19 @@ class Finding:
 class Preamble:
     """What an index says once for all changes."""
 
-    set: SetName
-    options: Options
-    parameters: Parameters
-    specs: Specifications
+    set: shared.SetName
+    options: shared.Options
+    parameters: shared.Parameters
+    specs: shared.Specifications
 
 
 @dataclass(frozen=True, kw_only=True)
-class Index(Preamble, Heading):
+class Index(Preamble, shared.Heading):
     """Which parts of scenarios could be left out."""
 
     schema: Literal["roadproof/redundancy/1"] = SCHEMA
-    view: Dense = "dense"
-    seconds: Seconds = 0.0
+    view: shared.Dense = "dense"
+    seconds: shared.Seconds = 0.0
     verdicts: tuple[Finding, ...]
 
 
@@ -103,7 +90,7 @@ class Index(Preamble, Heading):
 class Record:
     """A kept answer: the findings on a scenario."""
 
-    scenario: Number
+    scenario: shared.Number
     verdicts: tuple[Finding, ...]
 
 

@@ -3,14 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated, Final, Literal
 
-from roadproof.evidence.answers.shared import (
-    Formula,
-    KeptWords,
-    Options,
-    PlainHeading,
-    Rational,
-    SetName,
-)
+from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.tree import ClaimNode, DefinitionNode
 from roadproof.evidence.codec import Doc
 
@@ -21,7 +14,7 @@ SCHEMA: Final = "roadproof/show/1"
 class ShownFormula:
     """A formula as text and as a syntax tree."""
 
-    text: Formula
+    text: shared.Formula
     tree: ClaimNode
 
 
@@ -39,19 +32,21 @@ class Parameter:
     """A parameter that a formula or a definition speaks of."""
 
     name: str
-    value: Annotated[Rational, Doc("The declared value, in unit.")]
+    value: Annotated[shared.Rational, Doc("The declared value, in unit.")]
     unit: str
     doc: str
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer(PlainHeading):
+class Answer(shared.PlainHeading):
     """A scenario, a definition or a formula."""
 
     schema: Literal["roadproof/show/1"] = SCHEMA
-    set: SetName
-    options: Options
-    scenario: Annotated[KeptWords | None, Doc("The scenario in words; null where something else is shown.")]
+    set: shared.SetName
+    options: shared.Options
+    scenario: Annotated[
+        shared.KeptWords | None, Doc("The scenario in words; null where something else is shown.")
+    ]
     formula: Annotated[ShownFormula | None, Doc("The formula; null where a definition is shown.")]
     definitions: tuple[Definition, ...]
     parameters: tuple[Parameter, ...]

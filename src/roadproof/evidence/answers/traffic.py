@@ -4,42 +4,32 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Final, Literal, TypeAlias
 
-from roadproof.evidence.answers.shared import (
-    Count,
-    KeptWords,
-    Number,
-    Options,
-    Parameters,
-    PlainHeading,
-    Rational,
-    SetName,
-    SetNames,
-)
+from roadproof.evidence.answers import shared
 from roadproof.evidence.codec import LEFT_OUT, Doc, Rule
 
 SCHEMA: Final = "roadproof/traffic-results/3"
 Driver: TypeAlias = Annotated[
     str, Rule(pattern="^(careful|r157|eu1426|rss)$", called="driver model with formulas")
 ]
-MinDanger: TypeAlias = Annotated[Rational, Doc("In s.")]
+MinDanger: TypeAlias = Annotated[shared.Rational, Doc("In s.")]
 Share: TypeAlias = Annotated[float, Rule(minimum=0)] | None
-UnequalPair: TypeAlias = tuple[str, int, int, Rational]
+UnequalPair: TypeAlias = tuple[str, int, int, shared.Rational]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
     """How traffic is evaluated."""
 
-    sets: SetNames
+    sets: shared.SetNames
     min_danger: Annotated[
-        tuple[Rational, ...], Rule(least=1), Doc("Values of the parameter minDanger, in s.")
+        tuple[shared.Rational, ...], Rule(least=1), Doc("Values of the parameter minDanger, in s.")
     ]
-    scenarios: tuple[Number, ...]
+    scenarios: tuple[shared.Number, ...]
     classes: Annotated[tuple[str, ...], Doc("Classes of vehicles that are looked at, such as Car.")]
     convention: Annotated[Literal["truncated", "clip"], Doc("What the end of a trace means.")]
     detectors: Annotated[tuple[str, ...], Doc("Detectors of earlier works, by name.")]
-    options: Options
-    parameters: Annotated[Parameters, Doc("All but minDanger, in SI units.")]
+    options: shared.Options
+    parameters: Annotated[shared.Parameters, Doc("All but minDanger, in SI units.")]
     drivers: Annotated[
         tuple[Driver, ...],
         LEFT_OUT,
@@ -54,10 +44,12 @@ class Row:
 
     sector: Annotated[str, Doc("The road sector of the row's scenarios, in the words of the specification.")]
     min_danger: MinDanger
-    set: SetName
-    traces: Annotated[Count, Doc("Unordered pairs on which danger arises, and that begin in the sector.")]
-    matching: Annotated[Count, Doc("Those that a scenario of two cars matches.")]
-    matching_with_three_cars: Annotated[Count, Doc("Those that any scenario matches.")]
+    set: shared.SetName
+    traces: Annotated[
+        shared.Count, Doc("Unordered pairs on which danger arises, and that begin in the sector.")
+    ]
+    matching: Annotated[shared.Count, Doc("Those that a scenario of two cars matches.")]
+    matching_with_three_cars: Annotated[shared.Count, Doc("Those that any scenario matches.")]
     recall: Annotated[Share, Doc("matching by traces; null where there are none.")]
     recall_without_init_safe: Annotated[
         Share,
@@ -67,12 +59,12 @@ class Row:
         ),
     ]
     scenarios: Annotated[
-        Mapping[Annotated[str, Rule(pattern="^[0-9]+$", called="number")], Count],
+        Mapping[Annotated[str, Rule(pattern="^[0-9]+$", called="number")], shared.Count],
         Doc("Pairs by the number of the scenario that matches them."),
     ]
-    matching_several: Annotated[Count, Doc("Pairs that several scenarios match.")]
+    matching_several: Annotated[shared.Count, Doc("Pairs that several scenarios match.")]
     together: Annotated[
-        Mapping[Annotated[str, Rule(pattern="^[0-9]+-[0-9]+$", called="pair of numbers")], Count],
+        Mapping[Annotated[str, Rule(pattern="^[0-9]+-[0-9]+$", called="pair of numbers")], shared.Count],
         Doc("Pairs by two scenarios that both match them."),
     ]
 
@@ -95,7 +87,7 @@ class Repeat:
     recording: str
     pair: Annotated[tuple[int, int], Doc("Ids of vehicles.")]
     what: Annotated[str, Doc("trace, violation, or the name of a detector.")]
-    min_danger: Annotated[Rational | None, Doc("In s; null where it makes no difference.")]
+    min_danger: Annotated[shared.Rational | None, Doc("In s; null where it makes no difference.")]
     shown_in: Annotated[str, Doc("The earlier recording.")]
 
 
@@ -104,42 +96,44 @@ class Prediction:
     """What a driver model says of the matches of a scenario."""
 
     min_danger: MinDanger
-    set: SetName
-    scenario: Number
+    set: shared.SetName
+    scenario: shared.Number
     driver: Driver
     preventable: Annotated[
-        Count,
+        shared.Count,
         Doc("Matches in which the model prevents a collision from where the manoeuvre begins."),
     ]
-    unpreventable: Annotated[Count, Doc("Those in which it does not.")]
-    not_foreseen: Annotated[Count, Doc("Those in which the manoeuvre does not begin before danger does.")]
+    unpreventable: Annotated[shared.Count, Doc("Those in which it does not.")]
+    not_foreseen: Annotated[
+        shared.Count, Doc("Those in which the manoeuvre does not begin before danger does.")
+    ]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer(PlainHeading):
+class Answer(shared.PlainHeading):
     """Dangers in recordings, and the scenarios that match them."""
 
     schema: Literal["roadproof/traffic-results/3"] = SCHEMA
     settings: Settings
-    recordings: Annotated[Count, Doc("Recordings that were used.")]
-    vehicles: Annotated[Count, Doc("Vehicles in them.")]
-    samples: Annotated[Count, Doc("Samples of these vehicles.")]
+    recordings: Annotated[shared.Count, Doc("Recordings that were used.")]
+    vehicles: Annotated[shared.Count, Doc("Vehicles in them.")]
+    samples: Annotated[shared.Count, Doc("Samples of these vehicles.")]
     violating: Annotated[
-        Count,
+        shared.Count,
         Doc(
             "Pairs that violate the RSS distance in some frame, in all road sectors, with and without "
             "initial safety."
         ),
     ]
-    asked: Annotated[Count, Doc("Questions to the monitor.")]
-    undecided: Annotated[Count, Doc("Those that depend on what comes after a trace.")]
-    differing: Annotated[Count, Doc("Those that truncated and clip answer otherwise.")]
+    asked: Annotated[shared.Count, Doc("Questions to the monitor.")]
+    undecided: Annotated[shared.Count, Doc("Those that depend on what comes after a trace.")]
+    differing: Annotated[shared.Count, Doc("Those that truncated and clip answer otherwise.")]
     table: Annotated[
         tuple[Row, ...],
         Doc("A row for each road sector that the recordings have, min_danger and set."),
     ]
-    words: Annotated[tuple[KeptWords, ...], Doc("What the scenarios are called.")]
-    detectors: Annotated[Mapping[str, Count], Doc("Pairs that each detector reports.")]
+    words: Annotated[tuple[shared.KeptWords, ...], Doc("What the scenarios are called.")]
+    detectors: Annotated[Mapping[str, shared.Count], Doc("Pairs that each detector reports.")]
     checks: Checks
     repeats: Annotated[
         tuple[Repeat, ...],
