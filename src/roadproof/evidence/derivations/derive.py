@@ -26,7 +26,6 @@ from roadproof.evidence.derivations.parts import (
 )
 from roadproof.evidence.derivations.signs import (
     Part,
-    Poly,
     Shapes,
     Signs,
     compares,
@@ -43,6 +42,7 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import terms_of, vehicles_of, with_values, without_names
 from roadproof.semantics.exact.algebraic import Root
 from roadproof.semantics.exact.exact import judge, seconds
+from roadproof.semantics.exact.polynomial import Polynomial, polynomial
 from roadproof.semantics.exact.truth import (
     ALWAYS,
     NEVER,
@@ -259,27 +259,27 @@ class _Finding:
 
     def _case(self, formula: Formula, scope: Scope, positive: bool, part: Part, change: Root) -> Step:
         """Where a polynomial that has this root is above 0, and where it is not."""
-        polynomial = tuple(Fraction(x) for x in change.polynomial)
-        above, not_above = (self._assuming(formula, part, polynomial, x) for x in (True, False))
+        changing = polynomial(*change.polynomial)
+        above, not_above = (self._assuming(formula, part, changing, x) for x in (True, False))
         if formula in (above, not_above):
             raise NoDerivationError("what holds changes exactly at an irrational instant")
         return case(
-            polynomial,
+            changing.coefficients,
             self.why(above, scope, positive, part),
             self.why(not_above, scope, positive, part),
         )
 
-    def _assuming(self, formula: Formula, part: Part, polynomial: Poly, above: bool) -> Formula:
+    def _assuming(self, formula: Formula, part: Part, changing: Polynomial, above: bool) -> Formula:
         """``formula`` with what the sign of a polynomial says of its comparisons at the same instant."""
         match formula:
             case f.Compare():
                 vehicles = vehicles_of(formula)
                 if any(part.has_inside(x) for name in vehicles for x in self.shapes.knots(name)):
                     return formula
-                said = said_of(self.shapes, formula, part, polynomial, above)
+                said = said_of(self.shapes, formula, part, changing, above)
                 return formula if said is None else f.Truth(said)
             case f.Not() | f.And() | f.Or() | f.Some() | f.Every():
-                inside = (self._assuming(x, part, polynomial, above) for x in f.children(formula))
+                inside = (self._assuming(x, part, changing, above) for x in f.children(formula))
                 return f.with_children(formula, tuple(inside))
             case _:
                 return formula
@@ -362,6 +362,3 @@ def _cuts(is_seen: Callable[[Part, Signs], bool], part: Part, deeper: int) -> li
         raise NoDerivationError("a sign is not seen at a rational instant")
     before, after = part.cut([cut])
     return [*_cuts(is_seen, before, deeper - 1), cut, *_cuts(is_seen, after, deeper - 1)]
-
-
-# --- rational instants -----------------------------------------------------------------------------

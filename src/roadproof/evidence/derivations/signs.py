@@ -7,22 +7,29 @@ longer, or is not found.
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import reduce
 from itertools import pairwise, product
-from typing import TypeAlias
 
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare, Comparison
 from roadproof.logic.terms import Term
 from roadproof.semantics.exact.algebraic import Root, real_roots
-from roadproof.semantics.exact.polynomial import primitive
+from roadproof.semantics.exact.polynomial import (
+    ONE,
+    ZERO,
+    Polynomial,
+    add,
+    multiply,
+    negate,
+    polynomial,
+    primitive,
+)
+from roadproof.semantics.exact.signals import course
 from roadproof.semantics.exact.truth import Cut
 from roadproof.world.drive import Drive
 from roadproof.world.motion import State, starts_of
 from roadproof.world.road import Lanelet
-
-# Coefficients, lowest power first, without zeros at the end.
-Poly: TypeAlias = tuple[Fraction, ...]
-ONE: Poly = (Fraction(1),)
+from roadproof.world.signals import SignalName
 
 
 @dataclass(frozen=True)
@@ -60,50 +67,26 @@ def _rational(cut: Cut) -> Fraction:
 # --- polynomials -----------------------------------------------------------------------------------
 
 
-def _trimmed(p: list[Fraction]) -> Poly:
-    while p and p[-1] == 0:
-        p.pop()
-    return tuple(p)
+def scale(factor: Fraction, p: Polynomial) -> Polynomial:
+    return multiply(polynomial(factor), p)
 
 
-def add(p: Poly, q: Poly) -> Poly:
-    longer, shorter = (p, q) if len(p) >= len(q) else (q, p)
-    total = list(longer)
-    for place, x in enumerate(shorter):
-        total[place] += x
-    return _trimmed(total)
+def subtract(p: Polynomial, q: Polynomial) -> Polynomial:
+    return add(p, negate(q))
 
 
-def scale(factor: Fraction, p: Poly) -> Poly:
-    return tuple(factor * x for x in p) if factor else ()
-
-
-def subtract(p: Poly, q: Poly) -> Poly:
-    return add(p, scale(Fraction(-1), q))
-
-
-def multiply(p: Poly, q: Poly) -> Poly:
-    if not p or not q:
-        return ()
-    found = [Fraction(0)] * (len(p) + len(q) - 1)
-    for i, x in enumerate(p):
-        for j, y in enumerate(q):
-            found[i + j] += x * y
-    return _trimmed(found)
-
-
-def _shifted(by: Fraction, p: Poly) -> Poly:
-    found: Poly = ()
-    for x in reversed(p):
-        found = add((x,), multiply((by, Fraction(1)), found))
+def _shifted(by: Fraction, p: Polynomial) -> Polynomial:
+    found = ZERO
+    for x in reversed(p.coefficients):
+        found = add(polynomial(x), multiply(polynomial(by, 1), found))
     return found
 
 
-def _bernstein(width: Fraction, p: Poly) -> list[Fraction]:
+def _bernstein(width: Fraction, p: Polynomial) -> list[Fraction]:
     """As Signs.v has it."""
     found: list[Fraction] = []
     ones = [Fraction(1)]
-    for x in reversed(p):
+    for x in reversed(p.coefficients):
         raised = [Fraction(0), *found]
         found = [x * one + more for one, more in zip(ones, raised, strict=True)]
         ones = [(a + b) / width for a, b in zip([Fraction(0), *ones], [*ones, Fraction(0)], strict=True)]
@@ -114,16 +97,16 @@ def _bernstein(width: Fraction, p: Poly) -> list[Fraction]:
 class Signs:
     """Signs of polynomials on parts; ``tested`` are those that were asked for."""
 
-    tested: set[Poly] = field(default_factory=set)
+    tested: set[Polynomial] = field(default_factory=set)
 
-    def above(self, strict: bool, p: Poly, part: Part) -> bool:
+    def above(self, strict: bool, p: Polynomial, part: Part) -> bool:
         """Whether Signs.v says that ``p`` is positive (or not negative) in all of ``part``."""
         self.tested.add(p)
         moved = _shifted(part.start, p)
         if part.end is None or part.stop is None:
-            form, last_is_out = list(moved), True
+            form, last_is_out = [*moved.coefficients], True
         elif part.stop <= part.start:
-            first = moved[0] if moved else Fraction(0)
+            first = next(iter(moved.numerators), 0)
             return first > 0 or (first == 0 and not strict)
         else:
             form, last_is_out = _bernstein(part.stop - part.start, moved), not part.end.after
@@ -139,23 +122,15 @@ class Signs:
         )
 
 
-def splits(tested: set[Poly], part: Part) -> list[Fraction]:
+def splits(tested: set[Polynomial], part: Part) -> list[Fraction]:
     """Rational instants inside ``part`` at which a polynomial, or how fast it grows, changes its sign."""
     found: set[Fraction] = set()
     for p in tested:
-        for q in (p, tuple(place * x for place, x in enumerate(p))[1:]):
+        for q in (p.numerators, tuple(place * x for place, x in enumerate(p.numerators))[1:]):
             if 1 < len(q) <= 3:
-                scaled = [x * _common(q) for x in q]
-                roots = real_roots(primitive(tuple(int(x) for x in scaled)))
+                roots = real_roots(primitive(q))
                 found |= {x for x, _ in roots if not isinstance(x, Root) and part.has_inside(x)}
     return sorted(found)
-
-
-def _common(p: Poly) -> int:
-    found = 1
-    for x in p:
-        found *= x.denominator
-    return found
 
 
 # --- a drive ---------------------------------------------------------------------------------------
@@ -177,25 +152,16 @@ class Shapes:
     def knots(self, vehicle: str) -> list[Fraction]:
         return [x.time for x in self.starts(vehicle)[1:]]
 
-    def signal(self, name: str, vehicle: str, part: Part) -> Poly:
+    def signal(self, name: SignalName, vehicle: str, part: Part) -> Polynomial:
         """On a part without a knot of the vehicle inside."""
-        x = [state for state in self.starts(vehicle) if state.time <= part.start][-1]
-        place, speed, rate = (
-            (x.s, x.v_lon, x.a_lon) if name in ("s", "v_lon", "a_lon") else (x.d, x.v_lat, x.a_lat)
-        )
-        match name:
-            case "s" | "d":
-                half = rate / 2
-                return _trimmed([place - x.time * (speed - half * x.time), speed - rate * x.time, half])
-            case "v_lon" | "v_lat":
-                return _trimmed([speed - rate * x.time, rate])
-            case _:
-                return _trimmed([rate])
+        return course(name, [state for state in self.starts(vehicle) if state.time <= part.start][-1])
 
-    def term(self, term: Term, part: Part, signs: Signs) -> list[Poly]:
+    def term(self, term: Term, part: Part, signs: Signs) -> list[Polynomial]:
         """Polynomials of which one is the term at each instant; none where it cannot be said."""
 
-        def all_of(terms: tuple[Term, ...], join: Callable[[Poly, Poly], list[Poly]]) -> list[Poly]:
+        def all_of(
+            terms: tuple[Term, ...], join: Callable[[Polynomial, Polynomial], list[Polynomial]]
+        ) -> list[Polynomial]:
             found = self.term(terms[0], part, signs)
             for other in terms[1:]:
                 more = self.term(other, part, signs)
@@ -204,30 +170,24 @@ class Shapes:
 
         match term:
             case t.Number(value, _):
-                return [_trimmed([value])]
+                return [polynomial(value)]
             case t.Parameter(name, _):
-                return [_trimmed([self.values[name]])]
+                return [polynomial(self.values[name])]
             case t.Signal(name, vehicle):
                 return [self.signal(name, vehicle, part)]
             case t.Size(name, vehicle):
-                return [(getattr(self.drive.vehicles[vehicle], name),)]
+                return [polynomial(getattr(self.drive.vehicles[vehicle], name))]
             case t.Sum(terms):
                 return all_of(terms, lambda p, q: [add(p, q)])
             case t.Product(factors):
                 return all_of(factors, lambda p, q: [multiply(p, q)])
             case t.Power(base, exponent):
-                found: list[Poly] = []
-                for p in self.term(base, part, signs):
-                    power = ONE
-                    for _ in range(exponent):
-                        power = multiply(power, p)
-                    found.append(power)
-                return found
+                return [reduce(multiply, [p] * exponent, ONE) for p in self.term(base, part, signs)]
             case t.Quotient(numerator, denominator):
                 below = self.term(denominator, part, signs)
-                if len(below) != 1 or len(below[0]) != 1:
+                if len(below) != 1 or len(below[0].numerators) != 1:
                     return []
-                return [scale(1 / below[0][0], p) for p in self.term(numerator, part, signs)]
+                return [scale(1 / below[0].coefficients[0], p) for p in self.term(numerator, part, signs)]
             case t.Maximum(terms):
                 return all_of(terms, lambda p, q: self._extreme(p, q, part, signs))
             case t.Minimum(terms):
@@ -236,11 +196,13 @@ class Shapes:
                 return []
 
     @staticmethod
-    def _extreme(p: Poly, q: Poly, part: Part, signs: Signs, least: bool = False) -> list[Poly]:
+    def _extreme(
+        p: Polynomial, q: Polynomial, part: Part, signs: Signs, least: bool = False
+    ) -> list[Polynomial]:
         difference = subtract(q, p) if least else subtract(p, q)
         if signs.above(False, difference, part):
             return [p]
-        if signs.above(False, scale(Fraction(-1), difference), part):
+        if signs.above(False, negate(difference), part):
             return [q]
         return [p, q]
 
@@ -272,36 +234,35 @@ def compares(shapes: Shapes, left: Term, op: Comparison, right: Term, part: Part
 
 
 def _cases(
-    inverse: tuple[bool, bool], strict: bool, p: Poly, q: Poly
-) -> Iterator[tuple[tuple[bool, Poly], ...]]:
+    inverse: tuple[bool, bool], strict: bool, p: Polynomial, q: Polynomial
+) -> Iterator[tuple[tuple[bool, Polynomial], ...]]:
     """What has to be positive (strictly, where true) for p < q or p <= q, as ``in_order`` has it."""
-    minus = Fraction(-1)
     match inverse:
         case (False, False):
             yield ((strict, subtract(q, p)),)
         case (False, True):
             yield (False, q), (strict, subtract(ONE, multiply(p, q)))
-            yield (True, scale(minus, q)), (strict, subtract(multiply(p, q), ONE))
+            yield (True, negate(q)), (strict, subtract(multiply(p, q), ONE))
         case (True, False):
             yield (True, p), (strict, subtract(multiply(p, q), ONE))
-            yield (True, scale(minus, p)), (strict, subtract(ONE, multiply(p, q)))
+            yield (True, negate(p)), (strict, subtract(ONE, multiply(p, q)))
         case _:
             yield (False, q), (strict, subtract(p, q))
-            yield (True, scale(minus, p)), (strict, subtract(p, q))
-            yield (True, scale(minus, p)), (False, q)
+            yield (True, negate(p)), (strict, subtract(p, q))
+            yield (True, negate(p)), (False, q)
 
 
-def said_of(shapes: Shapes, compared: Compare, part: Part, polynomial: Poly, above: bool) -> bool | None:
-    """What a comparison is in ``part`` where ``polynomial`` is above 0, or is not; None: open."""
+def said_of(shapes: Shapes, compared: Compare, part: Part, changing: Polynomial, above: bool) -> bool | None:
+    """What a comparison is in ``part`` where ``changing`` is above 0, or is not; None: open."""
     left = shapes.term(compared.left, part, Signs())
     right = shapes.term(compared.right, part, Signs())
     if len(left) != 1 or len(right) != 1:
         return None
     difference = subtract(right[0], left[0])
-    if len(difference) != len(polynomial):
+    if len(difference.numerators) != len(changing.numerators):
         return None
-    factor = difference[-1] / polynomial[-1]
-    if scale(factor, polynomial) != difference:
+    factor = difference.coefficients[-1] / changing.coefficients[-1]
+    if scale(factor, changing) != difference:
         return None
     signs = (
         (frozenset({1}) if above else frozenset({-1, 0}))
@@ -326,13 +287,13 @@ def occupies(
     motion = shapes.drive.vehicles[vehicle]
     along, across = (shapes.signal(name, vehicle, part) for name in ("s", "d"))
     low, high = lanelet.s
-    edges: list[Poly] = []
+    edges: list[Polynomial] = []
     if low is not None:
-        edges.append(subtract(along, (low,)))
+        edges.append(subtract(along, polynomial(low)))
     if high is not None:
-        edges.append(subtract((high,), subtract(along, (motion.length,))))
-    edges.append(subtract(across, (lanelet.d[0],)))
-    edges.append(subtract((lanelet.d[1],), subtract(across, (motion.width,))))
+        edges.append(subtract(polynomial(high), subtract(along, polynomial(motion.length))))
+    edges.append(subtract(across, polynomial(lanelet.d[0])))
+    edges.append(subtract(polynomial(lanelet.d[1]), subtract(across, polynomial(motion.width))))
     if positive:
         return all(signs.above(True, p, part) for p in edges)
-    return any(signs.above(False, scale(Fraction(-1), p), part) for p in edges)
+    return any(signs.above(False, negate(p), part) for p in edges)

@@ -16,6 +16,11 @@ class Polynomial:
     numerators: tuple[int, ...]
     denominator: int
 
+    @property
+    def coefficients(self) -> tuple[Fraction, ...]:
+        """Lowest power first."""
+        return tuple(Fraction(n, self.denominator) for n in self.numerators)
+
 
 def polynomial(*coefficients: Fraction | int) -> Polynomial:
     """From coefficients, lowest power first.

@@ -42,7 +42,7 @@ class DriveSignals:
             return self._own(signal)
         if signal.vehicle not in self._starts:
             self._starts[signal.vehicle] = starts_of(self._motion(signal.vehicle))
-        return tuple((x.time, _course(signal.name, x)) for x in self._starts[signal.vehicle])
+        return tuple((x.time, course(signal.name, x)) for x in self._starts[signal.vehicle])
 
     def _own(self, signal: Own) -> Pieces:
         """Raises ``InputError`` for a value that the declaration of the signal excludes."""
@@ -179,7 +179,7 @@ class Courses:
         return Fraction(value.numerators[0], value.denominator)
 
 
-def _course(name: t.SignalName, x: State) -> Polynomial:
+def course(name: t.SignalName, x: State) -> Polynomial:
     """A signal on the piece that starts in state ``x``, as a polynomial in time since 0."""
     begin = x.time
     match name:
