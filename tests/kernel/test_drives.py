@@ -21,7 +21,7 @@ from roadproof.evidence.kernel.accept import AXIOMS, CoqModule, Ruling, Word, ax
 from roadproof.evidence.kernel.accept import file as theory_file
 from roadproof.evidence.kernel.accept import judge as accept_judge
 from roadproof.evidence.kernel.coq import CoqRun, ready
-from roadproof.evidence.kernel.derivation import Step, coq_derivation, size
+from roadproof.evidence.kernel.derivation import Step, coq_derivation
 from roadproof.evidence.kernel.drive import claim_text, drive_lines, module, shown
 from roadproof.evidence.kernel.source import Module, file
 from roadproof.frontends.api.checking import check
@@ -37,6 +37,11 @@ HOME = Path(__file__).parents[2]
 DRIVES = sorted((HOME / "tests/traffic/planted").glob("scenario-*.json"))
 ONE = HOME / "examples/traffic/drives/scenario-04-base.json"
 THEOREM = re.compile(r"Theorem proved .*?Qed\.\n", re.DOTALL)
+
+
+def size(step: Step) -> int:
+    """How many rules a derivation has."""
+    return 1 + sum(map(size, step.children))
 
 
 def derivation_of(path):

@@ -92,15 +92,9 @@ WITHOUT_ASSUMPTION: JsonObject = {
 }
 """Only inductions may stand in a certificate that assumes nothing."""
 DRIVES = (drive.Drive, drive.JerkDrive)
-RECORDS: Mapping[type, type] = {
-    catalogue_index.Index: catalogue_index.Record,
-    classify.Index: classify.Record,
-    coverage.Index: coverage.Record,
-    drives.Answer: drives.Record,
-    order.Index: order.Record,
-    plates.Index: plates.Record,
-}
-"""Kept answers that are made of more than the index."""
+KEEPING = (proofs, drives, plates, overlap, redundancy, order, coverage, classify, catalogue_index, explore)
+"""The questions whose answers are kept one by one."""
+RECORDS: Mapping[str, type] = {x.SCHEMA: x.Record for x in KEEPING}
 
 
 def shared_types() -> JsonObject:
@@ -114,29 +108,16 @@ def schemas() -> Iterator[tuple[str, JsonObject]]:
     for kind, title in TITLES.items():
         [schema] = get_args(next(x.type for x in fields_of(kind) if x.name == "schema"))
         name = file_of(schema)
-        yield name, schema_of(kind, RECORDS.get(kind, kind), name, title)
+        yield name, schema_of(kind, RECORDS.get(schema, kind), name, title)
     title = "A proof for all time that a second program can check"
     made = schema_of(certificate.Certificate, certificate.Certificate, "certificate.json", title)
     yield "certificate.json", {**made, **WITHOUT_ASSUMPTION}
-    yield (
-        "drive.json",
-        tagged_schema(DRIVES, "drive.json", "A judged drive, with all that is needed to judge it again"),
-    )
+    title = "A judged drive, with all that is needed to judge it again"
+    yield "drive.json", tagged_schema(DRIVES, "drive.json", title)
     yield "answer.json", kept_answers("answer.json")
     yield "question.json", questions("question.json")
-    yield (
-        COMMON,
-        {
-            "$schema": DRAFT,
-            "$id": COMMON,
-            "title": "What several kinds of answers share",
-            "$defs": shared_schemas(shared_types()),
-        },
-    )
-
-
-KEEPING = (proofs, drives, plates, overlap, redundancy, order, coverage, classify, catalogue_index, explore)
-"""The questions whose answers are kept one by one."""
+    title, those = "What several kinds of answers share", shared_schemas(shared_types())
+    yield COMMON, {"$schema": DRAFT, "$id": COMMON, "title": title, "$defs": those}
 
 
 @dataclass(frozen=True, kw_only=True)

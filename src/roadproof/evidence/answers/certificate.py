@@ -1,11 +1,17 @@
 """The files of certificates, as they stand in JSON."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, make_dataclass
+from functools import reduce
+from itertools import groupby
+from operator import or_
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers.shared import Assuming, Dense, Formula, OneScenario, Options, SetName
 from roadproof.evidence.codec import LEFT_OUT, Doc, Remedy, Rule
 from roadproof.evidence.json_schema import Plain
+from roadproof.evidence.kernel.tableau import RULES
+from roadproof.library.motion import ALL_SCHEMAS
 
 SCHEMA: Final = "roadproof/certificate/2"
 Term: TypeAlias = Annotated[str, Rule(least=1)]
@@ -15,106 +21,7 @@ NamedSite: TypeAlias = tuple[str, Place, Sign, str] | tuple[str, Place, Sign, st
 InstancedSite: TypeAlias = (
     tuple[Place, Sign, str, tuple[str, ...]] | tuple[Place, Sign, str, str, tuple[str, ...]]
 )
-_RULES = (
-    "Close|CloseTruth|CloseLinear|CloseRoad|CloseRoads|CloseZones|Alpha|Beta|Timing|New|Inst|InstUntil|"
-    "NewRoad|InstRoad|Cut|Fact"
-)
-TableauLine: TypeAlias = Annotated[str, Rule(pattern=rf"^({_RULES}) [A-Za-z0-9_ ,*/-]+$")]
-
-
-@dataclass(frozen=True, kw_only=True)
-class OfSides:
-    """Two terms that are compared."""
-
-    left: Term
-    right: Term
-
-
-@dataclass(frozen=True, kw_only=True)
-class OfGrowth(OfSides):
-    """Two terms, the speed at which one gains on the other, and a time."""
-
-    speed: Term
-    time: Term
-
-
-@dataclass(frozen=True, kw_only=True)
-class OfGrowthTwice(OfSides):
-    """As before, with the growth of the speed."""
-
-    speed: Term
-    growth: Term
-    time: Term
-
-
-@dataclass(frozen=True, kw_only=True)
-class OfFormula:
-    """A formula."""
-
-    inside: Formula
-
-
-@dataclass(frozen=True, kw_only=True)
-class OfSteps(OfFormula):
-    """A formula with an interval of time."""
-
-    low: Term
-    high: Term
-
-
-@dataclass(frozen=True, kw_only=True)
-class OfLasting(OfFormula):
-    """A formula with a time."""
-
-    time: Term
-
-
-@dataclass(frozen=True, kw_only=True)
-class SidesAxiom:
-    """How two terms may come to be equal."""
-
-    schema: Literal["at-most", "below", "meets"]
-    arguments: OfSides
-
-
-@dataclass(frozen=True, kw_only=True)
-class LeavesAxiom:
-    """How a formula comes to be false."""
-
-    schema: Literal["leaves"]
-    arguments: OfFormula
-
-
-@dataclass(frozen=True, kw_only=True)
-class GrowthAxiom:
-    """How far a term gains on another in a time."""
-
-    schema: Literal["within", "after"]
-    arguments: OfGrowth
-
-
-@dataclass(frozen=True, kw_only=True)
-class GrowthTwiceAxiom:
-    """How far a term gains on another in a time, where the speed grows."""
-
-    schema: Literal["within-twice", "after-twice"]
-    arguments: OfGrowthTwice
-
-
-@dataclass(frozen=True, kw_only=True)
-class StepsAxiom:
-    """An induction in steps of time."""
-
-    schema: Literal["steps"]
-    arguments: OfSteps
-
-
-@dataclass(frozen=True, kw_only=True)
-class LastsAxiom:
-    """An induction over a time that lasts."""
-
-    schema: Literal["lasts"]
-    arguments: OfLasting
+TableauLine: TypeAlias = Annotated[str, Rule(pattern=rf"^({'|'.join(RULES)}) [A-Za-z0-9_ ,*/-]+$")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -125,7 +32,33 @@ class Axiom:
     arguments: Options
 
 
-_AXIOMS = Plain(SidesAxiom | LeavesAxiom | GrowthAxiom | GrowthTwiceAxiom | StepsAxiom | LastsAxiom)
+# Schemas by what they take: how a schema of JSON calls both, and says what they are.
+_AXIOMS = (
+    ("Sides", "Sides", "How two terms may come to be equal.", "Two terms that are compared."),
+    ("Leaves", "Formula", "How a formula comes to be false.", "A formula."),
+    (
+        *("Growth", "Growth", "How far a term gains on another in a time."),
+        "Two terms, the speed at which one gains on the other, and a time.",
+    ),
+    (
+        *("GrowthTwice", "GrowthTwice"),
+        "How far a term gains on another in a time, where the speed grows.",
+        "As before, with the growth of the speed.",
+    ),
+    ("Steps", "Steps", "An induction in steps of time.", "A formula with an interval of time."),
+    ("Lasts", "Lasting", "An induction over a time that lasts.", "A formula with a time."),
+)
+
+
+def _kinds_of_axioms() -> Iterator[type]:
+    """Definitions for the JSON Schema alone: one for all schemas of motion that take the same arguments."""
+    groups = groupby(ALL_SCHEMAS.items(), lambda x: x[1])
+    for (taken, those), (name, of, doc, of_doc) in zip(groups, _AXIOMS, strict=True):
+        fields = [(x, Formula if x == "inside" else Term) for x in taken]
+        arguments = make_dataclass(f"Of{of}", fields, kw_only=True, namespace={"__doc__": of_doc})
+        schema = Literal[tuple(x for x, _ in those)]  # type: ignore[valid-type]
+        told = [("schema", schema), ("arguments", arguments)]
+        yield make_dataclass(f"{name}Axiom", told, kw_only=True, namespace={"__doc__": doc})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -159,7 +92,7 @@ class Certificate:
     claim: Formula
     assuming: Annotated[Assuming, Remedy("leave 'assuming' out"), LEFT_OUT] = ()
     axioms: Annotated[
-        tuple[Annotated[Axiom, _AXIOMS], ...] | None,
+        tuple[Annotated[Axiom, Plain(reduce(or_, _kinds_of_axioms()))], ...] | None,
         LEFT_OUT,
         Doc(
             "The facts about motion and the inductions over time that the proof uses; inductions are true on "

@@ -6,13 +6,12 @@ from functools import partial
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers import shared
-from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows_of
+from roadproof.evidence.answers.entry import Common, Entry, evidence_name, fault_of_number, shows_of
 from roadproof.evidence.answers.proofs import shown
 from roadproof.evidence.answers.reader import Background, Reader, read_kept, unchecked
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
 from roadproof.evidence.json_schema import File, Whole
 from roadproof.evidence.strict import Fields, rational
-from roadproof.library.scenarios import Scenario, applied, name_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.verdict import DriveVerdict, Verdict
@@ -116,7 +115,7 @@ def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
     outcome, where = read_kept(Record, record).outcome, f"{record.where}, outcome"
     common, verdict = background.at(outcome.set), outcome.verdict
     shows = shows_of(verdict, where, "impossibility", "drive")
-    fault = _misnamed(outcome, common, where)
+    fault = fault_of_number(common, where, outcome.scenario, outcome.formula)
     drives = [evidence_name(Fields({"drive": x}, where), "drive") for x in outcome.drives]
     proof = evidence_name(Fields({"certificate": outcome.certificate}, where), "certificate")
     if proof if shows == "drive" else drives:
@@ -136,17 +135,6 @@ def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
             fault=fault,
             expected=partial(outcome.expected, common),
         )
-
-
-def _misnamed(outcome: OutcomeRecord, common: Common, where: str) -> str:
-    """Why a formula is not the scenario that it is called, or nothing."""
-    if outcome.scenario is None:
-        return ""
-    known = name_of(outcome.scenario) in common.specification.definitions
-    told = Scenario(outcome.scenario, common.set_name)
-    if known and applied(common.specification, told).formula == common.formula(outcome.formula):
-        return ""
-    return f"{where} is called scenario {told.number}, but its formula is another: {outcome.formula[:120]}"
 
 
 READER = replace(

@@ -20,6 +20,7 @@ from roadproof.evidence.strict import Fields, rational, read_json
 from roadproof.library.bind import values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import under_limits
+from roadproof.library.scenarios import Scenario, applied, name_of
 from roadproof.library.specification import Library, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
@@ -90,6 +91,17 @@ def common_of(data: Fields, library: Library, set_name: str, where: str = "") ->
         values = values_with(library, {n: rational(v, f"{place}.{n}") for n, v in given.items()})
     options = dict(library.select(set_name, options).options)
     return Common(where or data.where, library, set_name, options, values)
+
+
+def fault_of_number(common: Common, where: str, number: int | None, formula: str) -> str:
+    """Why a formula is not the scenario of a number, or nothing; None is the number of none."""
+    if number is None:
+        return ""
+    known = name_of(number) in common.specification.definitions
+    told = Scenario(number, common.set_name)
+    if known and applied(common.specification, told).formula == common.formula(formula):
+        return ""
+    return f"{where} is called scenario {number}, but its formula is another: {formula[:120]}"
 
 
 def evidence_name(data: Fields, field: str) -> str | None:

@@ -7,7 +7,7 @@ from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.errors import InputError
 from roadproof.evidence.answers import shared
-from roadproof.evidence.answers.entry import Common, Entry, file_of, shows_of
+from roadproof.evidence.answers.entry import Common, Entry, fault_of_number, file_of, shows_of
 from roadproof.evidence.answers.proofs import unchecked_of
 from roadproof.evidence.answers.reader import Background, Reader, read_kept
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule, read
@@ -16,7 +16,6 @@ from roadproof.library.bind import values_with
 from roadproof.library.compose import always, both, comparison, eventually
 from roadproof.library.elaborate import read_claim, read_term
 from roadproof.library.motion import values_said
-from roadproof.library.scenarios import Scenario, applied, name_of
 from roadproof.library.specification import Query
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
@@ -215,7 +214,7 @@ def _one(said: Exploration, where: str, background: Background) -> Iterator[Entr
     base = read_claim(common.specification, said.formula)
     knobs = tuple(_knob(x, where, common, base) for x in said.vary)
     fault = (
-        _misnamed(said, where, common, base)
+        fault_of_number(common, where, said.scenario, said.formula)
         or next((x.fault for x in knobs if x.fault), "")
         or _off_range(said, where, knobs)
     )
@@ -233,17 +232,6 @@ def _one(said: Exploration, where: str, background: Background) -> Iterator[Entr
             if found is not None:
                 place, key = f"{where}, extreme {k}", (*of, "extreme", k, side)
                 yield _of_measure(one, extreme, found, place, f"{place}, {side}", key)
-
-
-def _misnamed(said: Exploration, where: str, common: Common, base: Query) -> str:
-    """Why an exploration is not of the scenario that it names, or nothing."""
-    if said.scenario is None:
-        return ""
-    known = name_of(said.scenario) in common.specification.definitions
-    told = Scenario(said.scenario, common.set_name)
-    if known and applied(common.specification, told).formula == base.formula:
-        return ""
-    return f"{where} is called scenario {said.scenario}, but its formula is another: {said.formula[:120]}"
 
 
 def _off_range(said: Exploration, where: str, knobs: Sequence[_Variable]) -> str:

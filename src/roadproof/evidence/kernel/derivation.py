@@ -65,16 +65,6 @@ def rational(value: Fraction) -> str:
     return f"({value.numerator} # {value.denominator})"
 
 
-def size(step: Step) -> int:
-    """How many rules a derivation has."""
-    waiting, count = [step], 0
-    while waiting:
-        current = waiting.pop()
-        waiting += current.children
-        count += 1
-    return count
-
-
 def coq_derivation(step: Step, width: int = 110) -> Iterator[str]:
     """A derivation as a term of Shown.v, in lines."""
     line = ""

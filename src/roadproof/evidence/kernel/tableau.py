@@ -21,8 +21,8 @@ Argument: TypeAlias = int | str | Row | Multipliers
 # What a rule is told, and how many children it has. i: a fact or a number; m: a moment; w: multipliers;
 # c: the name of a lane or lanelet.
 RULES: dict[str, tuple[str, int]] = {
-    "CloseTruth": ("i", 0),
     "Close": ("iiww", 0),
+    "CloseTruth": ("i", 0),
     "CloseLinear": ("w", 0),
     "CloseRoad": ("i", 0),
     "CloseRoads": ("ii", 0),
