@@ -118,8 +118,8 @@ def _line(
     except InputError as error:
         return Line(name, path, None, str(error))
     try:
-        for k, file in enumerate(record.texts("evidence")):
-            evidence_name(Fields({"evidence": file}, f"{where}, evidence {k + 1}"), "evidence")
+        for k, file in enumerate(record.texts("evidence"), 1):
+            evidence_name(f"{where}, evidence {k}", "evidence", file)
         if record.text("seal") != seal_of(record.content, head.text("question"), Path(head.where).parent):
             return Line(
                 name, path, record, f"{where}: answer and evidence are not what its seal was made for"

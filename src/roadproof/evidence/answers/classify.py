@@ -233,7 +233,7 @@ def _of_class(said: KeptClass, where: str, common: Common) -> Entry:
         said.name,
         shows_of(said.verdict, where, drive="drive"),
         said.formula,
-        evidence_name(Fields({"drive": said.drive}, where), "drive"),
+        evidence_name(where, "drive", said.drive),
         fault=fault,
         expected=partial(said.expected, common),
     )
@@ -253,7 +253,7 @@ def _of_claim(said: Claim, where: str, common: Common) -> Entry:
         said.kind,
         shows_of_claim(said.verdict, where),
         said.claim,
-        evidence_name(Fields({"certificate": said.certificate}, where), "certificate"),
+        evidence_name(where, "certificate", said.certificate),
         unchecked=unchecked_of(said.verdict),
         fault=fault,
         expected=partial(said.expected, common),

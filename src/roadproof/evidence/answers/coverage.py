@@ -249,7 +249,7 @@ class Entries:
                 self.common.set_name,
                 shows_of_claim(said.verdict, where),
                 said.claim,
-                evidence_name(Fields({"certificate": said.certificate}, where), "certificate"),
+                evidence_name(where, "certificate", said.certificate),
                 unchecked=unchecked_of(said.verdict),
                 expected=partial(said.expected, self.common, self.numbers),
             )
@@ -268,7 +268,7 @@ class Entries:
                 f"{said.definition} of {self.common.set_name}",
                 "drive" if drive else "nothing",
                 said.formula if drive else said.definition,
-                evidence_name(Fields({"drive": said.drive}, where), "drive"),
+                evidence_name(where, "drive", said.drive),
                 unchecked=("that the formula is the set without the definition",) if drive else (),
                 fault=fault if said.extends != parent else "",
                 fault_of_drive=partial(_on_other_road, said.road),
@@ -295,7 +295,7 @@ class Entries:
                     f"class {', '.join(words)}",
                     "nothing" if shows == "drive" else shows,
                     said.claim,
-                    evidence_name(Fields({"certificate": said.certificate}, where), "certificate"),
+                    evidence_name(where, "certificate", said.certificate),
                     unchecked=("that the claim says that the class is empty",) if shows == "proof" else (),
                     fault=fault,
                     expected=partial(said.expected, self.common),
@@ -315,14 +315,14 @@ class Entries:
                 f"gap on {said.road}",
                 "drive",
                 said.formula,
-                evidence_name(Fields({"drive": said.drive}, here), "drive"),
+                evidence_name(here, "drive", said.drive),
                 unchecked=not_compared,
                 fault_of_drive=partial(_on_other_road, said.road),
                 expected=partial(said.expected, self.common, self.numbers),
             )
             yield entry
-            for road in said.elsewhere:
-                file = evidence_name(Fields(dict(said.elsewhere), f"{here}, elsewhere"), road)
+            for road, other in said.elsewhere.items():
+                file = evidence_name(f"{here}, elsewhere", road, other)
                 yield replace(
                     entry,
                     key=("gap", file),

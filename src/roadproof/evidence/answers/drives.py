@@ -116,8 +116,8 @@ def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
     common, verdict = background.at(outcome.set), outcome.verdict
     shows = shows_of(verdict, where, "impossibility", "drive")
     fault = fault_of_number(common, where, outcome.scenario, outcome.formula)
-    drives = [evidence_name(Fields({"drive": x}, where), "drive") for x in outcome.drives]
-    proof = evidence_name(Fields({"certificate": outcome.certificate}, where), "certificate")
+    drives = [evidence_name(where, "drive", x) for x in outcome.drives]
+    proof = evidence_name(where, "certificate", outcome.certificate)
     if proof if shows == "drive" else drives:
         fault = f"{where}: {verdict} has evidence of another kind"
     label = shown(None if outcome.scenario is None else ("", "", outcome.scenario), common.set_name)

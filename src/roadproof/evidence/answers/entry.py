@@ -16,7 +16,7 @@ from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence import certificate
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.drive_file import SCHEMAS_READ, DriveFile, read_drive
-from roadproof.evidence.strict import Fields, rational, read_json
+from roadproof.evidence.strict import Fields, rational, read_json, text
 from roadproof.library.bind import values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import under_limits
@@ -104,29 +104,23 @@ def fault_of_number(common: Common, where: str, number: int | None, formula: str
     return f"{where} is called scenario {number}, but its formula is another: {formula[:120]}"
 
 
-def evidence_name(data: Fields, field: str) -> str | None:
+def evidence_name(where: str, field: str, value: object) -> str | None:
     """The file that a field names, inside the folder of the index. Raises ``InputError``."""
-    if not data.has(field):
+    if value is None:
         return None
-    name = data.text(field)
-    parts = name.split("/")
-    if not name or "\\" in name or any(part in ("", ".", "..") for part in parts):
-        raise InputError(f"{data.where}: {field}='{name[:80]}' is no file in the folder of the index")
+    name = text(value, f"{where}, {field}")
+    if "\\" in name or any(part in ("", ".", "..") for part in name.split("/")):
+        raise InputError(f"{where}: {field}='{name[:80]}' is no file in the folder of the index")
     return name
-
-
-def one_of(data: Fields, shows: Shows, proof: str = "certificate", drive: str = "drive") -> str | None:
-    """The file of an answer that has fields for either kind of evidence. Raises ``InputError`` for both."""
-    field, other = (drive, proof) if shows in ("drive", "counterexample") else (proof, drive)
-    if data.has(other):
-        raise InputError(f"{data.where}: a {other} is named, where there may be a {field} only")
-    return evidence_name(data, field)
 
 
 def file_of(where: str, shows: Shows, proof: object, drive: object) -> str | None:
     """The file of an answer that may name a proof or a drive. Raises ``InputError`` for both."""
-    named = {"certificate": proof, "drive": drive}
-    return one_of(Fields(named, where), shows)
+    of_drive = shows in ("drive", "counterexample")
+    if (proof if of_drive else drive) is not None:
+        field, other = ("drive", "certificate") if of_drive else ("certificate", "drive")
+        raise InputError(f"{where}: a {other} is named, where there may be a {field} only")
+    return evidence_name(where, "drive", drive) if of_drive else evidence_name(where, "certificate", proof)
 
 
 def read_evidence(path: Path) -> Certificate | DriveFile:

@@ -121,7 +121,7 @@ def _entry(claim: Claim, where: str, background: Background) -> Entry:
         shown(label, claim.set),
         shows_of(claim.verdict, where),
         claim.claim,
-        evidence_name(Fields({"evidence": claim.evidence}, where), "evidence"),
+        evidence_name(where, "evidence", claim.evidence),
         _trace_of(claim),
         unchecked=unchecked_of(claim.verdict),
         fault=fault,

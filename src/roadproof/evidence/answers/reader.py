@@ -83,21 +83,6 @@ def read_kept(kind: type[T], record: Fields) -> T:
 Read: TypeAlias = Callable[[Fields, Background], Iterable[Entry]]
 
 
-def _nothing(record: Fields, background: Background) -> Iterator[Entry]:
-    """Of a command that keeps no answers."""
-    yield from ()
-
-
-def _without_faults(data: Fields, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
-    """Of an index that says nothing but its entries."""
-    yield from ()
-
-
-def _without_name(record: Fields) -> str | None:
-    """Of answers that do not say their name."""
-    return None
-
-
 def _lines(record: Fields) -> Iterator[object]:
     """The objects of a kept answer; texts and numbers beside them are in no index."""
     for value in record.content.values():
@@ -105,16 +90,6 @@ def _lines(record: Fields) -> Iterator[object]:
             yield value
         elif isinstance(value, list):
             yield from (x for x in value if not isinstance(x, str))
-
-
-def _without_record_faults(record: Fields, background: Background) -> Iterator[str]:
-    """Of a kept answer that says nothing but its entries."""
-    yield from ()
-
-
-def _depth(path: str) -> int:
-    """In how many lists a field is."""
-    return path.count("[]")
 
 
 def unchecked(kind: object) -> tuple[str, ...]:
@@ -158,14 +133,16 @@ class Reader:
     index: tuple[str, ...]
     read_index: Read
     record: tuple[str, ...] = ()
-    read_record: Read = _nothing
-    faults: Callable[[Fields, Background, Mapping[str, str]], Iterable[str]] = _without_faults
+    read_record: Read = lambda record, background: ()
+    faults: Callable[[Fields, Background, Mapping[str, str]], Iterable[str]] = (
+        lambda data, background, formulas: ()
+    )
     alone: bool = False
     unchecked: tuple[str, ...] = ()
     unchecked_kept: tuple[str, ...] = ()
-    file_name: Callable[[Fields], str | None] = _without_name
+    file_name: Callable[[Fields], str | None] = lambda record: None
     lines: Callable[[Fields], Iterable[object]] = _lines
-    record_faults: Callable[[Fields, Background], Iterable[str]] = _without_record_faults
+    record_faults: Callable[[Fields, Background], Iterable[str]] = lambda record, background: ()
 
     @staticmethod
     def of(
@@ -174,7 +151,7 @@ class Reader:
         read_index: Read,
         record: type,
         read_record: Read,
-        file_name: Callable[[Fields], str | None] = _without_name,
+        file_name: Callable[[Fields], str | None] = lambda record: None,
         schema: str = "",
     ) -> "Reader":
         """The reader of an index that is defined as ``index``, and whose kept answers are ``record``.
@@ -192,7 +169,7 @@ class Reader:
             read_index,
             kept,
             read_record,
-            unchecked=tuple(sorted(unchecked(index), key=lambda path: (_depth(path), path != "seconds"))),
-            unchecked_kept=tuple(sorted(unchecked(record), key=_depth)),
+            unchecked=tuple(sorted(unchecked(index), key=lambda path: (path.count("[]"), path != "seconds"))),
+            unchecked_kept=tuple(sorted(unchecked(record), key=lambda path: path.count("[]"))),
             file_name=file_name,
         )
