@@ -12,6 +12,7 @@ from itertools import combinations, combinations_with_replacement, islice
 from math import gcd, lcm, prod
 from typing import Literal, TypeAlias
 
+from roadproof.evidence.kernel.linear import add_to
 from roadproof.evidence.kernel.polynomials import Monomial, Polynomial, constant, coq, times
 
 Kind: TypeAlias = Literal["above", "at least", "zero"]
@@ -215,7 +216,7 @@ def _eliminated(rows: list[dict[int, Fraction]], last: int) -> Mapping[int, Frac
         current = dict(row)
         for place in sorted(pivots):
             if place in current:
-                _subtract(current, pivots[place], current[place])
+                add_to(current, pivots[place], -current[place])
         places = [x for x in current if x != last]
         if not places:
             if current.get(last):
@@ -226,15 +227,6 @@ def _eliminated(rows: list[dict[int, Fraction]], last: int) -> Mapping[int, Frac
         current = {x: q / scale for x, q in current.items()}
         for other in pivots.values():
             if pivot in other:
-                _subtract(other, current, other[pivot])
+                add_to(other, current, -other[pivot])
         pivots[pivot] = current
     return {place: row.get(last, Fraction(0)) for place, row in pivots.items()}
-
-
-def _subtract(row: dict[int, Fraction], other: Mapping[int, Fraction], factor: Fraction) -> None:
-    for x, q in other.items():
-        value = row.get(x, Fraction(0)) - factor * q
-        if value:
-            row[x] = value
-        else:
-            row.pop(x, None)

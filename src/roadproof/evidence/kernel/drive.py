@@ -13,7 +13,8 @@ from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.kernel.derivation import Step, coq_derivation, rational
 from roadproof.evidence.kernel.names import literal, quoted
 from roadproof.evidence.kernel.printer import Formals, Printer
-from roadproof.evidence.kernel.source import Module, comment_lines, wrapped
+from roadproof.evidence.kernel.source import ClaimText, Module, claim_lines, comment_lines
+from roadproof.evidence.kernel.statement import bounds_of, formals_of
 from roadproof.library.bind import refuse_variables, values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library
@@ -52,16 +53,12 @@ def shown(file: DriveFile, library: Library) -> Shown:
             raise InputError(f"lane {name}={file.lanes.get(name)}: the road has {', '.join(file.road.lanes)}")
     values = values_with(library, file.values)
     spoken = parameters_of(query.formula)
-    declared = specification.library.bounds
     return Shown(
         file,
         f.And((f.Application("shown_of_it", (), query.formula), *_apart(file))),
         {name: values[name] for name in spoken},
-        {name: declared[name] == ">" for name in spoken if declared.get(name)},
-        {
-            name: tuple((x.name, str(x.sort)) for x in definition.parameters)
-            for name, definition in specification.definitions.items()
-        },
+        bounds_of(specification, spoken),
+        formals_of(specification),
     )
 
 
@@ -73,15 +70,6 @@ def _apart(file: DriveFile) -> Iterator[Formula]:
     interval = f.Interval(t.Number(Fraction(0), seconds), t.Number(file.horizon, seconds))
     for a, b in combinations(sorted(file.drive.vehicles), 2):
         yield f.Always(interval, f.Application("apart", (a, b), f.Not(boxes_overlap(a, b))))
-
-
-@dataclass(frozen=True)
-class ClaimText:
-    """A claim as text of Coq, with what it rests on."""
-
-    claim: str
-    things: Sequence[str]
-    definitions: Sequence[str]
 
 
 def claim_text(shown: Shown) -> ClaimText:
@@ -98,12 +86,7 @@ def module(name: str, shown: Shown, printed: ClaimText, derivation: Step) -> Mod
     file = shown.file
     out = [f"Module {name}.", "Import Roadproof.Drive Roadproof.Shown."]
     out += comment_lines([f"A drive, set {file.set_name}:", file.formula])
-    out += [*printed.things, ""]
-    for definition in printed.definitions:
-        out += wrapped(definition)
-    bounds = [f"{'above_0' if strict else 'at_least_0'} {literal(p)}" for p, strict in shown.bounds.items()]
-    out += ["", *wrapped(f"Definition bounds : list bound := [{'; '.join(bounds)}].")]
-    out += [*wrapped(f"Definition claim : formula := {printed.claim}."), "", "Open Scope Q_scope."]
+    out += [*claim_lines(printed, shown.bounds), "", "Open Scope Q_scope."]
     out += ["Definition the_drive : drive :=", *drive_lines(shown), ".", ""]
     out += ["(* From here on it is proof: what is proved is said in the theorem at the end. *)"]
     theorem = len(out) + 1

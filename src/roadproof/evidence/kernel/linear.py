@@ -108,7 +108,8 @@ class Linear:
         row: dict[int, Fraction] = {}
         if len(form) > 1 or form[0][1] != 1:
             for name, factor in form:
-                self._add_to(row, self._variable(((name, Fraction(1)),)), factor)
+                part = self._variable(((name, Fraction(1)),))
+                add_to(row, self.rows.get(part, {part: Fraction(1)}), factor)
         variable = self.count
         self.count += 1
         self.forms[form] = variable
@@ -116,14 +117,6 @@ class Linear:
         if row:
             self.rows[variable] = row
         return variable
-
-    def _add_to(self, row: dict[int, Fraction], variable: int, factor: Fraction) -> None:
-        for place, share in self.rows.get(variable, {variable: Fraction(1)}).items():
-            total = row.get(place, _ZERO) + factor * share
-            if total:
-                row[place] = total
-            else:
-                row.pop(place, None)
 
     def _value_of(self, row: Mapping[int, Fraction]) -> _Value:
         return (
@@ -222,10 +215,15 @@ class Linear:
         for other in self.rows.values():
             share = other.pop(place, None)
             if share is not None:
-                for x, q in new.items():
-                    total = other.get(x, _ZERO) + share * q
-                    if total:
-                        other[x] = total
-                    else:
-                        other.pop(x, None)
+                add_to(other, new, share)
         self.rows[place] = new
+
+
+def add_to(row: dict[int, Fraction], other: Mapping[int, Fraction], factor: Fraction) -> None:
+    """Add a multiple of another row to a row; what becomes 0 is left out."""
+    for place, share in other.items():
+        total = row.get(place, _ZERO) + factor * share
+        if total:
+            row[place] = total
+        else:
+            row.pop(place, None)

@@ -1,7 +1,7 @@
 """Files of Coq: claims with their tableaux, one module each. The text of claims is the printer's."""
 
 import textwrap
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from roadproof.errors import RoadproofError
@@ -52,6 +52,15 @@ class Module:
         return self.text.count("\n")
 
 
+@dataclass(frozen=True)
+class ClaimText:
+    """A claim as text of Coq, with what it rests on."""
+
+    claim: str
+    things: Sequence[str]
+    definitions: Sequence[str]
+
+
 def module(name: str, statement: Statement, tableau: Tableau) -> Module:
     """The module that proves a statement.
 
@@ -61,16 +70,10 @@ def module(name: str, statement: Statement, tableau: Tableau) -> Module:
     printer = Printer(statement.formals)
     claim = printer.formula(statement.formula)
     facts = [printer.formula(without_names(lemma)) for lemma, _ in statement.lemmas]
-    bounds = [
-        f"{'above_0' if strict else 'at_least_0'} {literal(p)}" for p, strict in statement.bounds.items()
-    ]
     out += [f"Module {name}."]
     out += comment_lines(_said(statement))
-    out += [*printer.things, ""]
-    for definition in printer.definitions:
-        out += wrapped(definition)
-    out += ["", *wrapped(f"Definition bounds : list bound := [{'; '.join(bounds)}].")]
-    out += [*wrapped(f"Definition claim : formula := {claim}."), ""]
+    printed = ClaimText(claim, printer.things, printer.definitions)
+    out += [*claim_lines(printed, statement.bounds), ""]
     out += ["(* From here on it is proof: what is proved is said in the theorem at the end. *)"]
     lemmas: list[int] = []
     words = [printer.names.new(f"fact_{number}") for number in range(1, len(facts) + 1)]
@@ -99,6 +102,17 @@ def module(name: str, statement: Statement, tableau: Tableau) -> Module:
         f"End {name}.",
     ]
     return Module(name, "\n".join(out) + "\n", tuple(lemmas), theorem)
+
+
+def claim_lines(printed: ClaimText, bounds: Mapping[str, bool]) -> list[str]:
+    """A claim with what it rests on, as it stands in a module; ``bounds``: name, and strictly above 0."""
+    kinds = (f"{'above_0' if strict else 'at_least_0'} {literal(p)}" for p, strict in bounds.items())
+    return [
+        *(*printed.things, ""),
+        *(line for definition in printed.definitions for line in wrapped(definition)),
+        *("", *wrapped(f"Definition bounds : list bound := [{'; '.join(kinds)}].")),
+        *wrapped(f"Definition claim : formula := {printed.claim}."),
+    ]
 
 
 def _proved(printer: Printer, found: Reason | None, word: str, proof: str) -> Iterator[str]:

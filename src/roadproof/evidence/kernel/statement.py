@@ -4,7 +4,7 @@ The claim is read again with the library at hand. What is assumed of motion beco
 proved: each fact by itself, made anew of its schema, so that a reader of the printed claim sees it.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from roadproof.errors import InputError
@@ -15,7 +15,7 @@ from roadproof.evidence.kernel.printer import Formals
 from roadproof.evidence.times import bound_parameters
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import NOTHING, assumption, axiom_formula, value_texts, values_said
-from roadproof.library.specification import Library, Query
+from roadproof.library.specification import Library, Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import parameters_of, with_values
@@ -88,8 +88,7 @@ def state(certificate: Certificate, library: Library) -> Statement:
     formula = with_values(f.implication(f.conjunction(*premises), query.formula), here)
     atoms = Atoms()
     abstracted = atoms.abstract(formula)
-    declared = specification.library.bounds
-    bounds = {name: declared[name] == ">" for name in parameters_of(formula) if declared.get(name)}
+    bounds = bounds_of(specification, parameters_of(formula))
     parameters = tuple(sorted(bound_parameters(formula)))
     lemmas = tuple(
         (f.disjunction(*(_literal(atoms, *x) for x in lemma.literals)), lemma.moments)
@@ -105,10 +104,6 @@ def state(certificate: Certificate, library: Library) -> Statement:
         certificate.names,
         lemmas,
     )
-    formals = {
-        name: tuple((x.name, str(x.sort)) for x in definition.parameters)
-        for name, definition in specification.definitions.items()
-    }
     return Statement(
         certificate.property,
         certificate.claim,
@@ -118,11 +113,25 @@ def state(certificate: Certificate, library: Library) -> Statement:
         bounds,
         lemmas,
         parameters,
-        formals,
+        formals_of(specification),
         Premises(*map(len, (assumed.limits, assumed.facts, assumed.inductions))),
         value_texts(specification, here),
         goal,
     )
+
+
+def bounds_of(specification: Specification, names: Iterable[str]) -> dict[str, bool]:
+    """Of the parameters that are bounded, whether they are strictly above 0."""
+    declared = specification.library.bounds
+    return {name: declared[name] == ">" for name in names if declared.get(name)}
+
+
+def formals_of(specification: Specification) -> Formals:
+    """What each definition calls its arguments."""
+    return {
+        name: tuple((x.name, str(x.sort)) for x in definition.parameters)
+        for name, definition in specification.definitions.items()
+    }
 
 
 def _premises(certificate: Certificate, library: Library, query: Query) -> list[Formula]:
