@@ -28,8 +28,8 @@ from roadproof.analysis.catalogue.entries import Abstract, Concrete
 from roadproof.analysis.catalogue.listing import _by_itself
 from roadproof.analysis.catalogue.reading import read_catalogue
 from roadproof.analysis.catalogue.sides import read_side_name, side_name
-from roadproof.drivers.claims import SIDES, Side
 from roadproof.drivers.driving import OWN_LANE, DriverSettings, drive_of, road_of
+from roadproof.drivers.lines import SIDES, Side
 from roadproof.drivers.manoeuvres import KMH, MANOEUVRES, signals_of
 from roadproof.drivers.margins import State, controller_hits, controller_margin, margin
 from roadproof.drivers.models import MODELS, SCENARIOS, unpreventable

@@ -17,9 +17,9 @@ from preventing.test_stepping import random_cut_ins
 from roadproof.analysis.preventable.sides import judged_drive
 from roadproof.drivers import driving
 from roadproof.drivers.braking import AssistedBraking, Ramp
-from roadproof.drivers.claims import Side
 from roadproof.drivers.driving import DriverSettings, drive_of
 from roadproof.drivers.lemmas import lemmas_for
+from roadproof.drivers.lines import Side
 from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, along_line, start_of
 from roadproof.drivers.models import models_for
 from roadproof.errors import InputError

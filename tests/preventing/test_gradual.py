@@ -18,10 +18,9 @@ from roadproof.analysis.preventable.sides import beside_boundary, far_apart, fir
 from roadproof.drivers import gradual
 from roadproof.drivers.boundary import Plane, line
 from roadproof.drivers.braking import AssistedBraking, Ramp
-from roadproof.drivers.claims import SIDES
 from roadproof.drivers.driving import DriverSettings, _along, drive_of, motion_in_deceleration
 from roadproof.drivers.lemmas import lemmas_for
-from roadproof.drivers.lines import Line, end_of, sides_in
+from roadproof.drivers.lines import SIDES, Line, end_of, sides_in
 from roadproof.drivers.manoeuvres import DECELERATION, KMH, MANOEUVRES, start_of
 from roadproof.drivers.models import MODELS, unpreventable
 from roadproof.drivers.restriction import Restriction, check_drives

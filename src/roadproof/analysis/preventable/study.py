@@ -16,11 +16,9 @@ from roadproof.analysis.preventable.sides import beside_boundary, far_apart, fir
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.drivers import gradual
 from roadproof.drivers.boundary import Plane, plane_of
-from roadproof.drivers.claims import SIDES, Side
 from roadproof.drivers.driving import DriverSettings
-from roadproof.drivers.idle import chosen, idle
-from roadproof.drivers.lemmas import Lemma, lemmas_for
-from roadproof.drivers.lines import Line, end_of, sides_in, told_line, truths
+from roadproof.drivers.lemmas import Lemma, chosen, idle, lemmas_for
+from roadproof.drivers.lines import SIDES, Line, Side, end_of, sides_in, told_line, truths
 from roadproof.drivers.manoeuvres import Manoeuvre, Values
 from roadproof.drivers.models import MODELS, Model, boundary_of, parts_of, touched
 from roadproof.drivers.stepped import TOLD, beside_change, labels_of, places_of, spans_of

@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import Annotated, ClassVar, Final, Literal, TypeAlias
 
 from roadproof.drivers import lines as drawn
-from roadproof.drivers.claims import Side
+from roadproof.drivers.lines import Side
 from roadproof.drivers.manoeuvres import ManoeuvreName
 from roadproof.evidence.answers import shared
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule

@@ -8,10 +8,11 @@ from roadproof.errors import InputError
 from roadproof.evidence.answers import compare, drives
 from roadproof.evidence.codec import read
 from roadproof.evidence.finding import Finding
-from roadproof.frontends.report.page import catalogues, plates, values
+from roadproof.frontends.report.page import catalogues, values
 from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.results import Result, Words
 from roadproof.frontends.report.page.templates import render
+from roadproof.frontends.report.preventable import page_plates
 
 Values: TypeAlias = Mapping[str, object]
 _HEADING = ("schema", "roadproof", "library", "seconds", "options", "parameters", "specs", "view")
@@ -87,7 +88,7 @@ _SECTIONS: Mapping[str, tuple[str, str, Callable[[Result, PageContext, Words], V
     "explore": ("How far it can go", "explore", values.explored),
     "monitor": ("Where it holds on one trace", "monitor", values.monitored),
     "catalogue": ("What a catalogue of tests covers", "catalogue", catalogues.catalogue),
-    "preventable": ("From where a driver prevents a collision", "preventable", plates.plates),
+    "preventable": ("From where a driver prevents a collision", "preventable", page_plates),
     "traffic-results": ("Recordings, evaluated", "traffic-results", values.traffic),
 }
 """The title of a section, its template, and the function that gives the values for it."""
