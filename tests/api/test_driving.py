@@ -175,7 +175,7 @@ def test_what_looks_for_drives_among_files_finds_it(tmp_path: Path) -> None:
 
 
 def test_the_viewer_is_where_the_drive_is() -> None:
-    document = viewer_data(FILE, LIBRARY)["drive"]
+    document = viewer_data(FILE, LIBRARY).as_json()["drive"]
     for name, moving in VEHICLES.items():
         knots = document["vehicles"][name]["knots"]
         assert [x[0] for x in knots] == ([0, 1, 2] if name == "SV" else [0, 1, 2, 3, 4])

@@ -365,7 +365,7 @@ def moved(knots: list[list[float]], time: float) -> tuple[float, float]:
 
 
 def test_places_between_knots_and_truth_are_those_of_the_judge() -> None:
-    document = viewer_data(FILE, LIBRARY)
+    document = viewer_data(FILE, LIBRARY).as_json()
     for name, vehicle in document["drive"]["vehicles"].items():
         for tenth in range(0, 61, 7):
             state = state_at(FILE.drive.vehicles[name], Fraction(tenth, 10))
@@ -382,7 +382,7 @@ def test_places_between_knots_and_truth_are_those_of_the_judge() -> None:
 
 
 def test_every_part_is_in_the_tree_once() -> None:
-    parts = viewer_data(FILE, LIBRARY)["formulas"][0]["parts"]
+    parts = viewer_data(FILE, LIBRARY).as_json()["formulas"][0]["parts"]
     reached, waiting = set(), [0]
     while waiting:
         place = waiting.pop()
@@ -397,16 +397,16 @@ def test_a_formula_that_cannot_be_judged_says_why_and_leaves_the_others() -> Non
         ShownFormula("watch", "v_lon(SV) > 1 m/s"),
         ShownFormula("watch", "("),
     ]
-    wrong, right, broken = viewer_data(FILE, LIBRARY, asked)["formulas"]
+    wrong, right, broken = viewer_data(FILE, LIBRARY, asked).as_json()["formulas"]
     assert "mentions POV2" in wrong["error"]
     assert right["holds"] is True
     assert "ends too early" in broken["error"]
 
 
 def test_margins_are_left_out_where_bounds_are_too_fine() -> None:
-    [shown] = viewer_data(FILE, LIBRARY, [ShownFormula("question", "F[0, 0.123 s] v_lon(SV) > 1 m/s")])[
-        "formulas"
-    ]
+    [shown] = viewer_data(
+        FILE, LIBRARY, [ShownFormula("question", "F[0, 0.123 s] v_lon(SV) > 1 m/s")]
+    ).as_json()["formulas"]
     assert shown["step"] == 0
     assert "margins" not in shown["parts"][0]
     assert shown["parts"][0]["true"]
@@ -418,7 +418,7 @@ def test_reasons_are_told_in_the_tree_and_in_the_texts_of_the_user() -> None:
     )
     home = load_library([mine]).select("mine")
     asked = ShownFormula("question", "F danger(SV,POV)", home, explain=(0, Fraction(0)))
-    [shown] = viewer_data(FILE, LIBRARY, [asked])["formulas"]
+    [shown] = viewer_data(FILE, LIBRARY, [asked]).as_json()["formulas"]
     assert shown["holds"] is False
     because = [shown["parts"][int(k)]["text"] for k in shown["because"]]
     assert because == [
@@ -431,7 +431,7 @@ def test_reasons_are_told_in_the_tree_and_in_the_texts_of_the_user() -> None:
     assert said == {("formula", 1, 3, 1, 17), ("mine", 2, 41, 2, 57)}
     [refused] = viewer_data(
         FILE, LIBRARY, [ShownFormula("question", "v_lon(SV) > 0", explain=(99, Fraction(0)))]
-    )["formulas"]
+    ).as_json()["formulas"]
     assert "part=99" in refused["error"]
 
 
@@ -447,13 +447,13 @@ def test_texts_cannot_leave_the_document_of_a_page() -> None:
     text = json_in_html({"formula": hostile})
     assert json.loads(text) == {"formula": hostile}
     assert not re.search("[<>&\u2028\u2029]", text)
-    page = viewer_page([viewer_data(FILE, LIBRARY)], hostile)
+    page = viewer_page([viewer_data(FILE, LIBRARY).as_json()], hostile)
     assert "<img" not in page
     assert page.count("</script>") == 3
 
 
 def test_a_page_names_no_other_place() -> None:
-    page = viewer_page([viewer_data(FILE, LIBRARY)], "A drive")
+    page = viewer_page([viewer_data(FILE, LIBRARY).as_json()], "A drive")
     assert "default-src 'none'" in page
     above = page.partition('<script type="importmap">')[0]
     assert not re.search(r"\b(?:src|href)\s*=|url\(\s*['\"]?(?!data:)|@import|https?:", above)
@@ -492,8 +492,8 @@ def test_samples_of_a_drive_are_shown_with_the_distances_and_margins_of_the_driv
     trace = sample_drive(FILE.drive, FILE.road, FILE.horizon, Fraction(1, 10), "samples")
     home = rp.load()
     observed = rp.monitor("danger(SV,POV)", trace, using=home, lanes={}).observed
-    recorded = recorded_data(trace, [("question", observed)], home.specification, home.all_values())
-    document = viewer_data(FILE, LIBRARY, [ShownFormula("question", "danger(SV,POV)")])
+    recorded = recorded_data(trace, [("question", observed)], home.specification, home.all_values()).as_json()
+    document = viewer_data(FILE, LIBRARY, [ShownFormula("question", "danger(SV,POV)")]).as_json()
     assert recorded["drive"]["distances"] == document["drive"]["distances"] != []
     margins = [
         {x["text"]: x["margins"] for x in one["formulas"][0]["parts"] if "margins" in x}

@@ -6,10 +6,10 @@ Floats are for drawing; ``exact`` of a part tells its truth with open and closed
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from math import isfinite, lcm
-from typing import Any, TypeAlias, assert_never
+from typing import TypeAlias, assert_never
 
 from roadproof.drivers.words import words_of_parts
 from roadproof.errors import InputError, RoadproofError, UsageError
@@ -21,11 +21,22 @@ from roadproof.frontends.report.drive_data import (
     distances_of,
     vehicles_of,
 )
+from roadproof.frontends.report.viewer_document import (
+    DistanceView,
+    Document,
+    DriveView,
+    FormulaView,
+    LaneletView,
+    PartView,
+    RoadView,
+    Span,
+    VehicleView,
+)
 from roadproof.library.bind import bind, values_with
 from roadproof.library.scenario_references import read_query
 from roadproof.library.scenarios import SUBJECT, scenario_number
 from roadproof.library.specification import Library, Query, Specification
-from roadproof.library.uses import Place, places_of
+from roadproof.library.uses import places_of
 from roadproof.library.words import words_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, subformulas
@@ -39,7 +50,6 @@ from roadproof.semantics.exact.truth import TruthSet
 from roadproof.world.motion import starts_of, state_at
 from roadproof.world.road import Road
 
-SCHEMA = "roadproof/viewer/1"
 MOST_PARTS = 2000
 FINEST = 20  # margins are sampled at most so many times as often as curves
 DIGITS = 6
@@ -60,27 +70,16 @@ class ShownFormula:
     explain: tuple[int, Fraction] | None = None
 
 
-def viewer_data(
-    file: DriveFile,
-    library: Library,
-    asked: Sequence[ShownFormula] = (),
-    verdict: Mapping[str, Any] | None = None,
-) -> dict[str, Any]:
+def viewer_data(file: DriveFile, library: Library, asked: Sequence[ShownFormula] = ()) -> Document:
     """The document for a drive; without ``asked`` the formula of the file is shown.
 
-    ``verdict``: what is said of the drive, as plain data. A formula that cannot be judged on the drive has
-    an ``error`` in place of parts. Raises ``InputError`` where the file's set or options are unknown.
+    A formula that cannot be judged on the drive has an ``error`` in place of parts. Raises ``InputError``
+    where the file's set or options are unknown.
     """
     home = library.select(file.set_name, file.options)
     every = asked or (ShownFormula("question", file.formula),)
-    return {
-        "schema": SCHEMA,
-        "title": _title(home, file),
-        "verdict": dict(verdict or {}),
-        "drive": shown_drive(file, library),
-        "file": drive_data(file, {}),
-        "formulas": [shown_formula(x, file, x.specification or home) for x in every],
-    }
+    formulas = [shown_formula(x, file, x.specification or home) for x in every]
+    return Document(_title(home, file), shown_drive(file, library), drive_data(file, {}), formulas)
 
 
 def _title(home: Specification, file: DriveFile) -> str:
@@ -92,73 +91,63 @@ def _title(home: Specification, file: DriveFile) -> str:
 # --- the drive ----------------------------------------------------------------------------------
 
 
-def shown_drive(file: DriveFile, library: Library) -> dict[str, Any]:
-    """Road, vehicles by name (SV first) with their states at the knots, and distances every ``grain`` s."""
+def shown_drive(file: DriveFile, library: Library) -> DriveView:
+    """Road, vehicles by name (SV first) with their states at the knots, and distances every ``GRAIN`` s."""
     directions: tuple[Direction, ...] = ("along", "across")
-    return {
-        "set": file.set_name,
-        "horizon": float(file.horizon),
-        "grain": float(GRAIN),
-        "lanes": dict(file.lanes),
-        "road": shown_road(file.road),
-        "vehicles": {name: _shown_motion(file, name) for name in vehicles_of(file)},
-        "distances": [
-            {
-                "direction": direction,
-                "one": x.one,
-                "other": x.other,
-                "gap": _short(x.gap),
-                "needed": _short(x.needed),
-                "one_behind": list(x.one_behind),
-            }
+    return DriveView(
+        file.set_name,
+        float(file.horizon),
+        float(GRAIN),
+        file.lanes,
+        shown_road(file.road),
+        {name: _shown_motion(file, name) for name in vehicles_of(file)},
+        [
+            DistanceView(direction, x.one, x.other, _short(x.gap), _short(x.needed), x.one_behind)
             for direction in directions
             for x in distances_of(file, library, direction)
         ],
-        "dangers": [vars(x) for x in dangers_of(file, library)],
-    }
+        dangers_of(file, library),
+    )
 
 
-def shown_road(road: Road) -> dict[str, Any]:
-    """Lanelets with their extent (m), null where they have no end."""
+def shown_road(road: Road) -> RoadView:
+    """Lanelets with their extent (m)."""
+    return RoadView(
+        road.name,
+        [
+            LaneletView(
+                x.lane, x.zone, [None if y is None else float(y) for y in x.s], [float(y) for y in x.d]
+            )
+            for x in road.lanelets
+        ],
+    )
 
-    def bound(value: Fraction | None) -> float | None:
-        return None if value is None else float(value)
 
-    lanelets = [
-        {"lane": x.lane, "zone": x.zone, "s": [bound(y) for y in x.s], "d": [float(y) for y in x.d]}
-        for x in road.lanelets
-    ]
-    return {"name": road.name, "lanelets": lanelets}
-
-
-def _shown_motion(file: DriveFile, name: str) -> dict[str, Any]:
+def _shown_motion(file: DriveFile, name: str) -> VehicleView:
     motion = file.drive.vehicles[name]
     knots = [[float(x) for x in vars(state).values()] for state in starts_of(motion)]
-    return {"length": float(motion.length), "width": float(motion.width), "knots": knots}
+    return VehicleView(float(motion.length), float(motion.width), knots)
 
 
 # --- formulas -----------------------------------------------------------------------------------
 
 
-def shown_formula(asked: ShownFormula, file: DriveFile, home: Specification) -> dict[str, Any]:
+def shown_formula(asked: ShownFormula, file: DriveFile, home: Specification) -> FormulaView:
     """One formula on the drive: its parts with truth and margins, or why it cannot be judged."""
-    data = {"role": asked.role, "formula": asked.formula, "set": home.set_name}
+    view = FormulaView(asked.role, asked.formula, home.set_name)
     try:
         query, onto = bound_on(asked, file, home)
         judgement = judge(onto(query.formula), file.drive)
-        why = {} if asked.explain is None else _reasons(judgement, query, onto, home, *asked.explain)
+        if asked.explain is not None:
+            view = _explained(view, judgement, query, onto, home, *asked.explain)
     except RoadproofError as error:
-        return {**data, "error": str(error)}
+        return replace(view, error=str(error))
     number = scenario_number(query)
     sentence = "" if number is None else words_of(home, number).sentence
-    return {
-        **data,
-        "text": query.text,
-        "sentence": sentence,
-        "holds": judgement.holds,
-        **shown_parts(judgement, file, home),
-        **why,
-    }
+    parts, more, step = shown_parts(judgement, file, home)
+    return replace(
+        view, text=query.text, sentence=sentence, holds=judgement.holds, parts=parts, more=more, step=step
+    )
 
 
 Onto: TypeAlias = Callable[[Formula], Formula]
@@ -182,21 +171,24 @@ def bound_on(asked: ShownFormula, file: DriveFile, home: Specification) -> tuple
     return query, lambda formula: bind(formula, file.road, lanes, values)
 
 
-def _reasons(
-    judgement: Judgement, query: Query, onto: Onto, home: Specification, place: int, at: Fraction
-) -> dict[str, Any]:
-    """``because``: when parts make one part what it is at an instant, by their places; ``said`` where.
-
-    Raises ``UsageError`` where there is no such part.
-    """
+def _explained(
+    view: FormulaView,
+    judgement: Judgement,
+    query: Query,
+    onto: Onto,
+    home: Specification,
+    place: int,
+    at: Fraction,
+) -> FormulaView:
+    """With ``because`` and ``said`` of the part at a place. Raises ``UsageError`` where there is none."""
     parts = list(subformulas(judgement.formula))[:MOST_PARTS]
     if not 0 <= place < len(parts):
         raise UsageError(f"part={place}: the formula has parts 0 to {len(parts) - 1}")
     found = blame(judgement, parts[place], at)
-    because = {str(k): shown_truth(found[x])["true"] for k, x in enumerate(parts) if x in found}
+    because = {str(k): shown_truth(found[x]) for k, x in enumerate(parts) if x in found}
     said = [x for x in places_of(home, query) if isinstance(x.formula, f.Compare | f.Application)]
     said = [x for x in said if _on_road(x.formula, onto) in found]
-    return {"because": because, "said": [shown_place(x) for x in said]}
+    return replace(view, because=because, said=said)
 
 
 def _on_road(formula: Formula, onto: Onto) -> Formula | None:
@@ -205,12 +197,6 @@ def _on_road(formula: Formula, onto: Onto) -> Formula | None:
         return onto(formula)
     except InputError:
         return None
-
-
-def shown_place(place: Place) -> dict[str, Any]:
-    """Where something is said: the text, and from which line and column to which, which is behind it."""
-    at = place.at
-    return {"source": place.source, "from": [at.line, at.column], "to": [at.end_line, at.end_column]}
 
 
 def _lane_of(file: DriveFile, name: str) -> str:
@@ -224,11 +210,10 @@ def _lane_of(file: DriveFile, name: str) -> str:
     return file.road.lanes[0]
 
 
-def shown_parts(judgement: Judgement, file: DriveFile, home: Specification) -> dict[str, Any]:
-    """Every distinct sub-formula once, the whole first; ``children`` are places in the list.
-
-    ``op``: name, and, or, not, F, G, U, compare or truth. ``more``: how many were left out.
-    """
+def shown_parts(
+    judgement: Judgement, file: DriveFile, home: Specification
+) -> tuple[list[PartView], int, float]:
+    """Every distinct sub-formula once, the whole first; how many were left out; seconds between margins."""
     every = list(subformulas(judgement.formula))
     shown = every[:MOST_PARTS]
     places = {part: k for k, part in enumerate(shown)}
@@ -236,35 +221,36 @@ def shown_parts(judgement: Judgement, file: DriveFile, home: Specification) -> d
     words = words_of_parts(judgement.formula)
     parts = []
     for part in shown:
-        entry: dict[str, Any] = {
-            "op": _operator(part),
-            "text": told(part),
-            "children": [places[x] for x in f.children(part) if x in places],
-            **shown_truth(judgement.truth(part)),
-        }
+        truth, says, called = judgement.truth(part), None, None
         if isinstance(part, f.Application):
             definition = home.definitions.get(part.name.partition("@")[0])
-            entry["says"] = "" if definition is None else home.describe(definition)
-            if part in words:
-                entry["words"] = words[part]
-        if part in margins:
-            entry["margins"] = _short(margins[part])
-        parts.append(entry)
-    return {"parts": parts, "more": len(every) - len(shown), "step": step}
+            says, called = "" if definition is None else home.describe(definition), words.get(part)
+        parts.append(
+            PartView(
+                _operator(part),
+                told(part),
+                [places[x] for x in f.children(part) if x in places],
+                shown_truth(truth),
+                exact=str(truth),
+                says=says,
+                words=called,
+                margins=_short(margins[part]) if part in margins else None,
+            )
+        )
+    return parts, len(every) - len(shown), step
 
 
-def shown_truth(truth: TruthSet) -> dict[str, Any]:
-    """When something is true: ``true`` as [begin, end or null, begin is in it, end is in it], and exactly."""
-    spans = [
-        [
+def shown_truth(truth: TruthSet) -> list[Span]:
+    """When something is true."""
+    return [
+        Span(
             approximate(span.begin.point),
             None if span.end is None else approximate(span.end.point),
             not span.begin.after,
             span.end is not None and span.end.after,
-        ]
+        )
         for span in truth.spans()
     ]
-    return {"true": spans, "exact": str(truth)}
 
 
 def told(part: Formula) -> str:

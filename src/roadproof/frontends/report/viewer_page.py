@@ -8,7 +8,6 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib import resources
 from importlib.resources.abc import Traversable
-from typing import Any
 
 _OWN = ("palette", "drive", "scene", "strips", "curves", "verdict", "viewer")
 _MODULES = ("vendor/view", *(f"viewer/{name}" for name in _OWN))
@@ -70,7 +69,7 @@ documents.forEach((x, k) => mount(document.getElementById("document-" + k), x));
 """.replace("{{", "{").replace("}}", "}")
 
 
-def viewer_page(documents: Sequence[Mapping[str, Any]], title: str) -> str:
+def viewer_page(documents: Sequence[Mapping[str, object]], title: str) -> str:
     """An HTML page with a viewer for each document of ``viewer_data``; all texts are escaped."""
     imports = json.dumps({"imports": {name: as_url(text) for name, text in viewer_modules().items()}})
     articles = "\n".join(f'<article id="document-{k}"></article>' for k in range(len(documents)))

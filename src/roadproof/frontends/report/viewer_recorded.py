@@ -6,7 +6,16 @@ from typing import Any
 
 from roadproof.errors import RoadproofError
 from roadproof.frontends.report.drive_data import Direction, nearer_in, too_near
-from roadproof.frontends.report.viewer_data import SCHEMA, short_number, shown_road
+from roadproof.frontends.report.viewer_data import short_number, shown_road
+from roadproof.frontends.report.viewer_document import (
+    DistanceView,
+    Document,
+    DriveView,
+    FormulaView,
+    PartView,
+    Span,
+    VehicleView,
+)
 from roadproof.library.bind import bind
 from roadproof.library.scenarios import SUBJECT
 from roadproof.library.specification import Specification
@@ -22,7 +31,7 @@ def recorded_data(
     observed: Sequence[tuple[str, FirstAnswer]],
     home: Specification,
     values: Mapping[str, Fraction],
-) -> dict[str, Any]:
+) -> Document:
     """The document for a trace; ``observed`` are roles and what the monitor said of each formula.
 
     Between samples vehicles are drawn as if they kept their speed. ``values`` of parameters, with the
@@ -32,32 +41,26 @@ def recorded_data(
     count = int(batch.lengths[0])
     dt = float(batch.dt)
     names = sorted({name for _, name in batch.signals}, key=lambda name: (name != SUBJECT, name))
-    drive = {
-        "set": home.set_name,
-        "horizon": (count - 1) * dt,
-        "grain": dt,
-        "lanes": dict(trace.lanes),
-        "road": shown_road(trace.road),
-        "vehicles": {name: _shown_vehicle(trace, name, count, dt) for name in names},
-        "distances": [
+    drive = DriveView(
+        home.set_name,
+        (count - 1) * dt,
+        dt,
+        trace.lanes,
+        shown_road(trace.road),
+        {name: _shown_vehicle(trace, name, count, dt) for name in names},
+        [
             shown
             for direction in _DIRECTIONS
             for other in names[1:]
             if (shown := _shown_distance(trace, home, values, direction, names[0], other)) is not None
         ],
-        "dangers": [],
-    }
-    return {
-        "schema": SCHEMA,
-        "title": trace.source,
-        "verdict": {},
-        "drive": drive,
-        "file": None,
-        "formulas": [_shown_formula(role, x, home.set_name) for role, x in observed],
-    }
+    )
+    return Document(
+        trace.source, drive, None, [_shown_formula(role, x, home.set_name) for role, x in observed]
+    )
 
 
-def _shown_vehicle(trace: OneTrace, name: str, count: int, dt: float) -> dict[str, Any]:
+def _shown_vehicle(trace: OneTrace, name: str, count: int, dt: float) -> VehicleView:
     batch = trace.batch
 
     def column(signal: Any) -> list[float]:
@@ -66,7 +69,7 @@ def _shown_vehicle(trace: OneTrace, name: str, count: int, dt: float) -> dict[st
     columns = [column(x) for x, about in SIGNALS.items() if about.kept == "start"]
     knots = [[round(k * dt, 6), *row, 0.0, 0.0, 0.0] for k, row in enumerate(zip(*columns, strict=True))]
     length, width = (float(batch.sizes[x, name][0]) for x in ("length", "width"))
-    return {"length": length, "width": width, "knots": knots}
+    return VehicleView(length, width, knots)
 
 
 def _shown_distance(
@@ -76,7 +79,7 @@ def _shown_distance(
     direction: Direction,
     one: str,
     other: str,
-) -> dict[str, Any] | None:
+) -> DistanceView | None:
     """Gap and RSS distance at each sample; None where the library has none, or of another form."""
     batch, count = trace.batch, int(trace.batch.lengths[0])
     signal = "s" if direction == "along" else "d"
@@ -101,33 +104,25 @@ def _shown_distance(
         margin = margins[k]
         gaps.append(short_number(gap))
         needed.append(None if margin is None else short_number(gap + margin))
-    return {
-        "direction": direction,
-        "one": one,
-        "other": other,
-        "gap": gaps,
-        "needed": needed,
-        "one_behind": behind,
-    }
+    return DistanceView(direction, one, other, gaps, needed, behind)
 
 
-def _shown_formula(role: str, observed: FirstAnswer, set_name: str) -> dict[str, Any]:
-    strips = observed.strips
-    return {
-        "role": role,
-        "formula": observed.formula,
-        "set": set_name,
-        "text": observed.formula,
-        "sentence": "",
-        "holds": observed.verdict == "true",
-        "undecided": observed.verdict == "undecided",
-        "parts": [_shown_part(strips, k) for k in range(len(strips))],
-        "more": 0,
-        "step": float(observed.dt),
-    }
+def _shown_formula(role: str, observed: FirstAnswer, set_name: str) -> FormulaView:
+    return FormulaView(
+        role,
+        observed.formula,
+        set_name,
+        text=observed.formula,
+        sentence="",
+        holds=observed.verdict == "true",
+        undecided=observed.verdict == "undecided",
+        parts=[_shown_part(observed.strips, k) for k in range(len(observed.strips))],
+        more=0,
+        step=float(observed.dt),
+    )
 
 
-def _shown_part(strips: Sequence[Strip], place: int) -> dict[str, Any]:
+def _shown_part(strips: Sequence[Strip], place: int) -> PartView:
     """A strip as a part whose children are the strips one deeper that follow it."""
     one = strips[place]
     children = []
@@ -136,10 +131,14 @@ def _shown_part(strips: Sequence[Strip], place: int) -> dict[str, Any]:
             break
         if strips[k].depth == one.depth + 1:
             children.append(k)
-    true = [[begin, end, True, True] for begin, end in one.true]
     told = "; ".join(f"{begin:g} to {end:g} s" for begin, end in one.true) or "at no sample"
-    doubt = [[begin, end, True, True] for begin, end in one.undecided]
-    shown = {"op": "part", "text": one.name, "children": children, "true": true, "open": doubt, "exact": told}
-    if any(x is not None for x in one.margins):
-        shown["margins"] = [None if x is None else short_number(x) for x in one.margins]
-    return shown
+    margins = [None if x is None else short_number(x) for x in one.margins]
+    return PartView(
+        "part",
+        one.name,
+        children,
+        [Span(*x) for x in one.true],
+        [Span(*x) for x in one.undecided],
+        told,
+        margins=margins if any(x is not None for x in margins) else None,
+    )

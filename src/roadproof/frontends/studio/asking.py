@@ -10,7 +10,6 @@ from roadproof.evidence.certificate import Certificate, certificate_data
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.api.definitions import Definitions
 from roadproof.frontends.api.drafting import BEFORE, EDIT, place_in
-from roadproof.frontends.report.viewer_data import shown_place
 from roadproof.frontends.settings import groups
 from roadproof.frontends.settings.flags import command_line
 from roadproof.frontends.settings.option import Settings
@@ -109,7 +108,7 @@ def _clash(home: Definitions, query: Query, core: Iterable[Formula]) -> list[Ans
     """Where the parts that clash are said in the texts that the user sees."""
     every = places_of(home.specification, query)
     seen = [x for x in every if place_in(x.source, (x.at.line, x.at.column)) is not None]
-    return marks_of((shown_place(x) for part in core for x in nearest(seen, part)), "clash")
+    return marks_of((x for part in core for x in nearest(seen, part)), "clash")
 
 
 def prove(ask: Ask, say: Say) -> Answer:

@@ -17,6 +17,7 @@ from roadproof.errors import InputError, RoadproofError, UsageError
 from roadproof.evidence.drive_file import SCHEMAS_READ as DRIVES
 from roadproof.evidence.drive_file import read_drive
 from roadproof.evidence.strict import parse_json
+from roadproof.frontends.report.viewer_document import FormulaView
 from roadproof.frontends.report.viewer_recorded import recorded_data
 from roadproof.frontends.studio.requests import MOST_FILES, Answer, Ask, Say
 from roadproof.frontends.studio.showing import view
@@ -83,10 +84,9 @@ def _monitored(ask: Ask, trace: OneTrace) -> Answer:
         try:
             observed.append((role, rp.monitor(formula, trace, using=home).observed))
         except RoadproofError as error:
-            refused.append({"role": role, "formula": formula, "set": home.sets[0], "error": str(error)})
+            refused.append(FormulaView(role, formula, home.sets[0], error=str(error)))
     document = recorded_data(trace, observed, home.specification, home.all_values())
-    document["formulas"] += refused
-    return document
+    return replace(document, formulas=[*document.formulas, *refused]).as_json()
 
 
 def _names(ask: Ask) -> list[str]:

@@ -1,8 +1,7 @@
 """Drives on the page: judged with the definitions as they are at the moment."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import replace
-from typing import Any
 
 from roadproof.evidence.drive_file import DriveFile, read_drive
 from roadproof.frontends.api.drafting import BEFORE, place_in
@@ -10,6 +9,7 @@ from roadproof.frontends.report.viewer_data import ShownFormula, viewer_data
 from roadproof.frontends.report.viewer_page import viewer_page
 from roadproof.frontends.studio.requests import Answer, Ask
 from roadproof.library.specification import Library, Specification
+from roadproof.library.uses import Place
 
 
 def show(ask: Ask, say: object) -> Answer:
@@ -21,7 +21,7 @@ def show(ask: Ask, say: object) -> Answer:
     return {"view": view(ask, read_drive(ask.drive, "the drive"))}
 
 
-def view(ask: Ask, file: DriveFile) -> dict[str, Any]:
+def view(ask: Ask, file: DriveFile) -> Answer:
     """The document of the viewer for a drive, with what the page asks of it."""
     home = ask.home
     asked = [ShownFormula("question", ask.formula, home.specification, home.values, ask.explained)]
@@ -30,15 +30,16 @@ def view(ask: Ask, file: DriveFile) -> dict[str, Any]:
         asked.append(ShownFormula("before", ask.formula, other.specification, home.values))
     asked += [ShownFormula("watch", x, home.specification, home.values) for x in ask.watches]
     document = viewer_data(*_readable(file, home.specification), asked)
-    document["marks"] = marks_of(document["formulas"][0].get("said", []), "why")
-    return document
+    return {**document.as_json(), "marks": marks_of(document.formulas[0].said or (), "why")}
 
 
-def marks_of(places: Iterable[Mapping[str, Any]], kind: str) -> list[Answer]:
+def marks_of(places: Iterable[Place], kind: str) -> list[Answer]:
     """Places in texts as the editors mark them; those in the library's texts are left out."""
     found: list[Answer] = []
     for place in places:
-        begin, end = (place_in(place["source"], tuple(place[x])) for x in ("from", "to"))
+        at = place.at
+        begin = place_in(place.source, (at.line, at.column))
+        end = place_in(place.source, (at.end_line, at.end_column))
         if begin is not None and end is not None:
             mark: Answer = {"where": begin[0], "from": list(begin[1]), "to": list(end[1]), "kind": kind}
             found += [] if mark in found else [mark]
@@ -59,4 +60,4 @@ def _readable(file: DriveFile, home: Specification) -> tuple[DriveFile, Library]
 def page(ask: Ask, say: object) -> Answer:
     """The drive that is shown as a page of its own."""
     document = view(ask, read_drive(ask.drive, "the drive"))
-    return {"page": viewer_page([document], document["title"])}
+    return {"page": viewer_page([document], str(document["title"]))}

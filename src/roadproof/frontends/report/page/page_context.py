@@ -3,13 +3,13 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 from roadproof.errors import RoadproofError
 from roadproof.evidence.drive_file import DriveFile, read_drive
 from roadproof.evidence.finding import Finding
 from roadproof.evidence.strict import read_json
 from roadproof.frontends.report.viewer_data import ShownFormula, viewer_data
+from roadproof.frontends.report.viewer_document import Document, FormulaView, Span
 from roadproof.library.specification import Library
 
 MOST_STRIPS = 14
@@ -25,20 +25,20 @@ class ShownDrive:
     """
 
     number: int = 0
-    document: Mapping[str, Any] = field(default_factory=dict)
+    document: Document | None = None
     wrong: Sequence[str] = ()
     fault: str = ""
 
     @property
     def title(self) -> str:
         """What the viewer calls it."""
-        return str(self.document.get("title", ""))
+        return "" if self.document is None else self.document.title
 
     @property
-    def strips(self) -> list[tuple[str, Sequence[Any]]]:
+    def strips(self) -> list[tuple[str, Sequence[Span]]]:
         """When the parts of its formula that have a name are true."""
-        named = [x for x in self.document["formulas"][0].get("parts", ()) if x["op"] == "name"]
-        return [(x["text"], x["true"]) for x in named[:MOST_STRIPS]]
+        parts = None if self.document is None else self.document.formulas[0].parts
+        return [(x.text, x.true) for x in parts or () if x.op == "name"][:MOST_STRIPS]
 
 
 @dataclass
@@ -53,11 +53,11 @@ class PageContext:
     findings: Mapping[Path, Finding] = field(default_factory=dict)
     inside: Mapping[str, Finding] = field(default_factory=dict)
     rejected: Mapping[str, Sequence[str]] = field(default_factory=dict)
-    documents: list[Mapping[str, Any]] = field(default_factory=list)
+    documents: list[Document] = field(default_factory=list)
 
     def drive(
         self,
-        file: Path | Mapping[str, Any],
+        file: Path | Mapping[str, object],
         asked: Sequence[ShownFormula] = (),
         since: Sequence[float] = (0.0,),
         put: Callable[[DriveFile], DriveFile] = lambda file: file,
@@ -74,7 +74,7 @@ class PageContext:
         except (RoadproofError, OSError) as error:
             return ShownDrive(fault=str(error))
         self.documents.append(document)
-        wrong = [_wrong(x, at) for x, at in zip(document["formulas"], since, strict=False)]
+        wrong = [_wrong(x, at) for x, at in zip(document.formulas, since, strict=False)]
         return ShownDrive(len(self.documents) - 1, document, [x for x in wrong if x])
 
     def finding(self, folder: Path | None, name: object) -> Finding | None:
@@ -84,14 +84,14 @@ class PageContext:
         return self.findings.get((folder / name).resolve())
 
 
-def _wrong(shown: Mapping[str, Any], at: float) -> str:
+def _wrong(shown: FormulaView, at: float) -> str:
     """Why a formula cannot be read, or that it is false at an instant; nothing where it is true."""
-    if shown.get("error"):
-        return str(shown["error"])
-    if at == 0 and shown["holds"]:
+    if shown.error:
+        return shown.error
+    if at == 0 and shown.holds:
         return ""
-    spans = shown["parts"][0]["true"] if at else ()
-    if any(begin <= at + _NEARLY and (end is None or at <= end + _NEARLY) for begin, end, *_ in spans):
+    spans = shown.parts[0].true if at and shown.parts else ()
+    if any(x.begin <= at + _NEARLY and (x.end is None or at <= x.end + _NEARLY) for x in spans):
         return ""
     when = f" at {at:g} s" if at else ""
     return f"the formula is false{when} on this drive, judged for this page"

@@ -18,8 +18,8 @@ import base64
 import gzip
 import json
 from importlib import resources
-from typing import Any
 
+from roadproof.frontends.report.viewer_document import Document
 from roadproof.frontends.report.viewer_page import as_url, hash_of, viewer_modules, viewer_style
 
 
@@ -99,7 +99,7 @@ def render(template: str, **values: object) -> str:
     return _environment().get_template(template).render(values)
 
 
-def page(title: str, sections: Sequence[str], documents: Sequence[Mapping[str, Any]], made: str) -> str:
+def page(title: str, sections: Sequence[str], documents: Sequence[Document], made: str) -> str:
     """The page as a text; ``documents`` are those of the viewers, read by the browser one by one."""
     modules = {name: as_url(text) for name, text in viewer_modules().items()}
     imports = json.dumps({"imports": modules})
@@ -118,9 +118,9 @@ def page(title: str, sections: Sequence[str], documents: Sequence[Mapping[str, A
     )
 
 
-def _packed(document: Mapping[str, Any]) -> str:
+def _packed(document: Document) -> str:
     """A document as gzipped JSON in base64, which the browser unpacks when it is asked for."""
-    text = json.dumps(document, ensure_ascii=False, separators=(",", ":"))
+    text = json.dumps(document.as_json(), ensure_ascii=False, separators=(",", ":"))
     return base64.b64encode(gzip.compress(text.encode(), mtime=0)).decode()
 
 

@@ -4,7 +4,6 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from roadproof.analysis.study.evidence_store import INDEX
 from roadproof.evidence.answers import classify, monitor
@@ -50,7 +49,7 @@ class _ShownClaim:
     set: str
     claim: str
     finding: Finding | None
-    drive: Path | Mapping[str, Any] | None
+    drive: Path | Mapping[str, object] | None
 
     @property
     def outcome(self) -> str:
@@ -86,7 +85,7 @@ def _label(claim: Claim | ClaimAnswer) -> str:
     return f"{claim.property}{f'-{claim.part}' if claim.part else ''}{scenario}"
 
 
-def _drive_against(claim: Claim | ClaimAnswer, result: Result) -> Path | Mapping[str, Any] | None:
+def _drive_against(claim: Claim | ClaimAnswer, result: Result) -> Path | Mapping[str, object] | None:
     if claim.verdict is not Verdict.REFUTED:
         return None
     if isinstance(claim, ClaimAnswer):
