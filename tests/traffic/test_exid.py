@@ -25,6 +25,7 @@ from roadproof.recordings.formats.osm import LEFT_OUT, read_osm, utm_of
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.sources import find_source
 from roadproof.world.motion import state_at
+from tables import read_table
 from traffic.make_recording import Track, make_recording
 from traffic.planar import Bend, straight
 from traffic.planar_exid import LOCATION, degrees_of, osm_of, write_exid
@@ -221,48 +222,13 @@ def aside(folder: Path) -> None:
     path.write_text("".join(",".join(line) + "\n" for line in rows))
 
 
-BOMB = '<!DOCTYPE x [<!ENTITY a "ha"><!ENTITY b "&a;&a;">]>'
-OUTSIDE = '<!DOCTYPE x [<!ENTITY a SYSTEM "file:///etc/passwd">]>'
-TRACKS = r"07_tracks.csv, row 5, column "
 DAMAGE: dict[str, tuple[Callable[[Path], None], str]] = {
-    "NaN": (cell("tracks", 5, "xCenter", "nan"), TRACKS + "xCenter=nan: a number must be finite"),
-    "reversed time": (cell("tracks", 5, "frame", "5"), "vehicle and frame occur together once"),
-    "a gap": (cell("tracks", 61, "frame", "80"), "vehicle trackId=0, frame=80: the frame before it is 62"),
-    "unknown vehicle": (cell("tracks", 5, "trackId", "9"), "column trackId=9: the vehicle is not in"),
-    "another recording": (cell("tracks", 5, "recordingId", "8"), TRACKS + "recordingId=8: the file is of"),
-    "frame rate": (cell("recordingMeta", 2, "frameRate", "29.97"), "frameRate=29.97: a whole number"),
-    "too fast": (cell("tracks", 5, "xVelocity", "900"), TRACKS + "xVelocity=900.0: must lie between"),
-    "heading": (cell("tracks", 0, "heading", "17"), "lonVelocity=30.0: not the velocity along the heading"),
-    "unknown lanelet": (cell("tracks", 5, "laneletId", "77"), TRACKS + "laneletId=77: .* has no lanelet 77"),
-    "other lanes": (cell("tracks", 0, "laneletId", "1"), "laneletId=1: not the lane of the box's middle"),
+    **{name: (cell(*place), said) for name, *place, said in read_table(__file__, "damaged_cells")},
+    **{name: (map_text(*cell), said) for name, *cell, said in read_table(__file__, "damaged_maps")},
     "y grows down": (turn_over, "does y grow up, and is heading in degrees"),
     "off the road": (aside, r"row 2, column trackId=0: on no lanelet of the map at any time"),
-    "size": (cell("tracksMeta", 2, "width", "0"), "07_tracksMeta.csv, row 2, column width=0.0: the size"),
-    "frames": (cell("tracksMeta", 2, "numFrames", "9"), "numFrames=9: must be finalFrame - initialFrame"),
     "no map": (rename_map, r"locationId=3: one map is needed whose name has this number, but there are loc"),
     "two maps": (second_map, r"there are 3_other.osm, location3.osm"),
-    "bomb": (map_text("<osm", BOMB + "<osm"), "location3.osm: the file has a document type"),
-    "outside": (map_text("<osm", OUTSIDE + "<osm"), "location3.osm: the file has a document type"),
-    "broken": (map_text("</osm>", ""), "location3.osm: no well-formed XML"),
-    "another root": (map_text("osm", "map", 9999), "location3.osm: the root is map, but osm is needed"),
-    "deep": (map_text("</osm>", "<a>" * 101 + "</a>" * 101 + "</osm>"), "element a is inside 100 others"),
-    "a node twice": (map_text('node id="2"', 'node id="1"'), "location3.osm: node 1 occurs twice"),
-    "no such node": (map_text('nd ref="2"', 'nd ref="9999"'), "way 1: nd 9999 is no node of the map"),
-    "no such way": (
-        map_text('role="left" ref="2"', 'role="left" ref="999"'),
-        "relation 1: left way 999 is no",
-    ),
-    "no left way": (map_text('role="left"', 'role="lef"'), "relation 1 has 0 members of role left"),
-    "both ways": (map_text('v="yes"', 'v="no"'), "relation 1: one_way=no"),
-    "no place": (
-        map_text('k="local_x" v="[^"]*"', 'k="local_x" v="x"'),
-        "local_x of node 1 is 'x'; a finite",
-    ),
-    "one place missing": (
-        map_text('<tag k="local_x"[^>]*/><tag k="local_y"[^>]*/>', ""),
-        "node 1 has no local_x",
-    ),
-    "no lanelet": (map_text('v="lanelet"', 'v="area"', 9999), "the map has no relation of type lanelet"),
 }
 
 

@@ -19,6 +19,7 @@ from roadproof.recordings.formats.highd import (
     read_highd,
 )
 from roadproof.recordings.formats.recording import Recording, keep_vehicles
+from tables import read_table
 from traffic.tiny_highd import Files, tiny_files, write_files
 
 TRACKS, META, RECORDING = "01_tracks.csv", "01_tracksMeta.csv", "01_recordingMeta.csv"
@@ -111,6 +112,7 @@ def change(file: str, row: int, column: str, value: str) -> Callable[[Files], No
 
 
 DAMAGES: dict[str, tuple[Callable[[Files], None], str]] = {
+    **{name: (change(*cell), said) for name, *cell, said in read_table(__file__, "damaged_cells")},
     "missing file": (lambda f: f.pop(META) and None, r"01_tracksMeta.csv: the file cannot be read"),
     "no rows": (
         lambda f: f.__setitem__(TRACKS, f[TRACKS][:1]),
@@ -123,58 +125,15 @@ DAMAGES: dict[str, tuple[Callable[[Files], None], str]] = {
     ),
     "columns swapped": (lambda f: f[TRACKS][0].insert(2, f[TRACKS][0].pop(3)), "must come in the order"),
     "short row": (lambda f: f[TRACKS][4].pop() and None, "row 5: the row has 24 fields, the format 25"),
-    "text": (change(TRACKS, 2, "x", "far"), r"row 3, column x='far': a finite number"),
-    "empty cell": (change(TRACKS, 2, "x", ""), r"row 3, column x='': a finite number"),
-    "not a number": (change(TRACKS, 2, "yVelocity", "NaN"), r"row 3, column yVelocity=.*nan.*finite"),
-    "infinite": (change(TRACKS, 7, "xVelocity", "-inf"), r"row 8, column xVelocity=.*inf.*finite"),
-    "overflow": (change(TRACKS, 7, "x", "1e999"), r"row 8, column x=.*finite"),
-    "half a frame": (change(TRACKS, 7, "frame", "4.5"), r"row 8, column frame='4.5': a whole number"),
-    "quote": (change(TRACKS, 3, "x", '"297.4'), "row 4: a quote does not end in its cell"),
-    "negative size": (change(META, 2, "height", "-2.00"), r"row 3, column height=-2.0: the size"),
-    "negative size in tracks": (change(TRACKS, 5, "width", "-4.00"), r"row 6, column width=-4.0: the size"),
-    "another size": (
-        change(TRACKS, 5, "width", "4.10"),
-        r"row 6, column width=4.1: 01_tracksMeta.csv has another",
-    ),
     "frame gap": (lambda f: f[TRACKS].pop(6) and None, r"vehicle id=2, frame=4: the frame before it is 2"),
     "last frame missing": (
         lambda f: f[TRACKS].pop(4) and None,
         r"id=1, column numFrames=4: 01_tracks.csv has 3",
     ),
     "duplicate": (lambda f: f[TRACKS].insert(3, f[TRACKS][2]), r"row 4, column frame=2: vehicle and frame"),
-    "unknown vehicle": (
-        change(TRACKS, 1, "id", "9"),
-        r"column id=9: the vehicle is not in 01_tracksMeta.csv",
-    ),
     "vehicle without rows": (
         lambda f: f.__setitem__(TRACKS, f[TRACKS][:8]),
         r"row 4, column id=3: the vehicle has no rows in 01_tracks.csv",
-    ),
-    "vehicle zero": (change(META, 1, "id", "0"), r"column id=0: an id is greater than zero"),
-    "vehicle twice": (change(META, 3, "id", "2"), r"row 4, column id=2: a vehicle has one row"),
-    "frames disagree": (
-        change(META, 2, "initialFrame", "3"),
-        r"numFrames=3: must be finalFrame - initialFrame",
-    ),
-    "class": (change(META, 2, "class", "Bus"), r"row 3, column class=Bus: must be Car or Truck"),
-    "class count": (change(META, 2, "class", "Truck"), r"1 vehicles of class Car, but"),
-    "direction": (change(META, 2, "drivingDirection", "3"), r"drivingDirection=3: must be 1 or 2"),
-    "count": (change(RECORDING, 1, "numVehicles", "4"), r"numVehicles=4: must be numCars \+ numTrucks"),
-    "rate": (change(RECORDING, 1, "frameRate", "0"), r"frameRate=0.0: a whole number of frames"),
-    "recording id": (change(RECORDING, 1, "id", "2"), r"id=2: the name of the file says recording 01"),
-    "one marking": (change(RECORDING, 1, "upperLaneMarkings", "8.5"), "at least two finite"),
-    "markings fall": (
-        change(RECORDING, 1, "lowerLaneMarkings", "28.8;24.96;21"),
-        "each greater than the one before",
-    ),
-    "markings text": (change(RECORDING, 1, "lowerLaneMarkings", "21;left"), "joined by ';'"),
-    "markings cross": (
-        change(RECORDING, 1, "lowerLaneMarkings", "11.00;24.96;28.80"),
-        "must lie below the last upper",
-    ),
-    "markings elsewhere": (
-        change(RECORDING, 1, "lowerLaneMarkings", "61.00;64.96;68.80"),
-        "markings do not fit",
     ),
     "two recordings": (lambda f: f[RECORDING].append(f[RECORDING][1]), "2 rows; one recording has one row"),
 }

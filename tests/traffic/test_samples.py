@@ -31,6 +31,7 @@ from roadproof.semantics.sampled.compiled import compile
 from roadproof.world.models import load_road
 from roadproof.world.road import Lanelet, Road
 from roadproof.world.signals import KINDS
+from tables import read_table
 from traffic.drives import cut_in
 from traffic.sampled import TWO, csv_of, lower_road, toml_of, write_samples
 
@@ -229,21 +230,13 @@ def swap(rows: list[list[str]]) -> None:
 
 
 DAMAGE: dict[str, tuple[Callable[[list[list[str]]], object], str]] = {
-    "NaN": (cell(3, "s", "nan"), r"a.csv, row 3, column s=nan: a number must be finite"),
-    "text for a number": (cell(3, "v_lon", "fast"), r"a.csv, row 3, column v_lon='fast': a finite number"),
+    **{name: (cell(*place), said) for name, *place, said in read_table(__file__, "damaged_cells")},
     "reversed time": (swap, r"a.csv, row 3, column time=0.0: the rows of a vehicle come in order of time"),
-    "a time twice": (cell(3, "time", "0"), r"a.csv, row 3, column time=0.0: .* each time once"),
-    "mixed steps": (cell(4, "time", "0.25"), r"a.csv, row 4, column time=0.25: .*whole multiples of 1/"),
     "a gap": (drop(3), r"a.csv, row 3, column time=0.2: .*without gaps"),
-    "another size": (cell(4, "length", "5"), r"row 4, column length=5.0: the size of a vehicle stays"),
-    "no size": (cell(4, "width", "0"), r"row 4, column width=0.0: the size of a vehicle is greater"),
-    "too fast": (cell(4, "v_lon", "300"), r"row 4, column v_lon=300.0: must lie between -250 and 250"),
-    "backwards": (cell(4, "s", "2"), r"row 4, column s=2.0: a vehicle never ends further back"),
     "off the road": (
         lambda rows: [cell(k, "d", "50")(rows) for k in (5, 6)],
         r"a.csv, row 5, column vehicle=2: on no lanelet of the road at any time",
     ),
-    "a jump": (cell(4, "s", "400"), r"row 4, column s=400.0 of vehicle 1: a vehicle does not move by more"),
     "a missing cell": (lambda rows: rows[2].pop(), r"a.csv, row 3: the row has 9 fields, the format 10"),
     "a missing column": (
         lambda rows: [row.pop(3) for row in rows],
