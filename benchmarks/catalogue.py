@@ -13,8 +13,8 @@ import time
 from pathlib import Path
 
 import roadproof as rp
-from roadproof.analysis.catalogue.entries import Concrete
-from roadproof.analysis.catalogue.showing import Freedom, show
+from roadproof.analysis.catalogue.entries import Concrete, Freedom
+from roadproof.analysis.catalogue.showing import show
 from roadproof.frontends.api.cataloguing import CatalogueAnswer
 
 THOUSAND = 1000

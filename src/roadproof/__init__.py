@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from roadproof.errors import TextError as TextError
     from roadproof.errors import TextErrors as TextErrors
     from roadproof.errors import UsageError as UsageError
-    from roadproof.frontends.api.asking import ask as ask
     from roadproof.frontends.api.cataloguing import catalogue as catalogue
     from roadproof.frontends.api.checking import check as check
     from roadproof.frontends.api.classifying import classify as classify
@@ -29,9 +28,8 @@ if TYPE_CHECKING:
     from roadproof.frontends.api.converting import convert as convert
     from roadproof.frontends.api.covering import coverage as coverage
     from roadproof.frontends.api.definitions import Definitions as Definitions
+    from roadproof.frontends.api.definitions import diagnose as diagnose
     from roadproof.frontends.api.definitions import load as load
-    from roadproof.frontends.api.diagnosing import Proofreader as Proofreader
-    from roadproof.frontends.api.diagnosing import diagnose as diagnose
     from roadproof.frontends.api.drives import witness as witness
     from roadproof.frontends.api.driving import drive as drive
     from roadproof.frontends.api.driving import motion as motion
@@ -58,14 +56,16 @@ if TYPE_CHECKING:
     from roadproof.frontends.api.preventing import preventable as preventable
     from roadproof.frontends.api.proofs import prove as prove
     from roadproof.frontends.api.recordings import evaluate as evaluate
+    from roadproof.frontends.api.recordings import roads as roads
     from roadproof.frontends.api.reporting import page as page
-    from roadproof.frontends.api.roads import roads as roads
     from roadproof.frontends.api.simulating import simulate as simulate
+    from roadproof.frontends.api.studied import ask as ask
     from roadproof.frontends.api.studies import order as order
     from roadproof.frontends.api.studies import overlap as overlap
     from roadproof.frontends.api.studies import redundancy as redundancy
     from roadproof.frontends.api.traces import monitor as monitor
     from roadproof.frontends.api.traces import trace as trace
+    from roadproof.library.diagnose import Proofreader as Proofreader
     from roadproof.runtime.executors import Cluster as Cluster
     from roadproof.runtime.executors import Executor as Executor
     from roadproof.runtime.executors import Shard as Shard
@@ -90,8 +90,8 @@ _HOMES = {
     "witness": "frontends.api.drives",
     "motion": "frontends.api.driving",
     "drive": "frontends.api.driving",
-    "diagnose": "frontends.api.diagnosing",
-    "Proofreader": "frontends.api.diagnosing",
+    "diagnose": "frontends.api.definitions",
+    "Proofreader": "library.diagnose",
     "compare": "frontends.api.comparing",
     "overlap": "frontends.api.studies",
     "order": "frontends.api.studies",
@@ -101,11 +101,11 @@ _HOMES = {
     "catalogue": "frontends.api.cataloguing",
     "explore": "frontends.api.exploring",
     "preventable": "frontends.api.preventing",
-    "ask": "frontends.api.asking",
+    "ask": "frontends.api.studied",
     "monitor": "frontends.api.traces",
     "trace": "frontends.api.traces",
     "evaluate": "frontends.api.recordings",
-    "roads": "frontends.api.roads",
+    "roads": "frontends.api.recordings",
     "convert": "frontends.api.converting",
     "simulate": "frontends.api.simulating",
     "export": "frontends.api.exporting",

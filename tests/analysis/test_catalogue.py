@@ -14,10 +14,10 @@ import pytest
 import roadproof as rp
 from roadproof.analysis.catalogue import examination, meaning, showing, tested
 from roadproof.analysis.catalogue.asked import NOWHERE, Questions, Row
-from roadproof.analysis.catalogue.entries import Abstract, Concrete
+from roadproof.analysis.catalogue.entries import Abstract, Concrete, Freedom
 from roadproof.analysis.catalogue.meaning import Fact
 from roadproof.analysis.catalogue.reading import read_catalogue
-from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, Freedom, show
+from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, show
 from roadproof.analysis.catalogue.tested import figures
 from roadproof.analysis.classify.cells import Cell
 from roadproof.analysis.classify.classes import Classes, Division, divide, plan_of

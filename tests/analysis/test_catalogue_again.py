@@ -16,9 +16,9 @@ from evidence.folders import read, write
 from evidence.test_every_field import another, leaves, path_of
 from roadproof.analysis.catalogue import examination, traces
 from roadproof.analysis.catalogue.asked import Questions
-from roadproof.analysis.catalogue.entries import Concrete
+from roadproof.analysis.catalogue.entries import Concrete, Freedom
 from roadproof.analysis.catalogue.playing import choices, roles_of
-from roadproof.analysis.catalogue.showing import ConcreteAnswer, Freedom, show
+from roadproof.analysis.catalogue.showing import ConcreteAnswer, show
 from roadproof.analysis.catalogue.traces import courses_of, digest_of
 from roadproof.engines.prove.properties import find_label
 from roadproof.errors import InputError

@@ -20,13 +20,13 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue import completing, examination, gaps, ranges, tested
 from roadproof.analysis.catalogue.asked import Questions, ScenarioQuestion
 from roadproof.analysis.catalogue.completing import complete
-from roadproof.analysis.catalogue.entries import Abstract, Concrete
+from roadproof.analysis.catalogue.entries import Abstract, Concrete, Freedom
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.gaps import NO_SINGLE
 from roadproof.analysis.catalogue.meaning import Meanings
 from roadproof.analysis.catalogue.nearest import first_false_part
 from roadproof.analysis.catalogue.ranges import Reach
-from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, Freedom, show
+from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, show
 from roadproof.analysis.catalogue.traces import courses_of
 from roadproof.analysis.catalogue.why import Course, why_none
 from roadproof.analysis.coverage import classes, found, settling, study

@@ -290,10 +290,10 @@ def test_every_command_stands_below_a_job_in_one_line(capsys: pytest.CaptureFixt
 SOURCE = Path(roadproof.__file__).parent
 # What is raised for an option is raised only by commands that have it: these read it, or what it made.
 READERS = {
-    "roadproof.frontends.cli.numbers": {"--cluster", "--jobs", "--json", "--shard"},
+    "roadproof.frontends.cli.options": {"--all", "--cluster", "--jobs", "--json", "--shard"},
+    "roadproof.frontends.api.studied": {"--among"},
     "roadproof.runtime.executors": {"--jobs"},
     "roadproof.analysis.study.frame": {"--out", "--shard"},
-    "roadproof.frontends.cli.options": {"--option", "--param", "--set"},
     "roadproof.analysis.study.pool": {"--jobs"},
     "roadproof.runtime.process_pool": {"--jobs"},
     "roadproof.analysis.explore.asking": {"--vary", "--steps", "--precision"},

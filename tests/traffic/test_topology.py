@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError
-from roadproof.frontends.api.roads import roads
+from roadproof.frontends.api.recordings import roads
 from roadproof.recordings.evaluate.one_trace import read_pair
 from roadproof.recordings.formats.commonroad import read_commonroad
 from roadproof.recordings.formats.lanelets import network_of

@@ -329,4 +329,4 @@ def _spread(points: Sequence[Mapping[str, float]]) -> list[Mapping[str, float]]:
 
 def _clearly(name: str) -> Fraction:
     """What is clearly different in a number of a beginning."""
-    return next(far for signal, far in CLEARLY.items() if signal == signal_of(name))
+    return CLEARLY[signal_of(name)]

@@ -8,13 +8,12 @@ from pathlib import Path
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.decisions import Drivers
-from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete
+from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete, Freedom, Request
 from roadproof.analysis.catalogue.gaps import PREFIX, gap_kinds
 from roadproof.analysis.catalogue.meaning import Meanings
 from roadproof.analysis.catalogue.ranges import Reach, reaches_of
 from roadproof.analysis.catalogue.reading import read_catalogue
-from roadproof.analysis.catalogue.request import Request
-from roadproof.analysis.catalogue.showing import ConcreteAnswer, Freedom, show
+from roadproof.analysis.catalogue.showing import ConcreteAnswer, show
 from roadproof.analysis.catalogue.tested import CLASSES, SCENARIOS, kind_of, targets_of, tested
 from roadproof.analysis.classify.classes import Classes, divide, plan_of
 from roadproof.analysis.study import pool

@@ -15,11 +15,11 @@ from typing import ClassVar, TypeAlias
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.decisions import Drivers
-from roadproof.analysis.catalogue.entries import Abstract
+from roadproof.analysis.catalogue.entries import Abstract, Freedom
 from roadproof.analysis.catalogue.fact import Fact, read_fact, record_of
 from roadproof.analysis.catalogue.gaps import GapKinds
 from roadproof.analysis.catalogue.ranges import Reach, reached
-from roadproof.analysis.catalogue.showing import Freedom, names_shown, shown_by
+from roadproof.analysis.catalogue.showing import names_shown, shown_by
 from roadproof.analysis.catalogue.sides import Sides, facts_on_sides, has_sides, unanswered_sides
 from roadproof.analysis.coverage import answers as survey
 from roadproof.analysis.coverage.study import Coverage

@@ -1,5 +1,6 @@
 """All that is known of a catalogue: what its tests show, imply and miss, and the index that says so."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -7,7 +8,7 @@ from functools import cached_property
 from roadproof.analysis.catalogue.decisions import Decision, Drivers, decide_formula
 from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete
 from roadproof.analysis.catalogue.examination import Examination
-from roadproof.analysis.catalogue.meaning import Kept, Meanings, gap_answers, scenarios_shown
+from roadproof.analysis.catalogue.meaning import Kept, gap_answers, scenarios_shown
 from roadproof.analysis.catalogue.ranges import Span, spans_of
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
 from roadproof.analysis.catalogue.sides import decisions_of, read_side_name
@@ -27,20 +28,15 @@ from roadproof.evidence.answers.catalogue_index import Figure
 from roadproof.library.bind import values_with
 
 
-@dataclass(frozen=True)
-class Result:
-    """What tests show and mean.
-
-    ``examination`` has the tests and what concrete ones show, ``answers`` what is known of abstract ones.
-    """
+class Result(ABC):
+    """What tests show and mean; ``examination`` has the tests, and what concrete ones show."""
 
     examination: Examination
-    answers: Mapping[str, Kept]
 
     @property
-    def study(self) -> Meanings:
-        """The question that was asked about abstract tests."""
-        return self.examination.study
+    @abstractmethod
+    def known(self) -> Mapping[str, Kept]:
+        """What is known of abstract tests."""
 
     @property
     def concrete(self) -> tuple[ConcreteAnswer, ...]:
@@ -55,13 +51,13 @@ class Result:
     @cached_property
     def tested(self) -> Targets:
         """What is tested, what is missing, and what is to be said of tests."""
-        facts = all_facts(self.answers)
-        words = targets_of(self.study.asked)
-        gaps = None if self.study.gaps is None else self.gap_answers
+        facts = all_facts(self.known)
+        words = targets_of(self.examination.study.asked)
+        gaps = None if self.examination.study.gaps is None else self.gap_answers
         return tested(
-            self.study.asked,
+            self.examination.study.asked,
             self.concrete,
-            self.study.entries,
+            self.examination.study.entries,
             facts,
             words,
             self.examination.request.near,
@@ -71,26 +67,26 @@ class Result:
     @cached_property
     def gap_answers(self) -> dict[str, ClassAnswer | None]:
         """Where it was asked, what is known of each class of gaps by name: None of those that tests show."""
-        if self.study.gaps is None or self.study.survey is None:
+        if self.examination.study.gaps is None or self.examination.study.survey is None:
             return {}
-        known = self.study.survey.classes_in(gap_answers(self.answers))
-        return {n: known(part) for n, part in self.study.gaps.parts.items()}
+        known = self.examination.study.survey.classes_in(gap_answers(self.known))
+        return {n: known(part) for n, part in self.examination.study.gaps.parts.items()}
 
     @cached_property
     def figures(self) -> tuple[Figure, ...]:
         """How much is tested: by spec set, kind and road sector."""
-        facts, set_name = all_facts(self.answers), self.study.basis.specification.set_name
+        facts, set_name = all_facts(self.known), self.examination.study.basis.specification.set_name
         found = figures(set_name, self.tested.targets, self.tested.gaps)
-        pairs = zip(self.study.beside, self.examination.beside, strict=True)
+        pairs = zip(self.examination.study.beside, self.examination.beside, strict=True)
         return (*found, *(x for asked, answers in pairs for x in figures_beside(asked, answers, facts)))
 
     @cached_property
     def spans(self) -> tuple[Span, ...]:
         """Where it was asked, how tests of each class begin, and how drives of it can."""
-        if not self.study.reaches:
+        if not self.examination.study.reaches:
             return ()
         covered = {x.name: x.covered for x in self.tested.targets}
-        return tuple(spans_of(self.study.basis.specification, covered, all_facts(self.answers)))
+        return tuple(spans_of(self.examination.study.basis.specification, covered, all_facts(self.known)))
 
     @cached_property
     def decisions(self) -> tuple[tuple[str, Decision], ...]:
@@ -109,12 +105,14 @@ class Result:
 
     def _of_formula(self, entry: Abstract, drivers: Drivers) -> Iterator[Decision]:
         """What becomes of an abstract test by the drives of it that were found, each once."""
-        facts = [x for x in all_facts(self.answers) if x.test == entry.id]
+        facts = [x for x in all_facts(self.known) if x.test == entry.id]
         drives = {repr(x.drive.file.drive): x.drive for x in facts if x.drive is not None}
         scenarios = scenarios_shown(facts)
         sides = [read_side_name(x.other) for x in facts if x.relation == "open"]
         missed = {(x[0], x[2]) for x in sides if x is not None}
-        return decide_formula(decisions_of(drives.values(), scenarios, self.study.asked, drivers), missed)
+        return decide_formula(
+            decisions_of(drives.values(), scenarios, self.examination.study.asked, drivers), missed
+        )
 
     @property
     def missing(self) -> tuple[str, ...]:
@@ -141,7 +139,7 @@ class Result:
     @property
     def in_force(self) -> tuple[str, ...]:
         """What was asked otherwise than by default: spec set, readings, parameters, a driver model."""
-        basis = self.study.basis
+        basis = self.examination.study.basis
         home = basis.specification
         driver = restriction_of(home.options)
         said = [] if home.set_name == "base" else [f"set {home.set_name}"]
@@ -157,7 +155,7 @@ class Result:
         found = self.tested
         answers = list(records.values())
         return kept.Index(
-            **self.study.question.heading,
+            **self.examination.study.question.heading,
             request=self.examination.request.kept,
             tests=tuple(map(self._test, self.catalogue.entries)),
             targets=found.targets,
@@ -208,6 +206,18 @@ class Result:
             fault=answer.fault,
             why=answer.why,
         )
+
+
+@dataclass(frozen=True)
+class DerivedResult(Result):
+    """A result out of an examination and of what is known of abstract tests."""
+
+    examination: Examination
+    answers: Mapping[str, Kept]
+
+    @property
+    def known(self) -> Mapping[str, Kept]:
+        return self.answers
 
 
 def _range(span: Span) -> kept.Range:

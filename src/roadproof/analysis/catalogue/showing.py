@@ -10,7 +10,7 @@ import numpy as np
 
 from roadproof.analysis.catalogue.asked import DangerQuestion, Key, Questions
 from roadproof.analysis.catalogue.decisions import Decision, Drivers, decide_drive, decide_trace
-from roadproof.analysis.catalogue.entries import Concrete
+from roadproof.analysis.catalogue.entries import Concrete, Freedom
 from roadproof.analysis.catalogue.playing import (
     cast_samples,
     choices,
@@ -44,15 +44,6 @@ ENDANGERED = "endangered"
 """What a test shows in which vehicles are safe and come into danger, whatever scenario that is."""
 GAP = "gap"
 """Danger that no scenario says how, for any lane and in any roles."""
-
-
-@dataclass(frozen=True)
-class Freedom:
-    """What is looked at beside what a test fixes: all roles, all lanes, all instants."""
-
-    roles: bool = False
-    lanes: bool = False
-    start: bool = False
 
 
 @dataclass(frozen=True)
@@ -370,9 +361,10 @@ def _begins(states: Mapping[str, tuple[float, ...]]) -> dict[str, float]:
 
 
 @cache
-def signal_of(begin: str) -> str:
+def signal_of(begin: str) -> SignalName:
     """Which signal a number of ``begins_of`` is of: ``s`` of ``s(POV) - s(SV)``."""
-    return next(x.name for x in syntax.walk(parse_claim(begin).body) if isinstance(x, syntax.Call))
+    called = {x.name for x in syntax.walk(parse_claim(begin).body) if isinstance(x, syntax.Call)}
+    return next(x for x in _STATE if x in called)
 
 
 def _sorted(shown: Iterable[Shown]) -> tuple[Shown, ...]:

@@ -12,9 +12,9 @@ from typing import get_args
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.decisions import Decision, Drivers, course_of
-from roadproof.analysis.catalogue.entries import Abstract
+from roadproof.analysis.catalogue.entries import Abstract, Freedom
 from roadproof.analysis.catalogue.fact import Fact
-from roadproof.analysis.catalogue.showing import Freedom, all_shown_by, decisions_on, names_shown
+from roadproof.analysis.catalogue.showing import all_shown_by, decisions_on, names_shown
 from roadproof.analysis.placing import judged_as
 from roadproof.drivers.models import MODELS
 from roadproof.drivers.restriction import Restriction, Side, check_library, files_for, said_in

@@ -4,11 +4,11 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from roadproof.analysis.catalogue.asked import NOWHERE, Questions
-from roadproof.analysis.catalogue.entries import Abstract
+from roadproof.analysis.catalogue.entries import Abstract, Freedom
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.gaps import PREFIX
 from roadproof.analysis.catalogue.meaning import Kept, facts_in
-from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, ConcreteAnswer, Freedom, why_not
+from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, ConcreteAnswer, why_not
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.drivers.restriction import restriction_of
 from roadproof.evidence.answers.catalogue_index import Figure, Kind, Remark, Target

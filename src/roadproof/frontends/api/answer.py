@@ -1,6 +1,7 @@
 """What every answer can do: say its verdicts, show its evidence, be kept, be checked, be looked at."""
 
-from abc import ABC, abstractmethod
+import html
+from abc import abstractmethod
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
-from roadproof.frontends.api.row import Row
+from roadproof.frontends.api.table import Row, Table
 from roadproof.frontends.report.figures import as_bytes
 from roadproof.frontends.report.sheet import Sheet, as_rows
 from roadproof.runtime.files import write_whole
@@ -17,7 +18,6 @@ from roadproof.verdict import ExitCode, Verdict
 
 if TYPE_CHECKING:
     from roadproof.frontends.api.checking import CheckReport, Solver
-    from roadproof.recordings.formats.table import Frame
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ def picture(figure: object) -> Picture:
     return Picture(**as_bytes(figure))
 
 
-class Answer(ABC):
+class Answer(Table):
     """An answer to one question or to many. ``str`` gives it as the terminal prints it."""
 
     @property
@@ -143,15 +143,7 @@ class Answer(ABC):
                 )
             return check(folder, solver=solver, specs=self._specs(folder), jobs=jobs)
 
-    def to_frame(self) -> "Frame":
-        """The rows as a frame of polars. Raises ``MissingSolverError`` where polars is not installed."""
-        from roadproof.recordings.formats.table import frame_of
-
-        return frame_of(self.rows())
-
     def _repr_html_(self) -> str:
-        import html
-
         rows = self.rows()
         heading = "".join(f"<th>{html.escape(name)}</th>" for name in (rows[0] if rows else ()))
         lines = ["".join(f"<td>{html.escape(_shown(x))}</td>" for x in row.values()) for row in rows[:_MOST]]

@@ -3,28 +3,22 @@
 import time
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from pathlib import Path
 from typing import ClassVar, Unpack
 
 from roadproof.analysis.basis import ProofResult
 from roadproof.analysis.catalogue.completing import PriorResults, complete
-from roadproof.analysis.catalogue.decisions import Decision
-from roadproof.analysis.catalogue.entries import Catalogue, Concrete
+from roadproof.analysis.catalogue.entries import Concrete, Request
 from roadproof.analysis.catalogue.examination import Examination, examine
 from roadproof.analysis.catalogue.meaning import Kept, Meanings, gap_answers
-from roadproof.analysis.catalogue.ranges import Span
-from roadproof.analysis.catalogue.request import Request
 from roadproof.analysis.catalogue.result import Result
-from roadproof.analysis.catalogue.showing import ConcreteAnswer
-from roadproof.analysis.catalogue.tested import SCENARIOS, Targets, all_facts, kind_of
+from roadproof.analysis.catalogue.tested import SCENARIOS, all_facts, kind_of
 from roadproof.analysis.catalogue.traces import Courses, courses_of, of_drive
 from roadproof.analysis.study.pool import Progress
 from roadproof.drivers.models import MODELS
 from roadproof.engines.search.question import Objective
 from roadproof.errors import UsageError
 from roadproof.evidence.answers import catalogue_index as kept
-from roadproof.evidence.answers.catalogue_index import Figure
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.completing import CompletionAnswer, write_completions
@@ -44,56 +38,15 @@ from roadproof.verdict import ExitCode, Verdict
 
 
 @dataclass(frozen=True, repr=False)
-class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record]):
+class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record], Result):
     """What tests show and mean; ``examination`` has the tests, and what concrete ones show."""
 
     examination: Examination = field(kw_only=True)
     pieces: ClassVar[str] = "questions about abstract tests"
 
-    @cached_property
-    def result(self) -> Result:
-        """All that is known."""
-        return Result(self.examination, self.found.answers)
-
     @property
-    def concrete(self) -> tuple[ConcreteAnswer, ...]:
-        """What concrete tests show, in order."""
-        return self.examination.concrete
-
-    @property
-    def catalogue(self) -> Catalogue:
-        """The tests."""
-        return self.examination.tests
-
-    @property
-    def tested(self) -> Targets:
-        """What is tested, what is missing, and what is to be said of tests."""
-        return self.result.tested
-
-    @property
-    def figures(self) -> tuple[Figure, ...]:
-        """How much is tested: by spec set, kind and road sector."""
-        return self.result.figures
-
-    @property
-    def spans(self) -> tuple[Span, ...]:
-        """Where it was asked, how tests of each class begin, and how drives of it can."""
-        return self.result.spans
-
-    @property
-    def decisions(self) -> tuple[tuple[str, Decision], ...]:
-        """What becomes of each test, by id, under each driver model, in the order of tests."""
-        return self.result.decisions
-
-    @property
-    def missing(self) -> tuple[str, ...]:
-        """What is to be tested, and no test shows: scenarios, classes, with ``gaps`` classes of gaps."""
-        return self.result.missing
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """On files that are no tests, samples that contradict themselves, drives made with other values."""
-        return self.result.notes
+    def known(self) -> Mapping[str, Kept]:
+        return self.found.answers
 
     @property
     def tests(self) -> tuple[str, ...]:
@@ -119,7 +72,7 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record]):
         found = [y for x in all_facts(self.found.answers) for y in (x.certificate, x.drive)]
         claims = gap_answers(self.found.answers).values() if self.tested.gaps.asked else ()
         found += [x.certificate for x in claims if isinstance(x, ProofResult)]
-        for answer in self.result.gap_answers.values():
+        for answer in self.gap_answers.values():
             found += [] if answer is None else [answer.certificate, *(gap.drive for gap in answer.gaps)]
         return tuple(x for x in found if x is not None)
 
@@ -132,13 +85,8 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record]):
             return ExitCode.UNKNOWN
         return ExitCode.UNEXPECTED if found.missing or found.faults else ExitCode.AS_EXPECTED
 
-    @property
-    def in_force(self) -> tuple[str, ...]:
-        """What was asked otherwise than by default: spec set, readings, parameters, a driver model."""
-        return self.result.in_force
-
     def _index(self, records: Mapping[str, kept.Record]) -> kept.Index:
-        return self.result.index(records, self.seconds)
+        return self.index(records, self.seconds)
 
     @property
     def _sheet(self) -> Sheet[kept.Target]:
@@ -177,7 +125,7 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record]):
 
     def files(self, pictures: bool) -> dict[str, bytes]:
         """A table for a spreadsheet, a report for CI, and the picture."""
-        return report.tables(self.result) | drawn(self.pictures() if pictures else {})
+        return report.tables(self) | drawn(self.pictures() if pictures else {})
 
     def to_csv(self) -> str:
         """A row a test, a column a scenario, class, gap: x shown or implied, o by some drives of the test."""
@@ -230,7 +178,7 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record]):
         begins = {x.name: [y.begins for y in self.concrete if x.name in y.names] for x in self.tested.targets}
         copies = {x.entry.id for x in self.concrete if x.entry.copy_of in self.tests}
         tests = {x.name: len({*x.tested} - copies) for x in self.tested.targets}
-        gaps = {name: x for name, x in self.result.gap_answers.items() if x is not None and x.gaps}
+        gaps = {name: x for name, x in self.gap_answers.items() if x is not None and x.gaps}
         return PriorResults(begins, tests, gaps)
 
 

@@ -4,9 +4,8 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, Unpack
+from typing import Any, Literal, TypeAlias, Unpack
 
 from roadproof.analysis.study import pool
 from roadproof.engines.prove.properties import find_label
@@ -20,8 +19,8 @@ from roadproof.evidence.folder import conclude, survey
 from roadproof.evidence.heading import heading
 from roadproof.evidence.kernel import coq
 from roadproof.frontends.api import kernel as kernels
-from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import work_of
+from roadproof.frontends.api.table import Row, Table
 from roadproof.frontends.settings.keywords import CheckKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Check
@@ -32,15 +31,12 @@ from roadproof.runtime.budget import Effort
 from roadproof.runtime.executors import Jobs
 from roadproof.verdict import ExitCode
 
-if TYPE_CHECKING:
-    from roadproof.recordings.formats.table import Frame
-
 Solver: TypeAlias = Literal["z3", "cvc5"]
 Kernel: TypeAlias = Literal["coq"]
 
 
 @dataclass(frozen=True, repr=False)
-class CheckReport:
+class CheckReport(Table):
     """A finding for each claim, with the definitions of ``library``.
 
     ``solver`` is who was asked about certificates. ``specs``: specification files that lie beside the
@@ -97,17 +93,8 @@ class CheckReport:
             for x in self.findings
         ]
 
-    def to_frame(self) -> "Frame":
-        """The rows as a frame of polars. Raises ``MissingSolverError`` where polars is not installed."""
-        from roadproof.recordings.formats.table import frame_of
-
-        return frame_of(self.rows())
-
     def __repr__(self) -> str:
         return f"<Checked: {', '.join(f'{n} {outcome}' for outcome, n in self.counts.items())}>"
-
-    def _repr_html_(self) -> str:
-        return f"<pre>{escape(str(self))}</pre>"
 
     def __str__(self) -> str:
         lines = [f"read with {path}" for path in self.specs]

@@ -19,11 +19,11 @@ from roadproof.evidence.certificate import to_json
 from roadproof.evidence.codec import write
 from roadproof.evidence.heading import heading
 from roadproof.evidence.kinds import Evidence
-from roadproof.frontends.api.answer import Answer, Picture, picture
+from roadproof.frontends.api.answer import Answer, Picture
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.settings import setting, work_of
+from roadproof.frontends.api.studied import drive_pictures
 from roadproof.frontends.report import compare as compare_report
-from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.keywords import CompareKeywords
 from roadproof.frontends.settings.option import takes
@@ -95,9 +95,8 @@ class ComparisonAnswer(Answer):
                 write_json(folder / f"not-{stem}.json", direction.drive.as_data())
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
-        drives = {name: x.drive for name, x in self.comparison.directions.items()}
-        library = self.library
-        return ((n, picture(draw_drive(x.file, library))) for n, x in drives.items() if x is not None)
+        drives = ((name, x.drive) for name, x in self.comparison.directions.items())
+        return drive_pictures(drives, self.library)
 
     def __str__(self) -> str:
         return compare_report.as_text(self.comparison, self.specification)

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.completing import Completion, catalogue_text
-from roadproof.analysis.catalogue.entries import Concrete
+from roadproof.analysis.catalogue.entries import Concrete, Freedom
 from roadproof.analysis.catalogue.listing import FILE_NAME
-from roadproof.analysis.catalogue.showing import Freedom, show
+from roadproof.analysis.catalogue.showing import show
 from roadproof.errors import InputError
 from roadproof.evidence.certificate import to_json
 from roadproof.frontends.api.exporting import ExportedDrive, can_export, export, formats_in

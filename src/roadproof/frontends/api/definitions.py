@@ -8,8 +8,9 @@ from typing import TypeAlias
 
 from roadproof.errors import InputError, UsageError
 from roadproof.frontends.api.phrases import Phrase, Term, call
+from roadproof.library import diagnose as texts
 from roadproof.library.bind import Number, exact, values_with
-from roadproof.library.diagnose import checked_library
+from roadproof.library.diagnose import Diagnostic, checked_library
 from roadproof.library.elaborate import read_claim
 from roadproof.library.scenario_references import read_numbers, read_query
 from roadproof.library.scenarios import are_numbers
@@ -161,3 +162,19 @@ def values_of(library: Library, params: Mapping[str, Number], before: str = "") 
     except InputError as error:
         raise InputError(f"{before}{error}") from None
     return values
+
+
+def diagnose(text: str, using: Definitions | None = None, formula: bool = False) -> tuple[Diagnostic, ...]:
+    """All that is wrong with a specification text on top of definitions, or with a ``formula`` in them.
+
+    Each remark has line, column and end (from 1, the end not included), message, hint and severity ("error",
+    or "info" where a definition replaces another). Nothing is raised for what is in the text. Whoever asks on
+    each key holds a ``Proofreader(using.library)``, and asks ``read(text)``.
+
+    >>> [(x.line, x.column, x.message) for x in diagnose("v_lon(SV) > 3", formula=True)]
+    [(1, 1, 'm/s and no unit cannot be compared')]
+    """
+    home = using or load()
+    if formula:
+        return texts.diagnose_claim(text, home.specification)
+    return texts.diagnose(text, home.library).diagnostics

@@ -19,12 +19,11 @@ from roadproof.evidence.answers.drives import Answer
 from roadproof.evidence.codec import write
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.kinds import Evidence
-from roadproof.frontends.api.answer import Picture, picture
+from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import searches_of, setting, work_of
-from roadproof.frontends.api.studied import StudyAnswers
-from roadproof.frontends.report.drive import draw_drive
+from roadproof.frontends.api.studied import StudyAnswers, drive_pictures, prepare_workers
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.report.witness import SearchedFor, as_line, files_of, kinds, sheet_of
 from roadproof.frontends.settings.keywords import WitnessKeywords
@@ -115,8 +114,7 @@ class Witnesses(StudyAnswers[WitnessStudy, Outcome, kept.Record]):
             DriveFolder(folder, self.library, pictures)(name, self.found.answers[name])
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
-        drawn = (draw_drive(x.file, self.library) for x in self.drives)
-        return ((f"drive-{k}", picture(x)) for k, x in enumerate(drawn, 1))
+        return drive_pictures(((f"drive-{k}", x) for k, x in enumerate(self.drives, 1)), self.library)
 
     def __str__(self) -> str:
         answers, searches = self.found.answers, self.study.named
@@ -172,10 +170,7 @@ def witness_all(
     """As ``witness``, with searches as values; ``each`` is told of every outcome under its name."""
     if not searches:
         raise UsageError("the spec set has no scenario: name formulas")
-    if pool.are_forked(searches, given.jobs):
-        from roadproof.engines.solve.milp import prepare
-
-        prepare()  # what every worker needs is imported once, before they are forked
+    prepare_workers(searches, given.jobs)
     library, out = searches[0].specification.library, given.out
     beside = None if out is None else DriveFolder(Path(out), library, given.pictures)
     study = WitnessStudy(tuple(searches), beside)

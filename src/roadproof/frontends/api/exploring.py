@@ -7,7 +7,6 @@ from typing import Unpack
 from roadproof.analysis.explore.answer import Explorable, ExplorationResult, PointFinding, Sense, say_nothing
 from roadproof.analysis.explore.asking import ask_for
 from roadproof.analysis.explore.study import Exploration
-from roadproof.analysis.study import pool
 from roadproof.analysis.study.pool import Say
 from roadproof.engines.search.question import SearchOptions
 from roadproof.errors import UsageError
@@ -18,7 +17,7 @@ from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.phrases import Term
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import searches_of, setting, work_of
-from roadproof.frontends.api.studied import StudyAnswers, drawn
+from roadproof.frontends.api.studied import StudyAnswers, drawn, prepare_workers
 from roadproof.frontends.report import explore as report
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.groups import Run
@@ -127,8 +126,5 @@ def explorables(
 def explore_all(asked: Iterable[Explorable], given: Run, tell: Say | None = None) -> Explorations:
     """As ``explore``, with what is asked as values; ``tell`` is told how far a formula is."""
     study = Exploration(tuple(asked), given.jobs, tell or say_nothing)
-    if pool.are_forked(range(1000), given.jobs):
-        from roadproof.engines.solve.milp import prepare
-
-        prepare()  # what every worker needs is imported once, before they are forked
+    prepare_workers(range(1000), given.jobs)
     return Explorations.asked(study, given)

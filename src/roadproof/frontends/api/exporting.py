@@ -9,7 +9,7 @@ from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import SCHEMAS_READ, DriveFile, load_drive
 from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.evidence.strict import read_json
-from roadproof.frontends.api.row import Row
+from roadproof.frontends.api.table import Row, Table
 from roadproof.frontends.report.moving import draw_moving
 from roadproof.frontends.settings.keywords import ExportKeywords
 from roadproof.frontends.settings.option import takes
@@ -18,7 +18,6 @@ from roadproof.library.loading import load_library
 from roadproof.library.specification import Library, unknown
 from roadproof.recordings.export.registry import FORMATS
 from roadproof.recordings.export.subject import Subject, subject_of
-from roadproof.recordings.formats.table import Frame, frame_of
 from roadproof.runtime.files import hold_folder, write_whole
 
 ANIMATION = "animation"
@@ -40,7 +39,7 @@ class ExportedDrive:
 
 
 @dataclass(frozen=True)
-class Exports:
+class Exports(Table):
     """Drives that were written into ``folder``."""
 
     folder: Path
@@ -62,10 +61,6 @@ class Exports:
             }
             for x in self.drives
         ]
-
-    def to_frame(self) -> Frame:
-        """The rows as a frame of polars."""
-        return frame_of(self.rows())
 
     def __str__(self) -> str:
         formats = list(dict.fromkeys(x.format for x in self.drives))

@@ -6,12 +6,11 @@ from pathlib import Path
 from typing import Any, get_args
 
 from roadproof.analysis.basis import ProofResult
-from roadproof.analysis.catalogue.entries import Abstract
+from roadproof.analysis.catalogue.entries import Abstract, Request, read_request
 from roadproof.analysis.catalogue.examination import Examination, examine
 from roadproof.analysis.catalogue.fact import Fact, read_fact
 from roadproof.analysis.catalogue.meaning import GAPS, AboutGaps, Kept, Meanings
-from roadproof.analysis.catalogue.request import Request, read_request
-from roadproof.analysis.catalogue.result import Result
+from roadproof.analysis.catalogue.result import DerivedResult
 from roadproof.analysis.catalogue.showing import names_shown
 from roadproof.analysis.catalogue.sides import decisions_of, read_side_name
 from roadproof.analysis.coverage.answers import ClassAnswer, name_of, names_of
@@ -78,7 +77,7 @@ def compare(told: FolderStatements, jobs: Jobs = None, progress: Progress | None
         reason = f"its tests cannot be judged again: {error}; check where the catalogue was asked for"
         return Comparison((Finding(where, "index", Acceptance.UNDECIDED, reason),))
     known: dict[str, Kept] = {"facts": facts, **gaps}
-    again = Result(made, known)
+    again = DerivedResult(made, known)
     now = inside(write(again.index({}, 0.0)), told.folder)
     findings = [*_tests(index, now, where), *_about_facts(made, facts, where), *_whole(index, now, where)]
     compared = ["parameters"]

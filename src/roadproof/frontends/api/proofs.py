@@ -19,10 +19,10 @@ from roadproof.evidence.kernel import coq
 from roadproof.evidence.kernel.accept import Ruling
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api import kernel as kernels
-from roadproof.frontends.api.answer import Picture, picture
+from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.settings import models_of, setting, work_of
-from roadproof.frontends.api.studied import StudyAnswers
+from roadproof.frontends.api.studied import StudyAnswers, drive_pictures
 from roadproof.frontends.report import claims as claims_text
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.groups import Run, SearchPlace
@@ -146,11 +146,7 @@ class Proofs(StudyAnswers[Claims, ClaimResult, Record]):
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """The drives that refute a claim."""
-        from roadproof.frontends.report.drive import draw_drive
-
-        drives = {x.task.name: x.settled.drive for x in self.answers}
-        library = self.study.library
-        return ((n, picture(draw_drive(x.file, library))) for n, x in drives.items() if x is not None)
+        return drive_pictures(((x.task.name, x.settled.drive) for x in self.answers), self.study.library)
 
     def __str__(self) -> str:
         if self.study.are_own:

@@ -4,7 +4,6 @@ import re
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from html import escape
 from pathlib import Path
 from typing import Any, Unpack
 
@@ -13,7 +12,7 @@ from roadproof.drivers.models import DRIVERS
 from roadproof.errors import UsageError
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, load
-from roadproof.frontends.api.row import Row
+from roadproof.frontends.api.table import Row, Table
 from roadproof.frontends.report.answers import facts
 from roadproof.frontends.report.tables import as_text
 from roadproof.frontends.report.traffic import comparison_table, drivers_table, results_tables
@@ -35,6 +34,7 @@ from roadproof.recordings.evaluate.questions import Settings, askable
 from roadproof.recordings.evaluate.recheck import recheck
 from roadproof.recordings.evaluate.results import as_json, driver_cells, driver_columns, question_mark
 from roadproof.recordings.evaluate.totals import Totals
+from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.sources import find_sources
 from roadproof.recordings.formats.table import Frame, frame_of
 from roadproof.runtime.executors import hands_of
@@ -46,7 +46,7 @@ _HALF_WRITTEN = re.compile(r"\..+\.(json|csv|txt|md|tex|png|svg)\.[a-z0-9_]{8}")
 
 
 @dataclass(frozen=True, repr=False)
-class Evaluation:
+class Evaluation(Table):
     """The experiment on recordings: what danger arose, and which scenario matches it.
 
     ``failed``: recordings that were left out, and why; ``denied``: answers that the plain recursive
@@ -87,9 +87,9 @@ class Evaluation:
             return ExitCode.CROSSCHECK_FAILED
         return ExitCode.UNKNOWN if self.outcome.lost else ExitCode.AS_EXPECTED
 
-    def to_frame(self) -> Frame:
+    def rows(self) -> list[Row]:
         """A row for each road sector, minDanger and set; null for scenarios of other sectors."""
-        rows: list[Row] = [
+        return [
             {
                 "sector": x.sector.name,
                 "minDanger": float(x.min_danger),
@@ -105,7 +105,6 @@ class Evaluation:
             for rows in self.totals.shown.values()
             for x in rows
         ]
-        return frame_of(rows)
 
     def matches(self) -> Frame:
         """A row for each match: recording, vehicles, lane, frames, minDanger (s), spec set, scenario."""
@@ -176,9 +175,6 @@ class Evaluation:
     def __repr__(self) -> str:
         rows = sum(map(len, self.totals.shown.values()))
         return f"<Evaluated: {self.totals.recordings} recordings, {rows} rows>"
-
-    def _repr_html_(self) -> str:
-        return f"<pre>{escape(str(self))}</pre>"
 
 
 @takes(Evaluate)
@@ -260,3 +256,46 @@ def _sweep(out: Path) -> None:
         for path in folder.glob(".*"):
             if _HALF_WRITTEN.fullmatch(path.name):
                 path.unlink(missing_ok=True)
+
+
+# --- roads of recordings ----------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class RecordedRoad:
+    """The lanes of a recording; for each its name, direction and lanelets, each with id, attribute and zone.
+
+    ``notes``: what was inferred, and all that is odd in the recording.
+    """
+
+    recording: str
+    format: str
+    rate: int
+    vehicles: int
+    lanes: tuple[tuple[str, int, tuple[tuple[str, str, str], ...]], ...]
+    notes: tuple[str, ...]
+
+    def __str__(self) -> str:
+        head = f"{self.recording}: {self.format}, {self.rate} Hz, {self.vehicles} vehicles"
+        return "\n".join([head, *self._lanes(), *(f"  note: {note}" for note in self.notes)])
+
+    def _lanes(self) -> Iterator[str]:
+        for name, direction, lanelets in self.lanes:
+            attributes = " and ".join(dict.fromkeys(attribute for _, attribute, _ in lanelets))
+            parts = ", ".join(f"{lanelet} in zone {zone}" for lanelet, _, zone in lanelets)
+            yield f"  {attributes} lane {name}, direction {direction}: {parts}"
+
+
+def roads(path: str | Path) -> tuple[RecordedRoad, ...]:
+    """The roads of the recordings of ``path``, each read and checked as a whole. Raises ``InputError``."""
+    return tuple(_road(source.format.name, source.read()) for source in find_sources(Path(path)))
+
+
+def _road(format_name: str, recording: Recording) -> RecordedRoad:
+    lanes = []
+    for lane in recording.lanes:
+        ours = tuple((x.id, str(x.attribute), str(x.zone)) for x in recording.lanelets if x.lane == lane.name)
+        lanes.append((lane.name, lane.direction, ours or ((lane.name, "main", "main"),)))
+    return RecordedRoad(
+        recording.name, format_name, recording.rate, recording.vehicles, tuple(lanes), recording.notes
+    )

@@ -9,7 +9,6 @@ from roadproof.analysis.order.deciding import Decisions, kinds_of
 from roadproof.analysis.order.study import Order, Ordering
 from roadproof.analysis.overlap import Meeting, Overlap, PairVerdict, pairs_of
 from roadproof.analysis.redundancy import ChangeFindings, Redundancy, name_of
-from roadproof.analysis.study import pool
 from roadproof.errors import UsageError
 from roadproof.evidence.answers import order as order_answers
 from roadproof.evidence.answers import overlap as overlap_answers
@@ -19,7 +18,7 @@ from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Among, Definitions, load
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import basis_of, positive
-from roadproof.frontends.api.studied import StudyAnswers, drawn
+from roadproof.frontends.api.studied import StudyAnswers, drawn, prepare_workers
 from roadproof.frontends.report import order as order_report
 from roadproof.frontends.report import overlap as overlap_report
 from roadproof.frontends.report import redundancy as redundancy_report
@@ -111,10 +110,7 @@ def overlap(
     pairs = pairs_of(basis, home.among(among))
     if not pairs:
         raise UsageError(f"--among {among} selects no pair: select at least two scenarios")
-    if pool.are_forked(pairs, given.jobs):
-        from roadproof.engines.solve.milp import prepare
-
-        prepare()  # what every worker needs is imported once, before they are forked
+    prepare_workers(pairs, given.jobs)
     study = Overlap(basis, pairs, Meeting(given.lanes, given.roles, given.start))
     return Overlaps.asked(study, given)
 

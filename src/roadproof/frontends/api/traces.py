@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from html import escape
 from math import isfinite
 from pathlib import Path
 from typing import Any, TypeAlias, Unpack
@@ -17,8 +16,8 @@ from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, load
-from roadproof.frontends.api.row import Row
 from roadproof.frontends.api.settings import as_road, positive
+from roadproof.frontends.api.table import Row, Table
 from roadproof.frontends.report.one_trace import as_text, draw_strips
 from roadproof.frontends.settings.keywords import MonitorKeywords
 from roadproof.frontends.settings.option import takes
@@ -38,7 +37,7 @@ from roadproof.recordings.evaluate.one_trace import (
     sample_drive,
 )
 from roadproof.recordings.formats.source import TRACK_FILES
-from roadproof.recordings.formats.table import Frame, columns_of, frame_of
+from roadproof.recordings.formats.table import Frame, columns_of
 from roadproof.verdict import ExitCode
 
 # A path, a judged drive, a drive file, a trace that was read, or columns by name: arrays, or a frame.
@@ -51,7 +50,7 @@ _CODES: dict[Truth, ExitCode] = {
 
 
 @dataclass(frozen=True, repr=False)
-class MonitorAnswer:
+class MonitorAnswer(Table):
     """The answer on one trace, with the definitions of ``library``; ``place`` says on which trace."""
 
     library: Library
@@ -73,15 +72,14 @@ class MonitorAnswer:
     def exit_code(self) -> ExitCode:
         return _CODES[self.verdict]
 
-    def to_frame(self) -> Frame:
+    def rows(self) -> list[Row]:
         """A row for each span in which a part is true or undecided: part, verdict, begin, end (s)."""
-        rows: list[Row] = [
+        return [
             {"part": strip.name, "verdict": verdict, "begin": begin, "end": end}
             for strip in self.observed.strips
             for verdict, spans in (("true", strip.true), ("undecided", strip.undecided))
             for begin, end in spans
         ]
-        return frame_of(rows)
 
     def as_data(self) -> dict[str, Any]:
         """As the plain data of ``--json``."""
@@ -118,9 +116,6 @@ class MonitorAnswer:
 
     def __repr__(self) -> str:
         return f"<Monitored: {self.verdict}>"
-
-    def _repr_html_(self) -> str:
-        return f"<pre>{escape(str(self))}</pre>"
 
 
 def _finite(value: float) -> float | None:

@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from roadproof.errors import UsageError
-from roadproof.frontends.cli.numbers import read_hands
-from roadproof.frontends.cli.options import write_json
+from roadproof.frontends.cli.options import read_hands, write_json
 from roadproof.frontends.cli.progress import Counter, warn
 from roadproof.frontends.settings.flags import read_flag, read_keywords
 from roadproof.frontends.settings.groups import Readings

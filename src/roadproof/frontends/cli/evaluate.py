@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import add_drivers, read_definitions
-from roadproof.frontends.cli.numbers import read_hands
-from roadproof.frontends.cli.options import add_json_option, write_json
+from roadproof.frontends.cli.options import add_json_option, read_hands, write_json
 from roadproof.frontends.cli.progress import note
 from roadproof.frontends.settings.flags import add_flags, read_keywords
 from roadproof.frontends.settings.recordings import Evaluate
@@ -47,8 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.frontends.api.recordings import evaluate
-    from roadproof.frontends.api.roads import roads
+    from roadproof.frontends.api.recordings import evaluate, roads
 
     if args.list_roads:
         if args.out or args.json:

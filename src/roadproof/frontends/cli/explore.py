@@ -4,9 +4,8 @@ import argparse
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import evidence_folder, hand_over, read_definitions, study_keywords
-from roadproof.frontends.cli.options import add_json_option
+from roadproof.frontends.cli.options import add_json_option, add_what_arguments, some_or_all
 from roadproof.frontends.cli.progress import tell
-from roadproof.frontends.cli.what import add_what_arguments, some_or_all
 from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.questions import Explore
 

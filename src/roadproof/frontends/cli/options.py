@@ -5,11 +5,15 @@ import json
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from roadproof.errors import UsageError
 from roadproof.frontends.cli.streams import takes_everything
 from roadproof.frontends.settings.flags import section
 from roadproof.runtime.files import whole_file
+
+if TYPE_CHECKING:
+    from roadproof.runtime.executors import Executor
 
 
 def add_json_option(parser: argparse.ArgumentParser) -> None:
@@ -42,3 +46,44 @@ def write_text(path: Path, text: str) -> None:
     """Write a file whole or not at all, into a folder that exists. Raises ``InputError``."""
     with whole_file(path) as file:
         file.write(text.encode("utf-8"))
+
+
+def add_what_arguments(parser: argparse.ArgumentParser, every: str) -> None:
+    """Scenarios and formulas by position, and ``--all``, of which ``every`` is the help."""
+    question = section(parser, "question")
+    question.add_argument(
+        "what",
+        metavar="N|FORMULA",
+        nargs="*",
+        help="scenarios (4, 1,3-8 or a name) or formulas",
+    )
+    question.add_argument("--all", action="store_true", help=every)
+
+
+def some_or_all(args: argparse.Namespace) -> list[str]:
+    """What is named; nothing with --all. Raises ``UsageError``."""
+    if args.all == bool(args.what):
+        raise UsageError("name scenarios or formulas, or use --all, but not both")
+    return list(args.what)
+
+
+def read_hands(args: argparse.Namespace) -> "Executor":
+    """Who does the work, by ``--jobs``, and where a command has them ``--shard`` and ``--cluster``.
+
+    Raises ``UsageError``.
+    """
+    from roadproof.frontends.cli.progress import note
+    from roadproof.runtime.executors import Cluster, Executor, Shard
+
+    said = vars(args)
+    files = {name: said.get(f"tls_{name}") for name in ("ca", "cert", "key")}
+    address, share = said.get("cluster"), said.get("shard")
+    named = [f"--tls-{name}" for name, file in files.items() if file is not None]
+    if named and address is None:
+        raise UsageError(f"{named[0]} requires --cluster SCHEDULER")
+    if address is not None and args.jobs is not None:
+        raise UsageError("--jobs and --cluster exclude each other: omit one of them")
+    if share is not None and args.json is not None:
+        raise UsageError("--shard gives a part of the answer: use --json in the run without --shard")
+    cluster = None if address is None else Cluster(address, files["ca"], files["cert"], files["key"], note)
+    return Executor(args.jobs, cluster, None if share is None else Shard.read(share))

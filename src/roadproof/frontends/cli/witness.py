@@ -4,10 +4,9 @@ import argparse
 from typing import TYPE_CHECKING
 
 from roadproof.frontends.cli.basis import in_order, read_definitions, study_keywords
-from roadproof.frontends.cli.options import add_json_option, write_json
+from roadproof.frontends.cli.options import add_json_option, add_what_arguments, some_or_all, write_json
 from roadproof.frontends.cli.progress import clear, tell_stage
 from roadproof.frontends.cli.streams import print_at_once
-from roadproof.frontends.cli.what import add_what_arguments, some_or_all
 from roadproof.frontends.settings.flags import add_flags, mark_rare, section
 from roadproof.frontends.settings.questions import Witness
 from roadproof.runtime.progress import listening
