@@ -1,5 +1,6 @@
 """The examples of CONTRIBUTING.md (a signal, an option, a survey) are carried out on a copy of the source."""
 
+import csv
 import json
 import os
 import re
@@ -119,6 +120,55 @@ def test_an_option_of_other_questions_touches_two_files_too(copy, command):
     assert told[0] == "between"
     assert len(told) > 1
     assert "--note TEXT" in roadproof(copy, 0, f"{command} --help")
+
+
+FIELD = {
+    "evidence/answers/overlap.py": (
+        (
+            "    seconds: shared.Seconds = 0.0\n\n    @property\n    def scenarios",
+            '    one_set: Annotated[bool, UNCHECKED, Doc("Whether both are of one spec set.")] = True\n',
+        ),
+    ),
+    "analysis/overlap.py": (
+        (
+            "            reason=answer.reason,\n            seconds=answer.seconds,\n",
+            "            one_set=answer.a.set_name == answer.b.set_name,\n",
+        ),
+    ),
+    "frontends/report/overlap.py": (
+        (
+            '            Column("reason", lambda x: x.reason),\n',
+            '            Column("one_set", lambda x: x.a.set_name == x.b.set_name, "csv"),\n',
+        ),
+        (
+            '    lines += [f"  {line}" for line in legend(words)]\n',
+            '    lines.append(f"of one set: {sum(x.a.set_name == x.b.set_name for x in verdicts)}")\n',
+        ),
+    ),
+    "frontends/report/page/templates/overlap.html": (
+        ("{{ p.reason(x.reason) }}\n", "<p>of one set: {{ x.one_set }}</p>\n"),
+    ),
+}
+"""A field of the answer of overlap, by file: the lines before which it is put in."""
+
+
+def test_a_field_of_an_answer_touches_four_files(copy):
+    """It is in the terminal, in JSON and its schema, in CSV and on the page."""
+    assert len(FIELD) == 4
+    for name, edits in FIELD.items():
+        forge(copy / "src/roadproof" / name, *((old, new + old) for old, new in edits))
+    told = roadproof(copy, 0, "overlap --among 1,4 --out X --json answer.json --no-pictures --jobs 1")
+    assert "\nof one set: 1\n" in told
+    assert [x["one_set"] for x in json.loads((copy / "answer.json").read_text())["verdicts"]] == [True]
+    [row] = csv.DictReader((copy / "X/overlap.csv").read_text().splitlines())
+    assert row["one_set"] == "True"
+    [schema] = run(
+        copy, "from roadproof.evidence.schemas import schemas; print(dict(schemas())['overlap.json'])"
+    )
+    assert "Whether both are of one spec set." in schema
+    assert "1 of 1 accepted" in roadproof(copy, 0, "check X --jobs 1")
+    roadproof(copy, 0, "report X -o page.html")
+    assert "<p>of one set: True</p>" in (copy / "page.html").read_text()
 
 
 def test_mypy_names_every_reader_that_forgets_a_signal_or_a_node(copy):
