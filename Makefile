@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 JOBS ?= 2
 
-.PHONY: test long demo docs man fresh browser findings interop mutants fuzz lint unit format clean
+.PHONY: test long demo docs man fresh browser evidence evidence-check findings interop mutants fuzz lint unit format clean
 
 test: lint unit
 
@@ -41,6 +41,14 @@ demo: $(READY)
 # The documentation site, in out/site: open out/site/index.html in a browser; it needs no network.
 docs: $(READY)
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build
+
+# The answers that come with roadproof, computed and written to proofs/known; ARGS='--only overlap' computes some.
+evidence: $(READY)
+	PYTHONPATH=tests $(BIN)/python -m shipping $(ARGS)
+
+# All of them computed again and compared with those that are there.
+evidence-check: $(READY)
+	PYTHONPATH=tests $(BIN)/python -m shipping --check $(ARGS)
 
 # Every command of the README, typed into the login shell of a user who has nothing but a fresh clone.
 fresh: $(READY)

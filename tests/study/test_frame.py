@@ -19,7 +19,7 @@ from roadproof.analysis.claims import ClaimResult, Claims, name_of
 from roadproof.analysis.overlap import Overlap, PairVerdict
 from roadproof.analysis.overlap import name_of as pair_name
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question
-from roadproof.analysis.study.frame import conduct
+from roadproof.analysis.study.frame import Unprepared, conduct
 from roadproof.errors import InputError, SharedError, UsageError
 from roadproof.evidence.answers.overlap import Record
 from roadproof.evidence.codec import read, write
@@ -44,7 +44,7 @@ class Square:
 
 
 @dataclass(frozen=True)
-class Sums:
+class Sums(Unprepared):
     """For each number the sum of its neighbours' squares, of which the squares are asked first.
 
     ``dying``: the number whose process dies; ``slow``: one that is in doubt at first.

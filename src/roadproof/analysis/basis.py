@@ -12,6 +12,7 @@ from roadproof.engines.search.ask import Search
 from roadproof.engines.search.question import Objective, SearchOptions, Setting
 from roadproof.evidence.settled import Settled
 from roadproof.library.bind import values_with
+from roadproof.library.dependence import digest_of
 from roadproof.library.specification import Library, Query, Specification
 from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.verdict import ProofVerdict, Verdict
@@ -73,6 +74,12 @@ class Basis:
             "parameters": values,
             "specs": specification_names(self.library),
         }
+
+    def key(self, *texts: str) -> str:
+        """A digest of what an answer depends on that speaks of the definitions in ``texts``."""
+        limits = self.horizon, self.effort, self.proof, self.objective, sorted(self.vehicles.items())
+        home = self.specification
+        return f"{digest_of(home, texts, self.all_values())} {limits!r} {sorted(home.options.items())}"
 
     def search(
         self, query: Query, road: Road | None = None, effort: Effort | None = None, explain: bool = False

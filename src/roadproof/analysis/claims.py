@@ -1,7 +1,7 @@
 """Many claims, each settled by itself and kept: what is asked, and what came out."""
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -14,6 +14,7 @@ from roadproof.analysis.study.evidence_store import (
     specification_names,
     write_index,
 )
+from roadproof.analysis.study.frame import Unprepared
 from roadproof.engines.prove.doubt import Cause, Doubt, Stop, doubt_of
 from roadproof.engines.prove.properties import Task, find_label, name_of_claim
 from roadproof.engines.prove.prover import Result
@@ -27,6 +28,7 @@ from roadproof.evidence.heading import library_of
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.refutation import read_trace, trace_data
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
+from roadproof.library.dependence import digest_of
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library, Query, Specification, read_specification
 from roadproof.logic.custom_names import told_freedom
@@ -94,7 +96,7 @@ def _counterexample(settled: Settlement) -> dict[str, Any] | None:
 
 
 @dataclass(frozen=True)
-class Claims:
+class Claims(Unprepared):
     """Claims to be settled, each in the specification of its spec set, as a ``study.frame.Study``.
 
     ``effort`` is for each; ``seek_drive``: whether a drive is looked for that refutes one; ``within``: where
@@ -176,6 +178,17 @@ class Claims:
     def is_sure(self, answer: ClaimResult) -> bool:
         """Whether there is evidence; PROVED-BOUNDED has none, and is about other limits the next time."""
         return answer.verdict in (Verdict.PROVED, Verdict.VACUOUS, Verdict.REFUTED)
+
+    @property
+    def wanted(self) -> Collection[str]:
+        return self.named
+
+    def key(self, name: str) -> str | None:
+        """None within bounds, where the answer has no evidence."""
+        task = self.named[name]
+        home = self.specification_of(task)
+        limits = self.effort, self.seek_drive, task.claim.split(), task.assuming
+        return None if self.within is not None else f"{digest_of(home, [task.claim])} {limits!r}"
 
     def record(self, name: str, answer: ClaimResult, shelf: EvidenceStore) -> kept.Record:
         task, settled, result = answer.task, answer.settled, answer.settled.result

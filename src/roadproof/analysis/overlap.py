@@ -17,12 +17,21 @@ from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.engines.prove.prover import Result
 from roadproof.engines.search.ask import ask
 from roadproof.engines.search.impossible import explain, parts, told_parts
+from roadproof.engines.solve.milp import prepare
 from roadproof.evidence.answers import overlap as kept_answers
 from roadproof.evidence.answers.overlap import SCHEMA
 from roadproof.evidence.settled import Settled
 from roadproof.library.compose import both, either, eventually, negation
-from roadproof.library.elaborate import read_claim
-from roadproof.library.scenarios import LANE, Scenario, applied, likes_of, numbers_of, vehicles_of
+from roadproof.library.elaborate import StatedQuery, read_claim
+from roadproof.library.scenarios import (
+    LANE,
+    Scenario,
+    applied,
+    definition_of,
+    likes_of,
+    numbers_of,
+    vehicles_of,
+)
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
@@ -184,6 +193,16 @@ class Overlap:
     def is_sure(self, answer: PairVerdict) -> bool:
         return answer.verdict in (Verdict.WITNESSED, Verdict.IMPOSSIBLE)
 
+    @cached_property
+    def wanted(self) -> dict[str, Pair]:
+        return {name_of(a, b): (a, b) for a, b in self.pairs}
+
+    def key(self, name: str) -> str:
+        return self.basis.key(*map(definition_of, self.wanted[name]))
+
+    def prepare(self) -> None:
+        prepare()
+
     def record(self, name: str, answer: PairVerdict, shelf: EvidenceStore) -> kept_answers.Record:
         kept = kept_answers.Pair(
             a=answer.a.number,
@@ -204,11 +223,12 @@ class Overlap:
     def recall(self, record: kept_answers.Record, shelf: EvidenceStore) -> tuple[str, PairVerdict]:
         kept = record.verdict
         a, b = kept.scenarios
-        cores = tuple(Core(self._read(x.formula), self._parts(x.parts)) for x in kept.cores)
+        home = self.basis.specification
+        cores = tuple(Core(StatedQuery(home, x.formula), self._parts(x.parts)) for x in kept.cores)
         return name_of(a, b), PairVerdict(
             a,
             b,
-            self._read(kept.formula),
+            StatedQuery(home, kept.formula) if kept.formula else None,
             cores,
             verdict=kept.verdict,
             reason=kept.reason,
@@ -217,11 +237,17 @@ class Overlap:
             seconds=kept.seconds,
         )
 
-    def _read(self, text: str) -> Query:
-        return read_claim(self.basis.specification, text)
-
     def _parts(self, texts: Sequence[str]) -> tuple[Formula, ...]:
-        return tuple(self._read(text).formula for text in texts)
+        home = self.basis.specification
+        for text in texts:
+            if text not in self._read:
+                self._read[text] = read_claim(home, text).formula
+        return tuple(self._read[text] for text in texts)
+
+    @cached_property
+    def _read(self) -> dict[str, Formula]:
+        """The parts of cores, each read once."""
+        return {}
 
     def verdicts(self, answers: Mapping[str, PairVerdict]) -> list[PairVerdict]:
         """The answers in the order of ``pairs``."""

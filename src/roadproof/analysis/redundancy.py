@@ -13,6 +13,7 @@ from typing import ClassVar
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.placing import judged_as, placed
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question
+from roadproof.analysis.study.frame import Unprepared
 from roadproof.engines.search.ask import Search, ask
 from roadproof.engines.search.question import usual_road
 from roadproof.errors import InputError
@@ -22,10 +23,11 @@ from roadproof.evidence.refutation import Countermodel, read_trace, trace_data
 from roadproof.evidence.settled import Settled
 from roadproof.library.bind import bind
 from roadproof.library.compose import both, equivalence, implication, negation
-from roadproof.library.elaborate import elaborate, read_claim
+from roadproof.library.elaborate import StatedQuery, elaborate
 from roadproof.library.scenarios import (
     Scenario,
     applied,
+    definition_of,
     is_sector,
     leaves_at_once,
     likes_of,
@@ -168,7 +170,7 @@ class ScenarioTask:
 
 
 @dataclass(frozen=True)
-class Redundancy:
+class Redundancy(Unprepared):
     """The question which parts of scenarios are redundant, as a ``study.frame.Study``.
 
     ``whole``: also the parts of simple predicates (``changes_of``).
@@ -216,6 +218,13 @@ class Redundancy:
     def is_sure(self, answer: ChangeFindings) -> bool:
         return all(x.verdict is not Verdict.UNKNOWN for x in answer)
 
+    @cached_property
+    def wanted(self) -> dict[str, int]:
+        return {name_of(number): number for number in self.numbers}
+
+    def key(self, name: str) -> str:
+        return self.basis.key(definition_of(self._scenario(self.wanted[name])))
+
     def record(self, name: str, answer: ChangeFindings, shelf: EvidenceStore) -> Record:
         number = int(name.rpartition("-")[2])
         verdicts = tuple(
@@ -255,13 +264,13 @@ class Redundancy:
             raise InputError(f"a finding on {said.changed}, where one on {change.changed.text} was kept")
         return ChangeFinding(
             change,
-            read_claim(specification, said.claim),
+            StatedQuery(specification, said.claim),
             verdict=said.verdict,
             certificate=shelf.read_certificate(said.certificate),
             drive=shelf.read_drive(said.drive),
             trace=None if said.trace is None else read_trace(said.trace, change.part),
             reason=said.reason,
-            assuming=read_claim(specification, said.assuming) if said.assuming else None,
+            assuming=StatedQuery(specification, said.assuming) if said.assuming else None,
             late=said.late,
         )
 

@@ -1,7 +1,7 @@
 """Drives for scenarios and formulas, each looked for by itself and kept."""
 
 import hashlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
@@ -10,10 +10,13 @@ from roadproof.analysis.study.evidence_store import EvidenceStore, Question, spe
 from roadproof.engines.search import ask
 from roadproof.engines.search.ask import Outcome, Search
 from roadproof.engines.search.impossible import Impossibility
+from roadproof.engines.solve.milp import prepare
 from roadproof.errors import InputError
 from roadproof.evidence.answers import drives as kept
 from roadproof.evidence.answers.drives import SCHEMA
-from roadproof.library.elaborate import read_claim
+from roadproof.library.bind import values_with
+from roadproof.library.dependence import digest_of
+from roadproof.library.elaborate import StatedQuery, read_claim
 from roadproof.logic.show import declared
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
@@ -64,6 +67,19 @@ class WitnessStudy:
         """Whether all drives that were asked for are there, or a proof that there is none."""
         return answer.verdict is Verdict.IMPOSSIBLE or (bool(answer.drives) and not answer.reason)
 
+    @property
+    def wanted(self) -> Collection[str]:
+        return self.named
+
+    def key(self, name: str) -> str:
+        search = self.named[name]
+        values = values_with(search.specification.library, search.setting.values)
+        used = digest_of(search.specification, [search.query.text], values)
+        return f"{used} {_asked(search)} {search.search_options.effort!r}"
+
+    def prepare(self) -> None:
+        prepare()
+
     def record(self, name: str, answer: Outcome, shelf: EvidenceStore) -> kept.Record:
         shown = answer.impossibility
         values = self.named[name].setting.values
@@ -94,7 +110,7 @@ class WitnessStudy:
         if search is not None and record.asked != _asked(search):
             raise InputError(f"the answer '{name}' is that to another search")
         home = self.searches[0].specification.in_set(said.set)
-        query = read_claim(home, said.formula) if search is None else search.query
+        query = StatedQuery(home, said.formula) if search is None else search.query
         certificate = shelf.read_certificate(said.certificate)
         shown = None
         if certificate is not None:

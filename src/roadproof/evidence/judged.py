@@ -2,12 +2,13 @@
 exact judge asked, no solver.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers.drive import DriveSays, TrueTimes
 from roadproof.evidence.codec import write
-from roadproof.evidence.drive_file import DriveFile, drive_data
+from roadproof.evidence.drive_file import DriveFile, drive_data, natural_of, read_drive
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim
@@ -100,6 +101,36 @@ class JudgedDrive:
     def as_data(self) -> JsonObject:
         """The drive file as plain data, with the verdict and with what is true when."""
         return drive_data(self.file, DriveSays(natural=self.natural, times=times_said(self.judgement)))
+
+
+class KnownDrive(JudgedDrive):
+    """A drive that was judged before it was kept under a seal; it is judged again when it is looked at.
+
+    Raises ``RejectedError`` then, where the judge rejects it.
+    """
+
+    def __init__(self, content: Callable[[], object], where: str, library: Library) -> None:
+        self.__dict__.update(_content=content, _where=where, _library=library)
+
+    def __getattr__(self, name: str) -> object:
+        if name not in ("file", "judgement", "natural"):
+            raise AttributeError(name)
+        content, where = self.__dict__["_content"](), self.__dict__["_where"]
+        judged = JudgedDrive(
+            read_drive(content, where), self.__dict__["_library"], natural_of(content, where)
+        )
+        self.__dict__.update(vars(judged))
+        return vars(judged)[name]
+
+    def __reduce__(self) -> tuple[Callable[..., JudgedDrive], tuple[object, ...]]:
+        return _judged, (self.file, self.judgement, self.natural)
+
+
+def _judged(file: DriveFile, judgement: Judgement, natural: bool | None) -> JudgedDrive:
+    """A drive that another process has judged."""
+    made = object.__new__(JudgedDrive)
+    made.__dict__.update(file=file, judgement=judgement, natural=natural)
+    return made
 
 
 def times_data(judgement: Judgement) -> list[JsonObject]:

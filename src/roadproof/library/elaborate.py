@@ -26,11 +26,34 @@ def read_claim(specification: Specification, text: str, source: str = "claim") -
     """
     claim = parse_claim(text, source)
     try:
-        return replace(elaborate(specification, claim), written=text.strip())
+        return replace(elaborate(specification, claim, _walk(specification)), written=text.strip())
     except TextError as error:
         first = error.locate(source, text)
     raise_all(mistakes_in(specification, claim, source, text) or [first])
     raise AssertionError("one mistake was found, and then none")
+
+
+def _walk(specification: Specification) -> Elaborator:
+    """A walk that remembers the definitions it has read, one for each specification."""
+    walk: Elaborator = specification.worked_out.setdefault((_walk,), Elaborator(specification))
+    return walk
+
+
+class StatedQuery(Query):
+    """A query whose text is known to be right, and is read when more than the text is asked for."""
+
+    def __init__(self, specification: Specification, text: str) -> None:
+        self.__dict__.update(written=text, _home=specification)
+
+    def __getattr__(self, name: str) -> object:
+        if name not in ("claim", "formula", "vehicles", "lanes"):
+            raise AttributeError(name)
+        read = read_claim(self.__dict__["_home"], self.written)
+        self.__dict__.update(vars(read))
+        return vars(read)[name]
+
+    def __reduce__(self) -> tuple[type[Query], tuple[object, ...]]:
+        return Query, (self.claim, self.formula, self.vehicles, self.lanes, self.written)
 
 
 def mistakes_in(

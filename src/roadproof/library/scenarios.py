@@ -33,6 +33,11 @@ _NAMED = re.compile(r"\bscenario_(\d{1,6})\b")
 _NUMBERS = re.compile(r"(scenario_)?\d[\d,\s-]*")
 _BEHAVIOURS = ("behaviourSV", "behaviourPOV")
 _COMPONENTS = (*_BEHAVIOURS, "initialCondition")
+TEMPLATE_NAMES = (
+    *("rssViolation", "initSafe", "danger", "dangerAhead", "dangerLeft", "asked_between", "atLane"),
+    *_ZONES.values(),
+)
+"""The definitions that provers and searches use whether a formula names them or not."""
 
 
 @dataclass(frozen=True)
@@ -74,6 +79,11 @@ def are_numbers(text: str) -> bool:
 def name_of(number: int) -> str:
     """What the definition of a scenario is called."""
     return f"scenario_{number}"
+
+
+def definition_of(scenario: Scenario) -> str:
+    """What the definition of a scenario is called from every set."""
+    return f"{name_of(scenario.number)}@{scenario.set_name}"
 
 
 def vehicles_of(specification: Specification, scenario: Scenario) -> tuple[str, ...]:

@@ -21,6 +21,8 @@ T = TypeVar("T")
 
 SWITCH = "ROADPROOF_CACHE"
 _OLD = 60 * 24 * 3600.0  # seconds
+MOST_BYTES = 200_000_000
+"""So much a folder of the cache holds."""
 
 
 def private_folder(name: str) -> Path | None:
@@ -46,34 +48,60 @@ def is_ours(path: Path) -> bool:
     return kind and found.st_uid == os.getuid() and not found.st_mode & 0o022
 
 
-def _forget_old(folder: Path) -> None:
-    """Remove what was written so long ago that its version is hardly in use."""
-    with contextlib.suppress(OSError):
-        for path in folder.iterdir():
-            if path.stat().st_mtime < time.time() - _OLD:
-                path.unlink()
-
-
 def remembered(name: str, made_of: bytes, make: Callable[[], T]) -> T:
     """What ``make`` makes of ``made_of`` and nothing else: taken from the cache, or made and put there.
 
     It must be something that can be pickled. ``name`` tells what it is.
     """
-    folder = private_folder("made") if hasattr(os, "getuid") else None
-    if folder is None:
-        return make()
-    key = hashlib.sha256(made_of).hexdigest()
-    path = folder / f"{name}-{key[:32]}"
+    key = f"{name}-{hashlib.sha256(made_of).hexdigest()[:32]}"
     with contextlib.suppress(Exception):  # whatever it is that cannot be read is made again
-        if is_ours(path):
-            content = path.read_bytes()
-            digest, data = content[:32], content[32:]
-            if digest == hashlib.sha256(made_of + data).digest():
-                found: T = pickle.loads(data)
-                return found
+        data = kept_bytes("made", key, made_of)
+        if data is not None:
+            found: T = pickle.loads(data)
+            return found
     made = make()
-    _forget_old(folder)
-    data = pickle.dumps(made, pickle.HIGHEST_PROTOCOL)
-    with contextlib.suppress(InputError, OSError):
-        write_whole(path, hashlib.sha256(made_of + data).digest() + data)
+    keep_bytes("made", key, pickle.dumps(made, pickle.HIGHEST_PROTOCOL), made_of)
+    make_room("made")
     return made
+
+
+def kept_bytes(folder: str, name: str, made_of: bytes = b"") -> bytes | None:
+    """What was kept under a name in a folder of the cache; None where it is not there as it was written."""
+    home = _home(folder)
+    if home is None or not is_ours(home / name):
+        return None
+    content = (home / name).read_bytes()
+    digest, data = content[:32], content[32:]
+    if digest != hashlib.sha256(name.encode() + made_of + data).digest():
+        return None
+    with contextlib.suppress(OSError):
+        os.utime(home / name)
+    return data
+
+
+def keep_bytes(folder: str, name: str, data: bytes, made_of: bytes = b"") -> None:
+    """Keep bytes under a name, made of ``made_of``."""
+    home = _home(folder)
+    if home is not None:
+        with contextlib.suppress(InputError, OSError):
+            write_whole(home / name, hashlib.sha256(name.encode() + made_of + data).digest() + data)
+
+
+def make_room(folder: str) -> None:
+    """Remove what was used so long ago that its version is hardly in use, and the oldest of too much."""
+    total = 0
+    with contextlib.suppress(OSError):
+        for path, said in sorted(sizes(folder).items(), key=lambda x: -x[1].st_mtime):
+            total += said.st_size
+            if said.st_mtime < time.time() - _OLD or total > MOST_BYTES:
+                path.unlink()
+
+
+def sizes(folder: str) -> dict[Path, os.stat_result]:
+    """The files of a folder of the cache."""
+    home = _home(folder)
+    return {} if home is None else {path: path.stat() for path in home.iterdir() if path.is_file()}
+
+
+def _home(folder: str) -> Path | None:
+    return private_folder(folder) if hasattr(os, "getuid") else None

@@ -25,6 +25,7 @@ from roadproof.analysis.coverage import answers as survey
 from roadproof.analysis.coverage.study import Coverage
 from roadproof.analysis.placing import judged_as
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question
+from roadproof.analysis.study.frame import Unprepared
 from roadproof.engines.search.ask import Outcome, Search, answer
 from roadproof.engines.search.question import SearchOptions, Setting
 from roadproof.errors import InputError
@@ -74,7 +75,7 @@ Names: TypeAlias = tuple[str, ...]
 
 
 @dataclass(frozen=True)
-class Meanings:
+class Meanings(Unprepared):
     """The question for all that is known of abstract tests, as a ``study.frame.Study``.
 
     ``beside``: what is asked in further sets. ``gaps``: classes of gaps of which it is asked which are empty,

@@ -1,6 +1,6 @@
 """The classes of scenarios with evidence: a drive for each, a certificate for each claim about them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -12,6 +12,7 @@ from roadproof.analysis.classify.drives import Example, find_examples
 from roadproof.analysis.classify.shares import Shares
 from roadproof.analysis.classify.text import ClassClaim, claims_of, with_classes, write_classes
 from roadproof.analysis.study.evidence_store import INDEX, EvidenceStore, Question
+from roadproof.analysis.study.frame import Unprepared
 from roadproof.errors import InputError
 from roadproof.evidence.answers import classify as kept
 from roadproof.evidence.answers.classify import SCHEMA, Doubt
@@ -50,7 +51,7 @@ class ClassificationResult:
 
 
 @dataclass(frozen=True)
-class Classification:
+class Classification(Unprepared):
     """The question for drives of ``classes`` and proofs of ``claims``, as a ``study.frame.Study``.
 
     ``basis`` is about the set that ``text`` defines; where that is empty, the division was cut off.
@@ -110,6 +111,15 @@ class Classification:
 
     def is_sure(self, answer: Example | ProofResult[ClassClaim]) -> bool:
         return answer.verdict in (Verdict.WITNESSED, Verdict.PROVED, Verdict.VACUOUS)
+
+    @property
+    def wanted(self) -> Collection[str]:
+        return self._named
+
+    def key(self, name: str) -> str:
+        """A class is told from all scenarios, by a formula."""
+        one = self._named[name]
+        return self.basis.key(one.formula if isinstance(one, Class) else one.query.text)
 
     def record(
         self, name: str, answer: Example | ProofResult[ClassClaim], shelf: EvidenceStore

@@ -4,7 +4,7 @@ Claims of coverage come first. Where they are proved, only the definitions are l
 else the simple drives are looked through, and gaps among them are what the classes begin with.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, TypeGuard
@@ -40,9 +40,11 @@ from roadproof.analysis.coverage.found import (
 )
 from roadproof.analysis.coverage.settling import ClassGroup
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question
+from roadproof.analysis.study.frame import Unprepared
 from roadproof.errors import InputError
 from roadproof.evidence.answers import coverage as kept
 from roadproof.evidence.answers.coverage import SCHEMA
+from roadproof.library.scenarios import Scenario, definition_of, numbers_of
 from roadproof.library.specification import Query
 from roadproof.verdict import Verdict
 
@@ -51,7 +53,7 @@ CHUNKS = 7
 
 
 @dataclass(frozen=True)
-class Coverage:
+class Coverage(Unprepared):
     """The question which disturbances a set misses, as a ``study.frame.Study``.
 
     ``needed``: also which of its definitions it needs, where it misses none.
@@ -157,6 +159,21 @@ class Coverage:
                 return False
             case _:
                 return all(x.verdict is not Verdict.UNKNOWN for x in answer)
+
+    @property
+    def wanted(self) -> Collection[str]:
+        needs = (name_of(NeededDefinition(x)) for x in self._replaced())
+        return [*map(name_of, self.claims), *needs, *self.groups]
+
+    def key(self, name: str) -> str:
+        """Every answer is about all scenarios of the set."""
+        home = self.survey.basis.specification
+        scenarios = (
+            definition_of(Scenario(number, each))
+            for each in (home.set_name, *self.survey.wider)
+            for number in numbers_of(home.in_set(each))
+        )
+        return self.survey.basis.key(*scenarios) + repr((self.survey.roads, self.survey.elsewhere))
 
     def record(self, name: str, answer: Kept, shelf: EvidenceStore) -> kept.Record:
         match answer:

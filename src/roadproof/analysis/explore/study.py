@@ -1,7 +1,7 @@
 """Explorations of several formulas: each is a piece with an answer of its own, kept and taken up again."""
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import ClassVar
@@ -25,11 +25,13 @@ from roadproof.analysis.explore.search import Reply, SearchTask, look, undecided
 from roadproof.analysis.explore.values import explore
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question, specification_names
 from roadproof.analysis.study.pool import Say, in_order, work
+from roadproof.engines.solve.milp import prepare
 from roadproof.errors import InputError
 from roadproof.evidence.answers import explore as kept
 from roadproof.evidence.answers.explore import SCHEMA
 from roadproof.evidence.codec import write
 from roadproof.evidence.drive_file import road_said
+from roadproof.library.dependence import digest_of
 from roadproof.runtime.executors import Jobs
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import Verdict
@@ -69,6 +71,7 @@ class Exploration:
 
     def settle(self, piece: str) -> dict[str, ExplorationResult]:
         begun, asked = now(), self.named[piece]
+        prepare()  # the processes that share the searches are forked from this one
         explored = explore(asked, self._look_all, self.say) if asked.knobs else ExplorationResult()
         extremes: list[Extreme] = []
         for measure in asked.measures:
@@ -101,6 +104,22 @@ class Exploration:
     def is_sure(self, answer: ExplorationResult) -> bool:
         """A doubt that the count of work makes is the same in the next run, so it stands."""
         return not answer.late
+
+    @property
+    def wanted(self) -> Collection[str]:
+        return self.named
+
+    def key(self, name: str) -> str:
+        asked = self.named[name]
+        texts = [
+            asked.search.query.text,
+            *(x.text for x in asked.measures),
+            *(x.when for x in asked.measures),
+        ]
+        return digest_of(asked.search.specification, texts, values_of(asked.search))
+
+    def prepare(self) -> None:
+        prepare()
 
     def record(self, name: str, answer: ExplorationResult, shelf: EvidenceStore) -> kept.Record:
         return kept.Record(exploration=as_kept(name, self.named[name], answer, shelf))

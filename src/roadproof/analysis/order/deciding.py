@@ -96,16 +96,19 @@ class OrderDoubt:
     """An implication of which no reading was proved, and those in ``open`` were not refuted either.
 
     A reading is the two scenarios applied to vehicles and a lane. ``late``: why the search was cut off,
-    where it was.
+    where it was; ``known``: the reason of a doubt that was kept.
     """
 
     above: Scenario
     below: Scenario
     open: tuple[tuple[Query, Query], ...]
     late: str = ""
+    known: str = ""
 
     @property
     def reason(self) -> str:
+        if self.known:
+            return self.known
         told = ", ".join(f"{a.text} -> {b.text}" for a, b in self.open) or f"{self.above} -> {self.below}"
         readings = f"neither a proof nor a drive against {told}"
         return f"{readings}; {self.late}" if self.late else readings

@@ -1,6 +1,6 @@
 """Which scenarios imply which: every implication proved, every other one refuted by a drive."""
 
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Collection, Mapping, Sequence, Set
 from dataclasses import dataclass
 from itertools import permutations
 from typing import ClassVar
@@ -17,12 +17,13 @@ from roadproof.analysis.order.deciding import (
     settle_doubts,
 )
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question
+from roadproof.analysis.study.frame import Unprepared
 from roadproof.errors import InputError
 from roadproof.evidence.answers import order as kept
 from roadproof.evidence.answers.order import SCHEMA
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.library.elaborate import read_claim
-from roadproof.library.scenarios import Scenario
+from roadproof.library.elaborate import StatedQuery
+from roadproof.library.scenarios import Scenario, definition_of
 
 
 @dataclass(frozen=True)
@@ -58,7 +59,7 @@ class Order:
 
 
 @dataclass(frozen=True)
-class Ordering:
+class Ordering(Unprepared):
     """The question which of ``kinds`` imply which, as a ``study.frame.Study``."""
 
     record_type: ClassVar[type[kept.Record]] = kept.Record
@@ -107,6 +108,14 @@ class Ordering:
     def is_sure(self, answer: Decisions) -> bool:
         return not answer.doubts
 
+    @property
+    def wanted(self) -> Collection[str]:
+        return self.families
+
+    def key(self, name: str) -> str:
+        """Drives of all families may settle a doubt about one."""
+        return self.basis.key(*(definition_of(node) for kind in self.kinds for node in kind.nodes))
+
     def record(self, name: str, answer: Decisions, shelf: EvidenceStore) -> kept.Record:
         proved = tuple(
             kept.Edge(
@@ -137,7 +146,7 @@ class Ordering:
         for edge in record.proved:
             certificate = shelf.read_certificate(edge.certificate)
             assert certificate is not None
-            claim = read_claim(self.basis.specification, edge.claim)
+            claim = StatedQuery(self.basis.specification, edge.claim)
             edges.append(Edge(_scenario(edge.above), _scenario(edge.below), claim, certificate))
         drives: list[RefutationTask] = []
         for x in record.drives:
@@ -145,12 +154,16 @@ class Ordering:
             assert drive is not None
             drives.append(RefutationTask(_scenario(x.holds), tuple(map(_scenario, x.fails)), drive))
         name = record.family
-        settled = {(x.above, x.below) for x in edges} | {(x.node, y) for x in drives for y in x.others}
+        doubts = tuple(
+            OrderDoubt(_scenario(x.above), _scenario(x.below), (), known=x.reason) for x in record.doubts
+        )
+        settled = {(x.above, x.below) for x in edges} | {(x.above, x.below) for x in doubts}
+        settled |= {(x.node, y) for x in drives for y in x.others}
         for kind in self.families.get(name, ()):
             for other in self.kinds:
                 if other != kind and (kind.node, other.node) not in settled:
                     raise InputError(f"nothing is kept of {kind.node} -> {other.node}")
-        return name, Decisions(tuple(edges), tuple(drives))
+        return name, Decisions(tuple(edges), tuple(drives), doubts, again=True)
 
     def order(self, answers: Mapping[str, Decisions]) -> Order:
         """The edges of the Hasse diagram, and for the other pairs what refutes them."""

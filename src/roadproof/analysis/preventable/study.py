@@ -4,7 +4,7 @@ A question in pieces: a plate for each model and choice of fixed values, and the
 formula is the boundary.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
@@ -14,6 +14,7 @@ from typing import ClassVar, TypeAlias
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.preventable.sides import beside_boundary, far_apart, first_drive
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question
+from roadproof.analysis.study.frame import Unprepared
 from roadproof.drivers import gradual
 from roadproof.drivers.boundary import Plane, plane_of
 from roadproof.drivers.driving import DriverSettings
@@ -103,7 +104,7 @@ Piece: TypeAlias = PlatePiece | Lemma
 
 
 @dataclass(frozen=True)
-class Preventable:
+class Preventable(Unprepared):
     """The question as a ``study.frame.Study``: ``sheet`` has the values that differ from plate to plate.
 
     ``scenario``: the number of the one that drives should be of, where the manoeuvre was asked for by it.
@@ -246,6 +247,14 @@ class Preventable:
         return LemmaResult(
             lemma, said, verdict=result.verdict, certificate=result.certificate, reason=result.reason
         )
+
+    @property
+    def wanted(self) -> Collection[str]:
+        return [*self.plates, *self.lemmas]
+
+    def key(self, name: str) -> str:
+        """Driver models use definitions that no formula here names."""
+        return f"{self.basis.library.fingerprint} {self.basis.key()}"
 
     # --- answers as plain data -------------------------------------------------------------------
 

@@ -9,6 +9,7 @@ import json
 import os
 from collections.abc import Callable, Container, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ from roadproof.evidence.certificate import Certificate, certificate_data, read_c
 from roadproof.evidence.drive_file import natural_of, read_drive
 from roadproof.evidence.heading import heading
 from roadproof.evidence.journal import ANSWERS, HEAD, answers_of, head_of, read_kept, seal_of
-from roadproof.evidence.judged import JudgedDrive
+from roadproof.evidence.judged import JudgedDrive, KnownDrive
 from roadproof.evidence.kernel.accept import find_tableau
 from roadproof.evidence.strict import LARGEST_EVIDENCE, read_json
 from roadproof.library.specification import Library
@@ -106,6 +107,12 @@ class EvidenceStore:
         content, where = self._get(kept), str(kept)[:60]
         return JudgedDrive(read_drive(content, where), self.library, natural_of(content, where))
 
+    def adopt(self, files: Mapping[str, str]) -> None:
+        """Take over the texts of evidence files by name, which were checked when they were made."""
+        if self.folder is not None:
+            for name, text in files.items():
+                self._put(self.folder, name, text.encode())
+
     def _put(self, folder: Path, name: str, content: bytes) -> str:
         refuse_vanished(folder)
         write_whole(folder / name, content)
@@ -164,6 +171,43 @@ class EvidenceStore:
         return data if folder is None else _mapped(data, lambda x: str(folder / x) if x in self.names else x)
 
 
+class EvidenceTexts(EvidenceStore):
+    """Evidence held as the texts of its files; drives among them were judged when they were made."""
+
+    def __init__(self, question: Question, files: Mapping[str, str] | None = None) -> None:
+        super().__init__(None, question)
+        self.files = dict(files or {})
+
+    def certificate(self, name: str, certificate: Certificate | None) -> str | None:
+        if certificate is None:
+            return None
+        if certificate.tableau is None:
+            certificate = replace(certificate, tableau=find_tableau(certificate, self.library))
+        return self._hold(name, to_json(certificate))
+
+    def drive(self, name: str, drive: JudgedDrive | None) -> str | None:
+        return None if drive is None else self._hold(name, json_bytes(drive.as_data()).decode())
+
+    def read_drive(self, kept: object) -> JudgedDrive | None:
+        return None if kept is None else KnownDrive(partial(self._get, kept), str(kept)[:60], self.library)
+
+    def inside(self, data: Any) -> Any:
+        """``data`` with evidence in place of the names of its files, as without a folder."""
+        return _mapped(data, lambda x: _without_tableau(self._get(x)) if x in self.files else x)
+
+    def _hold(self, name: str, text: str) -> str:
+        self.files[name] = text
+        return name
+
+    def _get(self, kept: object) -> object:
+        return json.loads(self.files[kept]) if isinstance(kept, str) and kept in self.files else kept
+
+
+def _without_tableau(evidence: Any) -> Any:
+    """As evidence is inside an answer: a tableau is only in files."""
+    return {**evidence, "tableau": None} if "tableau" in evidence else evidence
+
+
 def write_index(folder: Path, data: Mapping[str, Any]) -> None:
     """The index of a folder; files in it are named as they are from there. Raises ``InputError``."""
     refuse_vanished(folder)
@@ -185,7 +229,7 @@ def inside(data: Any, folder: Path) -> Any:
     return _mapped(data, lambda x: Path(x).relative_to(folder).as_posix() if x.startswith(begins) else x)
 
 
-def _mapped(data: Any, change: Callable[[str], str]) -> Any:
+def _mapped(data: Any, change: Callable[[str], object]) -> Any:
     """Plain data with every text in it changed."""
     match data:
         case dict():

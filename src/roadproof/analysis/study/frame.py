@@ -4,14 +4,16 @@ What is asked is a ``Study``; ``conduct`` asks it, in several processes, and wit
 a run that was broken off goes on where it was.
 """
 
-from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Container, Iterator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
 from roadproof.analysis.study import pool
-from roadproof.analysis.study.evidence_store import EvidenceStore, Question
+from roadproof.analysis.study.evidence_store import EvidenceStore, EvidenceTexts, Question
+from roadproof.analysis.study.known import KnownAnswer, KnownAnswers, Origin
+from roadproof.analysis.study.known import told as told_known
 from roadproof.analysis.study.pool import Progress
 from roadproof.errors import InputError, SharedError, UsageError
 from roadproof.evidence.codec import read, write
@@ -52,6 +54,18 @@ class Study(Protocol[Piece, Answer, Record]):
     def is_sure(self, answer: Answer) -> bool:
         """Whether an answer stands; others are asked again by the next run into the same folder."""
 
+    @property
+    def wanted(self) -> Collection[str]:
+        """The names of all answers that the question may need."""
+
+    def key(self, name: str) -> str | None:
+        """A digest of what an answer depends on besides ``question``: limits, definitions; None where none is
+        known before it is asked for.
+        """
+
+    def prepare(self) -> None:
+        """Import what workers need, once, before they are forked."""
+
     def record(self, name: str, answer: Answer, shelf: EvidenceStore) -> Record:
         """An answer as it is kept; its evidence goes to the shelf."""
 
@@ -62,13 +76,31 @@ class Study(Protocol[Piece, Answer, Record]):
         """
 
 
+class Unprepared:
+    """A study of which no answer is known before it is asked, and whose workers need nothing beforehand."""
+
+    @property
+    def wanted(self) -> Collection[str]:
+        return ()
+
+    def key(self, name: str) -> str | None:
+        return None
+
+    def prepare(self) -> None:
+        pass
+
+
 @dataclass(frozen=True)
 class StudyResult(Generic[Answer, Record]):
-    """All answers by name, and the same as they are kept; ``shelf`` has their evidence."""
+    """All answers by name, and the same as they are kept; ``shelf`` has their evidence.
+
+    ``known``: for each answer that was known before the question was asked, from where.
+    """
 
     answers: Mapping[str, Answer]
     records: Mapping[str, Record]
     shelf: EvidenceStore
+    known: tuple[Origin, ...] = ()
 
     def as_data(self, answer: object) -> dict[str, Any]:
         """An answer made of the records as plain data; evidence that has a file is named by its path."""
@@ -98,12 +130,14 @@ def conduct(
     what: str = "pieces",
     say: Callable[[str], None] | None = None,
     each: Callable[[str, Answer], None] | None = None,
+    fresh: bool = False,
 ) -> StudyResult[Answer, Record]:
     """Ask all pieces that a folder does not have the answers of; ``hands``: who does the work.
 
     Of several runs that divide the question each asks its share, and takes over what others have kept in the
     same folder. ``what`` is the word for many pieces, for ``progress``; ``say`` is told of kept answers that
     do not count, ``each`` of every answer with its name: of kept ones first, then of others as they come.
+    Answers that are known (``study.known``) are not asked for, unless ``fresh``.
     Raises ``UsageError`` where the folder holds the answers to another question, ``SharedError`` where the
     rest is for other runs, and what ``study.settle`` raises.
     """
@@ -127,6 +161,17 @@ def conduct(
         return len(known) > before
 
     take_over()
+    known_answers = KnownAnswers.to(study.question.schema, study.question.said, study.question.more)
+    origins: list[Origin] = []
+    for name in [] if fresh else [x for x in study.wanted if x not in known]:
+        found = _known(study, known_answers, name, shelf)
+        if found is not None:
+            origin, record, answer = found
+            origins.append(origin)
+            add(name, record, answer)
+    for line in told_known(origins, len(study.wanted)):
+        if say is not None:
+            say(line)
     while pieces := study.pieces(known):
         ours = [piece for piece in pieces if shard is None or shard.has(_name(study, piece))]
         if not ours:
@@ -134,11 +179,45 @@ def conduct(
                 continue
             unsure = sum(not study.is_sure(answer) for answer in known.values())
             raise SharedError(_told(shard, len(known) - unsure, unsure, len(pieces), what))
+        if pool.are_forked(ours, hands):
+            study.prepare()
         with closing(pool.work(study.settle, ours, hands, study.doubt, progress, what)) as answered:
             for _, answers in answered:
                 for name, answer in answers.items():
                     add(name, _keep(study, name, answer, shelf), answer)
-    return StudyResult(known, records, shelf)
+                    _remember(study, known_answers, name, answer)
+    known_answers.make_room()
+    return StudyResult(known, records, shelf, tuple(origins))
+
+
+def _known(
+    study: Study[Piece, Answer, Record], known: KnownAnswers, name: str, shelf: EvidenceStore
+) -> tuple[Origin, Record, Answer] | None:
+    """An answer that is known, put on the shelf as if it had been computed."""
+    key = study.key(name)
+    found = None if key is None else known.find(name, key)
+    if found is None:
+        return None
+    texts = EvidenceTexts(study.question, found.files)
+    content = found.record if shelf.folder is not None else texts.inside(found.record)
+    record = read(study.record_type, content, "a known answer")
+    _, answer = study.recall(read(study.record_type, found.record, "a known answer"), texts)
+    shelf.adopt(found.files)
+    shelf.keep(name, dict(found.record), study.is_sure(answer))
+    return found.origin, record, answer
+
+
+def known_answer(study: Study[Piece, Answer, Record], name: str, answer: Answer) -> KnownAnswer:
+    """An answer with the texts of its evidence."""
+    texts = EvidenceTexts(study.question)
+    record = write(study.record(name, answer, texts))
+    return KnownAnswer(record, texts.files)
+
+
+def _remember(study: Study[Piece, Answer, Record], known: KnownAnswers, name: str, answer: Answer) -> None:
+    key = study.key(name) if study.is_sure(answer) else None
+    if key is not None:
+        known.remember(name, key, known_answer(study, name, answer))
 
 
 def _kept(

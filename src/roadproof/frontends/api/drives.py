@@ -23,7 +23,7 @@ from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import searches_of, setting, work_of
-from roadproof.frontends.api.studied import StudyAnswers, drive_pictures, prepare_workers
+from roadproof.frontends.api.studied import StudyAnswers, drive_pictures
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.report.witness import SearchedFor, as_line, files_of, kinds, sheet_of
 from roadproof.frontends.settings.keywords import WitnessKeywords
@@ -170,7 +170,6 @@ def witness_all(
     """As ``witness``, with searches as values; ``each`` is told of every outcome under its name."""
     if not searches:
         raise UsageError("the spec set has no scenario: name formulas")
-    prepare_workers(searches, given.jobs)
     library, out = searches[0].specification.library, given.out
     beside = None if out is None else DriveFolder(Path(out), library, given.pictures)
     study = WitnessStudy(tuple(searches), beside)

@@ -17,7 +17,7 @@ from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.phrases import Term
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import searches_of, setting, work_of
-from roadproof.frontends.api.studied import StudyAnswers, drawn, prepare_workers
+from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import explore as report
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.groups import Run
@@ -126,5 +126,4 @@ def explorables(
 def explore_all(asked: Iterable[Explorable], given: Run, tell: Say | None = None) -> Explorations:
     """As ``explore``, with what is asked as values; ``tell`` is told how far a formula is."""
     study = Exploration(tuple(asked), given.jobs, tell or say_nothing)
-    prepare_workers(range(1000), given.jobs)
     return Explorations.asked(study, given)

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any, ClassVar, Generic, Protocol, Self, TypeVar, Unpack
 
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.study import pool
 from roadproof.analysis.study.evidence_store import write_index
 from roadproof.analysis.study.frame import Study, StudyResult, conduct, put_away
 from roadproof.drivers.restriction import restriction_of
@@ -27,7 +26,6 @@ from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.studies import Ask
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.specification import Library
-from roadproof.runtime.executors import Jobs
 from roadproof.runtime.files import write_whole
 from roadproof.verdict import ExitCode, Verdict
 
@@ -62,7 +60,7 @@ class StudyAnswers(Answer, Generic[S, A, R]):
         """
         since = time.monotonic() if begun is None else begun
         folder = None if given.out is None else Path(given.out)
-        found = conduct(study, folder, given.jobs, given.progress, cls.pieces, given.say, each)
+        found = conduct(study, folder, given.jobs, given.progress, cls.pieces, given.say, each, given.fresh)
         fields = more()
         made = cls(study, found, time.monotonic() - since, folder, **fields)
         if folder is not None:
@@ -107,14 +105,6 @@ class StudyAnswers(Answer, Generic[S, A, R]):
     def _add_files(self, folder: Path, pictures: bool) -> None:
         for name, content in self.files(pictures).items():
             write_whole(folder / name, content)
-
-
-def prepare_workers(pieces: Sequence[object], jobs: Jobs) -> None:
-    """Import once, before workers are forked, what each of them needs."""
-    if pool.are_forked(pieces, jobs):
-        from roadproof.engines.solve.milp import prepare
-
-        prepare()
 
 
 def drive_pictures(

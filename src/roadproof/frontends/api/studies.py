@@ -18,7 +18,7 @@ from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Among, Definitions, load
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import basis_of, positive
-from roadproof.frontends.api.studied import StudyAnswers, drawn, prepare_workers
+from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import order as order_report
 from roadproof.frontends.report import overlap as overlap_report
 from roadproof.frontends.report import redundancy as redundancy_report
@@ -110,7 +110,6 @@ def overlap(
     pairs = pairs_of(basis, home.among(among))
     if not pairs:
         raise UsageError(f"--among {among} selects no pair: select at least two scenarios")
-    prepare_workers(pairs, given.jobs)
     study = Overlap(basis, pairs, Meeting(given.lanes, given.roles, given.start))
     return Overlaps.asked(study, given)
 

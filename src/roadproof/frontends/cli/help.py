@@ -20,7 +20,7 @@ _JOBS: Mapping[str, Sequence[str]] = {
     ),
     "work with recordings": ("monitor", "evaluate", "simulate", "convert"),
     "show and share results": ("report", "export", "studio"),
-    "set up the shell": ("completion",),
+    "set up": ("completion", "cache"),
 }
 _OTHERS = "other commands"
 _HEAD = "Compiles driving scenarios to proofs, witnesses and monitors."

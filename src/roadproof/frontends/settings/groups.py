@@ -238,6 +238,13 @@ class Run(Workers, Listeners):
     """How a long question is worked on, and where its evidence is kept."""
 
     out: str | Path | None = folder_for("certificates and drives")
+    fresh: bool = option(
+        False,
+        "--fresh",
+        help="compute answers again that are known, from roadproof itself or from earlier runs",
+        group="work",
+        rare=True,
+    )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -70,6 +70,7 @@ class ListenersKeywords(TypedDict, total=False):
 
 class RunKeywords(WorkersKeywords, ListenersKeywords, total=False):
     out: str | Path | None
+    fresh: bool
 
 
 class SharingKeywords(WorkersKeywords, total=False):

@@ -1,0 +1,129 @@
+"""Answers that are known before a question is asked: shipped with roadproof, or of this user's earlier runs.
+
+An answer is kept with the texts of its evidence files under a key, a digest of all that it depends on: the
+version, the question, its limits, and the definitions and parameters that it uses. So a changed definition
+makes only those answers unknown that depend on it. ``roadproof check`` reads none of this.
+"""
+
+import hashlib
+import json
+import lzma
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any, Literal
+
+from roadproof.evidence.heading import version
+from roadproof.runtime.cache import keep_bytes, kept_bytes, make_room
+from roadproof.runtime.files import write_whole
+from roadproof.runtime.package_data import shipped
+
+SCHEMA = "roadproof/known/1"
+SWITCH = "ROADPROOF_KNOWN"
+CACHE = "answers"
+Origin = Literal["shipped", "cache"]
+
+
+@dataclass(frozen=True)
+class KnownAnswer:
+    """A record as it is kept, and the texts of the evidence files that it names."""
+
+    record: Mapping[str, Any]
+    files: Mapping[str, str]
+    origin: Origin = "cache"
+
+    @property
+    def content(self) -> dict[str, Any]:
+        """The answer as plain data."""
+        return {"record": self.record, "files": self.files}
+
+
+@dataclass(frozen=True)
+class KnownAnswers:
+    """The known answers to one question. ``kind``: of what question; ``asked``: a digest of it."""
+
+    kind: str
+    asked: str
+
+    @classmethod
+    def to(cls, schema: str, said: Mapping[str, Any], more: Mapping[str, str]) -> "KnownAnswers":
+        """Those to a question with answers of ``schema``; parameters and files count where they are used."""
+        rest = {name: value for name, value in said.items() if name not in ("parameters", "specs")}
+        kind = schema.removeprefix("roadproof/").partition("/")[0]
+        return cls(kind, _digest(version("roadproof"), schema, rest, dict(more)))
+
+    def find(self, name: str, key: str) -> KnownAnswer | None:
+        """The answer of this name, where all that it depends on has the digest ``key``."""
+        if os.environ.get(SWITCH) == "off":
+            return None
+        found = self.read(shipped("proofs") / "known").get(self.entry(name, key))
+        if found is not None:
+            return KnownAnswer(found["record"], found["files"], "shipped")
+        data = kept_bytes(CACHE, self._cached(name, key))
+        return None if data is None else KnownAnswer(**json.loads(lzma.decompress(data)))
+
+    def remember(self, name: str, key: str, answer: KnownAnswer) -> None:
+        """Keep an answer in the cache of this user."""
+        if os.environ.get(SWITCH) != "off":
+            data = lzma.compress(json.dumps(answer.content).encode(), preset=0)
+            keep_bytes(CACHE, self._cached(name, key), data)
+
+    def make_room(self) -> None:
+        """Keep the cache within its bounds."""
+        make_room(CACHE)
+
+    @staticmethod
+    def entry(name: str, key: str) -> str:
+        """Under which name an archive has an answer."""
+        return f"{name} {_digest(key)}"
+
+    def read(self, folder: Path) -> Mapping[str, Any]:
+        """The answers of an archive, by entry; none where it is not there or was changed."""
+        return _read(self._archive(folder))
+
+    def ship(self, folder: Path, answers: Mapping[str, Any]) -> Path:
+        """Write answers by entry into an archive, beside those that it has."""
+        every = dict(sorted({**self.read(folder), **answers}.items()))
+        text = json.dumps({"schema": SCHEMA, "seal": _digest(every), "answers": every})
+        write_whole(self._archive(folder), lzma.compress(text.encode(), preset=9 | lzma.PRESET_EXTREME))
+        _read.cache_clear()
+        return self._archive(folder)
+
+    def _archive(self, folder: Path) -> Path:
+        return folder / f"{self.kind}-{self.asked}.json.xz"
+
+    def _cached(self, name: str, key: str) -> str:
+        return _digest(self.asked, self.entry(name, key), _sources())
+
+
+def _digest(*parts: object) -> str:
+    return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:24]
+
+
+@cache
+def _read(path: Path) -> Mapping[str, Any]:
+    if not path.is_file():
+        return {}
+    content = json.loads(lzma.decompress(path.read_bytes()))
+    sound = content["schema"] == SCHEMA and content["seal"] == _digest(content["answers"])
+    return content["answers"] if sound else {}
+
+
+@cache
+def _sources() -> str:
+    """A digest that changes when the program does, so that no version answers for another."""
+    package = Path(__file__).parents[2]
+    found = [(x.relative_to(package).as_posix(), x.stat()) for x in sorted(package.rglob("*.py"))]
+    return _digest([(name, stat.st_size, stat.st_mtime_ns) for name, stat in found])
+
+
+def told(origins: Sequence[Origin], total: int) -> Iterator[str]:
+    """In a line, how many answers were known, and how to have them computed again."""
+    if origins:
+        shipped_here = origins.count("shipped")
+        kept = len(origins) - shipped_here
+        parts = [f"{shipped_here} shipped with roadproof {version('roadproof')}"] if shipped_here else []
+        parts += [f"{kept} of earlier runs"] if kept else []
+        yield f"{len(origins)} of {total} answers were known: {', '.join(parts)}; --fresh computes them again"

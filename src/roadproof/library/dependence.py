@@ -1,0 +1,50 @@
+"""What an answer depends on: a digest of the definitions and parameters that its texts use."""
+
+import hashlib
+import re
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+
+from roadproof.library.scenarios import TEMPLATE_NAMES
+from roadproof.library.specification import Specification
+from roadproof.library.uses import definitions_used, parameters_used
+from roadproof.logic import syntax
+from roadproof.logic.syntax import Call
+
+_NAME = re.compile(r"[A-Za-z_]\w*(?:@\w+)?")
+
+
+def digest_of(
+    specification: Specification, texts: Iterable[str], values: Mapping[str, Fraction] | None = None
+) -> str:
+    """A short text that changes with each definition that ``texts`` name, those that these use, and their
+    parameters.
+
+    ``values``: those of parameters, where an answer depends on them. What the template of the scenarios is
+    made of, and the user's own signals, always count, since provers and searches use them.
+    """
+    library = specification.library
+    names = {name for text in texts for name in _NAME.findall(text)} | {*TEMPLATE_NAMES}
+    parts: dict[str, str] = {}
+    for name in names:
+        parts |= _parts_of(specification, name)
+    given = {name: str(value) for name, value in (values or {}).items() if f"parameter {name}" in parts}
+    rest = [repr(sorted(library.signals.items()))] if library.signals else []
+    lanes = [repr(x) for x in sorted(library.lanes.items()) if f"scenario_{x[0]}" in parts]
+    told = repr((sorted(parts.items()), sorted(given.items()), lanes, rest))
+    return hashlib.sha256(told.encode()).hexdigest()[:16]
+
+
+def _parts_of(specification: Specification, name: str) -> dict[str, str]:
+    """The definitions and parameters below a name, each with all that it says; none for other names."""
+    known = specification.worked_out.get((_parts_of, name))
+    if known is None:
+        call = Call(name, ())
+        used = definitions_used(specification, call)
+        known = {definition.name: repr(definition) for definition in used}
+        known |= {
+            f"parameter {x.name}": repr(x)
+            for x in parameters_used(specification.library, syntax.Name(name), used)
+        }
+        specification.worked_out[_parts_of, name] = known
+    return dict(known)
