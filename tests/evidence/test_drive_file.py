@@ -22,6 +22,7 @@ from roadproof.library.bind import default_values
 from roadproof.library.loading import bundled_library
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road
+from tables import read_table
 
 LIBRARY = bundled_library()
 
@@ -213,23 +214,7 @@ def test_random_damage_never_crashes():
 
 # --- What the reader of evidence refuses, and what is said of a drive that is accepted --------------
 
-TEXTS = [
-    ('{"a": 1, "a": 2}', "'a' is given twice"),
-    ('{"a": {"b": 1, "b": 1}}', "'b' is given twice"),
-    ('{"a": NaN}', "NaN is no number"),
-    ('{"a": -Infinity}', "-Infinity is no number"),
-    ('{"a": 1e999}', "no finite number"),
-    (f'{{"a": {"9" * 5000}}}', "a number of 5000 characters"),
-    (f'{{"a": 0.{"9" * 5000}}}', "a number of 5002 characters"),
-    ('{"a": "x\\u0000"}', r"the character U\+0000"),
-    ('{"\\u0000": 1}', r"the character U\+0000"),
-    ('{"a": "\\ud800"}', r"the character U\+D800"),
-    ("[" * (DEEPEST + 1) + "]" * (DEEPEST + 1), "nested deeper"),
-    ("[" * 100_000, "nested deeper"),
-    ("{'a': 1}", "no JSON text"),
-    ('\ufeff{"a": 1}', "no JSON text"),
-    ("", "no JSON text"),
-]
+TEXTS = read_table(__file__, "texts")
 
 
 @pytest.mark.parametrize(("text", "message"), TEXTS, ids=range(len(TEXTS)))

@@ -212,31 +212,7 @@ PAST = "Formulas speak of now and later: say what holds first, and what follows 
 
 @pytest.mark.parametrize(
     ("text", "line", "column", "sign", "instead"),
-    [
-        ("p(SV) && q(SV)", 1, 7, "&&", "Write and."),
-        ("p(SV) & q(SV)", 1, 7, "&", "Write and."),
-        ("p(SV) || q(SV)", 1, 7, "||", "Write or."),
-        ("p(SV) | q(SV)", 1, 7, "|", "Write or."),
-        ("!p(SV)", 1, 1, "!", "Write not."),
-        ("true and\n ~p(SV)", 2, 2, "~", "Write not."),
-        ("p(SV) => q(SV)", 1, 7, "=>", "Write -> for what follows, >= for at least."),
-        ("p(SV) <=> q(SV)", 1, 7, "<=>", "Write <->."),
-        ("s(SV) == 3 m", 1, 7, "==", "Write =."),
-        ("[] p(SV)", 1, 1, "[]", "Write G."),
-        ("<> p(SV)", 1, 1, "<>", "Write F for at some time, != for not equal."),
-        ("s(SV) <> 3 m", 1, 7, "<>", "Write F for at some time, != for not equal."),
-        ("□ p(SV)", 1, 1, "□", "Write G."),
-        ("v_lon(SV) ≤ 3 m/s", 1, 11, "≤", "Write <=."),
-        ("∀ x in lanes: p(x)", 1, 1, "∀", "Write every x in D: p."),
-        ("P p(SV)", 1, 1, "P", PAST),
-        ("p(SV) S q(SV)", 1, 7, "S", PAST),
-        ("once p(SV)", 1, 1, "once", PAST),
-        ("p(SV) AND q(SV)", 1, 7, "AND", "Write and."),
-        ("p(SV) implies q(SV)", 1, 7, "implies", "Write ->."),
-        ("forall x in lanes: p(x)", 1, 1, "forall", "Write every x in D: p."),
-        ("always p(SV)", 1, 1, "always", "Write G."),
-        ("p(SV) W q(SV)", 1, 7, "W", "Write (p U q) or G p."),
-    ],
+    read_table(__file__, "a_sign_of_another_language"),
 )
 def test_a_sign_of_another_language(text: str, line: int, column: int, sign: str, instead: str) -> None:
     with pytest.raises(TextError) as raised:

@@ -193,7 +193,6 @@ def _renamed(formula: Formula, scope: Mapping[str, str], keep_names: bool) -> Fo
 
 # --- LaTeX that reads like the paper's --------------------------------------------------------------
 
-U = r"\mathbin{\mathcal{U}}"
 DEFINITIONS = bundled_library().select("ext").definitions
 
 
@@ -215,30 +214,7 @@ def test_definitions_read_like_the_paper(name: str, shown: str) -> None:
 
 @pytest.mark.parametrize(
     ("text", "shown"),
-    [
-        ("true -> false", r"\top \Rightarrow \bot"),
-        ("(a or b) and not (c and d)", r"\left(a \vee b\right) \wedge \neg \left(c \wedge d\right)"),
-        ("a U[1 s, inf] b", r"a \mathbin{\mathcal{U}_{[1\,\mathrm{s},\infty]}} b"),
-        (
-            "some M in adjacentLanes(L): a and b",
-            r"\bigvee_{M\in\mathit{adjLanes}(L)} \left(a \wedge b\right)",
-        ),
-        ("every x in {SV, POV2}: a", r"\bigwedge_{x\in\{\mathit{SV},\mathit{POV}_{2}\}} a"),
-        ("(a / b)^2 >= 2 * 3", r"\left(\frac{a}{b}\right)^{2} \ge 2 \cdot 3"),
-        ("F (a U b)", rf"\mathcal{{F}} \left(a {U} b\right)"),
-        ("G[0, 1 s] (a U b)", rf"\mathcal{{G}}_{{[0,1\,\mathrm{{s}}]}} \left(a {U} b\right)"),
-        ("not (a U b)", rf"\neg \left(a {U} b\right)"),
-        ("F a U b", rf"\mathcal{{F}} a {U} b"),
-        ("(a U b) U c", rf"\left(a {U} b\right) {U} c"),
-        ("a U (b and c)", rf"a {U} \left(b \wedge c\right)"),
-        ("(a and b) U c", rf"\left(a \wedge b\right) {U} c"),
-        ("F (a -> b)", r"\mathcal{F} \left(a \Rightarrow b\right)"),
-        ("F (a < b)", r"\mathcal{F} a < b"),
-        ("every x in {SV}: (a U b)", rf"\bigwedge_{{x\in\{{\mathit{{SV}}\}}}} \left(a {U} b\right)"),
-        ("a * (b + c) != a / (b + c)", r"a \left(b + c\right) \neq \frac{a}{b + c}"),
-        ("inverse(a - b) <= abs(c)", r"\frac{1}{a - b} \le \left|c\right|"),
-        ("a < 25 km/h", r"a < 25\,\mathrm{km}/\mathrm{h}"),
-    ],
+    read_table(__file__, "formulas"),
 )
 def test_formulas(text: str, shown: str) -> None:
     assert latex(parse_claim(text)) == shown

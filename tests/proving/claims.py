@@ -64,31 +64,8 @@ INVALID = read_table(__file__, "invalid")
 # Not valid, but each trace that shows it switches for ever: nothing is claimed of these.
 NEEDS_INFINITELY_MANY_SWITCHES = ["G F p -> F G p", "G F p and G F q -> F (p and q)"]
 
-SAME_BOX = "s(SV) = s(POV) and d(SV) = d(POV) and length(SV) = length(POV) and width(SV) = width(POV)"
 # True on every road, but for reasons that the prover does not know. It must not call them false.
-BEYOND = [
-    "(some l in lanelets(L): G occ(SV,l)) -> G atLane(SV,L)",
-    "(some l in lanelets(L): occ(SV,l) and occ(POV,l)) -> atLane(SV,L)",
-    "not (some l in lanelets(L): occ(SV,l) and not occ(SV,l))",
-    "(some l in lanelets(L): occ(SV,l) and v_lon(SV) > 0 m/s) -> v_lon(SV) > 0 m/s",
-    "atLane(SV,L) <-> not (every l in lanelets(L): not occ(SV,l))",
-    "atLane(SV,L) -> onMainRoad(SV) or inMergeZone(SV) or inDepartZone(SV)",
-    "(every M in lanes: not atLane(SV,M)) -> not onMainRoad(SV)",
-    "(some M in adjacentLanes(L): every N in adjacentLanes(M): atLane(SV,N)) -> atLane(SV,L)",
-    "not (some M in adjacentLanes(L): every N in lanes: not atLane(SV,N) and atLane(SV,M))",
-    "G (s(SV) = 0 m and d(SV) = 0 m) -> G atLane(SV,L) or G not atLane(SV,L)",
-    "s(SV) = s(POV) and d(SV) = d(POV) and length(SV) = length(POV) and width(SV) = width(POV)"
-    " -> (atLane(SV,L) <-> atLane(POV,L))",
-    f"{SAME_BOX} and (some l in zone(main): occ(SV,l)) -> (some K in lanes: atLane(POV,K))",
-    f"{SAME_BOX} and atLane(SV,L) -> onMainRoad(POV) or inMergeZone(POV) or inDepartZone(POV)",
-    # a box covered by two others
-    "given A, B, C: vehicle: s(A) = s(B) and s(A) - length(B) = s(C) and length(A) = length(B) + length(C)"
-    " and d(A) = d(B) and d(A) = d(C) and width(A) = width(B) and width(A) = width(C)"
-    " and atLane(A,L) -> atLane(B,L) or atLane(C,L)",
-    # three boxes side by side: a lane is a chain along the road, and goes through the one between
-    "given A, B, C: vehicle: s(A) = s(B) and s(B) = s(C) and length(A) = length(B) and length(B) = length(C)"
-    " and d(A) - width(A) = d(B) and d(B) - width(B) = d(C) and atLane(A,L) and atLane(C,L) -> atLane(B,L)",
-]
+BEYOND = read_table(__file__, "beyond")
 
 
 def spelled(claim: str) -> str:

@@ -45,60 +45,14 @@ def test_drives_are_not_denied_without_a_fault():
     assert denied(SearchOptions(engine="smt", effort=Effort(30))) == []
 
 
-FAULTS = {
-    "the first lane assignment only": (
-        *(search._Search, "none", "in self.question.lanes:", "in self.question.lanes[:1]:"),
-        "in the second lane",
-    ),
-    "one lane assignment without a drive will do": (
-        *(search._Search, "none", "how.add(by)", "how.add(by); break"),
-        "in the second lane",
-    ),
-    "the inner approximation": (search._Search, "_refute", '"outer"', '"inner"', "a square"),
-    "natural drives only": (build.Assumptions, "loosest", "self.plain()", "self", "full throttle"),
-    "limits are kept by a margin": (
-        *(build.Assumptions, "loosest", "inside=Fraction(0)", "inside=Fraction(1, 100)"),
-        "full throttle",
-    ),
-    "between the samples, too": (
-        *(build.Assumptions, "loosest", "between=False", "between=True"),
-        "through between samples",
-    ),
-    "settled by the last sample": (
-        build.Assumptions,
-        "loosest",
-        "lasting=False",
-        "lasting=True",
-        "gone again",
-    ),
-    "lanes that end are no road": (
-        *(build, "stay_on_road", "[(spell, allowed)", "[(spell, endless)"),
-        "on the lane that ends",
-    ),
-    "the first vehicle starts at 0": (
-        *(search._Search, "none", "starts=self.question.starts", "starts=None"),
-        "elsewhere",
-    ),
-    "the reach is open": (
-        *(
-            build,
-            "_motions",
-            "(-assumptions.reach, assumptions.reach)",
-            "(1 - assumptions.reach, assumptions.reach - 1)",
-        ),
-        "as far as the reach",
-    ),
-    "bounds are not loosened": (
-        *(bounds, "_leaf", "Bound(affine, -slack)", "Bound(affine, 3 * slack)"),
-        "at the limits",
-    ),
-}
+OWNERS = {"_Search": search._Search, "Assumptions": build.Assumptions, "build": build, "bounds": bounds}
+FAULTS = read_table(__file__, "faults")
 
 
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_fault_that_denies_a_drive_is_caught(fault, monkeypatch):
     owner, name, right, wrong, missed = FAULTS[fault]
-    plant(monkeypatch, owner, name, right, wrong)
+    plant(monkeypatch, OWNERS[owner], name, right, wrong)
     assert missed in denied()
 
 

@@ -532,24 +532,7 @@ def test_what_would_be_another_motion_is_refused(line: Line, said: str, tmp_path
 
 @pytest.mark.parametrize(
     ("old", "new", "reads"),
-    [
-        (trigger(0), trigger(0, "greaterOrEqual"), True),
-        (trigger(0), "", True),  # from 1.2 on: at once
-        (trigger(0), trigger(0, "lessThan"), False),
-        (trigger(0), trigger(0, delay="0.5"), False),
-        (trigger(0), trigger(0.1), False),
-        (trigger(0), trigger(0).replace("SimulationTimeCondition", "TrafficSignalCondition"), False),
-        (
-            trigger(0),
-            trigger(0).replace("<ConditionGroup>", f"<ConditionGroup>{inner(inner(trigger(9)))}", 1),
-            False,
-        ),
-        (
-            trigger(0),
-            trigger(0).replace("<StartTrigger>", f"<StartTrigger>{inner(trigger(9))}", 1),
-            True,
-        ),
-    ],
+    read_table(__file__, "what_begins_late_is_refused"),
 )
 def test_what_begins_late_is_refused(old: str, new: str, reads: bool, tmp_path: Path) -> None:
     """Conditions of a group hold together, one group is enough, and the act begins like the event."""

@@ -26,6 +26,7 @@ from roadproof.recordings.formats import pairs
 from roadproof.recordings.formats.pairs import DetectionRange, Reach, common_pairs
 from roadproof.recordings.formats.recording import Recording
 from roadproof.verdict import Verdict
+from tables import read_table
 from traffic.faults import faulty_library, plant_fault
 from traffic.make_recording import Track, cruise, make_recording, near_pairs
 
@@ -35,6 +36,14 @@ class Fault:
     module: ModuleType
     old: str
     new: str
+
+
+MODULES = {"classify": classify, "disturbances": disturbances, "evaluate": evaluate, "pairs": pairs}
+
+
+def faults(name: str) -> dict[str, Fault]:
+    rows = read_table(__file__, name)
+    return {fault: Fault(MODULES[module], old, new) for fault, (module, old, new) in rows.items()}
 
 
 def check_against(faults: dict[str, Fault]) -> Callable[[Callable[..., None]], Callable[..., None]]:
@@ -82,26 +91,7 @@ def found_at(
     return {(m.sv, m.pov2, m.min_danger) for m in findings.matches if m.sv == 1}
 
 
-ENDS = {
-    "pairs cut early": Fault(evaluate, "end - start + 1, batch.lengths", "end - start, batch.lengths"),
-    "pairs cut late": Fault(evaluate, "end - start + 1, batch.lengths", "end - start + 2, batch.lengths"),
-    "never cut": Fault(evaluate, "seen.cut(lengths), arises", "seen, arises"),
-    "ends early": Fault(
-        disturbances,
-        "end.append(np.where((start != NEVER) & (final >= start), final + steps, -1))",
-        "end.append(np.where((start != NEVER) & (final >= start), final + steps - 1, -1))",
-    ),
-    "ends late": Fault(
-        disturbances,
-        "end.append(np.where((start != NEVER) & (final >= start), final + steps, -1))",
-        "end.append(np.where((start != NEVER) & (final >= start), final + steps + 1, -1))",
-    ),
-    "ends where the last danger begins": Fault(
-        disturbances,
-        "end.append(np.where((start != NEVER) & (final >= start), final + steps, -1))",
-        "end.append(np.where((start != NEVER) & (final >= start), final, -1))",
-    ),
-}
+ENDS = faults("ends")
 
 
 @check_against(ENDS)
@@ -140,31 +130,7 @@ def test_triples_end_with_the_last_danger(fault: Fault | None, monkeypatch: pyte
 # --- the pre-filters with the wrong vehicle's size or speed ----------------------------------------
 
 REACH = Reach(rho=0.6, a_max=5.0, b_min=6.0, b_max=8.0, a_max_lat=1.5, b_min_lat=1.5)
-FILTER = {
-    "length below": Fault(
-        pairs, "slowest[first]) + pieces.length[first]", "slowest[first]) + pieces.length[second]"
-    ),
-    "length above": Fault(
-        pairs, "slowest[second]) + pieces.length[second]", "slowest[second]) + pieces.length[first]"
-    ),
-    "no length below": Fault(pairs, "slowest[first]) + pieces.length[first]", "slowest[first])"),
-    "speeds below": Fault(
-        pairs,
-        "pieces.fastest[second], pieces.slowest[first])",
-        "pieces.fastest[first], pieces.slowest[second])",
-    ),
-    "speeds above": Fault(
-        pairs,
-        "pieces.fastest[first], pieces.slowest[second])",
-        "pieces.fastest[second], pieces.slowest[first])",
-    ),
-    "width below": Fault(pairs, "bound + pieces.width[first],", "bound + pieces.width[second],"),
-    "width above": Fault(
-        pairs,
-        "bound + pieces.width[first], bound + pieces.width[second]",
-        "bound + pieces.width[first], bound + pieces.width[first]",
-    ),
-}
+FILTER = faults("filter")
 
 
 def two_cars(front: int, gap: float, across: float, sizes: tuple[float, float]) -> Recording:
@@ -209,15 +175,7 @@ def test_the_pre_filter_is_sharp_for_cars_and_lorries(
     judge(monkeypatch, fault, check)
 
 
-SIGHT = {
-    "length of the rear": Fault(
-        pairs, "gap + recording.length[front] + 0.001", "gap + recording.length[rear] + 0.001"
-    ),
-    "headway at the front's speed": Fault(pairs, "sight.thw * greatest[rear]", "sight.thw * greatest[front]"),
-    "closing the other way": Fault(
-        pairs, "(greatest[rear] - least[front])", "(greatest[front] - least[rear])"
-    ),
-}
+SIGHT = faults("sight")
 
 
 @check_against(SIGHT)
@@ -287,23 +245,7 @@ def test_headway_and_time_to_collision(fault: tuple[str, str] | None) -> None:
 
 # --- shares of classes ---------------------------------------------------------------------------
 
-SHARES = {
-    "over all sizes": Fault(
-        classify,
-        "sum(shares.classified[size] for size in row.sizes)",
-        "sum(shares.classified.values())",
-    ),
-    "over traces": Fault(
-        classify,
-        "sum(shares.classified[size] for size in row.sizes)",
-        "shares.all_traces",
-    ),
-    "over covered traces": Fault(
-        classify,
-        "sum(shares.classified[size] for size in row.sizes)",
-        "shares.covered",
-    ),
-}
+SHARES = faults("shares")
 
 
 @check_against(SHARES)

@@ -16,6 +16,7 @@ from roadproof.recordings.formats.sources import find_source
 from roadproof.recordings.formats.topology import MeasuredLanelet, attributes_of, chains_of, main_way
 from roadproof.world.models import load_road
 from roadproof.world.road import Lanelet, Road
+from tables import read_table
 from traffic.make_recording import Track, cruise, make_recording
 from traffic.planar import commonroad_of, numbers_of
 
@@ -180,24 +181,7 @@ def test_a_user_says_otherwise(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("zones", "said"),
-    [
-        ("x = 1", r"a_zones.toml: write \[\[lanelet\]\]"),
-        ("[[lanelet]", "a_zones.toml is no TOML"),
-        ('[[lanelet]]\nid = 5\nzone = "merge"', "lanelet 1: id=5: there is no such lanelet"),
-        (
-            '[[lanelet]]\nid = 1007\nzone = "ramp"',
-            "lanelet 1: zone='ramp', but it must be one of main, merge, depart",
-        ),
-        ("[[lanelet]]\nid = 1007", "lanelet 1: an entry has id and zone, attribute or both"),
-        (
-            '[[lanelet]]\nid = 1007\nzone = "merge"\n' * 2,
-            "lanelet 2: id=1007: this lanelet has an entry already",
-        ),
-        (
-            '[[lanelet]]\nid = 1007\nattribute = "merge"\n' * 2,
-            "lanelet 2: id=1007: this lanelet has an entry already",
-        ),
-    ],
+    read_table(__file__, "what_a_user_cannot_say"),
 )
 def test_what_a_user_cannot_say(zones: str, said: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=said):

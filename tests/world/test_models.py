@@ -216,39 +216,7 @@ def test_a_drive_on_it(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("old", "new", "said"),
-    [
-        ("<line/>", '<arc curvature="0.01"/>', "road 1, geometry 1: arc: only straight roads"),
-        ("<line/>", '<spiral curvStart="0" curvEnd="0.1"/>', "geometry 1: spiral: only straight"),
-        ("<line/>", '<paramPoly3 aU="0"/>', "geometry 1: paramPoly3: only straight"),
-        ("<line/>", "", "geometry 1: nothing: only straight"),
-        ("</planView>", f"{TURN}</planView>", "hdg=0.4: the road turns"),
-        ('a="3.5" b="0"', 'a="3.5" b="0.1"', "lane -1, width: b=0.1: it must stay the same"),
-        ('a="3.5" b="0"', 'a="nan" b="0"', "lane -1, width: a='nan': a finite number"),
-        ('a="7.0" b="0"', 'a="7.0" b="0.1"', "road 1, laneOffset: b=0.1"),
-        (
-            'id="-1" type="driving"',
-            'id="-1" type="tram"',
-            "lane -1: type='tram' is none of driving",
-        ),
-        ('id="-2"', 'id="-1"', "lane -1: ids on the right are -1, -2"),
-        ('<laneSection s="400">', '<laneSection s="900">', "laneSections must begin at s=0 and follow"),
-        ('length="1400" junction', 'length="1500" junction', "length=1500, but its geometries end at 1400"),
-        (
-            'length="1400" junction',
-            'rule="LHT" length="1400" junction',
-            "rule=LHT: only traffic on",
-        ),
-        (
-            'type="onRamp" level="false">',
-            'type="onRamp" level="false"><userData code="roadproof:zone" value="exit"/>',
-            "userData roadproof:zone='exit': one of main, merge, depart",
-        ),
-        ("</OpenDRIVE>", "", "no well-formed XML"),
-        ("<OpenDRIVE>", '<!DOCTYPE x [<!ENTITY a "b">]><OpenDRIVE>', "the file has a document type"),
-        ("OpenDRIVE>", "OpenScenario>", "the root is OpenScenario, but OpenDRIVE is needed"),
-        ('<road id="1"', '<road id="2"/><road id="1"', "2 roads; a file of one road is needed"),
-        ('type="onRamp"', 'type="restricted"', ""),
-    ],
+    read_table(__file__, "what_is_refused"),
 )
 def test_what_is_refused(
     old: str, new: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
