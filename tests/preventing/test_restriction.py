@@ -19,6 +19,7 @@ from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import load_drive
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.cli.main import main
+from roadproof.frontends.settings.groups import Prevention
 from roadproof.library.bind import bind
 from roadproof.library.compose import both, negation
 from roadproof.library.elaborate import read_claim
@@ -41,7 +42,7 @@ WITH_FORMULA = [x.name for x in MODELS.values() if not x.is_stepped]
 @cache
 def restricted_to(side: Side, model: str, about: str = "scenarios") -> Specification:
     sides = (model, None) if side == "preventable" else (None, model)
-    home = restricted(rp.load(), *sides)
+    home = restricted(rp.load(), Prevention(preventable=sides[0], unpreventable=sides[1]))
     found = Restriction(side, model, "drives" if about == "drives" else "scenarios")
     return home.library.select("base", {**home.specification.options, **found.options})
 
@@ -163,7 +164,7 @@ def test_a_formula_that_was_read_without_a_driver_is_refused() -> None:
 def test_an_own_beginning_of_a_scenario_is_not_lost_in_silence() -> None:
     own = 'def initialCondition_1(SV, POV: vehicle, L: lane) "mine" := aheadOf(SV, POV)\n'
     with pytest.raises(InputError, match="initialCondition_1"):
-        restricted(rp.load(specs=[own]), None, "careful")
+        restricted(rp.load(specs=[own]), Prevention(unpreventable="careful"))
     in_a_set = "set mine extends base {\n" + own + "}\n"
     with pytest.raises(InputError, match="initialCondition_1"):
         restricted(rp.load("mine", specs=[in_a_set]), None, "careful")

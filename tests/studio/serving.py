@@ -12,8 +12,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
+from roadproof.frontends.studio.pages import Begun
 from roadproof.frontends.studio.server import Studio, application, listen
-from roadproof.frontends.studio.start_page import Begun
 from roadproof.frontends.studio.worker_pool import Limits
 
 NOBODY = Limits(workers=0)

@@ -4,20 +4,22 @@ import json
 import re
 import socket
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from roadproof.errors import InputError, RoadproofError
+from roadproof.errors import InputError, Position, RoadproofError
 from roadproof.frontends.api.drafting import QUESTION
 from roadproof.frontends.settings.questions import Witness
 from roadproof.frontends.studio import jobs
 from roadproof.frontends.studio.dropping import drop
-from roadproof.frontends.studio.pages import served
+from roadproof.frontends.studio.pages import begin_with, served
 from roadproof.frontends.studio.requests import form, read_ask
 from roadproof.frontends.studio.showing import marks_of
-from roadproof.frontends.studio.start_page import begin_with
+from roadproof.library.uses import Place
+from roadproof.logic.formula import Truth
 from studio.serving import Served, question, serving
 
 pytest.importorskip("uvicorn", reason="the extra 'studio' is not installed")
@@ -303,8 +305,8 @@ def test_questions_of_a_page_are_read_strictly(asked: dict[str, Any], told: str)
 
 
 def test_marks_are_of_places_in_the_texts_of_the_editors_alone() -> None:
-    place = {"source": QUESTION, "from": [1, 2], "to": [1, 5]}
+    place = Place(QUESTION, Position(1, 2, 1, 5), Truth(True))
     assert marks_of([place, place], "why") == [
         {"where": QUESTION, "from": [1, 2], "to": [1, 5], "kind": "why"}
     ]
-    assert marks_of([{**place, "source": "iso34502.spec"}], "why") == []
+    assert marks_of([replace(place, source="iso34502.spec")], "why") == []

@@ -221,12 +221,5 @@ class DerivedResult(Result):
 
 
 def _range(span: Span) -> kept.Range:
-    return kept.Range(
-        target=span.target,
-        term=span.term,
-        tested=span.tested,
-        reached=span.reached,
-        untested=span.untested,
-        share=round(span.share, 4),
-        beyond=span.beyond,
-    )
+    said = {name: x for name, x in vars(span).items() if name != "unit"}
+    return kept.Range(**said, untested=span.untested, share=round(span.share, 4))

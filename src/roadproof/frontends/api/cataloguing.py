@@ -201,7 +201,7 @@ def catalogue(
     begun = time.monotonic()
     given = settings.Catalogue.of(options)
     plain = using or load()
-    wanted = restricted(plain, given.preventable, given.unpreventable, given.among)
+    wanted = restricted(plain, given, given.among)
     models = tuple(MODELS if given.drivers is None else given.drivers)
     request = Request(
         tuple(map(str, paths)),

@@ -134,7 +134,7 @@ def classify(
     """
     begun = time.monotonic()
     given = settings.Classify.of(options)
-    home = restricted(using or load(), given.preventable, given.unpreventable, among)
+    home = restricted(using or load(), given, among)
     basis = basis_of(home, given, given.vehicles)
     plan = plan_of(home.alone, home.among(among) or numbers_of(home.alone))
     folder = None if given.out is None else Path(given.out)

@@ -139,7 +139,7 @@ def coverage(
     begun = time.monotonic()
     given = settings.Coverage.of(options)
     wider = given.wider
-    home = restricted(using or load(), given.preventable, given.unpreventable, about="drives")
+    home = restricted(using or load(), given, about="drives")
     check_drives(home.specification.options)
     basis = basis_of(home, given, given.vehicles)
     name = home.alone.set_name

@@ -159,7 +159,7 @@ def witness(
 def searches_for(what: Sequence[What], using: Definitions, given: Witness) -> list[Search]:
     """The searches that ``witness`` makes. Raises as that does."""
     each = using.each(what)
-    home = restricted(using, given.preventable, given.unpreventable, what=each)
+    home = restricted(using, given, what=each)
     search_options = SearchOptions(given.objective, given.engine, given.solver, work_of(given))
     return list(searches_of(home, each, setting(home, given), search_options, given.count))
 

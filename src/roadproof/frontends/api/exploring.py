@@ -97,7 +97,7 @@ def explore(
     given = Explore.of(options)
     plain = using or load()
     each = plain.each(what)
-    home = restricted(plain, given.preventable, given.unpreventable, what=each)
+    home = restricted(plain, given, what=each)
     vary = given.vary or {}
     for name in {*vary} & {*home.values}:
         raise UsageError(f"{name} is given a value and varied: leave one out")

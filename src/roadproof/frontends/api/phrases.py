@@ -28,6 +28,11 @@ _HELD = "held_place"  # what is quantified over, before it has its name
 _NO_TERM = "is no term: give a number, '30 km/h', a name such as SV, or a formula"
 
 
+def _infix(op: syntax.BinaryOperator, swapped: bool = False) -> "Callable[[Phrase, Term], Phrase]":
+    """The method of a binary operator, or of the same with its sides ``swapped``."""
+    return lambda own, other: _binary(op, other, own) if swapped else _binary(op, own, other)
+
+
 @dataclass(frozen=True, eq=False)
 class Phrase:
     """A term or a formula of the language.
@@ -73,53 +78,22 @@ class Phrase:
     def __neg__(self) -> "Phrase":
         return Phrase(syntax.Prefix("-", self.expression), self.given)
 
-    def __rshift__(self, other: "Term") -> "Phrase":
-        return _binary("->", self, other)
-
-    def __lt__(self, other: "Term") -> "Phrase":
-        return _binary("<", self, other)
-
-    def __le__(self, other: "Term") -> "Phrase":
-        return _binary("<=", self, other)
-
-    def __gt__(self, other: "Term") -> "Phrase":
-        return _binary(">", self, other)
-
-    def __ge__(self, other: "Term") -> "Phrase":
-        return _binary(">=", self, other)
-
-    def __eq__(self, other: Any) -> "Phrase":  # type: ignore[override]
-        return _binary("=", self, other)
-
-    def __ne__(self, other: Any) -> "Phrase":  # type: ignore[override]
-        return _binary("!=", self, other)
-
-    def __add__(self, other: "Term") -> "Phrase":
-        return _binary("+", self, other)
-
-    def __radd__(self, other: "Term") -> "Phrase":
-        return _binary("+", other, self)
-
-    def __sub__(self, other: "Term") -> "Phrase":
-        return _binary("-", self, other)
-
-    def __rsub__(self, other: "Term") -> "Phrase":
-        return _binary("-", other, self)
-
-    def __mul__(self, other: "Term") -> "Phrase":
-        return _binary("*", self, other)
-
-    def __rmul__(self, other: "Term") -> "Phrase":
-        return _binary("*", other, self)
-
-    def __truediv__(self, other: "Term") -> "Phrase":
-        return _binary("/", self, other)
-
-    def __rtruediv__(self, other: "Term") -> "Phrase":
-        return _binary("/", other, self)
-
-    def __pow__(self, exponent: int) -> "Phrase":
-        return _binary("^", self, exponent)
+    __rshift__ = _infix("->")
+    __lt__ = _infix("<")
+    __le__ = _infix("<=")
+    __gt__ = _infix(">")
+    __ge__ = _infix(">=")
+    __eq__ = _infix("=")  # type: ignore[assignment]
+    __ne__ = _infix("!=")  # type: ignore[assignment]
+    __add__ = _infix("+")
+    __radd__ = _infix("+", swapped=True)
+    __sub__ = _infix("-")
+    __rsub__ = _infix("-", swapped=True)
+    __mul__ = _infix("*")
+    __rmul__ = _infix("*", swapped=True)
+    __truediv__ = _infix("/")
+    __rtruediv__ = _infix("/", swapped=True)
+    __pow__ = _infix("^")
 
     def __abs__(self) -> "Phrase":
         return call("abs", self)

@@ -2,12 +2,14 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import get_args
 
 from roadproof.analysis.catalogue.decisions import Drivers
 from roadproof.drivers.models import DRIVERS, check_courses, check_driver, require
-from roadproof.drivers.restriction import About, Restriction, check_library, files_for
+from roadproof.drivers.restriction import About, Restriction, Side, check_library, files_for
 from roadproof.errors import UsageError
 from roadproof.frontends.api.definitions import Among, Definitions, What
+from roadproof.frontends.settings.groups import Prevention
 from roadproof.library.bind import values_with
 from roadproof.library.diagnose import checked_library
 from roadproof.library.loading import load_library
@@ -19,8 +21,7 @@ from roadproof.logic.formula import subformulas
 
 def restricted(
     home: Definitions,
-    preventable: str | None,
-    unpreventable: str | None,
+    given: Prevention,
     among: Among = None,
     what: Sequence[What] | None = None,
     about: About = "scenarios",
@@ -30,13 +31,14 @@ def restricted(
     ``among`` or ``what``: what is asked for, among which there has to be a scenario of which the model says
     something; nothing of that where it is ``about`` drives. Raises ``InputError``, ``UsageError``.
     """
-    if preventable is None and unpreventable is None:
+    models = {side: getattr(given, side) for side in get_args(Side)}
+    named = [Restriction(side, model, about) for side, model in models.items() if model is not None]
+    if not named:
         return home
-    if preventable is not None and unpreventable is not None:
-        raise UsageError(
-            f"preventable={preventable}, unpreventable={unpreventable}: no drive satisfies both; omit one"
-        )
-    wanted = _restriction(preventable, unpreventable, about)
+    if len(named) > 1:
+        told = ", ".join(f"{side}={model}" for side, model in models.items())
+        raise UsageError(f"{told}: no drive satisfies both; omit one")
+    [wanted] = named
     said = f"{wanted.side}={wanted.model}"
     check_driver(wanted.model, said)
     files = files_for(home.library.files)
@@ -64,13 +66,6 @@ def drivers_of(home: Definitions, names: tuple[str, ...]) -> Drivers | None:
     values = values_with(library, home.values)
     require(specification, values)
     return Drivers(specification, values, names)
-
-
-def _restriction(preventable: str | None, unpreventable: str | None, about: About) -> Restriction:
-    if unpreventable is not None:
-        return Restriction("unpreventable", unpreventable, about)
-    assert preventable is not None
-    return Restriction("preventable", preventable, about)
 
 
 def _asked(home: Definitions, among: Among, what: Sequence[What] | None) -> Iterator[int]:

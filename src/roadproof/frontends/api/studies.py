@@ -100,7 +100,7 @@ def overlap(
     ``InputError``, ``UsageError``.
     """
     given = settings.Overlap.of(options)
-    home = restricted(using or load(), given.preventable, given.unpreventable, among)
+    home = restricted(using or load(), given, among)
     if len(home.sets) > 2:
         raise UsageError(f"{', '.join(home.sets)}: name one spec set, or two different ones")
     # What happens one after the other takes longer than what happens at once.

@@ -51,7 +51,7 @@ def run(args: argparse.Namespace) -> int:
     given = Explore.of(study_keywords(args, Explore, evidence_folder(args.out, args.json)))
     home = read_definitions(args, Explore)
     what = home.each(named)
-    home = restricted(home, given.preventable, given.unpreventable, what=what)
+    home = restricted(home, given, what=what)
     for name, _, _ in ranges:
         if name in home.values:
             raise UsageError(f"{name} is given by --param and varied by --vary: leave one out")

@@ -30,8 +30,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from roadproof.errors import UsageError
+    from roadproof.frontends.studio.pages import begin_with
     from roadproof.frontends.studio.server import Studio, serve
-    from roadproof.frontends.studio.start_page import begin_with
     from roadproof.verdict import ExitCode
 
     if args.port is not None and not 0 <= args.port < 65536:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from roadproof.errors import MissingSolverError, UsageError
-from roadproof.frontends.studio.pages import page_of, served
+from roadproof.frontends.studio.pages import Begun, page_of, served
 from roadproof.frontends.studio.request_validation import (
     LARGEST_BODY,
     Guard,
@@ -24,7 +24,6 @@ from roadproof.frontends.studio.request_validation import (
     refuse,
     safe_headers,
 )
-from roadproof.frontends.studio.start_page import Begun
 from roadproof.frontends.studio.worker_pool import FullError, Limits, WorkerPool
 
 if TYPE_CHECKING:
