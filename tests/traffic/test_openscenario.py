@@ -260,29 +260,8 @@ def plane(s: float, d: float) -> tuple[float, float]:
     )
 
 
-def road() -> str:
-    """Two lanes of 3.5 m on the right of a reference line that is turned and moved."""
-    lanes = "".join(
-        f'<lane id="-{k}" type="driving" level="false"><width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane>'
-        for k in (1, 2)
-    )
-    return (
-        '<OpenDRIVE><header revMajor="1" revMinor="6"/><road name="r" length="900" id="1" junction="-1">'
-        f'<planView><geometry s="0" x="{SHIFT[0]}" y="{SHIFT[1]}" hdg="{TURN}" length="900"><line/>'
-        f'</geometry></planView><lanes><laneSection s="0"><center><lane id="0" type="none"/></center>'
-        f"<right>{lanes}</right></laneSection></lanes></road></OpenDRIVE>"
-    )
-
-
-def entity(line: Line) -> str:
-    (length, width), (ahead, left) = line.size, line.centre
-    return (
-        f'<ScenarioObject name="{line.name}"><Vehicle name="m" vehicleCategory="{line.category}" mass="1500" '
-        f'role="civil" model3d="m.osgb"><ParameterDeclarations/><BoundingBox><Center x="{ahead}" y="{left}" '
-        f'z="0.9"/><Dimensions width="{width}" length="{length}" height="1.7"/></BoundingBox><Performance '
-        'maxSpeed="70" maxDeceleration="9" maxAcceleration="6"/><Axles/><Properties/></Vehicle>'
-        "</ScenarioObject>"
-    )
+def filled(template: str, **values: object) -> str:
+    return (Path(__file__).parent / "templates" / template).read_text("utf-8").format(**values)
 
 
 def vertex(line: Line, row: tuple[float, float, float, float]) -> str:
@@ -300,17 +279,7 @@ def group(line: Line) -> str:
     way = f'<Trajectory name="t" closed="{line.closed}"><ParameterDeclarations/>{shape}</Trajectory>'
     if line.in_reference:
         way = f"<TrajectoryRef>{way}</TrajectoryRef>"
-    return (
-        f'<ManeuverGroup name="g{line.name}" maximumExecutionCount="1">'
-        f'<Actors selectTriggeringEntities="false"><EntityRef entityRef="{line.name}"/></Actors>'
-        '<Maneuver name="m"><Event name="e" priority="override">'
-        f'<Action name="a"><PrivateAction><RoutingAction><FollowTrajectoryAction {line.follow}>'
-        f"<TimeReference>"
-        f'<Timing domainAbsoluteRelative="absolute" scale="{line.scale}" offset="{line.offset}"/>'
-        f'</TimeReference>{way}<TrajectoryFollowingMode followingMode="{line.mode}"/>'
-        f"</FollowTrajectoryAction></RoutingAction></PrivateAction></Action>{trigger(line.begin)}</Event>"
-        "</Maneuver></ManeuverGroup>"
-    )
+    return filled("group.xml", line=line, way=way, trigger=trigger(line.begin))
 
 
 def trigger(begin: float, rule: str = "greaterThan", delay: str = "0") -> str:
@@ -330,21 +299,16 @@ def put_lines(folder: Path, lines: Sequence[Line], minor: int = 2) -> Path:
     """A file of its own act and story for each vehicle but the first two, which share one."""
     folder.mkdir(exist_ok=True)
     (folder / "away").mkdir(exist_ok=True)
-    (folder / "away/any.xodr").write_text(road(), "utf-8")
+    road = filled("road.xodr", x=SHIFT[0], y=SHIFT[1], hdg=TURN)
+    (folder / "away/any.xodr").write_text(road, "utf-8")
     acts = [lines[:2], *([x] for x in lines[2:])]
     stories = "".join(
         f'<Story name="s{k}"><Act name="a{k}">{"".join(map(group, act))}{trigger(0)}</Act></Story>'
         for k, act in enumerate(acts)
     )
-    text = (
-        f'<OpenSCENARIO><FileHeader revMajor="1" revMinor="{minor}" date="2024-05-06T07:08:09" author="x" '
-        'description="y"/><ParameterDeclarations/><CatalogLocations/><RoadNetwork>'
-        '<LogicFile filepath="away/any.xodr"/><SceneGraphFile filepath="z.osgb"/></RoadNetwork>'
-        f"<Entities>{''.join(map(entity, lines))}</Entities><Storyboard><Init><Actions/></Init>{stories}"
-        "<StopTrigger/></Storyboard></OpenSCENARIO>"
-    )
+    entities = "".join(filled("entity.xml", line=line) for line in lines)
     path = folder / "fields.xosc"
-    path.write_text(text, "utf-8")
+    path.write_text(filled("scenario.xosc", minor=minor, entities=entities, stories=stories), "utf-8")
     return path
 
 
