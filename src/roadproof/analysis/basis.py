@@ -3,14 +3,15 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any, Generic, TypeVar
+from typing import Generic, TypeVar
 
-from roadproof.analysis.study.evidence_store import specification_names
+from roadproof.analysis.study.evidence_store import readings
 from roadproof.engines.prove.induction import prove_of_scenarios
 from roadproof.engines.prove.prover import Result
 from roadproof.engines.search.ask import Search
 from roadproof.engines.search.question import Objective, SearchOptions, Setting
 from roadproof.evidence.settled import Settled
+from roadproof.evidence.strict import JsonObject
 from roadproof.library.bind import values_with
 from roadproof.library.dependence import digest_of
 from roadproof.library.specification import Library, Query, Specification
@@ -66,14 +67,10 @@ class Basis:
         """The value of every parameter. Raises ``InputError``."""
         return values_with(self.library, self.values)
 
-    def said(self) -> dict[str, Any]:
+    def said(self) -> JsonObject:
         """What an index says of all its answers: readings, values of parameters, specification files."""
-        values = {name: str(value) for name, value in sorted(self.all_values().items())}
-        return {
-            "options": dict(self.specification.options),
-            "parameters": values,
-            "specs": specification_names(self.library),
-        }
+        values = sorted((name, str(value)) for name, value in self.all_values().items())
+        return readings(self.specification, parameters=dict(values))
 
     def key(self, *texts: str) -> str:
         """A digest of what an answer depends on that speaks of the definitions in ``texts``."""

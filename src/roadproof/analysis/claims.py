@@ -5,13 +5,13 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from roadproof.analysis.study.evidence_store import (
     INDEX,
     EvidenceStore,
     Question,
-    specification_names,
+    readings,
     write_index,
 )
 from roadproof.analysis.study.frame import Unprepared
@@ -27,7 +27,7 @@ from roadproof.evidence.codec import ABSENT, read, write
 from roadproof.evidence.heading import library_of
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.refutation import read_trace, trace_data
-from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
+from roadproof.evidence.strict import LARGEST_INDEX, Fields, JsonObject, read_json
 from roadproof.library.dependence import digest_of
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library, Query, Specification, read_specification
@@ -87,7 +87,7 @@ class ClaimResult:
         )
 
 
-def _counterexample(settled: Settlement) -> dict[str, Any] | None:
+def _counterexample(settled: Settlement) -> JsonObject | None:
     """The refuting drive, or else the countermodel, as plain data."""
     if settled.drive is not None:
         return {"kind": "drive", "drive": settled.drive.as_data()}
@@ -135,8 +135,7 @@ class Claims(Unprepared):
     @property
     def question(self) -> Question:
         """Definitions and readings: claims that are proved later are kept beside the others."""
-        options = dict(next(iter(self.specifications.values())).options)
-        said = {"options": options, "specs": specification_names(self.library)}
+        said = readings(next(iter(self.specifications.values())))
         return Question(SCHEMA, said, {}, self.library, find_label)
 
     def pieces(self, known: Mapping[str, ClaimResult]) -> Sequence[Task]:
@@ -279,7 +278,7 @@ def former_claims(folder: Path, claims: Claims) -> Entries:
 
 
 def _read_alike(data: Fields, folder: Path, claims: Claims) -> bool:
-    library, options = claims.library, claims.question.said["options"]
+    library, options = claims.library, claims.question.options
     texts = {Path(x.name).name: x.text for x in library.files}
     kept = data.texts("specs") if data.has("specs") else ()
     there = {name: read_specification(folder / Path(name).name).text for name in kept}

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
 
-from roadproof.analysis.study.evidence_store import EvidenceStore, Question, specification_names
+from roadproof.analysis.study.evidence_store import EvidenceStore, Question, readings
 from roadproof.engines.search import ask
 from roadproof.engines.search.ask import Outcome, Search
 from roadproof.engines.search.impossible import Impossibility
@@ -47,9 +47,7 @@ class WitnessStudy:
     def question(self) -> Question:
         """Definitions and readings; how each drive was looked for is kept with its answer."""
         specification = self.searches[0].specification
-        specs = specification_names(specification.library)
-        said = {"options": dict(specification.options), "specs": specs}
-        return Question(SCHEMA, said, {}, specification.library)
+        return Question(SCHEMA, readings(specification), {}, specification.library)
 
     def pieces(self, known: Mapping[str, Outcome]) -> Sequence[str]:
         return [name for name in self.named if name not in known]

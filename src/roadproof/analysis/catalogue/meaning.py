@@ -32,6 +32,7 @@ from roadproof.errors import InputError
 from roadproof.evidence.answers import catalogue_index as kept
 from roadproof.evidence.answers.catalogue_index import Relation
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.evidence.strict import JsonObject
 from roadproof.library.bind import bind
 from roadproof.library.compose import both
 from roadproof.library.scenarios import Scenario, applied, name_of, number_in
@@ -96,7 +97,7 @@ class Meanings(Unprepared):
     @property
     def question(self) -> Question:
         """What is asked about gaps is kept by itself, and whether it is asked changes nothing else."""
-        said = {"set": self.basis.specification.set_name, "scenarios": list(self.asked.numbers)}
+        said: JsonObject = {"set": self.basis.specification.set_name, "scenarios": list(self.asked.numbers)}
         more = {x.id: repr((x.query.text, x.road, sorted(x.vehicles.items()))) for x in self.entries}
         more |= {f"set {x.specification.set_name}": "" for x in self.beside} | self.basis.models
         if self.entries and self.drivers is not None:

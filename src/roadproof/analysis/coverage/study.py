@@ -44,6 +44,7 @@ from roadproof.analysis.study.frame import Unprepared
 from roadproof.errors import InputError
 from roadproof.evidence.answers import coverage as kept
 from roadproof.evidence.answers.coverage import SCHEMA
+from roadproof.evidence.strict import JsonObject
 from roadproof.library.scenarios import Scenario, definition_of, numbers_of
 from roadproof.library.specification import Query
 from roadproof.verdict import Verdict
@@ -67,8 +68,8 @@ class Coverage(Unprepared):
     def question(self) -> Question:
         """Without the roads: what was decided on some of them stays so, and doubts are asked again."""
         basis = self.survey.basis
-        said = {"set": basis.specification.set_name, "wider": list(self.survey.wider), **basis.said()}
-        return Question(SCHEMA, said, basis.models, basis.library)
+        said: JsonObject = {"set": basis.specification.set_name, "wider": list(self.survey.wider)}
+        return Question(SCHEMA, said | basis.said(), basis.models, basis.library)
 
     @cached_property
     def claims(self) -> tuple[CoverageClaim, ...]:

@@ -23,7 +23,7 @@ from roadproof.analysis.explore.extreme import (
 from roadproof.analysis.explore.record import as_kept, explored_of
 from roadproof.analysis.explore.search import Reply, SearchTask, look, undecided, values_of
 from roadproof.analysis.explore.values import explore
-from roadproof.analysis.study.evidence_store import EvidenceStore, Question, specification_names
+from roadproof.analysis.study.evidence_store import EvidenceStore, Question, readings
 from roadproof.analysis.study.pool import Say, in_order, work
 from roadproof.engines.solve.milp import prepare
 from roadproof.errors import InputError
@@ -61,9 +61,8 @@ class Exploration:
         first = self.asked[0]
         specification = first.search.specification
         varied = {knob.name for knob in first.knobs}
-        values = {n: str(v) for n, v in sorted(values_of(first.search).items()) if n not in varied}
-        specs = specification_names(specification.library)
-        said = {"options": dict(specification.options), "parameters": values, "specs": specs}
+        values = sorted((n, str(v)) for n, v in values_of(first.search).items() if n not in varied)
+        said = readings(specification, parameters=dict(values))
         return Question(SCHEMA, said, _more(self.named, first), specification.library)
 
     def pieces(self, known: Mapping[str, ExplorationResult]) -> Sequence[str]:

@@ -22,6 +22,7 @@ from roadproof.errors import InputError
 from roadproof.evidence.answers import order as kept
 from roadproof.evidence.answers.order import SCHEMA
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.evidence.strict import JsonObject
 from roadproof.library.elaborate import StatedQuery
 from roadproof.library.scenarios import Scenario, definition_of
 
@@ -68,7 +69,7 @@ class Ordering(Unprepared):
 
     @property
     def question(self) -> Question:
-        said = {"sets": list(self.basis.set_names), **self.basis.said()}
+        said: JsonObject = {"sets": list(self.basis.set_names), **self.basis.said()}
         more = {"order": " ".join(str(kind.node) for kind in self.kinds), **self.basis.models}
         return Question(SCHEMA, said, more, self.basis.library)
 

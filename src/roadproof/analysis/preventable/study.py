@@ -28,6 +28,7 @@ from roadproof.errors import InputError
 from roadproof.evidence.answers import plates as kept
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.settled import Settled
+from roadproof.evidence.strict import JsonObject
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import Assumption, statement, value_texts
 from roadproof.runtime.budget import BudgetExceeded
@@ -124,7 +125,7 @@ class Preventable(Unprepared):
 
     @property
     def question(self) -> Question:
-        said = {
+        said: JsonObject = {
             "set": self.basis.specification.set_name,
             "manoeuvre": self.manoeuvre.name,
             "scenario": self.scenario,

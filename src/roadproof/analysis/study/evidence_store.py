@@ -22,8 +22,8 @@ from roadproof.evidence.heading import heading
 from roadproof.evidence.journal import ANSWERS, HEAD, answers_of, head_of, read_kept, seal_of
 from roadproof.evidence.judged import JudgedDrive, KnownDrive
 from roadproof.evidence.kernel.accept import find_tableau
-from roadproof.evidence.strict import LARGEST_EVIDENCE, read_json
-from roadproof.library.specification import Library
+from roadproof.evidence.strict import LARGEST_EVIDENCE, Json, JsonObject, read_json
+from roadproof.library.specification import Library, Specification
 from roadproof.runtime.files import json_bytes, make_folder, write_json, write_whole
 
 INDEX = "index.json"
@@ -37,15 +37,21 @@ class Question:
     """
 
     schema: str
-    said: Mapping[str, Any]
+    said: JsonObject
     more: Mapping[str, str]
     library: Library
     find_label: FindLabel = without_labels
 
     @property
+    def options(self) -> dict[str, str]:
+        """The readings that were chosen."""
+        said = self.said.get("options")
+        return {name: str(x) for name, x in said.items()} if isinstance(said, dict) else {}
+
+    @property
     def beginning(self) -> dict[str, Any]:
         """How every answer begins: its kind, the version, the library, what begins so that is asked about."""
-        return {**heading(self.schema, self.library), **told(self.said.get("options", {}))}
+        return {**heading(self.schema, self.library), **told(self.options)}
 
     @property
     def heading(self) -> dict[str, Any]:
@@ -82,7 +88,7 @@ class EvidenceStore:
 
     # --- evidence ------------------------------------------------------------------------------
 
-    def certificate(self, name: str, certificate: Certificate | None) -> str | dict[str, Any] | None:
+    def certificate(self, name: str, certificate: Certificate | None) -> str | JsonObject | None:
         """The name of a file with a certificate, or its data; a file has its tableau too, if one is found."""
         if certificate is None or self.folder is None:
             return None if certificate is None else certificate_data(certificate)
@@ -90,7 +96,7 @@ class EvidenceStore:
             certificate = replace(certificate, tableau=find_tableau(certificate, self.library))
         return self._put(self.folder, name, to_json(certificate).encode())
 
-    def drive(self, name: str, drive: JudgedDrive | None) -> str | dict[str, Any] | None:
+    def drive(self, name: str, drive: JudgedDrive | None) -> str | JsonObject | None:
         """The name of a drive file, or its data."""
         if drive is None or self.folder is None:
             return None if drive is None else drive.as_data()
@@ -128,7 +134,7 @@ class EvidenceStore:
 
     def answers(
         self, say: Callable[[str], None] | None = None, known: Container[str] = ()
-    ) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    ) -> Iterator[tuple[str, JsonObject]]:
         """The answers that count, by name, but for those that are ``known``.
 
         Of answers that do not count ``say`` is told, and they are asked again.
@@ -155,13 +161,13 @@ class EvidenceStore:
             "--out, or remove it"
         )
 
-    def keep(self, name: str, record: dict[str, Any], sure: bool) -> None:
+    def keep(self, name: str, record: JsonObject, sure: bool) -> None:
         """Keep an answer under its seal, whose evidence has been written before, if it is ``sure``."""
         names, self.written = self.written, []
         self.names |= set(names)
         if self.folder is not None and sure:
             refuse_vanished(self.folder)
-            sealed = {"evidence": names, **record}
+            sealed: JsonObject = {"evidence": [*names], **record}
             sealed["seal"] = seal_of(sealed, self.question, self.folder)
             write_json(self.folder / ANSWERS / f"{name}.json", sealed)
 
@@ -208,7 +214,7 @@ def _without_tableau(evidence: Any) -> Any:
     return {**evidence, "tableau": None} if "tableau" in evidence else evidence
 
 
-def write_index(folder: Path, data: Mapping[str, Any]) -> None:
+def write_index(folder: Path, data: JsonObject) -> None:
     """The index of a folder; files in it are named as they are from there. Raises ``InputError``."""
     refuse_vanished(folder)
     write_json(folder / INDEX, inside(dict(data), folder))
@@ -247,6 +253,12 @@ def specification_names(library: Library) -> list[str]:
         told = ", ".join(source.name for source in library.files)
         raise UsageError(f"two files of --spec have the same name: {told}")
     return names
+
+
+def readings(specification: Specification, **more: Json) -> JsonObject:
+    """What an index says once for all answers: options, ``more``, and the users' specification files."""
+    files = specification_names(specification.library)
+    return {"options": dict(specification.options), **more, "specs": [*files]}
 
 
 def keep_specifications(folder: Path, library: Library) -> None:

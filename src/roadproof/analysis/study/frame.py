@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection, Container, Iterator, Mapping, 
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Generic, Protocol, TypeVar
 
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.evidence_store import EvidenceStore, EvidenceTexts, Question
@@ -17,6 +17,7 @@ from roadproof.analysis.study.known import told as told_known
 from roadproof.analysis.study.pool import Progress
 from roadproof.errors import InputError, SharedError, UsageError
 from roadproof.evidence.codec import read, write
+from roadproof.evidence.strict import JsonObject
 from roadproof.runtime.executors import Jobs, Shard, hands_of
 
 Piece = TypeVar("Piece")
@@ -102,7 +103,7 @@ class StudyResult(Generic[Answer, Record]):
     shelf: EvidenceStore
     known: tuple[Origin, ...] = ()
 
-    def as_data(self, answer: object) -> dict[str, Any]:
+    def as_data(self, answer: object) -> JsonObject:
         """An answer made of the records as plain data; evidence that has a file is named by its path."""
         return dict(self.shelf.with_paths(write(answer)))
 

@@ -81,8 +81,8 @@ class StudyAnswers(Answer, Generic[S, A, R]):
     @property
     def supposed(self) -> tuple[str, ...]:
         """In words, what begins so that is asked about, where a driver model says it."""
-        options = self.study.question.said.get("options", {})
-        return tuple(str(x) for x in [restriction_of(options)] if x is not None)
+        found = restriction_of(self.study.question.options)
+        return () if found is None else (str(found),)
 
     @property
     def exit_code(self) -> ExitCode:
