@@ -167,9 +167,12 @@ def test_an_own_beginning_of_a_scenario_is_not_lost_in_silence() -> None:
         restricted(rp.load(specs=[own]), Prevention(unpreventable="careful"))
     in_a_set = "set mine extends base {\n" + own + "}\n"
     with pytest.raises(InputError, match="initialCondition_1"):
-        restricted(rp.load("mine", specs=[in_a_set]), None, "careful")
+        restricted(rp.load("mine", specs=[in_a_set]), Prevention(unpreventable="careful"))
     other = 'def mine(a: vehicle) "mine" := v_lon(a) > 0 m/s\n'
-    assert "mine" in restricted(rp.load(specs=[other]), None, "careful").specification.definitions
+    assert (
+        "mine"
+        in restricted(rp.load(specs=[other]), Prevention(unpreventable="careful")).specification.definitions
+    )
 
 
 def test_evidence_is_about_the_side_that_was_asked(tmp_path: Path, capsys: Heard) -> None:
