@@ -77,15 +77,18 @@ def until_without_left(self, left, samples, right, wanted, both, either):
     return either([self.at(right, wanted, k) for k in samples])
 
 
+AT = unroll._Unroller._at
+
+
 def forgetful_negation(self, formula, wanted, step):
-    return self._at(formula, True, step)
+    return AT(self, formula, True, step)
 
 
 UNROLLING = {
     "a window one step short": ("_samples", short_window),
     "until asks for its left side at the end": ("_until", until_asking_for_left_at_the_end),
     "until is eventually": ("_until", until_without_left),
-    "polarity is forgotten": ("at", forgetful_negation),
+    "polarity is forgotten": ("_at", forgetful_negation),
 }
 
 

@@ -90,7 +90,7 @@ class Basis:
     def proof_of(self, query: Query, units: float | None = None, label: str = "") -> Result:
         """The verdict on a claim with ``units`` of work (None: ``proof``). Raises ``BudgetExceeded``."""
         effort = self.effort.of(self.proof if units is None else units)
-        return prove_of_scenarios(self.specification, query, effort, label)
+        return prove_of_scenarios(self.specification, query, effort).called(label)
 
     def settle(self, claim: Claim, query: Query, units: float, label: str) -> ProofResult[Claim]:
         """The verdict on ``claim``, which ``query`` says; in doubt where the clock cuts the proof off."""

@@ -9,6 +9,7 @@ Semantics (semantics §1; paper, Table *Boolean semantics of STL*): time is dens
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cache
 from typing import Literal, TypeAlias, assert_never
 
 from roadproof.logic.node import node, once
@@ -297,13 +298,10 @@ def share(formulas: Iterable[Formula], change: Callable[[Formula], Formula]) -> 
 
 def transform(formula: Formula, change: Callable[[Formula], Formula]) -> Formula:
     """``formula`` rebuilt from its leaves up, ``change`` applied to every rebuilt node once."""
-    done: dict[Formula, Formula] = {}
 
+    @cache
     def visit(current: Formula) -> Formula:
-        if current not in done:
-            parts = tuple(visit(child) for child in children(current))
-            done[current] = change(with_children(current, parts))
-        return done[current]
+        return change(with_children(current, tuple(map(visit, children(current)))))
 
     return visit(formula)
 

@@ -1,8 +1,8 @@
 """What a formula says of the instant that it begins with, and which parameters it leaves one value only."""
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterator
 from fractions import Fraction
-from functools import reduce
+from functools import cache, reduce
 from typing import TypeAlias, assert_never
 
 from roadproof.logic import formula as f
@@ -65,15 +65,9 @@ def demands(formula: Formula) -> Formula:
 
     What it says of later times only, and of own signals, is left out.
     """
-    known: dict[tuple[Formula, bool], Formula] = {}
 
+    @cache
     def visit(current: Formula, positive: bool) -> Formula:
-        key = (current, positive)
-        if key not in known:
-            known[key] = _demands(current, positive)
-        return known[key]
-
-    def _demands(current: Formula, positive: bool) -> Formula:
         match current:
             case f.And(parts) | f.Or(parts):
                 below = [visit(part, positive) for part in parts]
@@ -121,44 +115,39 @@ def pins(formula: Formula) -> dict[str, Fraction]:
     is valid if and only if it is with 0.6 s in place of minDanger. A parameter that would need two values at
     once is left out.
     """
-    bounds = _Reader().implied(formula, False)
-    most = {(name, value) for name, sign, value in bounds if sign == 1}
-    least = {(name, value) for name, sign, value in bounds if sign == -1}
-    both = sorted(most & least)
-    names = [name for name, _ in both]
-    return {name: value for name, value in both if names.count(name) == 1}
 
-
-class _Reader:
-    def __init__(self) -> None:
-        self.known: dict[tuple[Formula, bool], _Bounds] = {}
-
-    def implied(self, formula: Formula, value: bool) -> _Bounds:
-        """What holds of parameters, which never change, where ``formula`` is ``value`` at some instant."""
-        key = (formula, value)
-        if key not in self.known:
-            self.known[key] = self._implied(formula, value)
-        return self.known[key]
-
-    def _implied(self, formula: Formula, value: bool) -> _Bounds:
+    @cache
+    def implied(formula: Formula, value: bool) -> _Bounds:
+        """What holds of parameters, which never change, where a formula is ``value`` at some instant."""
         match formula:
             case f.Truth() | f.Occupies():
                 return _NONE
             case f.Compare(left, op, right):
                 return _compared(left, op, right) if value else _NONE
             case f.Application(_, _, body):
-                return self.implied(body, value)
+                return implied(body, value)
             case f.Not(body):
-                return self.implied(body, not value)
+                return implied(body, not value)
             case f.And(parts) | f.Or(parts):
-                found = [self.implied(part, value) for part in parts]
-                return _all(found) if isinstance(formula, f.And) == value else _common(found)
+                found = [implied(part, value) for part in parts]
+                return (
+                    _NONE.union(*found)
+                    if isinstance(formula, f.And) == value
+                    else reduce(frozenset.intersection, found)
+                )
             case f.Eventually(_, body) | f.Some(_, _, body) | f.Until(_, _, body):
-                return self.implied(body, True) if value else _NONE
+                return implied(body, True) if value else _NONE
             case f.Always(_, body) | f.Every(_, _, body):
-                return _NONE if value else self.implied(body, False)
+                return _NONE if value else implied(body, False)
             case _:
                 assert_never(formula)
+
+    bounds = implied(formula, False)
+    most = {(name, value) for name, sign, value in bounds if sign == 1}
+    least = {(name, value) for name, sign, value in bounds if sign == -1}
+    both = sorted(most & least)
+    names = [name for name, _ in both]
+    return {name: value for name, value in both if names.count(name) == 1}
 
 
 def _compared(left: Term, op: f.Comparison, right: Term) -> _Bounds:
@@ -168,11 +157,3 @@ def _compared(left: Term, op: f.Comparison, right: Term) -> _Bounds:
     if number is None or not isinstance(left, Parameter) or op not in ("<=", ">="):
         return _NONE
     return frozenset({(left.name, 1 if op == "<=" else -1, number)})
-
-
-def _all(found: Iterable[_Bounds]) -> _Bounds:
-    return _NONE.union(*found)
-
-
-def _common(found: Iterable[_Bounds]) -> _Bounds:
-    return reduce(frozenset.intersection, found)

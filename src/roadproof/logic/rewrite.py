@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 from typing import TypeAlias, assert_never
 
 from roadproof.logic import formula as f
@@ -130,14 +131,9 @@ def rename(formula: Formula, old: str, new: str) -> Formula:
     What a quantifier inside calls ``old`` stays as it is; one that calls something ``new`` has its
     variable renamed first, so that it captures nothing.
     """
-    done: dict[Formula, Formula] = {}
 
+    @cache
     def visit(current: Formula) -> Formula:
-        if current not in done:
-            done[current] = change(current)
-        return done[current]
-
-    def change(current: Formula) -> Formula:
         match current:
             case Occupies(vehicle, lanelet):
                 return Occupies(vehicle, new if lanelet == old else lanelet)
@@ -219,12 +215,10 @@ def horizon(formula: Formula) -> Seconds | None:
 
     Raises ``ValueError`` where an interval bound still holds a parameter.
     """
-    done: dict[Formula, Seconds | None] = {}
 
+    @cache
     def visit(current: Formula) -> Seconds | None:
-        if current not in done:
-            done[current] = _reach(current, [visit(child) for child in f.children(current)])
-        return done[current]
+        return _reach(current, [visit(child) for child in f.children(current)])
 
     return visit(formula)
 

@@ -10,6 +10,7 @@ ends on it (the motion goes on without acceleration, see ``encode.build``). Unti
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 from math import gcd
 from typing import assert_never
 
@@ -81,16 +82,10 @@ def unroll_at(formula: Formula, grid: Grid, step: int) -> Circuit[At]:
 class _Unroller:
     def __init__(self, grid: Grid) -> None:
         self.grid = grid
-        self.done: dict[tuple[Formula, bool, int], Circuit[At]] = {}
-
-    def at(self, formula: Formula, wanted: bool, step: int) -> Circuit[At]:
-        """``formula`` (its negation where not ``wanted``) at a sample."""
-        key = (formula, wanted, step)
-        if key not in self.done:
-            self.done[key] = self._at(formula, wanted, step)
-        return self.done[key]
+        self.at = cache(self._at)
 
     def _at(self, formula: Formula, wanted: bool, step: int) -> Circuit[At]:
+        """``formula`` (its negation where not ``wanted``) at a sample."""
         both, either = (all_of, any_of) if wanted else (any_of, all_of)
         match formula:
             case f.Truth(value):

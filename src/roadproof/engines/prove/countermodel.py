@@ -13,7 +13,7 @@ from typing import TypeAlias
 
 from roadproof.engines.prove.roads import ZONES, Box, Layout, Place, lay_road
 from roadproof.engines.prove.search import Model
-from roadproof.engines.prove.states import TYPICAL_SIZE
+from roadproof.engines.prove.states import TYPICAL_SIZE, StateChecker
 from roadproof.errors import RoadproofError
 from roadproof.evidence import state
 from roadproof.evidence.atoms import Atoms
@@ -263,10 +263,8 @@ def held_either_way(times: Sequence[Fraction], states: Sequence[Values]) -> Iter
 
 def realise(
     query: Query,
-    atoms: Atoms,
+    checker: StateChecker,
     model: Model,
-    defaults: Mapping[str, Fraction],
-    bounds: Mapping[str, str],
     traces: Callable[[Sequence[Fraction], Sequence[Values]], Iterable[Trace]] = held_either_way,
 ) -> Countermodel | None:
     """The model as a trace on which the claim is judged false, or None.
@@ -276,6 +274,7 @@ def realise(
     None also where two instants need different values of one parameter or one vehicle's size, and
     where no road is found that has what the model says of lanes and lanelets.
     """
+    atoms, defaults = checker.atoms, checker.defaults
     fixed = _fixed_values(query, model, defaults)
     if fixed is None:
         return None
@@ -289,7 +288,7 @@ def realise(
             continue
         for instants, held, loop in traces(times, states):
             found = Countermodel(instants, parameters, held, road, loop)
-            if fault_of(found, query.formula, bounds) is None:
+            if fault_of(found, query.formula, checker.bounds) is None:
                 return found
         if layout is None:
             break

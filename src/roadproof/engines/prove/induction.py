@@ -25,8 +25,6 @@ def prove_by_induction(
     query: Query,
     said: Sequence[str],
     effort: Effort,
-    label: str = "",
-    scenario: int | None = None,
 ) -> Result | None:
     """A proof of ``query`` that may use inductions; None where the claim has no step or no proof is found.
 
@@ -36,7 +34,7 @@ def prove_by_induction(
     if not axioms:
         return None
     units = effort.of(min(UNITS, effort.units))
-    result = prove(specification, query, units, label, scenario, Assumption(tuple(said), axioms))
+    result = prove(specification, query, units, Assumption(tuple(said), axioms))
     return result if result.holds else None
 
 
@@ -75,7 +73,7 @@ def _number(term: Term) -> str:
 _OPEN = "not proved where it is left open what a driver prevents, and no other proof was looked for"
 
 
-def prove_of_scenarios(specification: Specification, query: Query, effort: Effort, label: str = "") -> Result:
+def prove_of_scenarios(specification: Specification, query: Query, effort: Effort) -> Result:
     """As ``prove``; but where a driver model says what begins, UNKNOWN for what needs its numbers.
 
     A proof is one of the claim itself, with its certificate. That there may be one is asked first where what
@@ -84,7 +82,7 @@ def prove_of_scenarios(specification: Specification, query: Query, effort: Effor
     """
     outline = left_open(specification)
     if outline is not None:
-        first = prove(outline, read_claim(outline, query.text), effort, label)
+        first = prove(outline, read_claim(outline, query.text), effort)
         if not first.holds:
             return Result(first.work, verdict=Verdict.UNKNOWN, reason=_OPEN, seconds=first.seconds)
-    return prove(specification, query, effort, label)
+    return prove(specification, query, effort)

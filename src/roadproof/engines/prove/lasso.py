@@ -137,4 +137,4 @@ def _realised(
         stays = at == after and shape.again == len(shape.states) - 1
         yield tuple(instants), "before", None if stays else shape.loop
 
-    return realise(query, checker.atoms, model, checker.defaults, checker.bounds, traces)
+    return realise(query, checker, model, traces)

@@ -41,8 +41,6 @@ def prove_of_motions(
     query: Query,
     said: Sequence[str],
     effort: Effort,
-    label: str = "",
-    scenario: int | None = None,
 ) -> Result:
     """Decide whether ``query`` holds on all motions: first with few facts about them, then with more.
 
@@ -55,11 +53,11 @@ def prove_of_motions(
     result = None
     for axioms, units in dict.fromkeys([(none, QUICK), *((x, y) for y in TURNS for x in others)]):
         part = effort.of(min(units, max(1.0, meter.left())))
-        result = prove(specification, query, part, label, scenario, Assumption(tuple(said), axioms))
+        result = prove(specification, query, part, Assumption(tuple(said), axioms))
         meter.spend(result.work)
         if result.verdict is Verdict.PROVED and not axioms and limits_said(said):
             bare = Assumption(tuple(said), (), limits_said(said))
-            plain = prove(specification, query, effort.of(QUICK), label, scenario, bare)
+            plain = prove(specification, query, effort.of(QUICK), bare)
             meter.spend(plain.work)
             result = plain if plain.holds else result
         if result.verdict is not Verdict.UNKNOWN or meter.is_out():

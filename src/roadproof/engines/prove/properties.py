@@ -3,7 +3,7 @@
 import hashlib
 import re
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
@@ -60,7 +60,8 @@ def digest(asked: str) -> str:
 def template_properties() -> list[Task]:
     """P1 to P9 and the negative controls, in order."""
     text = resources.files("roadproof.engines.prove").joinpath("properties.toml").read_text("utf-8")
-    tasks = [task for entry in tomllib.loads(text)["property"] for task in _tasks(entry)]
+    entries = (_Property(**entry) for said in tomllib.loads(text).values() for entry in said)
+    tasks = [task for entry in entries for task in entry.tasks]
     headings = list(dict.fromkeys((task.id, task.title, task.set_name) for task in tasks))
     return sorted(tasks, key=lambda x: (headings.index((x.id, x.title, x.set_name)), x.scenario or 0))
 
@@ -77,26 +78,32 @@ def _labels() -> dict[tuple[str, str], tuple[str, str, int | None]]:
     }
 
 
-def _tasks(entry: dict[str, str | list[str]]) -> list[Task]:
-    scenarios: list[int | None] = list(_numbers(str(entry["scenarios"]))) if "scenarios" in entry else [None]
-    return [
-        Task(
-            str(entry["id"]),
-            str(entry.get("part", "")),
-            str(entry["title"]),
-            scenario,
-            set_name,
-            _at(str(entry["claim"]), scenario),
-            claim_verdict(str(entry.get("expected", Verdict.PROVED))),
-            of_all_values=entry.get("values") == "all",
-        )
-        for set_name in entry["sets"]
-        for scenario in scenarios
-    ]
+@dataclass(frozen=True)
+class _Property:
+    """A claim of ``properties.toml`` in some sets; once for each of its ``scenarios``, where it has some."""
+
+    id: str
+    title: str
+    claim: str
+    sets: tuple[str, ...]
+    part: str = ""
+    scenarios: str = ""
+    expected: str = Verdict.PROVED
+    values: str = ""
+
+    @property
+    def tasks(self) -> Iterator[Task]:
+        for set_name in self.sets:
+            for number in _numbers(self.scenarios) if self.scenarios else [None]:
+                claim, expected = _at(self.claim, number), claim_verdict(self.expected)
+                of_all = self.values == "all"
+                yield Task(
+                    self.id, self.part, self.title, number, set_name, claim, expected, of_all_values=of_all
+                )
 
 
-def _numbers(text: str) -> list[int]:
-    numbers: list[int] = []
+def _numbers(text: str) -> list[int | None]:
+    numbers: list[int | None] = []
     for piece in text.split(","):
         found = _RANGE.fullmatch(piece)
         assert found is not None, f"bad range {piece!r} in properties.toml"

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from roadproof.engines.prove.countermodel import realise, with_truths
@@ -72,13 +72,17 @@ class Result(Settled[ClaimVerdict]):
     stop: Stop | None = None
     doubt: Doubt | None = None
 
+    def called(self, label: str = "", scenario: int | None = None) -> "Result":
+        """The same, with what the claim is called in its certificate."""
+        if self.certificate is None:
+            return self
+        return replace(self, certificate=replace(self.certificate, property=label, scenario=scenario))
+
 
 def prove(
     specification: Specification,
     query: Query,
     effort: Effort | None = None,
-    label: str = "",
-    scenario: int | None = None,
     assumed: Assumption = NOTHING,
 ) -> Result:
     """Decide whether ``query`` holds at time 0 on all traces, for all values of its parameters.
@@ -97,30 +101,29 @@ def prove(
     values = {**here, **demanded}
     states = _states(specification, values)
     premise, claim = goal_of(specification, query, assumed, states.atoms, pinned)
-    attempt = _Attempt(query, states, meter, is_moving(assumed.said))
+    attempt = _Attempt(specification, query, states, meter, is_moving(assumed.said))
 
     def result(verdict: ClaimVerdict, reason: str = "", certificate: Certificate | None = None) -> Result:
         spent, seconds = meter.spent, since(begun)
         return Result(spent, verdict=verdict, reason=reason, certificate=certificate, seconds=seconds)
 
-    names: dict[Site, str] = {}
     proofs: list[Proof] = []
     for goal in conjuncts(claim):
-        found = attempt.decide(f.implication(premise, goal), names)
+        found = attempt.decide(f.implication(premise, goal))
         if isinstance(found, Countermodel):
             return replace(result(Verdict.REFUTED), countermodel=with_truths(found, states.atoms))
         if isinstance(found, GaveUp):
             return replace(result(Verdict.UNKNOWN, found.reason), stop=found.stop)
         proofs.append(found)
-    fewer = _needed(specification, query, assumed, values, proofs, names)
+    fewer = attempt.needed(assumed, values, proofs)
     if fewer != assumed:
-        again = prove(specification, query, meter.effort(), label, scenario, fewer)
+        again = prove(specification, query, meter.effort(), fewer)
         if again.verdict is Verdict.PROVED and attempt.never_holds(premise, f.TRUE):
             again = replace(again, verdict=Verdict.VACUOUS, reason=CONTRADICTION)
         if again.holds:
             return replace(again, seconds=since(begun), work=meter.spent + again.work)
     try:
-        certificate = _certificate(specification, query, assumed, pinned, proofs, names, label, scenario)
+        certificate = attempt.certificate(assumed, pinned, proofs)
     except InputError as error:
         why = f"a proof was found, but no certificate can be made of it: {error}"
         return replace(result(Verdict.UNKNOWN, why), stop=Stop.CERTIFICATE)
@@ -172,10 +175,9 @@ class ProofHeuristic:
         pinned = value_texts(self.specification, values)
         states = _states(self.specification, values, self.learnt.setdefault(pinned, Learnt()))
         premise, claim = goal_of(self.specification, query, NOTHING, states.atoms, pinned)
-        attempt = _Attempt(query, states, meter, False)
-        names: dict[Site, str] = {}
+        attempt = _Attempt(self.specification, query, states, meter, False)
         goals = (f.implication(premise, goal) for goal in conjuncts(claim))
-        return all(isinstance(attempt.decide(goal, names), Proof) for goal in goals), meter.spent
+        return all(isinstance(attempt.decide(goal), Proof) for goal in goals), meter.spent
 
 
 def _states(
@@ -218,20 +220,16 @@ def _premise(query: Query, formula: Formula) -> Formula | None:
 
 @dataclass(frozen=True)
 class _Attempt:
+    """``names``: what the elements and times are called that the proofs of all parts speak of."""
+
+    specification: Specification
     query: Query
     states: StateChecker
     meter: Budget
     moving: bool
+    names: dict[Site, str] = field(default_factory=dict)
 
-    @property
-    def atoms(self) -> Atoms:
-        return self.states.atoms
-
-    @property
-    def bounds(self) -> Mapping[str, str]:
-        return self.states.bounds
-
-    def decide(self, goal: Formula, names: dict[Site, str]) -> Proof | Countermodel | GaveUp:
+    def decide(self, goal: Formula) -> Proof | Countermodel | GaveUp:
         """Look for a proof and for a countermodel in turns, until one is found or the work is used up."""
         last = GaveUp(self.meter.reason())
         turns = TURNS[-1:] if f.is_state(goal) else TURNS
@@ -246,7 +244,7 @@ class _Attempt:
                 repeating = find_lasso(self.query, goal, self.states, self.meter.part(REPEATING))
                 if repeating is not None:
                     return repeating
-            found = self._run(self._search(goal, names, wishful), self.meter.part(units))
+            found = self._run(self._search(goal, self.names, wishful), self.meter.part(units))
             if not isinstance(found, GaveUp):
                 return found
             last = found
@@ -267,7 +265,7 @@ class _Attempt:
         return found
 
     def _realised(self, found: Model) -> Countermodel | None:
-        return realise(self.query, self.atoms, found, self.states.defaults, self.bounds)
+        return realise(self.query, self.states, found)
 
     def never_holds(self, premise: Formula, condition: Formula) -> bool:
         """Whether it is proved quickly that ``condition`` is false, its query derived apart, too."""
@@ -276,8 +274,9 @@ class _Attempt:
         proof = self._search(goal, names, True).run(self.meter.apart(VACUITY))
         if not isinstance(proof, Proof):
             return False
-        met = met_sites(goal, self.atoms, proof.instances, names, self.bounds, self.query.lanes)
-        query = derive_query(goal, self.atoms, *met, proof.lemmas, self.bounds, self.query.lanes)
+        atoms, bounds, lanes = self.states.atoms, self.states.bounds, self.query.lanes
+        met = met_sites(goal, atoms, proof.instances, names, bounds, lanes)
+        query = derive_query(goal, atoms, *met, proof.lemmas, bounds, lanes)
         return ask(query, meter=self.meter.apart(VACUITY)) == "unsat"
 
     def _search(
@@ -285,28 +284,47 @@ class _Attempt:
     ) -> InstanceSearch:
         return InstanceSearch(goal, self.states, self.query.lanes, names, wishful, roster, self.moving)
 
+    def certificate(
+        self, assumed: Assumption, pinned: tuple[str, ...], proofs: Sequence[Proof]
+    ) -> Certificate:
+        """The proofs of all parts as one certificate. Raises ``InputError`` where they do not fit."""
+        lemmas: dict[tuple[tuple[str, bool], ...], tuple[str, ...]] = {}
+        for proof in proofs:
+            for lemma in proof.lemmas:
+                before = lemmas.get(lemma.literals, ())
+                lemmas[lemma.literals] = tuple(dict.fromkeys([*before, *lemma.moments]))
+        atoms = Atoms()
+        claim = f.implication(*goal_of(self.specification, self.query, assumed, atoms, pinned))
+        met = self._met(claim, atoms, proofs)
+        made = tuple(Lemma(literals, moments) for literals, moments in lemmas.items())
+        return certify(self.specification, self.query, met, made, assumed=assumed, pinned=pinned)
 
-def _certificate(
-    specification: Specification,
-    query: Query,
-    assumed: Assumption,
-    pinned: tuple[str, ...],
-    proofs: list[Proof],
-    names: dict[Site, str],
-    label: str,
-    scenario: int | None,
-) -> Certificate:
-    """The proofs of all parts as one certificate. Raises ``InputError`` where they do not fit the claim."""
-    lemmas: dict[tuple[tuple[str, bool], ...], tuple[str, ...]] = {}
-    for proof in proofs:
-        for lemma in proof.lemmas:
-            before = lemmas.get(lemma.literals, ())
-            lemmas[lemma.literals] = tuple(dict.fromkeys([*before, *lemma.moments]))
-    atoms = Atoms()
-    abstracted = f.implication(*goal_of(specification, query, assumed, atoms, pinned))
-    met = met_sites(abstracted, atoms, _instances(proofs), names, specification.library.bounds, query.lanes)
-    made = tuple(Lemma(literals, moments) for literals, moments in lemmas.items())
-    return certify(specification, query, met, made, label, scenario, assumed, pinned)
+    def needed(
+        self, assumed: Assumption, values: Mapping[str, Fraction], proofs: Sequence[Proof]
+    ) -> Assumption:
+        """The same with those premises alone of which a proof has instances, and which the claim has not.
+
+        Each premise is a universal that holds at time 0.
+        """
+        instances, atoms = _instances(proofs), Atoms()
+        own, _ = self._met(atoms.abstract(with_values(self.query.formula, values)), atoms, proofs)
+
+        def is_used(formula: Formula) -> bool:
+            made = atoms.abstract(with_values(formula, values))
+            site = Site(prefix_form(made), True, str(ZERO))
+            return site in instances and site not in own
+
+        home, query = self.specification, self.query
+        axioms = tuple(x for x in assumed.axioms if is_used(axiom_formula(home, query, x)))
+        used = {x for x, made in limit_formulas(home, query, assumed).items() if is_used(made)}
+        return Assumption(assumed.said, axioms, tuple(x for x in limits_said(assumed.said) if x not in used))
+
+    def _met(
+        self, claim: Formula, atoms: Atoms, proofs: Sequence[Proof]
+    ) -> tuple[dict[Site, tuple[str, ...]], dict[Site, str]]:
+        """The instances of proofs, and their names, that a derivation from the claim meets."""
+        bounds = self.specification.library.bounds
+        return met_sites(claim, atoms, _instances(proofs), self.names, bounds, self.query.lanes)
 
 
 def _instances(proofs: Sequence[Proof]) -> dict[Site, tuple[str, ...]]:
@@ -316,30 +334,3 @@ def _instances(proofs: Sequence[Proof]) -> dict[Site, tuple[str, ...]]:
         for site, texts in proof.instances.items():
             instances[site] = tuple(dict.fromkeys([*instances.get(site, ()), *texts]))
     return instances
-
-
-def _needed(
-    specification: Specification,
-    query: Query,
-    assumed: Assumption,
-    values: Mapping[str, Fraction],
-    proofs: Sequence[Proof],
-    names: Mapping[Site, str],
-) -> Assumption:
-    """The same with those premises alone of which a proof has instances, and which the claim has not itself.
-
-    Each premise is a universal that holds at time 0.
-    """
-    instances = _instances(proofs)
-    atoms = Atoms()
-    claim = atoms.abstract(with_values(query.formula, values))
-    own, _ = met_sites(claim, atoms, instances, names, specification.library.bounds, query.lanes)
-
-    def is_used(formula: Formula) -> bool:
-        made = atoms.abstract(with_values(formula, values))
-        site = Site(prefix_form(made), True, str(ZERO))
-        return site in instances and site not in own
-
-    axioms = tuple(x for x in assumed.axioms if is_used(axiom_formula(specification, query, x)))
-    used = {x for x, made in limit_formulas(specification, query, assumed).items() if is_used(made)}
-    return Assumption(assumed.said, axioms, tuple(x for x in limits_said(assumed.said) if x not in used))

@@ -2,12 +2,12 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 from roadproof.drivers.restriction import left_open
 from roadproof.engines.prove.induction import prove_of_scenarios
 from roadproof.engines.prove.prover import ProofHeuristic, Result, prove
 from roadproof.evidence.certificate import Certificate, certificate_data
+from roadproof.evidence.strict import JsonObject
 from roadproof.library.compose import negation, of_parts
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Query, Specification
@@ -37,7 +37,7 @@ class Impossibility:
         return told_parts(self.core)
 
     @property
-    def plain(self) -> dict[str, Any]:
+    def plain(self) -> JsonObject:
         """The certificate as plain data."""
         return certificate_data(replace(self.certificate, tableau=None))  # which files alone have
 

@@ -6,11 +6,11 @@ What is no restriction, because one drive stands for others (``encode.along``), 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any
 
 from roadproof.engines.encode.unroll import Grid
 from roadproof.evidence.answers import shared
 from roadproof.evidence.codec import write
+from roadproof.evidence.strict import JsonObject
 from roadproof.world.vehicle import Range
 
 # Options of ``roadproof witness`` and others that search, and of ``roadproof prove``, that widen limits.
@@ -68,7 +68,7 @@ class Limits:
         hint = f"; widen with {', '.join(options)}" if options else ""
         return f"{', '.join(parts)}{hint}{shown}"
 
-    def as_json(self) -> dict[str, Any]:
+    def as_json(self) -> JsonObject:
         """The limits as plain data; rationals as text."""
         return write(
             shared.Limits(

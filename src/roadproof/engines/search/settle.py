@@ -188,12 +188,12 @@ def _proved(
     said: Sequence[str],
 ) -> Result:
     """What the prover says. Raises ``BudgetExceeded``."""
-    induced = prove_by_induction(specification, query, said, effort, *called)
-    if induced is not None:
-        return induced
-    if is_moving(said):
-        return prove_of_motions(specification, query, said, effort, *called)
-    return prove(specification, query, effort, *called, Assumption(tuple(said)))
+    found = prove_by_induction(specification, query, said, effort)
+    if found is None and is_moving(said):
+        found = prove_of_motions(specification, query, said, effort)
+    if found is None:
+        found = prove(specification, query, effort, Assumption(tuple(said)))
+    return found.called(*called)
 
 
 def settle_bounded(search: "Search") -> Settlement:

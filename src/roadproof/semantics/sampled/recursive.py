@@ -7,6 +7,7 @@ It remembers what it has already worked out, and does nothing else to be quick.
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cache
 from math import inf
 from typing import Literal, TypeAlias, assert_never
 
@@ -50,19 +51,13 @@ class TraceReader:
         self.given = {without_names(g): values for g, values in trace.given.items()}
         self.found: dict[Formula, Sequence[bool] | None] = {}
         self.constants: dict[t.Term, float | None] = {}
-        self.truths: dict[tuple[Formula, int, ReadAs], bool] = {}
-        self.margins: dict[tuple[Formula, int, ReadAs], float] = {}
+        self.holds = cache(self._holds)
+        self.margin = cache(self._margin)
 
     # --- truth ---------------------------------------------------------------------------------
 
-    def holds(self, formula: Formula, k: int, view: ReadAs) -> bool:
-        """Whether ``formula`` holds at sample ``k`` (inside the trace) in a view."""
-        key = (formula, k, view)
-        if key not in self.truths:
-            self.truths[key] = self._holds(formula, k, view)
-        return self.truths[key]
-
     def _holds(self, formula: Formula, k: int, view: ReadAs) -> bool:
+        """Whether ``formula`` holds at sample ``k`` (inside the trace) in a view."""
         known = self._given(formula)
         if known is not None:
             return bool(known[k])
@@ -101,14 +96,8 @@ class TraceReader:
 
     # --- margins -------------------------------------------------------------------------------
 
-    def margin(self, formula: Formula, k: int, view: ReadAs) -> float:
-        """By how much ``formula`` holds at sample ``k`` in a view; -∞ to ∞."""
-        key = (formula, k, view)
-        if key not in self.margins:
-            self.margins[key] = self._margin(formula, k, view)
-        return self.margins[key]
-
     def _margin(self, formula: Formula, k: int, view: ReadAs) -> float:
+        """By how much ``formula`` holds at sample ``k`` in a view; -∞ to ∞."""
         known = self._given(formula)
         if known is not None:
             return inf if known[k] else -inf
