@@ -3,10 +3,11 @@ of vehicles that they say.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from fractions import Fraction
+from functools import cached_property
 from types import MappingProxyType
-from typing import Literal, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from roadproof.errors import UsageError
 from roadproof.library.scenarios import PAIR, SUBJECT, TRIPLE
@@ -30,24 +31,102 @@ Values: TypeAlias = Mapping[str, Fraction]
 
 @dataclass(frozen=True)
 class Quantity:
-    """An initial value: its unit, the value where none is given (SI), what it is, and its least value.
+    """An initial value: its unit, the value where none is given (SI), and what it is.
 
-    ``is_optional``: where none is given there is none.
+    It is at least 0, or above that where ``is_open``. ``is_optional``: where none is given there is none.
     """
 
     name: str
     unit: str
     value: Fraction
     doc: str
-    least: Fraction = Fraction(0)
     is_open: bool = False
     is_optional: bool = False
 
     def check(self, value: Fraction) -> None:
         """Raises ``UsageError`` for a value that no vehicle has."""
-        if value < self.least or (self.is_open and value == self.least):
-            sign = ">" if self.is_open else ">="
-            raise UsageError(f"{self.name}={value} (SI): {self.doc} has to be {sign} {self.least}")
+        if value < 0 or (self.is_open and value == 0):
+            raise UsageError(
+                f"{self.name}={value} (SI): {self.doc} has to be {'>' if self.is_open else '>='} 0"
+            )
+
+
+def initial_value(
+    unit: str, value: Fraction, doc: str, is_open: bool = False, is_optional: bool = False
+) -> Any:
+    """A field that is an initial value, as ``Quantity`` has it."""
+    metadata = {"of": (unit, value, doc, is_open, is_optional)}
+    return field(metadata=metadata, default=None) if is_optional else field(metadata=metadata)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Start:
+    """Initial values of any manoeuvre (SI)."""
+
+    Ve0: Fraction = initial_value("km/h", 60 * KMH, "the speed of SV")
+    length: Fraction = initial_value("m", Fraction("4.3"), "the length of every vehicle", True)
+    width: Fraction = initial_value("m", Fraction("1.9"), "the width of every vehicle", True)
+
+    @property
+    def lane(self) -> Fraction:
+        """Lanes as wide as puts the vehicles into their middles."""
+        return self.width + BESIDE
+
+    @property
+    def middle(self) -> Fraction:
+        """Where the left side of a vehicle in the middle of the lane of SV is."""
+        return (self.lane + self.width) / 2
+
+
+@dataclass(frozen=True, kw_only=True)
+class CutIn(_Start):
+    """Initial values of a cut-in."""
+
+    dV0: Fraction = initial_value("km/h", 20 * KMH, "how much faster SV is than POV, Ve0-Vo0")
+    Vy: Fraction = initial_value("m/s", Fraction(1), "the lateral speed of POV", True)
+    dx0: Fraction = initial_value("m", Fraction(20), "the gap along the road")
+    dy0: Fraction = initial_value("m", BESIDE, "the gap across the road")
+
+    @property
+    def lane(self) -> Fraction:
+        return self.width + self.dy0
+
+
+@dataclass(frozen=True, kw_only=True)
+class CutOut(_Start):
+    """Initial values of a cut-out."""
+
+    Vf0: Fraction = initial_value("km/h", _NONE, "the speed of the vehicle in front of the one that cuts out")
+    Vy: Fraction = initial_value("m/s", Fraction(1), "the lateral speed of POV", True)
+    headway: Fraction = initial_value("s", Fraction(2), "the time headway at which SV follows")
+    dx0_f: Fraction = initial_value(
+        "m", Fraction(30), "the gap from the vehicle that cuts out to the one in front"
+    )
+
+    @property
+    def first(self) -> Fraction:
+        """Where the front of the vehicle that cuts out is, from that of SV."""
+        return self.headway * self.Ve0 + self.length
+
+    @property
+    def second(self) -> Fraction:
+        """Where the front of the vehicle is that the cut-out reveals."""
+        return self.first + self.dx0_f + self.length
+
+
+@dataclass(frozen=True, kw_only=True)
+class Deceleration(_Start):
+    """Initial values of a deceleration."""
+
+    Gx: Fraction = initial_value("m/s^2", Fraction(6), "how hard POV brakes", True)
+    dx0: Fraction = initial_value("m", Fraction(20), "the gap along the road")
+    dV0: Fraction = initial_value("km/h", _NONE, "how much faster SV is than POV")
+    dGdt: Fraction | None = initial_value(
+        "m/s^3", _NONE, "how fast POV's braking grows (left out: it is there at once)", True, True
+    )
+
+
+Start: TypeAlias = CutIn | CutOut | Deceleration
 
 
 @dataclass(frozen=True)
@@ -59,12 +138,18 @@ class Manoeuvre:
 
     name: ManoeuvreName
     vehicles: tuple[str, ...]
-    quantities: Mapping[str, Quantity]
+    start: type[Start]
     line: str
     along: tuple[Fraction, Fraction]
     across: str
     range: tuple[Fraction, Fraction]
     sheet: Mapping[str, tuple[Fraction, ...]]
+
+    @cached_property
+    def quantities(self) -> Mapping[str, Quantity]:
+        """The initial values by name: the speed of SV first, the sizes of vehicles last."""
+        ordered = sorted(fields(self.start), key=lambda x: (x.name in ("length", "width"), x.name != "Ve0"))
+        return MappingProxyType({x.name: Quantity(x.name, *x.metadata["of"]) for x in ordered})
 
     def values(self, given: Values) -> dict[str, Fraction]:
         """All initial values. Raises ``UsageError`` for unknown names, and for what no vehicle can have."""
@@ -87,47 +172,22 @@ class Manoeuvre:
         return values
 
 
-def _named(*quantities: Quantity) -> Mapping[str, Quantity]:
-    return MappingProxyType({x.name: x for x in quantities})
-
-
-_LENGTH = Quantity("length", "m", Fraction("4.3"), "the length of every vehicle", is_open=True)
-_WIDTH = Quantity("width", "m", Fraction("1.9"), "the width of every vehicle", is_open=True)
-_EGO = Quantity("Ve0", "km/h", 60 * KMH, "the speed of SV")
-_LATERAL = Quantity("Vy", "m/s", Fraction(1), "the lateral speed of POV", is_open=True)
-
 CUT_IN = Manoeuvre(
     "cut-in",
     PAIR,
-    _named(
-        _EGO,
-        Quantity("dV0", "km/h", 20 * KMH, "how much faster SV is than POV, Ve0-Vo0"),
-        _LATERAL,
-        Quantity("dx0", "m", Fraction(20), "the gap along the road"),
-        Quantity("dy0", "m", BESIDE, "the gap across the road"),
-        _LENGTH,
-        _WIDTH,
-    ),
+    CutIn,
     "dx0",
-    (Fraction(0), Fraction(120)),
+    (_NONE, Fraction(120)),
     "dV0",
-    (Fraction(0), 130 * KMH),
+    (_NONE, 130 * KMH),
     {"Ve0": (60 * KMH, 90 * KMH, 130 * KMH), "Vy": (Fraction(1, 2), Fraction(1), Fraction(3, 2))},
 )
 CUT_OUT = Manoeuvre(
     "cut-out",
     TRIPLE,
-    _named(
-        _EGO,
-        Quantity("Vf0", "km/h", Fraction(0), "the speed of the vehicle in front of the one that cuts out"),
-        _LATERAL,
-        Quantity("headway", "s", Fraction(2), "the time headway at which SV follows"),
-        Quantity("dx0_f", "m", Fraction(30), "the gap from the vehicle that cuts out to the one in front"),
-        _LENGTH,
-        _WIDTH,
-    ),
+    CutOut,
     "dx0_f",
-    (Fraction(0), Fraction(150)),
+    (_NONE, Fraction(150)),
     "Vy",
     (Fraction(1, 10), Fraction(3)),
     {"Ve0": (60 * KMH, 90 * KMH, 110 * KMH, 130 * KMH)},
@@ -135,24 +195,9 @@ CUT_OUT = Manoeuvre(
 DECELERATION = Manoeuvre(
     "deceleration",
     PAIR,
-    _named(
-        _EGO,
-        Quantity("Gx", "m/s^2", Fraction(6), "how hard POV brakes", is_open=True),
-        Quantity("dx0", "m", Fraction(20), "the gap along the road"),
-        Quantity("dV0", "km/h", Fraction(0), "how much faster SV is than POV"),
-        Quantity(
-            "dGdt",
-            "m/s^3",
-            Fraction(0),
-            "how fast POV's braking grows (left out: it is there at once)",
-            is_open=True,
-            is_optional=True,
-        ),
-        _LENGTH,
-        _WIDTH,
-    ),
+    Deceleration,
     "dx0",
-    (Fraction(0), Fraction(80)),
+    (_NONE, Fraction(80)),
     "Gx",
     (Fraction("0.1"), Fraction("9.81")),
     {"Ve0": (30 * KMH, 60 * KMH, 90 * KMH, 130 * KMH)},
@@ -162,79 +207,9 @@ MANOEUVRES: Mapping[ManoeuvreName, Manoeuvre] = MappingProxyType(
 )
 
 
-@dataclass(frozen=True)
-class _Start:
-    """Initial values of any manoeuvre (SI)."""
-
-    Ve0: Fraction
-    length: Fraction
-    width: Fraction
-
-    @property
-    def lane(self) -> Fraction:
-        """Lanes as wide as puts the vehicles into their middles."""
-        return self.width + BESIDE
-
-    @property
-    def middle(self) -> Fraction:
-        """Where the left side of a vehicle in the middle of the lane of SV is."""
-        return (self.lane + self.width) / 2
-
-
-@dataclass(frozen=True)
-class CutIn(_Start):
-    """Initial values of a cut-in."""
-
-    dV0: Fraction
-    Vy: Fraction
-    dx0: Fraction
-    dy0: Fraction
-
-    @property
-    def lane(self) -> Fraction:
-        return self.width + self.dy0
-
-
-@dataclass(frozen=True)
-class CutOut(_Start):
-    """Initial values of a cut-out."""
-
-    Vf0: Fraction
-    Vy: Fraction
-    headway: Fraction
-    dx0_f: Fraction
-
-    @property
-    def first(self) -> Fraction:
-        """Where the front of the vehicle that cuts out is, from that of SV."""
-        return self.headway * self.Ve0 + self.length
-
-    @property
-    def second(self) -> Fraction:
-        """Where the front of the vehicle is that the cut-out reveals."""
-        return self.first + self.dx0_f + self.length
-
-
-@dataclass(frozen=True)
-class Deceleration(_Start):
-    """Initial values of a deceleration."""
-
-    Gx: Fraction
-    dx0: Fraction
-    dV0: Fraction
-    dGdt: Fraction | None = None
-
-
-Start: TypeAlias = CutIn | CutOut | Deceleration
-_STARTS: Mapping[ManoeuvreName, type[Start]] = MappingProxyType(
-    {"cut-in": CutIn, "cut-out": CutOut, "deceleration": Deceleration}
-)
-
-
 def start_of(manoeuvre: Manoeuvre, values: Values) -> Start:
     """All initial values of a manoeuvre, typed."""
-    kind = _STARTS[manoeuvre.name]
-    return kind(**{x.name: values[x.name] for x in fields(kind) if x.name in values})
+    return manoeuvre.start(**{name: values[name] for name in manoeuvre.quantities if name in values})
 
 
 def is_possible(values: Values) -> bool:
