@@ -103,14 +103,10 @@ class _Grounder:
         match formula:
             case f.Occupies(vehicle, lanelet):
                 return occupies(vehicle, self._lanelet(scope.get(lanelet, lanelet)))
-            case f.Some(variable, domain, body):
-                return f.disjunction(
-                    *(self.visit(body, {**scope, variable: e}) for e in self._elements(domain, scope))
-                )
-            case f.Every(variable, domain, body):
-                return f.conjunction(
-                    *(self.visit(body, {**scope, variable: e}) for e in self._elements(domain, scope))
-                )
+            case f.Some(variable, domain, body) | f.Every(variable, domain, body):
+                join = f.disjunction if isinstance(formula, f.Some) else f.conjunction
+                elements = self._elements(domain, scope)
+                return join(*(self.visit(body, {**scope, variable: x}) for x in elements))
             case f.Application(name, arguments, body):
                 shown = tuple(scope.get(a, self.lanes.get(a, a)) for a in arguments)
                 return f.Application(name, shown, self.visit(body, scope))

@@ -110,17 +110,14 @@ def with_lane(query: Query, old: str, new: str) -> Query:
     )
 
 
-def in_some_lane(query: Query, lane: str, variable: str = "M") -> Query:
+def in_some_lane(query: Query, lane: str) -> Query:
     """``some M in lanes: query`` with the free lane ``lane`` as M."""
-    inside = with_lane(query, lane, variable)
-    given = tuple(b for b in inside.claim.given if b.name != variable)
-    said = syntax.Quantified("some", variable, syntax.Name("lanes"), inside.claim.body)
-    return replace(
-        inside,
-        claim=Claim(given, said),
-        formula=f.Some(variable, f.Domain("lanes"), inside.formula),
-        lanes=tuple(x for x in inside.lanes if x != variable),
-    )
+    inside = with_lane(query, lane, "M")
+    given = tuple(b for b in inside.claim.given if b.name != "M")
+    said = syntax.Quantified("some", "M", syntax.Name("lanes"), inside.claim.body)
+    formula = f.Some("M", f.Domain("lanes"), inside.formula)
+    lanes = tuple(x for x in inside.lanes if x != "M")
+    return replace(inside, claim=Claim(given, said), formula=formula, lanes=lanes)
 
 
 def taken_from(home: Specification, query: Query, set_name: str) -> Query:

@@ -49,7 +49,7 @@ class Diagnostic:
 class Diagnosis:
     """What is said of a text, in its order, and ``library``: what could be read of it on top of another.
 
-    ``lost``: how names look that could not be read, of which ``diagnose_claim`` need not speak.
+    ``lost``: how names look that could not be read, of which ``claim_errors`` need not speak.
     """
 
     diagnostics: tuple[Diagnostic, ...]
@@ -125,9 +125,9 @@ def diagnose(text: str, below: Library, name: str = "text") -> Diagnosis:
     return Proofreader(below).read(text, name)
 
 
-def diagnose_claim(text: str, specification: Specification, lost: Lost = ()) -> tuple[Diagnostic, ...]:
+def diagnose_claim(text: str, specification: Specification) -> tuple[Diagnostic, ...]:
     """What is wrong with a formula in the definitions of a specification. Never raises for what is in it."""
-    return tuple(as_diagnostic(error, text) for error in claim_errors(specification, text, "claim", lost))
+    return tuple(as_diagnostic(error, text) for error in claim_errors(specification, text))
 
 
 def claim_errors(

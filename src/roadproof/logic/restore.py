@@ -39,10 +39,9 @@ def as_syntax(formula: Formula, expand: bool = False) -> Expression:
             return Binary(op, term_as_syntax(left), term_as_syntax(right))
         case f.Occupies(vehicle, lanelet):
             return Call("occ", (Name(vehicle), Name(lanelet)))
-        case f.Some(variable, domain, body):
-            return syntax.Quantified("some", variable, _domain(domain), as_syntax(body, expand))
-        case f.Every(variable, domain, body):
-            return syntax.Quantified("every", variable, _domain(domain), as_syntax(body, expand))
+        case f.Some(variable, domain, body) | f.Every(variable, domain, body):
+            kind: Literal["some", "every"] = "some" if isinstance(formula, f.Some) else "every"
+            return syntax.Quantified(kind, variable, _domain(domain), as_syntax(body, expand))
         case f.Not(body):
             return Prefix("not", as_syntax(body, expand))
         case f.And((f.Compare(a, "<=", b), f.Compare(c, ">=", d))) if (a, b) == (c, d):
@@ -57,16 +56,14 @@ def as_syntax(formula: Formula, expand: bool = False) -> Expression:
             (f.Compare(t.Size("kind", a), "<", t.Number(low, _)), f.Compare(t.Size("kind", b), ">=", high))
         ) if (a, t.number(low + 1)) == (b, high):
             return _kind(a, "!=", KINDS[int(low)])
-        case f.And(parts):
-            return _chain("and", [as_syntax(part, expand) for part in parts])
-        case f.Or(parts):
-            return _chain("or", [as_syntax(part, expand) for part in parts])
+        case f.And(parts) | f.Or(parts):
+            word: Literal["and", "or"] = "and" if isinstance(formula, f.And) else "or"
+            return _chain(word, [as_syntax(part, expand) for part in parts])
         case f.Until(left, interval, right):
             return syntax.Temporal("U", _bounds(interval), as_syntax(left, expand), as_syntax(right, expand))
-        case f.Eventually(interval, body):
-            return syntax.Temporal("F", _bounds(interval), None, as_syntax(body, expand))
-        case f.Always(interval, body):
-            return syntax.Temporal("G", _bounds(interval), None, as_syntax(body, expand))
+        case f.Eventually(interval, body) | f.Always(interval, body):
+            sign: syntax.TemporalOperator = "F" if isinstance(formula, f.Eventually) else "G"
+            return syntax.Temporal(sign, _bounds(interval), None, as_syntax(body, expand))
         case f.Application(name, arguments, body):
             if expand or not all(_NAME.fullmatch(argument) for argument in arguments):
                 return as_syntax(body, expand)
@@ -136,18 +133,13 @@ def term_as_syntax(term: Term) -> Expression:
         ):
             return Prefix("-", term_as_syntax(factor))
         case t.Product(factors):
-            made = [term_as_syntax(factor) for factor in factors]
-            return (
-                reduce(lambda left, right: Binary("*", left, right), made) if made else _number(Fraction(1))
-            )
+            return _product([term_as_syntax(factor) for factor in factors])
         case t.Power(inner, exponent):
             return Binary("^", term_as_syntax(inner), Literal_(Fraction(exponent)))
         case t.Quotient(numerator, denominator):
             return Binary("/", term_as_syntax(numerator), term_as_syntax(denominator))
-        case t.Maximum(terms):
-            return Call("max", tuple(term_as_syntax(inner) for inner in terms))
-        case t.Minimum(terms):
-            return Call("min", tuple(term_as_syntax(inner) for inner in terms))
+        case t.Maximum(terms) | t.Minimum(terms):
+            return Call("max" if isinstance(term, t.Maximum) else "min", tuple(map(term_as_syntax, terms)))
         case t.Inverse(inner):
             return Call("inverse", (term_as_syntax(inner),))
         case _:

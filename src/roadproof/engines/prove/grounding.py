@@ -110,9 +110,9 @@ class Grounding:
         """The parameters that some clause speaks of."""
         return [name for name in self.bounds if name in self._declared]
 
-    def demand(self, formula: Formula, positive: bool) -> None:
-        """Assert an abstracted formula, or its negation, at time 0."""
-        self.session.tell(f"(assert {self.truth(formula, positive, ZERO)})")
+    def deny(self, formula: Formula) -> None:
+        """Assert the negation of an abstracted formula at time 0."""
+        self.session.tell(f"(assert {self.truth(formula, False, ZERO)})")
         self.origins = dict.fromkeys(self.origins, "")
 
     def truth(self, formula: Formula, positive: bool, moment: Moment) -> str:

@@ -112,7 +112,7 @@ class InstanceSearch:
         for bound in self.bound_moments:
             self.grounding.declare_moment(bound)
         self.spread = 0
-        self.grounding.demand(claim, False)
+        self.grounding.deny(claim)
 
     def run(self, meter: Budget) -> Proof | Model | GaveUp:
         """A proof, a candidate countermodel, or why neither was found with what ``meter`` had left.

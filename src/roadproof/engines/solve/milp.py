@@ -28,7 +28,7 @@ from roadproof.engines.encode.problem import (
     nodes,
     replace_leaves,
 )
-from roadproof.engines.solve.bounds import Affine, Bound, Box, Side, approximate, loosened
+from roadproof.engines.solve.bounds import Affine, Bound, Box, Side, Triplets, approximate, loosened
 from roadproof.errors import MissingSolverError, UsageError
 from roadproof.runtime.budget import Budget, Effort
 
@@ -184,17 +184,11 @@ class _Tableau:
     def __init__(self, box: list[tuple[float, float]]) -> None:
         self.box = box
         self.binaries: list[int] = []
-        self.entries: tuple[list[int], list[int], list[float]] = ([], [], [])
-        self.low: list[float] = []
+        self.entries = Triplets()
         self.high: list[float] = []
 
     def add(self, terms: Sequence[tuple[int, float]], low: float, high: float) -> None:
-        rows, columns, values = self.entries
-        for column, factor in terms:
-            rows.append(len(self.low))
-            columns.append(column)
-            values.append(factor)
-        self.low.append(low)
+        self.entries.add(terms, low)
         self.high.append(high)
 
     def binary(self) -> int:
@@ -248,9 +242,9 @@ def _run(tableau: _Tableau, wanted: int, known: SolverFacts, meter: Budget) -> S
     from scipy.sparse import csr_array
 
     count = len(tableau.box)
-    rows, columns, values = tableau.entries
-    matrix = csr_array((values, (rows, columns)), shape=(len(tableau.low), count))
-    low, high = np.array(tableau.low), np.array(tableau.high)
+    entries = tableau.entries
+    matrix = csr_array((entries.values, (entries.rows, entries.columns)), shape=(len(tableau.high), count))
+    low, high = np.array(entries.right), np.array(tableau.high)
     equal = low == high
     above, below = ~equal & np.isfinite(low), ~equal & np.isfinite(high)
     limits = np.array(tableau.box)

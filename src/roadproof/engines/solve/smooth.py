@@ -11,7 +11,7 @@ from importlib.util import find_spec
 import numpy as np
 
 from roadproof.engines.encode.problem import ColumnInequality, Row
-from roadproof.engines.solve.bounds import Affine, Bound, Box, split_squares
+from roadproof.engines.solve.bounds import Affine, Bound, Box, Triplets, split_squares
 from roadproof.errors import MissingSolverError
 
 
@@ -64,7 +64,7 @@ def minimise(
     from scipy.sparse import coo_array, csc_matrix, diags_array
 
     count = len(box)
-    equal, below = _Triplets(), _Triplets()
+    equal, below = Triplets(), Triplets()
     for row in rows:
         terms = [(c, float(k)) for c, k in row.terms.items()]
         if row.low is not None and row.low == row.high:
@@ -83,7 +83,7 @@ def minimise(
     for bound in bounds:
         below.add([(c, -k) for c, k in bound.affine.terms], bound.affine.constant - bound.margin)
     kept = [s for s in squares if s.weight > 0]
-    forms = _Triplets()
+    forms = Triplets()
     for square in kept:
         forms.add(square.affine.terms, square.affine.constant)
     m = coo_array((forms.values, (forms.rows, forms.columns)), shape=(len(kept), count)).tocsc()
@@ -104,28 +104,3 @@ def minimise(
     if str(result.status) not in ("Solved", "AlmostSolved"):
         return None
     return tuple(result.x)
-
-
-class _Triplets:
-    def __init__(self) -> None:
-        self.rows: list[int] = []
-        self.columns: list[int] = []
-        self.values: list[float] = []
-        self.right: list[float] = []
-
-    def add(self, terms: Iterable[tuple[int, float]], right: float) -> None:
-        for column, factor in terms:
-            self.rows.append(len(self.right))
-            self.columns.append(column)
-            self.values.append(factor)
-        self.right.append(right)
-
-    def stacked(self, other: "_Triplets", count: int):  # type: ignore[no-untyped-def]
-        from scipy.sparse import coo_array
-
-        shift = len(self.right)
-        rows = self.rows + [r + shift for r in other.rows]
-        shape = (shift + len(other.right), count)
-        return coo_array(
-            (self.values + other.values, (rows, self.columns + other.columns)), shape=shape
-        ).tocsc()

@@ -57,15 +57,15 @@ NEVER = TruthSet(())
 ALWAYS = TruthSet((START,))
 
 
-def show_span(span: Span, places: int = 6) -> str:
+def show_span(span: Span) -> str:
     """One interval of a truth set, in seconds."""
     begin, end = span
     if end is None:
-        return f"{'(' if begin.after else '['}{decimal(begin.point, places)}, ∞)"
+        return f"{'(' if begin.after else '['}{decimal(begin.point)}, ∞)"
     if begin.point == end.point:
-        return f"{{{decimal(begin.point, places)}}}"
+        return f"{{{decimal(begin.point)}}}"
     left, right = "(" if begin.after else "[", "]" if end.after else ")"
-    return f"{left}{decimal(begin.point, places)}, {decimal(end.point, places)}{right}"
+    return f"{left}{decimal(begin.point)}, {decimal(end.point)}{right}"
 
 
 def from_values(values: Iterable[tuple[Cut, bool]]) -> TruthSet:
