@@ -86,7 +86,7 @@ def test_only_a_none_within_makes_a_claim_proved_bounded(monkeypatch):
 
 def test_a_doubt_taken_for_a_bounded_proof_is_caught(monkeypatch):
     right, wrong = "BoundedResult(Verdict.UNKNOWN", "BoundedResult(Verdict.PROVED_BOUNDED"
-    plant(monkeypatch, refute, "check_bounded", right, wrong)
+    plant(monkeypatch, bounded, "check_bounded", right, wrong)
     assert answered(monkeypatch) != EXPECTED
 
 
