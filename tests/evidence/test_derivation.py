@@ -15,7 +15,7 @@ from evidence.probe import probe
 from proving.claims import INVALID, VALID, specification, spelled
 from roadproof.errors import InputError
 from roadproof.evidence import atoms, derivation
-from roadproof.evidence.answers.trace import MOST_INSTANTS
+from roadproof.evidence.answers.drive import MOST_INSTANTS
 from roadproof.evidence.derivation import _Derivation, _join
 from roadproof.evidence.finding import NO_EVIDENCE
 from roadproof.evidence.folder import OTHER_LIBRARY

@@ -11,7 +11,7 @@ from functools import lru_cache
 from typing import Literal, assert_never
 
 from roadproof.errors import InputError, RoadproofError
-from roadproof.evidence.answers import trace as kept
+from roadproof.evidence.answers import drive as kept
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.drive_file import road_of, road_said
 from roadproof.evidence.finding import Acceptance

@@ -26,7 +26,6 @@ from roadproof.evidence.answers import (
     redundancy,
     shared,
     show,
-    trace,
     traffic,
     tree,
 )
@@ -99,7 +98,7 @@ RECORDS: Mapping[str, type] = {x.SCHEMA: x.Record for x in KEEPING}
 
 def shared_types() -> JsonObject:
     """The types that several answers share, by their name among the definitions of common.json."""
-    kinds = (x for module in (shared, overlap, drive, trace, tree) for x in vars(module).values())
+    kinds = (x for module in (shared, overlap, drive, tree) for x in vars(module).values())
     return {note.name: x for x in kinds for note in notes_of(x) if isinstance(note, Shared)}
 
 

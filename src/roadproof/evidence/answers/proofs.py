@@ -6,9 +6,9 @@ from functools import partial
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers import shared
+from roadproof.evidence.answers.drive import KeptCounterexample, KeptTrace
 from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows_of
 from roadproof.evidence.answers.reader import Background, Reader, read_kept
-from roadproof.evidence.answers.trace import KeptCounterexample, KeptTrace
 from roadproof.evidence.codec import ABSENT, LEFT_OUT, UNCHECKED, Doc, Rule, read
 from roadproof.evidence.json_schema import File
 from roadproof.evidence.strict import Fields

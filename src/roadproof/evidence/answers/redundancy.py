@@ -6,9 +6,9 @@ from functools import partial
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers import shared
+from roadproof.evidence.answers.drive import KeptTrace
 from roadproof.evidence.answers.entry import Common, Entry, file_of, shows_of
 from roadproof.evidence.answers.reader import Background, Reader, read_kept
-from roadproof.evidence.answers.trace import KeptTrace
 from roadproof.evidence.codec import UNCHECKED, Doc, Key, read
 from roadproof.evidence.strict import Fields
 from roadproof.library.compose import both, equivalence, implication, negation

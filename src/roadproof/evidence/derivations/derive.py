@@ -30,7 +30,6 @@ from roadproof.evidence.derivations.signs import (
     Signs,
     compares,
     occupies,
-    opposite,
     said_of,
     splits,
 )
@@ -196,7 +195,7 @@ class _Finding:
         else:
             leaves = (leaf for side in terms_of(formula) for leaf in t.leaves(side))
             vehicles = {x.vehicle for x in leaves if isinstance(x, t.Signal)}
-            op = formula.op if positive else opposite(formula.op)
+            op = formula.op if positive else f.NEGATED[formula.op]
 
             def is_seen(part: Part, signs: Signs) -> bool:
                 return compares(self.shapes, formula.left, op, formula.right, part, signs)

@@ -1,7 +1,8 @@
 """Parts of time that follow each other, each with the rational instant, or the case, that serves it."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
+from typing import TypeVar
 
 from roadproof.errors import RoadproofError
 from roadproof.evidence.derivations.signs import Part
@@ -9,6 +10,7 @@ from roadproof.evidence.kernel.derivation import Fixed, Later, Moment, Step, spl
 from roadproof.semantics.exact.algebraic import Point, Root, bounds
 from roadproof.semantics.exact.truth import START, Cut, Span, TruthSet
 
+Served = TypeVar("Served")
 MOST_PARTS = 300
 """Parts that follow each other towards an irrational instant never reach it."""
 
@@ -129,27 +131,35 @@ def _moved(cut: Cut, by: Fraction) -> Cut:
     return Cut(cut.point + by, cut.after)
 
 
+def _in_turn(
+    part: Part, serve: Callable[[Cut], tuple[Cut | None, Served]], stuck: str
+) -> Iterator[tuple[Part, Served]]:
+    """Parts in turn. ``serve``: what serves after a cut, and how far; ``stuck``: why it may not."""
+    cut = part.begin
+    for _ in range(MOST_PARTS):
+        end, found = serve(cut)
+        yield Part(cut, end), found
+        if end == part.end:
+            return
+        if end is None or end <= cut:
+            raise NoDerivationError(stuck)
+        cut = end
+    raise NoDerivationError("what holds changes at an irrational instant, which rational ones only approach")
+
+
 def moments(
     part: Part, window: tuple[Fraction, Fraction | None], right: TruthSet, left: TruthSet
 ) -> Iterator[tuple[Part, Moment]]:
     """For parts that follow each other, when within its window ``right`` holds, and ``left`` until then."""
     low, high = window
-    cut = part.begin
-    for _ in range(MOST_PARTS):
-        first = _moved(cut, low)
-        here = _span_at(right, first)
-        if here is not None:
-            end = _before(here.end, low, part.end, cut)
-            yield Part(cut, end), Later(low)
-        else:
-            end, moment = _later(part, cut, low, high, right, left)
-            yield Part(cut, end), moment
-        if end == part.end:
-            return
-        if end is None or end <= cut:
-            raise NoDerivationError("no rational instant was found at which it comes")
-        cut = end
-    raise NoDerivationError("what holds changes at an irrational instant, which rational ones only approach")
+
+    def serve(cut: Cut) -> tuple[Cut | None, Moment]:
+        here = _span_at(right, _moved(cut, low))
+        if here is None:
+            return _later(part, cut, low, high, right, left)
+        return _before(here.end, low, part.end, cut), Later(low)
+
+    return _in_turn(part, serve, "no rational instant was found at which it comes")
 
 
 def _before(limit: Cut | None, low: Fraction, wanted: Cut | None, cut: Cut) -> Cut | None:
@@ -216,40 +226,30 @@ def breaks(
     None: the right side never comes. ``never`` is when the right side is false, ``failing`` the left.
     """
     low, high = window
-    cut = part.begin
-    for _ in range(MOST_PARTS):
+    stuck = "both sides of an until change exactly at an irrational instant"
+
+    def serve(cut: Cut) -> tuple[Cut | None, Moment | None]:
         first = _moved(cut, low)
         free = _span_at(never, first)
         if free is None:
-            raise NoDerivationError("both sides of an until change exactly at an irrational instant")
-        end: Cut | None
-        moment: Moment | None
+            raise NoDerivationError(stuck)
         over = None if free.end is None or high is None else free.end
-        broken = _span_at(failing, first)
         if free.end is None or (over is not None and _moved(cut, high or Fraction(0)) < over):
-            end, moment = _before(free.end, high or Fraction(0), part.end, cut), None
-        elif broken is not None:
+            return _before(free.end, high or Fraction(0), part.end, cut), None
+        broken = _span_at(failing, first)
+        if broken is not None:
             limits = [x for x in (broken.end, free.end) if x is not None]
-            end, moment = _before(min(limits) if limits else None, low, part.end, cut), Later(low)
-        else:
-            wanted = None if part.stop is None else part.stop + low
-            spans = [
-                x for x in failing.spans() if first < x.begin and (free.end is None or x.begin < free.end)
-            ]
-            times = (_instant(x, _first_end(x, free), wanted) for x in spans)
-            found = [x for x in times if x is not None and failing.at(x) and never.at(x)]
-            if not found:
-                raise NoDerivationError("both sides of an until change exactly at an irrational instant")
-            time = max(found)
-            after = Cut(time - low, True)
-            end, moment = (part.end if part.end is not None and part.end <= after else after), Fixed(time)
-        yield Part(cut, end), moment
-        if end == part.end:
-            return
-        if end is None or end <= cut:
-            raise NoDerivationError("both sides of an until change exactly at an irrational instant")
-        cut = end
-    raise NoDerivationError("what holds changes at an irrational instant, which rational ones only approach")
+            return _before(min(limits) if limits else None, low, part.end, cut), Later(low)
+        wanted = None if part.stop is None else part.stop + low
+        spans = (x for x in failing.spans() if first < x.begin and (free.end is None or x.begin < free.end))
+        times = (_instant(x, _first_end(x, free), wanted) for x in spans)
+        found = [x for x in times if x is not None and failing.at(x) and never.at(x)]
+        if not found:
+            raise NoDerivationError(stuck)
+        after = Cut(max(found) - low, True)
+        return (part.end if part.end is not None and part.end <= after else after), Fixed(max(found))
+
+    return _in_turn(part, serve, stuck)
 
 
 def _first_end(one: Span, other: Span) -> Point | None:

@@ -214,7 +214,6 @@ _MIRRORED: Mapping[Comparison, tuple[bool, bool]] = {
     ">": (True, True),
     ">=": (False, True),
 }
-_OPPOSITE: Mapping[Comparison, Comparison] = {"<": ">=", "<=": ">", ">": "<=", ">=": "<"}
 
 
 def compares(shapes: Shapes, left: Term, op: Comparison, right: Term, part: Part, signs: Signs) -> bool:
@@ -274,10 +273,6 @@ def said_of(shapes: Shapes, compared: Compare, part: Part, changing: Polynomial,
     if signs <= true:
         return True
     return None if signs & true else False
-
-
-def opposite(op: Comparison) -> Comparison:
-    return _OPPOSITE[op]
 
 
 def occupies(

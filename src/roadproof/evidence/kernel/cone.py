@@ -6,19 +6,86 @@ there, and their multipliers are computed exactly. Not trusted: Coq adds the pro
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import reduce
 from itertools import combinations, combinations_with_replacement, islice
 from math import gcd, lcm, prod
 from typing import Literal, TypeAlias
 
 from roadproof.evidence.kernel.linear import add_to
-from roadproof.evidence.kernel.polynomials import Monomial, Polynomial, constant, coq, times
 
+# Variables with their exponents, in order; the empty one is 1.
+Monomial: TypeAlias = tuple[tuple[int, int], ...]
 Kind: TypeAlias = Literal["above", "at least", "zero"]
 MOST_COLUMNS = 4000
 FEW_VARIABLES = 6  # with so many, squares of sums of products are tried too
 _SMALL = 1e-7
+
+
+def times(one: Monomial, other: Monomial) -> Monomial:
+    """The product of two monomials."""
+    found = dict(one)
+    for variable, exponent in other:
+        found[variable] = found.get(variable, 0) + exponent
+    return tuple(sorted(found.items()))
+
+
+@dataclass(frozen=True)
+class Polynomial:
+    """Coefficients by monomial, none of them 0."""
+
+    parts: Mapping[Monomial, Fraction] = field(default_factory=dict)
+
+    def __add__(self, other: "Polynomial") -> "Polynomial":
+        found = dict(self.parts)
+        for monomial, factor in other.parts.items():
+            found[monomial] = found.get(monomial, Fraction(0)) + factor
+        return Polynomial({m: q for m, q in found.items() if q})
+
+    def __sub__(self, other: "Polynomial") -> "Polynomial":
+        return self + other * constant(Fraction(-1))
+
+    def __mul__(self, other: "Polynomial") -> "Polynomial":
+        found: dict[Monomial, Fraction] = {}
+        for m, p in self.parts.items():
+            for n, q in other.parts.items():
+                monomial = times(m, n)
+                found[monomial] = found.get(monomial, Fraction(0)) + p * q
+        return Polynomial({m: q for m, q in found.items() if q})
+
+    @property
+    def variables(self) -> set[int]:
+        return {variable for m in self.parts for variable, _ in m}
+
+
+def constant(value: Fraction) -> Polynomial:
+    """A number."""
+    return Polynomial({(): value} if value else {})
+
+
+def variable(number: int) -> Polynomial:
+    """The variable of that number, from 1."""
+    return Polynomial({((number, 1),): Fraction(1)})
+
+
+def coq(polynomial: Polynomial) -> str:
+    """As a term of Products.v."""
+    shown = [_joined("mul_", _factors(m, q)) for m, q in sorted(polynomial.parts.items())]
+    return _joined("add_", shown or ["(c_ 0 1)"])
+
+
+def _joined(word: str, parts: Iterable[str]) -> str:
+    """A word of Products.v for two parts, applied to several: the first two, then the next."""
+    return reduce(lambda one, other: f"({word} {one} {other})", parts)
+
+
+def _factors(monomial: Monomial, factor: Fraction) -> Iterator[str]:
+    if factor != 1 or not monomial:
+        top = str(factor.numerator) if factor >= 0 else f"({factor.numerator})"
+        yield f"(c_ {top} {factor.denominator})"
+    for variable, exponent in monomial:
+        yield from [f"(x_ {variable})"] * exponent
 
 
 @dataclass(frozen=True)
@@ -132,10 +199,7 @@ def _product(made: _Product) -> _Column:
     places, polynomial, strict = made
 
     def written(q: Fraction, given: Callable[[int], str]) -> str:
-        found = given(places[0])
-        for place in places[1:]:
-            found = f"(product_ {found} {given(place)})"
-        return f"(product_ {_number(q)} {found})"
+        return f"(product_ {_number(q)} {_joined('product_', map(given, places))})"
 
     return _Column(polynomial, strict, False, places, written)
 

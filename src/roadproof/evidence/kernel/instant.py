@@ -10,9 +10,8 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from roadproof.errors import InputError
-from roadproof.evidence.kernel.cone import Constraint, Sum, contradiction
+from roadproof.evidence.kernel import cone
 from roadproof.evidence.kernel.plain import atoms_of, binary, comparisons, extrema, plain
-from roadproof.evidence.kernel.polynomials import Polynomial, constant, coq, variable
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
@@ -42,14 +41,14 @@ class _State:
     """One case: facts by their places, constraints by theirs, terms that stand for polynomials."""
 
     facts: tuple[tuple[bool, Formula], ...]
-    constraints: tuple[Constraint, ...]
-    table: Mapping[Term, Polynomial]
+    constraints: tuple[cone.Constraint, ...]
+    table: Mapping[Term, cone.Polynomial]
     waiting: tuple[int, ...]  # facts that are to be read
     choices: tuple[int, ...] = ()  # disjunctions
     divided: frozenset[Term] = frozenset()
     cuts: int = 0
 
-    def constrained(self, *more: Constraint) -> "_State":
+    def constrained(self, *more: cone.Constraint) -> "_State":
         return replace(self, constraints=(*self.constraints, *more))
 
     def told(self, place: int, *facts: tuple[bool, Formula]) -> "_State":
@@ -86,9 +85,9 @@ class _Search:
             for side in (x.left, x.right):
                 for atom in atoms_of(side):
                     self.atoms.setdefault(atom, len(self.atoms) + 1)
-        table = {x: variable(number) for x, number in self.atoms.items()}
+        table = {x: cone.variable(number) for x, number in self.atoms.items()}
         bounds = [
-            Constraint("above" if strict else "at least", table[p])
+            cone.Constraint("above" if strict else "at least", table[p])
             for name, strict in self.strict.items()
             for p in self.atoms
             if isinstance(p, t.Parameter) and p.name == name
@@ -101,7 +100,7 @@ class _Search:
             raise NoReasonError
         for x in state.table:
             if isinstance(x, t.Size) and x not in state.divided:
-                new = Constraint("above", state.table[x])
+                new = cone.Constraint("above", state.table[x])
                 sized = replace(state, divided=state.divided | {x}).constrained(new)
                 return f"(Sized {self._size(x)} {self._prove(sized)})"
         for place in state.waiting:
@@ -124,8 +123,8 @@ class _Search:
                 return f"(Absurd {found.written()})"
         return None
 
-    def _contradiction(self, constraints: Sequence[Constraint], level: int) -> Sum | None:
-        found, work = contradiction(constraints, level)
+    def _contradiction(self, constraints: Sequence[cone.Constraint], level: int) -> cone.Sum | None:
+        found, work = cone.contradiction(constraints, level)
         self.work -= work
         if found is None and self.work < 0:
             raise NoReasonError
@@ -159,7 +158,7 @@ class _Search:
                     return None
                 greater = other - one_side if (op in ("<", "<=")) == sign else one_side - other
                 strict = (op in ("<", ">")) == sign
-                new = Constraint("above" if strict else "at least", greater)
+                new = cone.Constraint("above" if strict else "at least", greater)
                 return f"(Reads {number} {self._prove(state.told(place).constrained(new))})"
             case _:
                 for other_place, (other_sign, other_formula) in enumerate(state.facts):
@@ -180,16 +179,16 @@ class _Search:
 
     # --- terms -------------------------------------------------------------------------------------
 
-    def _polynomial(self, state: _State, term: Term) -> Polynomial | None:
+    def _polynomial(self, state: _State, term: Term) -> cone.Polynomial | None:
         """As ``polynomial`` of Products.v; None for a maximum or minimum that is not resolved."""
         if term in state.table:
             return state.table[term]
         match term:
             case t.Number(value, _):
-                return constant(value)
+                return cone.constant(value)
             case t.Sum() | t.Product():
                 parts = [self._polynomial(state, x) for x in t.children(term)]
-                found = constant(Fraction(int(isinstance(term, t.Product))))
+                found = cone.constant(Fraction(int(isinstance(term, t.Product))))
                 for x in parts:
                     if x is None:
                         return None
@@ -199,13 +198,13 @@ class _Search:
                 inner = self._polynomial(state, base)
                 if inner is None:
                     return None
-                found = constant(Fraction(1))
+                found = cone.constant(Fraction(1))
                 for _ in range(exponent):
                     found = _small(found * inner)
                 return found
             case t.Quotient(above, t.Number(value, _)) if value:
                 inner = self._polynomial(state, above)
-                return None if inner is None else inner * constant(1 / value)
+                return None if inner is None else inner * cone.constant(1 / value)
             case _:
                 return None
 
@@ -218,11 +217,11 @@ class _Search:
             if above is None or below is None:
                 continue
             for up in (True, False):
-                other = constant(Fraction(0)) - below if up else below
-                asked = (*state.constraints, Constraint("at least", other))
+                other = cone.constant(Fraction(0)) - below if up else below
+                asked = (*state.constraints, cone.Constraint("at least", other))
                 shown = next((y for level in LEVELS[:2] if (y := self._contradiction(asked, level))), None)
                 if shown is not None:
-                    new = Constraint("zero", state.table[x] * below - above)
+                    new = cone.Constraint("zero", state.table[x] * below - above)
                     inside = self._prove(replace(state, divided=state.divided | {x}).constrained(new))
                     words = f"{self._term(x.numerator)} {self._term(x.denominator)} {str(up).lower()}"
                     return f"(Over {words} {shown.written()} {inside})"
@@ -240,9 +239,11 @@ class _Search:
                     continue
                 least, most = (p, q) if isinstance(x, t.Minimum) else (q, p)
                 first = replace(state, table={**state.table, x: least}).constrained(
-                    Constraint("at least", q - p)
+                    cone.Constraint("at least", q - p)
                 )
-                other = replace(state, table={**state.table, x: most}).constrained(Constraint("above", p - q))
+                other = replace(state, table={**state.table, x: most}).constrained(
+                    cone.Constraint("above", p - q)
+                )
                 word = "Smallest" if isinstance(x, t.Minimum) else "Largest"
                 words = f"{word} {self._term(one)} {self._term(two)}"
                 return f"({words} {self._prove(first)} {self._prove(other)})"
@@ -255,11 +256,11 @@ class _Search:
         signs = {v for x in state.constraints for v in x.polynomial.variables if len(x.polynomial.parts) == 1}
         for x, polynomial in state.table.items():
             if isinstance(x, t.Quotient) and not polynomial.variables & signs:
-                below = constant(Fraction(0)) - polynomial
+                below = cone.constant(Fraction(0)) - polynomial
                 cut = replace(state, cuts=state.cuts + 1)
-                first = self._prove(cut.constrained(Constraint("at least", polynomial)))
-                other = self._prove(cut.constrained(Constraint("above", below)))
-                return f"(Sign {coq(polynomial)} {first} {other})"
+                first = self._prove(cut.constrained(cone.Constraint("at least", polynomial)))
+                other = self._prove(cut.constrained(cone.Constraint("above", below)))
+                return f"(Sign {cone.coq(polynomial)} {first} {other})"
         raise NoReasonError
 
     def _term(self, term: Term) -> str:
@@ -270,7 +271,7 @@ class _Search:
         return "Length" + shown[len("length") :] if size.name == "length" else "Width" + shown[len("width") :]
 
 
-def _small(polynomial: Polynomial) -> Polynomial:
+def _small(polynomial: cone.Polynomial) -> cone.Polynomial:
     """Raises ``NoReasonError`` for what is too large to be looked at."""
     if len(polynomial.parts) > MOST_PARTS:
         raise NoReasonError

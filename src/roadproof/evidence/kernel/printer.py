@@ -23,7 +23,6 @@ from roadproof.logic.terms import Term
 # Words of Text.v, which are those of the language; a new signal has none there.
 _SAID_OF_VEHICLES = frozenset(re.findall(r"\w+", "s d v_lon v_lat a_lon a_lat length width"))
 _ZONES = ("main", "merge", "depart")
-_COMPARED = {"<": "<", "<=": "<=", ">": ">", ">=": ">="}
 
 # What a definition calls its arguments, with their sorts; only names depend on it.
 Formals = Mapping[str, Sequence[tuple[str, str]]]
@@ -179,7 +178,7 @@ class Printer:
             case f.Truth(value):
                 return f"Truth{CLOSE}{str(value).lower()}"
             case f.Compare(left, op, right):
-                return f"{self._side(left, scope)} {_COMPARED[op]} {self._side(right, scope)}"
+                return f"{self._side(left, scope)} {op} {self._side(right, scope)}"
             case f.Occupies(vehicle, lanelet):
                 return CLOSE.join(["occ", self.vehicle(vehicle, scope), self.road(lanelet, scope)])
             case f.Some(variable, domain, body) | f.Every(variable, domain, body):

@@ -12,12 +12,12 @@ from roadproof.evidence.kernel.branch import (
     Move,
     NotFoundError,
     Proof,
+    Step,
     TrueInterval,
     Universal,
     two,
     used,
 )
-from roadproof.evidence.kernel.steps import Step
 from roadproof.evidence.sites import Site, prefix_form
 from roadproof.evidence.times import ZERO, Moment, at, compared_times, moment_of
 from roadproof.logic import formula as f

@@ -17,12 +17,13 @@ from roadproof.evidence.kernel.branch import (
     Move,
     NotFoundError,
     Proof,
+    Step,
     Universal,
+    numbered,
     used,
 )
 from roadproof.evidence.kernel.dividing import next_move
 from roadproof.evidence.kernel.reading import read
-from roadproof.evidence.kernel.steps import Step, numbered
 from roadproof.evidence.kernel.tableau import Tableau
 from roadproof.evidence.times import ZERO, at, read_moment
 
