@@ -33,7 +33,6 @@ from roadproof.evidence.strict import Fields, Json, JsonObject, rational, text
 
 T = TypeVar("T")
 Read: TypeAlias = Callable[[object, str], object]
-Path: TypeAlias = tuple[str, ...]
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeAlias
 
+from roadproof.evidence.kernel.tableau import WIDTH
+
 
 @dataclass(frozen=True)
 class Fixed:
@@ -65,11 +67,11 @@ def rational(value: Fraction) -> str:
     return f"({value.numerator} # {value.denominator})"
 
 
-def coq_derivation(step: Step, width: int = 110) -> Iterator[str]:
+def coq_derivation(step: Step) -> Iterator[str]:
     """A derivation as a term of Shown.v, in lines."""
     line = ""
     for word in _words(step):
-        if line and len(line) + len(word) > width:
+        if line and len(line) + len(word) > WIDTH:
             yield line
             line = ""
         line += word if not line or word in (")", "]", ";") or line[-1] in "([" else f" {word}"

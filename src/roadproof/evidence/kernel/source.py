@@ -10,10 +10,9 @@ from roadproof.evidence.kernel.names import comment, literal
 from roadproof.evidence.kernel.plain import comparisons
 from roadproof.evidence.kernel.printer import CLOSE, Printer
 from roadproof.evidence.kernel.statement import Statement
-from roadproof.evidence.kernel.tableau import Tableau, coq_tree
+from roadproof.evidence.kernel.tableau import WIDTH, Tableau, coq_tree
 from roadproof.logic.rewrite import without_names
 
-WIDTH = 110
 MOST_COMPARISONS = 8  # of a fact that Coq's own tactics are asked about; with more they do not end
 HEAD = """\
 From Coq Require Import QArith String List.

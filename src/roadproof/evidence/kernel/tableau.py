@@ -39,6 +39,7 @@ RULES: dict[str, tuple[str, int]] = {
     "Fact": ("im", 1),
 }
 MOST_NODES = 50_000
+WIDTH = 110  # of a line of Coq
 _WHOLE = re.compile(r"0|[1-9][0-9]{0,4}", re.ASCII)
 _RATIONAL = re.compile(r"-?[0-9]{1,40}(/[1-9][0-9]{0,40})?", re.ASCII)
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,99}", re.ASCII)
@@ -139,7 +140,7 @@ def _only(pattern: re.Pattern[str], word: str) -> str:
 # --- for Coq -------------------------------------------------------------------------------------
 
 
-def coq_tree(tableau: Tableau, width: int = 110) -> Iterator[str]:
+def coq_tree(tableau: Tableau) -> Iterator[str]:
     """The tableau as a term of Tableau.v, in lines."""
     line = ""
     waiting: list[int] = []  # children that the nodes above still lack
@@ -153,7 +154,7 @@ def coq_tree(tableau: Tableau, width: int = 110) -> Iterator[str]:
             text += ")"
             if waiting:
                 waiting[-1] -= 1
-        if len(line) + len(text) > width and line:
+        if len(line) + len(text) > WIDTH and line:
             yield line
             line = ""
         line += f" {text}" if line else text
