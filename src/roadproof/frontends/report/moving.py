@@ -145,8 +145,8 @@ def draw_moving(file: DriveFile, library: Library, title: str = "") -> bytes:
         viewBox=f"0 0 {WIDTH:g} {height:g}",
         width=f"{WIDTH:g}",
         height=f"{height:g}",
+        **{"font-family": "Helvetica, Arial, sans-serif"},
     )
-    root.attrib["font-family"] = "Helvetica, Arial, sans-serif"
     return document(root)
 
 
@@ -176,16 +176,11 @@ def _road(scene: Scene) -> Iterator[Element]:
         x, y, wide, high_ = scene.pixels((*along, right, beyond))
         pieces.append(element("rect", x=_n(x), y=_n(y), width=_n(wide), height=_n(high_), fill=SHADES[zone]))
         for edge in (y, y + high_):
-            line = element("line", x1=_n(x), x2=_n(x + wide), y1=_n(edge), y2=_n(edge), stroke="#888888")
-            if top + 1 < edge < top + height - 1:
-                line.attrib["stroke-dasharray"] = " ".join(_n(x * scene.scale[0]) for x in DASH)
-            pieces.append(line)
+            dash = " ".join(_n(x * scene.scale[0]) for x in DASH) if top + 1 < edge < top + height - 1 else ""
+            pieces.append(_line((x, edge), (x + wide, edge), "#888888", dash))
     shift = [-x * scene.scale[0] for x in travel]
-    moved = element("g", *pieces, transform=f"translate({_n(shift[scene.still])} 0)")
-    moved.append(_moved(scene, shift))
-    shown = element("g", moved, *_envelopes(scene))
-    shown.attrib["clip-path"] = "url(#window)"
-    yield shown
+    moved = element("g", *pieces, _moved(scene, shift), transform=f"translate({_n(shift[scene.still])} 0)")
+    yield element("g", moved, *_envelopes(scene), **{"clip-path": "url(#window)"})
 
 
 def _vehicles(scene: Scene) -> Iterator[Element]:
@@ -247,7 +242,7 @@ def _over_time(scene: Scene, strips: Sequence[Strip], top: float) -> Iterator[El
     for row, (depth, name, spans, colour) in enumerate(rows):
         y = top + ROW * row
         yield _text(_fitting("\u2002" * depth + name), EDGE, y + 12, fill="#333333", size=11)
-        yield element("line", x1=_n(begin), x2=_n(end), y1=_n(y + 8), y2=_n(y + 8), stroke="#dddddd")
+        yield _line((begin, y + 8), (end, y + 8), "#dddddd")
         for since, until in spans:
             x, width = begin + since * pixels, max(1.5, (until - since) * pixels)
             yield element("rect", x=_n(x), y=_n(y + 3), width=_n(width), height="10", fill=colour)
@@ -255,10 +250,11 @@ def _over_time(scene: Scene, strips: Sequence[Strip], top: float) -> Iterator[El
     for second in range(0, int(scene.file.horizon) + 1, step):
         yield _text(f"{second} s", begin + second * pixels, bottom + 14, fill="#555555", size=10, middle=True)
     if scene.begins is not None:
-        yield _line_at(begin + scene.begins * pixels, top - 8, bottom, DANGER, dashed=True)
-        yield _text("danger begins", begin + scene.begins * pixels, top - 11, DANGER, size=11, middle=True)
+        x = begin + scene.begins * pixels
+        yield _line((x, top - 8), (x, bottom), DANGER, "4 2")
+        yield _text("danger begins", x, top - 11, DANGER, size=11, middle=True)
     places = [begin + float(time) * pixels for time in scene.times]
-    cursor = _line_at(places[scene.still], top - 4, bottom, "#222222")
+    cursor = _line((places[scene.still], top - 4), (places[scene.still], bottom), "#222222")
     cursor.extend(_animated(scene, {"x1": places, "x2": places}))
     yield cursor
 
@@ -279,18 +275,14 @@ def _text(
     text: str, x: float, y: float, fill: str = "#111111", size: int = LETTER, middle: bool = False
 ) -> Element:
     """A text that begins at ``x``, or has its middle there."""
-    made = element("text", text=text, x=_n(x), y=_n(y), fill=fill)
-    made.attrib["font-size"] = str(size)
-    if middle:
-        made.attrib["text-anchor"] = "middle"
-    return made
+    anchor = {"text-anchor": "middle"} if middle else {}
+    return element("text", text=text, x=_n(x), y=_n(y), fill=fill, **{"font-size": str(size)}, **anchor)
 
 
-def _line_at(x: float, top: float, bottom: float, stroke: str, dashed: bool = False) -> Element:
-    line = element("line", x1=_n(x), x2=_n(x), y1=_n(top), y2=_n(bottom), stroke=stroke)
-    if dashed:
-        line.attrib["stroke-dasharray"] = "4 2"
-    return line
+def _line(begin: Span, end: Span, stroke: str, dash: str = "") -> Element:
+    """A line between two points, dashed where the lengths of dash and gap are given."""
+    ends = {"x1": _n(begin[0]), "x2": _n(end[0]), "y1": _n(begin[1]), "y2": _n(end[1])}
+    return element("line", **ends, stroke=stroke, **({"stroke-dasharray": dash} if dash else {}))
 
 
 def _moving_box(scene: Scene, boxes: Sequence[Box], fill: str) -> Element:
