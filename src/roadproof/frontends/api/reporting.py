@@ -130,9 +130,9 @@ def _alone(given: Given, checked: CheckReport | None) -> list[Finding]:
 def _words(result: Result, library: Library) -> Mapping[int, str]:
     """What scenarios are called in the set of a result."""
     said = result.data.get("set") or result.data.get("sets") or "base"
-    name = said if isinstance(said, str) else said[0]
+    first = said[0] if isinstance(said, list) else said
     try:
-        home = library.select(name.partition(",")[0])
+        home = library.select(str(first).partition(",")[0])
     except RoadproofError:
         home = library.select()
     return {n: words_of(home, n).name for n in numbers_of(home)}

@@ -124,20 +124,16 @@ def _values_of(certificate: Certificate) -> str:
 
 def _show_premises(assumed: Assumption) -> list[str]:
     """The premises of a certificate: limits, facts about motion and inductions; and the other limits."""
-    return [*_show_assumed(assumed), *(f"  by induction over time: {x}" for x in assumed.inductions)]
-
-
-def _show_assumed(assumed: Assumption) -> list[str]:
-    """The limits and facts about motion that are premises, and the limits that are none."""
-    if not is_moving(assumed.said):
-        return []
-    lines = [f"  of the limits: {', '.join(assumed.limits)}"] if assumed.limits else []
-    if assumed.facts:
-        lines.append(f"  of motion: {', '.join(map(str, assumed.facts))}")
-    if not lines:
-        without = "neither a limit nor a fact about motion" if assumed.unused else "no fact about motion"
-        return [f"  the proof uses {without}: the claim holds without them"]
-    return lines + ([f"  limits not used: {', '.join(assumed.unused)}"] if assumed.unused else [])
+    lines = []
+    if is_moving(assumed.said):
+        lines += [f"  of the limits: {', '.join(assumed.limits)}"] if assumed.limits else []
+        lines += [f"  of motion: {', '.join(map(str, assumed.facts))}"] if assumed.facts else []
+        if not lines:
+            without = "neither a limit nor a fact about motion" if assumed.unused else "no fact about motion"
+            lines = [f"  the proof uses {without}: the claim holds without them"]
+        elif assumed.unused:
+            lines.append(f"  limits not used: {', '.join(assumed.unused)}")
+    return lines + [f"  by induction over time: {x}" for x in assumed.inductions]
 
 
 def _show_drive(judged: JudgedDrive) -> list[str]:

@@ -29,6 +29,7 @@ from roadproof.frontends.report.drive_data import (
     vehicles_of,
     window_of,
 )
+from roadproof.frontends.report.sheet import excerpt
 from roadproof.library.specification import Library
 from roadproof.recordings.export.xml import document, element
 from roadproof.world.motion import State, states_at
@@ -39,6 +40,7 @@ LANE_PIXELS = 7.0  # a metre across has at least that many
 DASH = (3, 9)  # metres of paint and of a gap between lanes
 PAUSE = Fraction(1)  # how long the last state stands, in s
 MOST_STRIPS, DEEPEST = 9, 2
+LONGEST = int(NAMES / 6.2)  # letters of a name
 STEPS, MOST_TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000), 12  # whole seconds between ticks
 
 
@@ -241,7 +243,7 @@ def _over_time(scene: Scene, strips: Sequence[Strip], top: float) -> Iterator[El
     pixels = (end - begin) / float(scene.file.horizon)
     for row, (depth, name, spans, colour) in enumerate(rows):
         y = top + ROW * row
-        yield _text(_fitting("\u2002" * depth + name), EDGE, y + 12, fill="#333333", size=11)
+        yield _text(excerpt("\u2002" * depth + name, LONGEST), EDGE, y + 12, fill="#333333", size=11)
         yield _line((begin, y + 8), (end, y + 8), "#dddddd")
         for since, until in spans:
             x, width = begin + since * pixels, max(1.5, (until - since) * pixels)
@@ -257,11 +259,6 @@ def _over_time(scene: Scene, strips: Sequence[Strip], top: float) -> Iterator[El
     cursor = _line((places[scene.still], top - 4), (places[scene.still], bottom), "#222222")
     cursor.extend(_animated(scene, {"x1": places, "x2": places}))
     yield cursor
-
-
-def _fitting(name: str) -> str:
-    most = int(NAMES / 6.2)
-    return name if len(name) <= most else f"{name[: most - 1]}…"
 
 
 # --- shapes and their changes -------------------------------------------------------------------

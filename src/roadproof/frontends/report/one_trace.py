@@ -4,6 +4,7 @@ from textwrap import wrap
 from typing import Any
 
 from roadproof.frontends.report.figures import legend_beside, make_figure, name_rows
+from roadproof.frontends.report.sheet import excerpt
 from roadproof.recordings.evaluate.observed import FirstAnswer
 
 _TRUE, _UNDECIDED, _WIDEST = "#4b8b3b", "#bbbbbb", 60
@@ -45,11 +46,6 @@ def _interval(span: tuple[float, float]) -> str:
     return f"{{{begin:g}}}" if begin == end else f"[{begin:g}, {end:g}]"
 
 
-def _short(name: str) -> str:
-    """A name that fits beside its strip; the whole formula stands above."""
-    return name if len(name) <= _WIDEST else name[: _WIDEST - 1] + "…"
-
-
 def draw_strips(observed: FirstAnswer) -> Any:
     """A strip a part, each below what it is part of: green where it is true, grey where undecided."""
     strips = observed.strips
@@ -62,7 +58,7 @@ def draw_strips(observed: FirstAnswer) -> Any:
                 if begin <= end:
                     width = max(min(last, end) - begin + sample, end / 300)
                     axes.barh(row, width, left=begin, height=0.7, color=colour)
-    name_rows(axes, ["  " * strip.depth + _short(strip.name) for strip in strips])
+    name_rows(axes, ["  " * strip.depth + excerpt(strip.name, _WIDEST) for strip in strips])
     axes.set_xlim(0, end + sample)
     axes.set_xlabel("s", fontsize=8)
     axes.fill([], [], color=_TRUE, label="true")

@@ -143,6 +143,11 @@ def csv_text(header: Iterable[object], rows: Iterable[Iterable[object]]) -> str:
     return out.getvalue()
 
 
+def excerpt(text: str, most: int) -> str:
+    """A text of at most so many letters: of a longer one the beginning."""
+    return text if len(text) <= most else f"{text[: most - 1]}…"
+
+
 def _written(cell: Cell) -> Value:
     if isinstance(cell, Fraction):
         return f"{float(cell):.10g}"

@@ -3,13 +3,13 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 from roadproof.analysis.study.evidence_store import INDEX
 from roadproof.errors import InputError
 from roadproof.evidence import certificate, drive_file
 from roadproof.evidence.journal import ANSWERS, HEAD
-from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
+from roadproof.evidence.strict import LARGEST_INDEX, Fields, Json, read_json
 
 Words: TypeAlias = Mapping[int, str]
 """What scenarios are called."""
@@ -26,7 +26,7 @@ class Result:
 
     name: str
     schema: str
-    data: Mapping[str, Any]
+    data: Mapping[str, Json]
     folder: Path | None = None
     id: int = 0
 
@@ -95,7 +95,7 @@ def _in_folder(folder: Path) -> Iterator[Path]:
             yield path
 
 
-def _read(file: Path) -> tuple[str, Mapping[str, Any]]:
+def _read(file: Path) -> tuple[str, Mapping[str, Json]]:
     data = Fields(read_json(file, LARGEST_INDEX), str(file))
     schema = data.text("schema") if "schema" in data.content else ""
     if not schema.startswith("roadproof/"):

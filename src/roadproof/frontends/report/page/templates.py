@@ -19,6 +19,7 @@ import gzip
 import json
 from importlib import resources
 
+from roadproof.frontends.report.sheet import excerpt
 from roadproof.frontends.report.viewer_document import Document
 from roadproof.frontends.report.viewer_page import as_url, hash_of, viewer_modules, viewer_style
 
@@ -76,7 +77,7 @@ def short(value: object, most: int = 400) -> str:
         told = ", ".join(short(x, 80) for x in value)
     else:
         told = "" if value is None else str(value)
-    return told if len(told) <= most else told[: most - 1] + "…"
+    return excerpt(told, most)
 
 
 @cache
