@@ -42,7 +42,7 @@ from roadproof.library.scenarios import components
 from roadproof.library.specification import Query, Source, Specification
 from roadproof.library.words import spans
 from roadproof.logic.rewrite import with_values, without_names
-from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.simulate import simulate
 from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.semantics.sampled import compile

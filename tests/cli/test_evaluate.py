@@ -22,7 +22,7 @@ from roadproof.recordings.evaluate.questions import ask, default_settings
 from roadproof.recordings.export.csv_table import csv_of
 from roadproof.recordings.formats.highd import read_highd
 from roadproof.recordings.formats.write_highd import write_highd
-from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.simulate import simulate
 from roadproof.recordings.simulate.traffic import Traffic
 from traffic.faults import plant_fault
 

@@ -25,7 +25,7 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.library.specification import Query, Specification
 from roadproof.recordings.formats.write_highd import write_highd
-from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.simulate import simulate
 from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.verdict import Verdict
 

@@ -16,7 +16,7 @@ import pytest
 
 from exporting.kept import TURN, motion, subject
 from roadproof.errors import UsageError
-from roadproof.recordings.export.polyline import polyline_of
+from roadproof.recordings.export.openscenario import polyline_of
 from roadproof.recordings.export.registry import FORMATS
 from roadproof.recordings.export.subject import Subject, subject_of
 from roadproof.world.road import Lanelet, Road

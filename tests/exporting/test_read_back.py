@@ -30,7 +30,7 @@ from roadproof.library.bind import bind
 from roadproof.library.elaborate import read_claim
 from roadproof.library.scenarios import roles, vehicle_order
 from roadproof.recordings.evaluate.one_trace import OneTrace, read_pair, read_samples, sample_drive
-from roadproof.recordings.export import openscenario, polyline
+from roadproof.recordings.export import openscenario
 from roadproof.recordings.export.points import axle_to_centre, centre, heading, rear_axle
 from roadproof.recordings.export.registry import FORMATS
 from roadproof.recordings.export.subject import Subject, span_of
@@ -275,14 +275,14 @@ def worst(vertices: tuple[State, ...], car: Motion) -> float:
     [TURN, HARD, SMOOTH, WEAVING, *(m for f in [*kept().values()][::6] for m in f.drive.vehicles.values())],
 )
 def test_lines_are_within_their_bound_and_a_centimetre_of_the_drive(car: Motion) -> None:
-    line = polyline.polyline_of(car, F(6))
+    line = openscenario.polyline_of(car, F(6))
     assert (line.vertices[0].time, line.vertices[-1].time) == (0, 6)
     assert worst(line.vertices, car) <= line.bound + 1e-12 <= 0.01 + 1e-12
 
 
 def test_braking_alone_is_bounded_by_an_eighth_of_the_square() -> None:
     car = motion((None, "-4", "0"))
-    line = polyline.polyline_of(car, F(2))
+    line = openscenario.polyline_of(car, F(2))
     steps = {b.time - a.time for a, b in pairwise(line.vertices)}
     assert steps == {F(1, 8)}
     assert line.bound == pytest.approx(4 * (1 / 8) ** 2 / 8)
@@ -290,32 +290,32 @@ def test_braking_alone_is_bounded_by_an_eighth_of_the_square() -> None:
 
 
 def test_a_steady_drive_needs_its_two_ends() -> None:
-    line = polyline.polyline_of(motion((None, "0", "0")), F(6))
+    line = openscenario.polyline_of(motion((None, "0", "0")), F(6))
     assert (len(line.vertices), line.bound) == (2, 0.0)
 
 
 def test_every_change_of_acceleration_is_a_vertex() -> None:
-    times = {x.time for x in polyline.polyline_of(TURN, F(6)).vertices}
+    times = {x.time for x in openscenario.polyline_of(TURN, F(6)).vertices}
     assert {F("0.5"), F("2.1"), F("3.7")} <= times
 
 
 @pytest.mark.parametrize("car", [TURN, HARD, SMOOTH, WEAVING])
 def test_planted_fault_too_few_vertices_are_noticed(car: Motion) -> None:
-    line = polyline.polyline_of(car, F(6))
+    line = openscenario.polyline_of(car, F(6))
     assert worst(line.vertices[::4], car) > 0.01
 
 
 @pytest.mark.parametrize("car", [TURN, HARD, SMOOTH])
 def test_planted_fault_a_bound_without_the_turning_would_be_broken_or_loose(car: Motion) -> None:
     """The bound is no guess: it is above what is so, and within a few times of it."""
-    line = polyline.polyline_of(car, F(6))
+    line = openscenario.polyline_of(car, F(6))
     assert line.bound / 4 < worst(line.vertices, car) <= line.bound
 
 
 def test_a_bound_has_the_greatest_acceleration_between_its_vertices() -> None:
     """From none to -6 m/s²: the last line is the one that is farthest from the drive, and near its bound."""
     car = motion(("2", "0", "0", "-3"), (None, "0", "0"))
-    line = polyline.polyline_of(car, F(2))
+    line = openscenario.polyline_of(car, F(2))
     assert line.bound * 0.8 < worst(line.vertices, car) <= line.bound <= 0.01
 
 
@@ -338,17 +338,17 @@ def test_planted_fault_a_bound_that_forgets_jerk_is_broken(
     ]
 
     def broken() -> bool:
-        made = [(car, polyline.polyline_of(car, F(1), 0.01)) for car in cars]
+        made = [(car, openscenario.polyline_of(car, F(1), 0.01)) for car in cars]
         return any(worst(line.vertices, car) > line.bound + 1e-12 for car, line in made)
 
     assert not broken()
-    plant(monkeypatch, polyline, "_part", right, wrong)
+    plant(monkeypatch, openscenario, "_part", right, wrong)
     assert broken()
 
 
 def test_speeds_accelerations_and_headings_between_vertices_are_within_what_is_said() -> None:
     for car in (SMOOTH, WEAVING, HARD, TURN):
-        line = polyline.polyline_of(car, F(4))
+        line = openscenario.polyline_of(car, F(4))
         states = [state_at(car, F(k, 200)) for k in range(801)]
         assert max(x.v_lon for x in states) <= max(x.v_lon for x in line.vertices)
         assert min(x.v_lon for x in states) >= min(x.v_lon for x in line.vertices)
@@ -360,7 +360,7 @@ def test_speeds_accelerations_and_headings_between_vertices_are_within_what_is_s
 
 def test_an_acceleration_that_is_reached_only_before_a_jump_counts() -> None:
     car = motion(("2", "0", "0", "6"), (None, "0", "0"))
-    assert max(polyline.polyline_of(car, F(3)).pulls) == 12
+    assert max(openscenario.polyline_of(car, F(3)).pulls) == 12
     assert b'maxAcceleration="12"' in openscenario.files(subject(SV=car))["made.xosc"]
 
 
@@ -377,10 +377,10 @@ def test_a_vehicle_that_goes_back_inside_a_piece_is_refused(starts: str) -> None
     """v = 1 - 2·t + t² touches 0 after 1 s; from less it falls below."""
     car = motion(("2", "-2", "0", "2"), (None, "0", "0"), start=("0", "2", starts, "0"))
     if starts == "1":
-        assert min(x.v_lon for x in polyline.polyline_of(car, F(3)).vertices) == 0
+        assert min(x.v_lon for x in openscenario.polyline_of(car, F(3)).vertices) == 0
         return
     with pytest.raises(InputError, match=r"at 1 s a vehicle has v_lon=-0\.01 m/s"):
-        polyline.polyline_of(car, F(3))
+        openscenario.polyline_of(car, F(3))
 
 
 def test_the_road_reaches_as_far_as_a_vehicle_goes_back() -> None:
@@ -393,14 +393,14 @@ def test_the_road_reaches_as_far_as_a_vehicle_goes_back() -> None:
 
 
 def test_a_vehicle_that_stops_keeps_its_heading() -> None:
-    straight = polyline.polyline_of(motion(("5", "-6", "0"), (None, "0", "0")), F(6))
+    straight = openscenario.polyline_of(motion(("5", "-6", "0"), (None, "0", "0")), F(6))
     assert (straight.vertices[-1].v_lon, straight.headings[-1]) == (0, 0.0)
     slanting = motion(("5", "-6", "-0.6"), (None, "0", "0"), start=("0", "2", "30", "3"))
-    line = polyline.polyline_of(slanting, F(6))
+    line = openscenario.polyline_of(slanting, F(6))
     assert [*line.headings] == pytest.approx([math.atan(0.1)] * len(line.headings))
     assert line.bound <= 0.01
     starts = motion((None, "2", "0.2"), start=("0", "2", "0", "0"))
-    assert polyline.polyline_of(starts, F(2)).headings[0] == pytest.approx(math.atan(0.1))
+    assert openscenario.polyline_of(starts, F(2)).headings[0] == pytest.approx(math.atan(0.1))
 
 
 @pytest.mark.parametrize(
@@ -420,7 +420,7 @@ def test_a_vehicle_that_stops_keeps_its_heading() -> None:
 )
 def test_vehicles_without_a_heading_are_refused(car: Motion, message: str) -> None:
     with pytest.raises(InputError, match=message):
-        polyline.polyline_of(car, F(6))
+        openscenario.polyline_of(car, F(6))
 
 
 # --- Who is who in exported files: vehicle 1 is SV and the others follow by name, in every format that is

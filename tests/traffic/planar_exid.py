@@ -118,7 +118,7 @@ def osm_of(road: Road, bend: Bend = straight, step: float = 10.0, local: bool = 
 
 def degrees_of(east: float, north: float) -> tuple[float, float]:
     """The point of zone 32 with this place in UTM, found by Newton's method."""
-    from roadproof.recordings.formats.osm import utm_of
+    from roadproof.recordings.formats.exid import utm_of
 
     point = np.array([50.0, 9.0])
     for _ in range(20):

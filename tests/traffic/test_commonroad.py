@@ -24,7 +24,7 @@ from roadproof.recordings.formats.measured_roads import (
     project,
     triangles_of,
 )
-from roadproof.recordings.formats.overlaps import find_overlaps
+from roadproof.recordings.formats.neighbours import find_overlaps
 from roadproof.recordings.formats.plausible import LARGEST_SIZE
 from tables import read_table
 from traffic.tiny_commonroad import Car, document, point

@@ -32,7 +32,7 @@ from roadproof.recordings.evaluate.recheck import recheck, trace_of
 from roadproof.recordings.evaluate.traces import gather
 from roadproof.recordings.formats.recording import Integers, Recording
 from roadproof.recordings.formats.write_highd import write_highd
-from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.simulate import simulate
 from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.semantics.sampled.recursive import TraceReader as Plain
 from traffic.make_recording import Track, cruise, make_recording

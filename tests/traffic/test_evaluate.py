@@ -42,7 +42,7 @@ from roadproof.recordings.formats.pairs import Pairs
 from roadproof.recordings.formats.recording import Recording, keep_vehicles
 from roadproof.recordings.formats.samples import HEADER
 from roadproof.recordings.simulate.planting import Place, plant
-from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.simulate import simulate
 from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.semantics.sampled import compile
 from roadproof.semantics.sampled.answers import TruthArrays, Verdicts

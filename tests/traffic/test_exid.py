@@ -20,8 +20,7 @@ from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
 from roadproof.recordings.evaluate.one_trace import read_pair
 from roadproof.recordings.evaluate.questions import Questions, ask, default_settings
 from roadproof.recordings.evaluate.recheck import recheck
-from roadproof.recordings.formats.exid import read_exid
-from roadproof.recordings.formats.osm import LEFT_OUT, read_osm, utm_of
+from roadproof.recordings.formats.exid import LEFT_OUT, read_exid, read_osm, utm_of
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.sources import find_source
 from roadproof.world.motion import state_at

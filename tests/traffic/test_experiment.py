@@ -32,7 +32,7 @@ from roadproof.recordings.formats.samples import read_columns
 from roadproof.recordings.formats.sources import find_sources
 from roadproof.recordings.formats.write_highd import write_highd
 from roadproof.recordings.simulate.planting import Place, plant
-from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.simulate import simulate
 from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.runtime.executors import Executor
 from traffic.drives import braking, cut_in

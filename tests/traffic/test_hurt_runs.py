@@ -30,7 +30,7 @@ from roadproof.recordings.evaluate.questions import default_settings
 from roadproof.recordings.formats.commonroad import read_commonroad
 from roadproof.recordings.formats.highd import read_highd
 from roadproof.recordings.formats.write_highd import write_highd
-from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.simulate import simulate
 from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.runtime.files import hold_folder, write_whole
 from roadproof.world.models import load_road

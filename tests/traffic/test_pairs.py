@@ -33,7 +33,7 @@ from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.repeats import see_pair
 from roadproof.recordings.formats.samples import HEADER
 from roadproof.recordings.formats.sources import find_sources
-from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.simulate import simulate
 from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.world.signals import KINDS
 from traffic.make_recording import Track, cruise, make_recording, near_pairs

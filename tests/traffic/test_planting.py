@@ -15,7 +15,7 @@ from roadproof.library.loading import bundled_library
 from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
 from roadproof.recordings.evaluate.questions import ask, default_settings
 from roadproof.recordings.formats.highd import read_highd
-from roadproof.recordings.formats.overlaps import find_overlaps
+from roadproof.recordings.formats.neighbours import find_overlaps
 from roadproof.recordings.formats.recording import ZONES, Recording
 from roadproof.recordings.formats.write_highd import write_highd
 from roadproof.recordings.simulate import simulate as simulating
@@ -29,7 +29,7 @@ from roadproof.recordings.simulate.planting import (
     plantable,
     rows_of,
 )
-from roadproof.recordings.simulate.synthetic import markings_of, simulate
+from roadproof.recordings.simulate.simulate import markings_of, simulate
 from roadproof.recordings.simulate.traffic import Traffic, road_of, zone_of
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road

@@ -24,7 +24,7 @@ from roadproof.recordings.formats.sources import find_source, find_sources
 from roadproof.recordings.formats.straight import of_road, place
 from roadproof.recordings.formats.write_highd import write_highd
 from roadproof.recordings.simulate.planting import Place, plant
-from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.simulate import simulate
 from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.semantics.sampled.batch import Batch
 from roadproof.semantics.sampled.compiled import compile

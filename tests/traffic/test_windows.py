@@ -27,7 +27,7 @@ from roadproof.recordings.formats.sources import find_source, find_sources
 from roadproof.recordings.formats.windows import Window, divide
 from roadproof.recordings.formats.write_highd import write_highd
 from roadproof.recordings.simulate.planting import Place, plant
-from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.simulate import simulate
 from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.runtime.package_data import shipped
 from traffic.drives import cut_in
@@ -269,7 +269,7 @@ def test_what_is_odd_or_refused_is_so_in_parts(
 def test_cells_that_are_missing_or_not_finite_are_named(
     frame: pl.DataFrame, ending: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("roadproof.recordings.formats.parquet.PIECE", 1_000)
+    monkeypatch.setattr("roadproof.recordings.formats.samples.PIECE", 1_000)
     monkeypatch.setattr("roadproof.recordings.formats.table.PIECE", 50_000)
     late = pl.int_range(pl.len()) == 5_000
     for wrong in (None, float("nan"), float("inf")):

@@ -35,7 +35,7 @@ from roadproof.library.scenarios import numbers_of
 from roadproof.library.words import Called, called
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.sources import find_sources
-from roadproof.recordings.simulate.synthetic import simulate
+from roadproof.recordings.simulate.simulate import simulate
 from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.runtime.files import make_folder, write_whole
 from roadproof.verdict import ExitCode, Verdict, exit_code

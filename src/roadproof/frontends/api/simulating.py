@@ -18,8 +18,8 @@ from roadproof.recordings.export.csv_table import road_toml
 from roadproof.recordings.formats.table import Frame, frame_of
 from roadproof.recordings.formats.write_highd import write_highd
 from roadproof.recordings.simulate.planting import PLANTED_COLUMNS, Truth, lane_width, plant_drives, rows_of
-from roadproof.recordings.simulate.synthetic import markings_of
-from roadproof.recordings.simulate.synthetic import simulate as simulate_one
+from roadproof.recordings.simulate.simulate import markings_of
+from roadproof.recordings.simulate.simulate import simulate as simulate_one
 from roadproof.recordings.simulate.traffic import Traffic, road_of
 from roadproof.runtime.files import write_whole
 

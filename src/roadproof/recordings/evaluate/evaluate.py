@@ -21,8 +21,8 @@ from roadproof.recordings.evaluate.foretelling import foretell
 from roadproof.recordings.evaluate.matching import Match
 from roadproof.recordings.evaluate.questions import START, MonitorKey, Questions
 from roadproof.recordings.evaluate.traces import OTHER_LANE, gather
-from roadproof.recordings.formats.overlaps import Overlap, find_overlaps, told_overlap
-from roadproof.recordings.formats.pairs import Pairs, row_of, triples_of
+from roadproof.recordings.formats.neighbours import Overlap, find_overlaps, told_overlap
+from roadproof.recordings.formats.pairs import Pairs, Triples, row_of, triples_of
 from roadproof.recordings.formats.recording import Bools, Integers, Recording
 from roadproof.recordings.formats.repeats import FramePair, see_pair
 from roadproof.recordings.formats.windows import Window
@@ -214,15 +214,8 @@ def _candidates(window: Window, questions: Questions, found: Disturbances) -> Cu
     if not len(cut.triples):
         return cut
     lanes = {LANE: _lane_at(recording, cut.triples.sv, cut.start)}
-    batch = gather(
-        recording,
-        dict(zip(TRIPLE, (cut.triples.sv, cut.triples.pov1, cut.triples.pov2), strict=True)),
-        cut.start,
-        cut.start,
-        questions.triple_start.signals,
-        lanes,
-        questions.lane_atoms,
-    )
+    vehicles, signals = _of_three(cut.triples), questions.triple_start.signals
+    batch = gather(recording, vehicles, cut.start, cut.start, signals, lanes, questions.lane_atoms)
     return cut.choose(questions.triple_start.evaluate(batch).answers[START].true)
 
 
@@ -233,8 +226,12 @@ def _match_triples(
     if not len(triples):
         return iter(())
     lanes = {LANE: _lane_at(recording, triples.sv, cut.start)}
-    vehicles = dict(zip(TRIPLE, (triples.sv, triples.pov1, triples.pov2), strict=True))
+    vehicles = _of_three(triples)
     return _ask_all(recording, questions, questions.triples, vehicles, cut.start, cut.end, lanes, tally)
+
+
+def _of_three(triples: Triples) -> dict[str, Integers]:
+    return dict(zip(TRIPLE, (triples.sv, triples.pov1, triples.pov2), strict=True))
 
 
 def _ask_all(

@@ -1,6 +1,5 @@
 """What a formula is on one trace: verdict, margin, and when each named part of it is true."""
 
-from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TypeAlias
@@ -65,7 +64,12 @@ def observe_samples(text: str, formula: Formula, batch: Batch, convention: Conve
     margin = margins.margins[_ASKED]
     dt = float(batch.dt)
     spans = _spans(monitor.evaluate(seen, convention, at="all").answers[_ASKED], dt)
-    whole = Strip(text, *spans, margins=_sampled(margin))
+    depths = _depths(formula)
+    strips = (
+        Strip(name_of(part), *_spans(truth, dt), "", depths[part], _sampled(margins.named[part]))
+        for part, truth in verdicts.named.items()
+        if part != formula
+    )
     return FirstAnswer(
         text,
         "recorded",
@@ -73,7 +77,7 @@ def observe_samples(text: str, formula: Formula, batch: Batch, convention: Conve
         (float(margin.low[0, 0]), float(margin.high[0, 0])),
         float((batch.samples - 1) * batch.dt),
         batch.dt,
-        (whole, *_strips(formula, verdicts.named, margins.named, dt)),
+        (Strip(text, *spans, margins=_sampled(margin)), *strips),
         convention,
         _said(monitor.evaluate(seen, other).answers[_ASKED]),
     )
@@ -107,18 +111,6 @@ def margins_of(formula: Formula, batch: Batch) -> tuple[float | None, ...]:
 def _sampled(margin: Margin) -> tuple[float | None, ...]:
     pairs = zip(margin.low[:, 0].tolist(), margin.high[:, 0].tolist(), strict=True)
     return tuple(low if low == high and np.isfinite(low) else None for low, high in pairs)
-
-
-def _strips(
-    formula: Formula,
-    named: Mapping[Application, TruthArrays],
-    margins: Mapping[Application, Margin],
-    dt: float,
-) -> Iterator[Strip]:
-    depths = _depths(formula)
-    for part, answer in named.items():
-        if part != formula:
-            yield Strip(name_of(part), *_spans(answer, dt), "", depths[part], _sampled(margins[part]))
 
 
 def _depths(formula: Formula) -> dict[Application, int]:

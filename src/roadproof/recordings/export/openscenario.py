@@ -2,20 +2,161 @@
 
 A vehicle's reference point is its rear axle, and its box is turned as it moves. Times are absolute
 (``domainAbsoluteRelative``), so a player is where the drive is at every instant.
+
+Vertices of a drive so dense that straight lines between them stay within a bound of it.
+
+The box's centre c has c'' = a, and a line between two of its points, h seconds apart, is nowhere further from
+it than |a|·h²/8 with the greatest |a| between them, which is that at one of them, since a is linear there.
+The vertices are of the rear axle, r = c - l·e(θ) with the heading θ of the motion, v = |c'|,
+n = v_lon·a_lat - v_lat·a_lon and n' = -v_lat·j with the jerk j along: θ' = n/v² and
+|θ''| ≤ |n'|/v² + 2·|n|·|a|/v³, so |r''| ≤ |a| + l·(|θ''| + θ'²). The heading between vertices is interpolated
+too, which moves the centre by l·|θ''|·h²/8 at most. All together: h²/8·(|a| + l·(2·|θ''| + θ'²)), for the
+axle and for the centre, each with the greatest value between the vertices or more. A heading is nowhere
+greater than at a vertex by more than |θ''|·h²/8, and not at all where n keeps its sign, as without jerk.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 
+from roadproof.errors import InputError
 from roadproof.recordings.export import opendrive
-from roadproof.recordings.export.points import OVERHANG, axle_to_centre, rear_axle
-from roadproof.recordings.export.polyline import ROUNDING, Polyline, polyline_of
+from roadproof.recordings.export.points import OVERHANG, axle_to_centre, heading, rear_axle
 from roadproof.recordings.export.subject import WRITTEN, Subject, kind_of
 from roadproof.recordings.export.xml import Element, decimal, document, element
 from roadproof.world.drive import Motion
-from roadproof.world.motion import State
+from roadproof.world.motion import State, advance, monotone_starts
 from roadproof.world.signals import Kind
+
+WITHIN = 0.0099
+"""Metres: a centimetre, with room for the rounding of floats, which ``ROUNDING`` is above."""
+ROUNDING = 1e-6
+_SHORTEST = Fraction(1, 1024)
+_SAME = 1e-9
+
+
+@dataclass(frozen=True)
+class Polyline:
+    """States and headings (rad) at the vertices, and how far (m) lines between them are from the drive.
+
+    ``turned``: no heading of the drive is greater, to either side. ``pulls``: accelerations along (m/s²)
+    among which are the least and the greatest.
+    """
+
+    vertices: tuple[State, ...]
+    headings: tuple[float, ...]
+    bound: float
+    turned: float
+    pulls: tuple[Fraction, ...]
+
+
+def polyline_of(motion: Motion, horizon: Fraction, within: float = WITHIN) -> Polyline:
+    """Vertices from time 0 to ``horizon``, at every change of acceleration and as many between as needed.
+
+    There is one where the speed along is least or greatest, so that it is nowhere below 0 if it is so at none
+    of them. Raises ``InputError`` for a vehicle that does not drive forwards, or turns where it all but
+    stands: its heading has no bound.
+    """
+    starts = [x for x in monotone_starts(motion) if x.time < horizon]
+    ends = [x.time for x in starts[1:]] + [horizon]
+    parts = [
+        part
+        for start, end in zip(starts, ends, strict=True)
+        for part in _halved(start, end - start.time, motion.length, within)
+    ]
+    vertices = (*(x.begin for x in parts), parts[-1].end)
+    headings = _headings(vertices)
+    swings = [x.swing for x in parts]
+    return Polyline(
+        vertices,
+        tuple(headings),
+        max(x.bound for x in parts),
+        max(abs(x) + y for k, x in enumerate(headings) for y in swings[max(0, k - 1) : k + 1]),
+        tuple(pull for x in parts for pull in (x.begin.a_lon, x.end.a_lon)),
+    )
+
+
+def _headings(vertices: Sequence[State]) -> list[float]:
+    """At rest the heading is the one before, or after where there is none. Raises ``InputError``."""
+    for state in vertices:
+        if state.v_lon < 0 or (state.v_lon == 0 and state.v_lat != 0):
+            raise InputError(
+                f"at {float(state.time):g} s a vehicle has v_lon={float(state.v_lon):g} m/s: other tools "
+                "want vehicles that drive forwards; end the drive before"
+            )
+    found = [heading(x) for x in vertices]
+    first = next((x for x in found if x is not None), 0.0)
+    made: list[float] = []
+    for state, turned, following in zip(vertices, found, [*found[1:], None], strict=True):
+        made.append(turned if turned is not None else made[-1] if made else first)
+        if turned is None and following is not None and abs(following - made[-1]) > _SAME:
+            raise _turns(state)
+    return made
+
+
+def _turns(state: State) -> InputError:
+    return InputError(
+        f"a vehicle turns where it all but stands, at {float(state.time):g} s: it has no heading there; "
+        "end the drive before"
+    )
+
+
+@dataclass(frozen=True)
+class _Part:
+    """From one vertex to the next; ``bound``: the one above (m); ``swing``: how much greater than at both a
+    heading (rad) may be between them."""
+
+    begin: State
+    duration: Fraction
+    bound: float
+    swing: float
+
+    @property
+    def end(self) -> State:
+        return advance(self.begin, self.duration)
+
+
+def _halved(state: State, duration: Fraction, length: Fraction, within: float) -> Iterator[_Part]:
+    """Parts of a stretch in which the speed along grows or falls, halved until the bound is small enough."""
+    part = _part(state, duration, length)
+    if part.bound <= within:
+        yield part
+        return
+    if duration <= _SHORTEST:
+        raise _turns(state)
+    yield from _halved(state, duration / 2, length, within)
+    yield from _halved(advance(state, duration / 2), duration / 2, length, within)
+
+
+def _part(state: State, duration: Fraction, length: Fraction) -> _Part:
+    """The part of ``duration`` seconds from ``state`` on; its bound is infinite where there is no heading."""
+    end = advance(state, duration)
+    pull = max(math.hypot(x.a_lon, x.a_lat) for x in (state, end))
+    swerving = float(abs(state.j_lon) * max(abs(state.v_lat), abs(end.v_lat)))
+    turning = abs(float(state.v_lon * state.a_lat - state.v_lat * state.a_lon)) + float(duration) * swerving
+    rate = bend = 0.0
+    if turning or swerving:
+        slowest = _slowest(state, end)
+        if slowest <= 0:
+            return _Part(state, duration, math.inf, math.inf)
+        rate = turning / slowest**2
+        bend = 2 * turning * pull / slowest**3 + swerving / slowest**2
+    eighth = float(duration) ** 2 / 8
+    bound = eighth * (pull + float(axle_to_centre(length)) * (2 * bend + rate**2))
+    return _Part(state, duration, bound, eighth * bend if swerving else 0.0)
+
+
+def _slowest(state: State, end: State) -> float:
+    """The least speed (m/s) from ``state`` to ``end``, or less where there is jerk."""
+    if state.j_lon != 0:
+        return float(min(state.v_lon, end.v_lon))
+    square = state.a_lon**2 + state.a_lat**2
+    along = state.v_lon * state.a_lon + state.v_lat * state.a_lat
+    time = min(max(-along / square, Fraction(0)), end.time - state.time)
+    there = advance(state, time)
+    return math.hypot(there.v_lon, there.v_lat)
+
 
 HEIGHT = Fraction(3, 2)
 WHEEL = Fraction(3, 5)

@@ -14,7 +14,7 @@ import numpy as np
 from roadproof.errors import InputError
 from roadproof.recordings.formats.lanelets import ZONES_ENDING, network_of
 from roadproof.recordings.formats.measured_roads import MeasuredTraffic, place_traffic
-from roadproof.recordings.formats.overlaps import describe_overlaps
+from roadproof.recordings.formats.neighbours import describe_overlaps
 from roadproof.recordings.formats.plausible import (
     LARGEST_ACCELERATION,
     LARGEST_SIZE,

@@ -34,13 +34,13 @@ from roadproof.recordings.formats.straight import StraightRoad, of_bands, of_roa
 from roadproof.recordings.formats.table import Table, kinds_of, names_in, read_table, sample_rows
 from roadproof.recordings.formats.tracks import (
     RATE_AT,
-    by_id,
     files_of,
     find_recordings,
     in_order,
     match_vehicles,
     rate_of,
     read_tracks,
+    vehicles_by_id,
 )
 from roadproof.world.models import load_recorded_road
 from roadproof.world.signals import SignalName, SizeName
@@ -276,7 +276,7 @@ def _read_vehicles(path: Path, counts: Mapping[str, int]) -> Table:
     meta.require(meta["id"] > 0, "id", "an id is greater than zero, which stands for no vehicle")
     for column in ("width", "height"):
         meta.require(meta[column] > 0, column, "the size of a vehicle is greater than zero")
-    ordered = by_id(meta, "id")
+    ordered = vehicles_by_id(meta, "id")
     meta.require(np.isin(meta["drivingDirection"], (UPPER, LOWER)), "drivingDirection", "must be 1 or 2")
     kinds = meta["class"].astype(np.str_)
     meta.require(np.isin(kinds, list(counts)), "class", f"must be {' or '.join(counts)}")

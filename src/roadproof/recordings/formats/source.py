@@ -15,11 +15,6 @@ TRACK_FILES = re.compile(r"(\d+)_(?:recordingMeta|tracksMeta|tracks)\.csv")
 """The names of the files of highD and exiD, with the name of the recording."""
 
 
-def as_a_whole(path: Path) -> WindowedRecording | None:
-    """Of a format that is never read in windows."""
-    return None
-
-
 @dataclass(frozen=True)
 class Format:
     """A kind of files that recordings are in.
@@ -28,8 +23,8 @@ class Format:
     files that it is read from, that of its samples last. A recording of which files are missing is found,
     so that reading it is refused. ``read`` takes the file of its samples and raises ``InputError``.
     ``rate_at``: where the files, {0} being the last, say the ``rate`` (1/s) and ``step`` (s) of samples.
-    ``told``: the files in words. ``divide``: a recording that is too large to be read as a whole, in windows;
-    None for others.
+    ``told``: the files in words. ``divide``: a recording that is too large to be read as a whole, in windows,
+    None for others; formats without it are always read as a whole.
     """
 
     name: str
@@ -37,7 +32,7 @@ class Format:
     find: Callable[[Path], dict[str, Files]]
     read: Callable[[Path], Recording]
     rate_at: str
-    divide: Callable[[Path], WindowedRecording | None] = as_a_whole
+    divide: Callable[[Path], WindowedRecording | None] | None = None
 
 
 @dataclass(frozen=True)
@@ -54,7 +49,8 @@ class RecordingSource:
 
     def divided(self) -> WindowedRecording:
         """The recording in windows, one where it is small enough. Raises ``InputError``, reading them too."""
-        return self.format.divide(self.files[-1]) or undivided(self.read())
+        divide = self.format.divide
+        return (divide and divide(self.files[-1])) or undivided(self.read())
 
     def digests(self) -> list[str]:
         """A digest of the content of each file, empty for one that cannot be read."""

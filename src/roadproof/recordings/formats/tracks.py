@@ -49,7 +49,7 @@ def rate_of(meta: Table, column: str, number: int, rule: str) -> int:
     return int(rate)
 
 
-def by_id(meta: Table, column: str) -> Table:
+def vehicles_by_id(meta: Table, column: str) -> Table:
     """The vehicles by their ids in ``column``, each once, with frames that fit. Raises ``InputError``."""
     order = np.argsort(meta[column], kind="stable")
     repeated = np.zeros(meta.rows, bool)

@@ -130,12 +130,10 @@ def _check_time(recording: Recording, place: Place, last: int) -> None:
 
 def _check_section(recording: Recording, guests: Recording, names: list[str]) -> None:
     """The guests must stay where the recording's own vehicles are seen, and on its lanes."""
-    ours = np.repeat(recording.direction == guests.direction[0], np.diff(recording.start))
-    if not ours.any():
-        way = guests.direction[0]
+    way = int(guests.direction[0])
+    if way not in recording.direction:
         raise UsageError(f"plant: direction={way} has no vehicles in recording {recording.name}")
-    rear = recording.s - recording.length[recording.row_vehicle]
-    low, high = float(rear[ours].min()), float(recording.s[ours].max())
+    low, high = _section(recording, way)
     vehicle = guests.row_vehicle
     outside = (guests.s > high) | (guests.s - guests.length[vehicle] < low) | (guests.occupancy == 0)
     if outside.any():
@@ -145,6 +143,13 @@ def _check_section(recording: Recording, guests: Recording, names: list[str]) ->
             f"{guests.row_frame[row]}: it must stay within s={low:g} to {high:g} and on the lanes of "
             f"recording {recording.name}; move the drive or plant fewer seconds"
         )
+
+
+def _section(recording: Recording, way: int) -> tuple[float, float]:
+    """From where to where (m) the vehicles of a direction are seen."""
+    ours = np.repeat(recording.direction == way, np.diff(recording.start))
+    rear = recording.s - recording.length[recording.row_vehicle]
+    return float(rear[ours].min()), float(recording.s[ours].max())
 
 
 def _in_the_way(recording: Recording, guests: Recording, place: Place) -> Bools:
@@ -250,9 +255,7 @@ def _place(recording: Recording, file: DriveFile, way: int, frame: int) -> Place
             "simulate more lanes"
         )
     right = min(band[0] for band in bands) - float(min(x.d[0] for x in file.road.lanelets))
-    ours = np.repeat(recording.direction == way, np.diff(recording.start))
-    rear = recording.s - recording.length[recording.row_vehicle]
-    low, high = float(rear[ours].min()), float(recording.s[ours].max())
+    low, high = _section(recording, way)
     motions = file.drive.vehicles.values()
     s = low + 0.5 - min(float(m.s - m.length) for m in motions)
     dt = Fraction(1, recording.rate)
