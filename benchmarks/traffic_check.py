@@ -15,8 +15,7 @@ from pathlib import Path
 from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
 from roadproof.recordings.evaluate.questions import ask, default_settings
 from roadproof.recordings.formats.recording import Recording
-from roadproof.recordings.simulate.simulate import Traffic
-from roadproof.recordings.simulate.simulate import simulate
+from roadproof.recordings.simulate.simulate import Traffic, simulate
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from traffic.reference import Reference, Row
