@@ -13,7 +13,7 @@ from roadproof.engines.encode.motion import Layout, encode_motions
 from roadproof.engines.encode.place import move_one_way, rectangles, stay_apart, stay_on_road
 from roadproof.engines.encode.problem import AnyOf, Inequality, affine, evaluate, variable
 from roadproof.engines.encode.unroll import Grid
-from roadproof.engines.search.rounding import round_drive
+from roadproof.engines.search.shape import round_drive
 from roadproof.world.models import load_road, load_vehicle
 from roadproof.world.motion import state_at
 

@@ -28,12 +28,11 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.semantics.exact import within
+from roadproof.semantics.exact import exact
 from roadproof.semantics.exact.algebraic import real_roots
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.exact import judge, truth_within
 from roadproof.semantics.exact.signals import AbstractSignals, DriveSignals
 from roadproof.semantics.exact.truth import ALWAYS, NEVER, intersection, interval, union
-from roadproof.semantics.exact.within import truth_within
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.road import Lanelet, Road, pairs
 from tables import read_table
@@ -388,7 +387,7 @@ many = settings(max_examples=300, deadline=None, derandomize=True)
 def both(formula, drive, pair):
     signals = DriveSignals(drive)
     whole = judge(formula, signals).truth(formula)
-    return within.truth_within(formula, signals, *pair), intersection([whole, interval(*pair)])
+    return exact.truth_within(formula, signals, *pair), intersection([whole, interval(*pair)])
 
 
 @many
@@ -414,7 +413,7 @@ def test_along_lines_of_driver_models_it_is_what_the_judge_says(options, speed):
     read_table(__file__, "planted_faults_are_noticed"),
 )
 def test_planted_faults_are_noticed(monkeypatch, name, right, wrong):
-    owner = within._EndedSignals if name == "signal" else within._RestrictedTruth
+    owner = exact._EndedSignals if name == "signal" else exact._RestrictedTruth
     found = []
 
     @settings(max_examples=400, deadline=None, derandomize=True, database=None)

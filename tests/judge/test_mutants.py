@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from judge.cases import comparisons, drives, every_small_case, jerk_comparisons, jerk_drives
 from judge.pinning import disagreement_on_drive, disagreement_on_sets
-from roadproof.semantics.exact import comparison, exact, piecewise, signals, truth
+from roadproof.semantics.exact import exact, piecewise, signals, truth
 from roadproof.semantics.exact.algebraic import moved
 from roadproof.semantics.exact.polynomial import polynomial
 from roadproof.semantics.exact.truth import Cut, Span, TruthSet, complement, eventually, intersection, union
@@ -24,7 +24,7 @@ search = settings(
     suppress_health_check=list(HealthCheck),
 )
 real_until, real_reaching = truth.until, truth._reaching
-real_signs, real_course, real_starts = piecewise._signs, signals._course, signals.starts_of
+real_signs, real_course, real_starts = piecewise._signs, signals.course, signals.starts_of
 
 
 def classic_until(left, low, high, right):
@@ -174,12 +174,12 @@ def left_continuous(motion):
         (piecewise, "_signs", open_roots),
         (piecewise, "_signs", crossing_tangents),
         (piecewise, "_signs", roots_at_the_end),
-        (signals, "_course", full_square),
+        (signals, "course", full_square),
         (signals, "starts_of", left_continuous),
         (piecewise, "greatest", piecewise.least),
-        (comparison, "TRUE_SIGNS", {**comparison.TRUE_SIGNS, ">=": frozenset({1})}),
-        (comparison, "MIRRORED", {op: op for op in comparison.MIRRORED}),
-        (comparison, "ZERO", frozenset()),
+        (signals, "TRUE_SIGNS", {**signals.TRUE_SIGNS, ">=": frozenset({1})}),
+        (signals, "MIRRORED", {op: op for op in signals.MIRRORED}),
+        (signals, "ZERO", frozenset()),
     ],
     ids=lambda x: getattr(x, "__name__", None) if callable(x) else "",
 )
@@ -194,9 +194,9 @@ def test_a_faulty_comparison_is_noticed(monkeypatch, module, name, fault):
 @pytest.mark.parametrize(
     ("name", "fault"),
     [
-        ("_course", half_cube),
-        ("_course", full_jerk),
-        ("_course", no_jerk),
+        ("course", half_cube),
+        ("course", full_jerk),
+        ("course", no_jerk),
         ("_from", absolute_times),
         ("starts_of", loose_jerk),
     ],

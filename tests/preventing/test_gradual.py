@@ -16,12 +16,11 @@ from preventing.read import boundary, specification, values
 from preventing.test_preventable import copy
 from roadproof.analysis.preventable.sides import beside_boundary, far_apart, first_drive, judged_drive
 from roadproof.drivers import gradual
-from roadproof.drivers.boundary import Plane, line
 from roadproof.drivers.braking import AssistedBraking, Ramp
 from roadproof.drivers.driving import DriverSettings, _along, drive_of, motion_in_deceleration
 from roadproof.drivers.lemmas import lemmas_for
 from roadproof.drivers.lines import SIDES, Line, end_of, sides_in
-from roadproof.drivers.manoeuvres import DECELERATION, KMH, MANOEUVRES, start_of
+from roadproof.drivers.manoeuvres import DECELERATION, KMH, MANOEUVRES, Plane, line, start_of
 from roadproof.drivers.models import MODELS, unpreventable
 from roadproof.drivers.restriction import Restriction, check_drives
 from roadproof.drivers.words import _PARTS, legend, words_of_parts

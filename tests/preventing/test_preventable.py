@@ -12,11 +12,10 @@ import pytest
 import roadproof as rp
 from preventing.read import boundary, specification, values
 from roadproof.analysis.preventable.sides import beside_boundary, first_drive, judged_drive
-from roadproof.drivers.boundary import Plane, line
 from roadproof.drivers.driving import DriverSettings
 from roadproof.drivers.lemmas import lemmas_for
 from roadproof.drivers.lines import SIDES
-from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES
+from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES, Plane, line
 from roadproof.drivers.models import MODELS, manoeuvre_of, models_for
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.report import preventable as report

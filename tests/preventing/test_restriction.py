@@ -9,8 +9,7 @@ import pytest
 
 import roadproof as rp
 from roadproof.analysis.catalogue.entries import Abstract
-from roadproof.drivers.boundary import Plane, line
-from roadproof.drivers.manoeuvres import MANOEUVRES
+from roadproof.drivers.manoeuvres import MANOEUVRES, Plane, line
 from roadproof.drivers.models import MODELS, SCENARIOS, foreseen, unpreventable
 from roadproof.drivers.restriction import Restriction, Side, restriction_of
 from roadproof.engines.prove.induction import prove_of_scenarios

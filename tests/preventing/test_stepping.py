@@ -16,11 +16,10 @@ from preventing.labels import labels
 from preventing.read import bound, boundary, specification, values
 from roadproof.analysis.preventable.sides import judged_drive
 from roadproof.drivers import stepped
-from roadproof.drivers.boundary import Plane
 from roadproof.drivers.driving import DriverSettings, drive_of
 from roadproof.drivers.fuzzy import Controller, Scale, scale_of
 from roadproof.drivers.lines import SIDES
-from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES
+from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES, Plane
 from roadproof.drivers.models import models_for
 from roadproof.drivers.stepped import course_of, labels_of, places_of, spans_of
 from roadproof.evidence.judged import judge_file

@@ -10,9 +10,8 @@ from fractions import Fraction
 from functools import cmp_to_key
 from itertools import pairwise
 
-from roadproof.drivers.boundary import Plane
 from roadproof.drivers.driving import DriverSettings, motion_in_deceleration
-from roadproof.drivers.manoeuvres import Deceleration, Values, is_possible, start_of
+from roadproof.drivers.manoeuvres import Deceleration, Plane, Values, is_possible, start_of
 from roadproof.drivers.models import MODELS
 from roadproof.errors import UsageError
 from roadproof.semantics.exact.algebraic import Point, Root, compare, real_roots

@@ -9,9 +9,18 @@ from fractions import Fraction
 from typing import Literal, TypeAlias
 
 from roadproof.drivers import gradual
-from roadproof.drivers.boundary import Plane, line
 from roadproof.drivers.driving import DriverSettings, speeds_of
-from roadproof.drivers.manoeuvres import CutIn, CutOut, Deceleration, Manoeuvre, Start, Values, start_of
+from roadproof.drivers.manoeuvres import (
+    CutIn,
+    CutOut,
+    Deceleration,
+    Manoeuvre,
+    Plane,
+    Start,
+    Values,
+    line,
+    start_of,
+)
 from roadproof.drivers.models import GRADUAL, MODELS, follows, foreseen, touched, unpreventable, untouched
 from roadproof.library.bind import bind
 from roadproof.library.elaborate import read_claim

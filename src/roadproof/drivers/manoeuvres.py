@@ -1,5 +1,8 @@
-"""Initial values of cut-ins, cut-outs and decelerations, as the sheets of UN R157 name them, and the states
-of vehicles that they say.
+"""Initial values of cut-ins, cut-outs and decelerations, as the sheets of UN R157 name them, the states of
+vehicles that they say, and where a formula about the first instant is true along a line of them: exactly.
+
+The judge reads signals as polynomials in time. Along a line an initial value runs, so the set of instants is
+the set of values at which the formula is true, with algebraic ends.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,9 +15,12 @@ from typing import Any, Literal, TypeAlias
 from roadproof.errors import UsageError
 from roadproof.library.scenarios import PAIR, SUBJECT, TRIPLE
 from roadproof.library.specification import unknown
+from roadproof.logic.formula import Formula
 from roadproof.logic.terms import Own, Signal, SignalName, Size, SizeName
+from roadproof.semantics.exact.exact import truth_within
 from roadproof.semantics.exact.polynomial import Polynomial, polynomial
 from roadproof.semantics.exact.signals import LineSignals
+from roadproof.semantics.exact.truth import NEVER, TruthSet
 from roadproof.world.signals import SIGNALS, STARTING
 
 KMH = Fraction(5, 18)
@@ -270,3 +276,50 @@ def _vehicle(
 def spread(low: Fraction, high: Fraction, count: int) -> Sequence[Fraction]:
     """``count`` values from ``low`` to ``high``, both with them."""
     return tuple(low + (high - low) * k / max(1, count - 1) for k in range(count))
+
+
+@dataclass(frozen=True)
+class Plane:
+    """Initial values of a manoeuvre: ``fixed``, and two that vary in ranges (SI), in so many lines.
+
+    The lines run along ``manoeuvre.line``, one for each value of ``manoeuvre.across``.
+    """
+
+    manoeuvre: Manoeuvre
+    fixed: Values
+    along: tuple[Fraction, Fraction]
+    across: tuple[Fraction, Fraction]
+    lines: int = 100
+
+    @property
+    def rows(self) -> Sequence[Fraction]:
+        """The values of the other side."""
+        return spread(*self.across, self.lines)
+
+    def values(self, row: Fraction, place: Fraction | None = None) -> dict[str, Fraction]:
+        """All initial values at a row, and at a place on its line (its beginning where None)."""
+        here = {self.manoeuvre.across: row, self.manoeuvre.line: self.along[0] if place is None else place}
+        return self.manoeuvre.values({**self.fixed, **here})
+
+
+def plane_of(
+    manoeuvre: Manoeuvre,
+    fixed: Values,
+    along: tuple[Fraction, Fraction],
+    across: tuple[Fraction, Fraction],
+    lines: int,
+) -> Plane:
+    """The plane of a plate: up to where POV would go backwards. Raises ``UsageError``."""
+    low, high = across
+    if manoeuvre.across == "dV0":
+        high = min(high, manoeuvre.values(fixed)["Ve0"])
+    return Plane(manoeuvre, fixed, along, (low, high), lines)
+
+
+def line(plane: Plane, formula: Formula, row: Fraction) -> TruthSet:
+    """At which places of a row's line a bound formula is true; nowhere where a vehicle would go backwards."""
+    values = plane.values(row)
+    if not is_possible(values):
+        return NEVER
+    signals = along_line(plane.manoeuvre, values)
+    return truth_within(formula, signals, *plane.along)

@@ -27,10 +27,10 @@ from roadproof.logic.terms import (
     replace_leaves,
 )
 from roadproof.semantics.exact.algebraic import approximate
+from roadproof.semantics.exact.exact import truth_within
 from roadproof.semantics.exact.polynomial import Polynomial, polynomial
 from roadproof.semantics.exact.signals import LineSignals, unknown_at_instant
 from roadproof.semantics.exact.truth import TruthSet
-from roadproof.semantics.exact.within import truth_within
 
 _DELAYS: Mapping[str, str] = {
     "careful": "cc_delay",

@@ -11,13 +11,13 @@ from functools import cached_property
 from itertools import groupby
 from math import ceil
 
-from roadproof.drivers.boundary import Plane
 from roadproof.drivers.fuzzy import HERTZ, TICKS, Controller, Scale, scale_of
 from roadproof.drivers.manoeuvres import (
     CutIn,
     CutOut,
     Deceleration,
     Manoeuvre,
+    Plane,
     Start,
     Values,
     is_possible,

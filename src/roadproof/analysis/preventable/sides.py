@@ -6,10 +6,9 @@ from fractions import Fraction
 from itertools import islice, pairwise
 from math import ceil
 
-from roadproof.drivers.boundary import Plane
 from roadproof.drivers.driving import OWN_LANE, DriverSettings, drive_of, rest_of, road_of
 from roadproof.drivers.lines import Side, claim_of, with_also
-from roadproof.drivers.manoeuvres import Manoeuvre, Values
+from roadproof.drivers.manoeuvres import Manoeuvre, Plane, Values
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, RejectedError

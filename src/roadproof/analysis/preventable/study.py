@@ -16,11 +16,10 @@ from roadproof.analysis.preventable.sides import beside_boundary, far_apart, fir
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.analysis.study.frame import Unprepared
 from roadproof.drivers import gradual
-from roadproof.drivers.boundary import Plane, plane_of
 from roadproof.drivers.driving import DriverSettings
 from roadproof.drivers.lemmas import Lemma, chosen, idle, lemmas_for
 from roadproof.drivers.lines import SIDES, Line, Side, end_of, sides_in, told_line, truths
-from roadproof.drivers.manoeuvres import Manoeuvre, Values
+from roadproof.drivers.manoeuvres import Manoeuvre, Plane, Values, plane_of
 from roadproof.drivers.models import MODELS, Model, boundary_of, parts_of, touched
 from roadproof.drivers.stepped import TOLD, beside_change, labels_of, places_of, spans_of
 from roadproof.engines.prove.prover import prove

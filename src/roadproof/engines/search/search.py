@@ -14,8 +14,7 @@ from roadproof.engines.search.initial_candidates import closed, starts, unread
 from roadproof.engines.search.initial_conditions import differ, encode_start
 from roadproof.engines.search.limits import Limits
 from roadproof.engines.search.question import FoundDrive, SearchOptions, SearchProblem
-from roadproof.engines.search.rounding import round_drive
-from roadproof.engines.search.shape import reshape, violation_depths
+from roadproof.engines.search.shape import reshape, round_drive, violation_depths
 from roadproof.engines.solve.bounds import TooNonlinearError
 from roadproof.engines.solve.exact import solve_exactly
 from roadproof.engines.solve.milp import box_of, solve_mixed

@@ -7,11 +7,10 @@ from functools import cached_property, partial
 
 from roadproof.drivers import gradual
 from roadproof.drivers import lines as drawn
-from roadproof.drivers.boundary import Plane, plane_of
 from roadproof.drivers.driving import DriverSettings
 from roadproof.drivers.lemmas import idle, lemmas_for
 from roadproof.drivers.lines import SIDES, claim_of, with_also
-from roadproof.drivers.manoeuvres import MANOEUVRES, Manoeuvre, signals_of
+from roadproof.drivers.manoeuvres import MANOEUVRES, Manoeuvre, Plane, plane_of, signals_of
 from roadproof.drivers.models import MODELS, boundary_of, manoeuvre_of, models_for, parts_of, touched
 from roadproof.errors import InputError
 from roadproof.evidence.answers.entry import Entry, file_of, shows_of
