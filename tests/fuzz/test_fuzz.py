@@ -63,14 +63,14 @@ def full_square(name, x):
     return TRUE_COURSE(name, doubled)
 
 
-TRUE_COURSE = signals._course
+TRUE_COURSE = signals.course
 STRICT = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
 FAULTS = {
     "held: until asks for its left side too early": (held, exact, "until", classic_until),
     "held: not keeps the view": (held, semantics, "OPPOSITE", {view: view for view in semantics.View}),
     "held: strictness is lost": (held, unroll, "NEGATED", STRICT),
     "truths: until asks for its left side too early": (truths, exact, "until", classic_until),
-    "drives: a square too large": (drives, signals, "_course", full_square),
+    "drives: a square too large": (drives, signals, "course", full_square),
     "claims: or is and": (claims, exact, "union", truth.intersection),
     "texts: a difference binds like a product": (texts, show, "_LEVEL", {**show._LEVEL, "-": show.PRODUCT}),
     "search: all starts are at 0": (search, question, "starting_range", lambda *_: None),

@@ -58,7 +58,7 @@ def function_digest(edit: Edit, package: Path) -> str:
 def tests_digest(root: Path) -> str:
     """Of every test file and what stands beside it, the faults' own results left out."""
     digest = sha256()
-    for path in sorted((root / "tests").rglob("*.py")):
+    for path in sorted(x for x in (root / "tests").rglob("*.*") if x.suffix in (".py", ".toml")):
         digest.update(str(path.relative_to(root)).encode() + path.read_bytes())
     return digest.hexdigest()[:12]
 

@@ -25,7 +25,9 @@ LEFT_OUT = {
 
 def record_name(test_file: Path, root: Path) -> str:
     """The name of the record of a test file as it is now."""
-    digest = sha256(test_file.read_bytes()).hexdigest()[:8]
+    beside = test_file.with_suffix(".toml")
+    content = test_file.read_bytes() + (beside.read_bytes() if beside.exists() else b"")
+    digest = sha256(content).hexdigest()[:8]
     return f"{'.'.join(test_file.relative_to(root).with_suffix('').parts)}-{digest}.json"
 
 
