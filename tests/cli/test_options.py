@@ -43,7 +43,6 @@ from roadproof.semantics.sampled.answers import Convention
 def parsed(*arguments: str) -> argparse.Namespace:
     parser = argparse.ArgumentParser()
     add_flags(parser, Definitions)
-    options.add_json_option(parser)
     return parser.parse_args(arguments)
 
 

@@ -4,7 +4,6 @@ import argparse
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import evidence_folder, hand_over, read_definitions, study_keywords
-from roadproof.frontends.cli.options import add_json_option
 from roadproof.frontends.cli.progress import Counter
 from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.studies import Catalogue
@@ -55,7 +54,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     parser.add_argument("paths", metavar="DIR|FILE", nargs="+", help="folders of tests, or tests")
     add_flags(parser, Catalogue)
-    add_json_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:

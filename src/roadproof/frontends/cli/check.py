@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from roadproof.errors import UsageError
-from roadproof.frontends.cli.options import add_json_option, write_json
+from roadproof.frontends.cli.options import write_json
 from roadproof.frontends.cli.progress import Counter
 from roadproof.frontends.settings.flags import add_flags, read_keywords
 from roadproof.frontends.settings.questions import Check
@@ -40,7 +40,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     parser.add_argument("paths", metavar="FILE|DIR", nargs="+", type=Path)
     add_flags(parser, Check)
-    add_json_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:

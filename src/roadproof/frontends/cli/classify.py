@@ -4,7 +4,6 @@ import argparse
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import evidence_folder, hand_over, read_definitions, study_keywords
-from roadproof.frontends.cli.options import add_json_option
 from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.studies import Classify
 
@@ -30,7 +29,6 @@ class has no drive.
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     add_flags(parser, Classify)
-    add_json_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:

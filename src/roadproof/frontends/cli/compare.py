@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import read_definitions
-from roadproof.frontends.cli.options import add_json_option, write_json
+from roadproof.frontends.cli.options import write_json
 from roadproof.frontends.cli.progress import clear, note, tell_stage
 from roadproof.frontends.settings.flags import add_flags, read_flag, read_keywords
 from roadproof.frontends.settings.questions import Compare
@@ -30,7 +30,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("first", metavar="F1", help="a scenario's number, or a formula")
     parser.add_argument("second", metavar="F2", help="another; in the second --set where two are given")
     add_flags(parser, Compare)
-    add_json_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -3,7 +3,6 @@
 import argparse
 
 from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
-from roadproof.frontends.cli.options import add_json_option
 from roadproof.frontends.cli.progress import Counter, tell
 from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.studies import Coverage
@@ -32,7 +31,6 @@ Exit code 0 where coverage is proved, 10 where there are gaps, 20 where neither 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     add_flags(parser, Coverage)
-    add_json_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:

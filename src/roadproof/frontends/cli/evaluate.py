@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import add_drivers, read_definitions
-from roadproof.frontends.cli.options import add_json_option, read_hands, write_json
+from roadproof.frontends.cli.options import read_hands, write_json
 from roadproof.frontends.cli.progress import note
 from roadproof.frontends.settings.flags import add_flags, read_keywords
 from roadproof.frontends.settings.recordings import Evaluate
@@ -42,7 +42,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     parser.add_argument("path", metavar="PATH", type=Path, help="the recordings")
     add_flags(parser, Evaluate)
-    add_json_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:

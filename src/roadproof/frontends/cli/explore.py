@@ -4,7 +4,7 @@ import argparse
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import evidence_folder, hand_over, read_definitions, study_keywords
-from roadproof.frontends.cli.options import add_json_option, add_what_arguments, some_or_all
+from roadproof.frontends.cli.options import add_what_arguments, some_or_all
 from roadproof.frontends.cli.progress import tell
 from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.questions import Explore
@@ -40,7 +40,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     add_what_arguments(parser, "all scenarios of each --set")
     add_flags(parser, Explore)
-    add_json_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:

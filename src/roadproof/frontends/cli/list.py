@@ -6,9 +6,9 @@ from itertools import groupby
 from typing import Any
 
 from roadproof.frontends.cli.basis import read_definitions
-from roadproof.frontends.cli.options import add_json_option, write_json
+from roadproof.frontends.cli.options import write_json
+from roadproof.frontends.settings.commands import List
 from roadproof.frontends.settings.flags import add_flags
-from roadproof.frontends.settings.groups import Readings
 from roadproof.library.elaborate import signatures
 from roadproof.library.scenarios import number_in
 from roadproof.library.specification import Specification
@@ -29,12 +29,11 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
-    add_flags(parser, Readings)
-    add_json_option(parser)
+    add_flags(parser, List)
 
 
 def run(args: argparse.Namespace) -> int:
-    specification = read_definitions(args, Readings).specification
+    specification = read_definitions(args, List).specification
     if args.json:
         write_json(take_inventory(specification), args.json)
     if args.json != "-":

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import read_definitions
-from roadproof.frontends.cli.options import add_json_option, write_json
+from roadproof.frontends.cli.options import write_json
 from roadproof.frontends.settings.flags import add_flags, read_keywords
 from roadproof.frontends.settings.recordings import Monitor
 
@@ -38,7 +38,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("formula", metavar="FORMULA", help="a formula, or a scenario's number")
     parser.add_argument("trace", metavar="TRACE", help="a drive, samples, or vehicles of a recording")
     add_flags(parser, Monitor)
-    add_json_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -16,19 +16,6 @@ if TYPE_CHECKING:
     from roadproof.runtime.executors import Executor
 
 
-def add_json_option(parser: argparse.ArgumentParser) -> None:
-    """``--json FILE``, where - is stdout; see ``write_json``."""
-    section(parser, "output").add_argument(
-        "--json", metavar="FILE", type=_file_name, help="write JSON to FILE, or to stdout if FILE is -"
-    )
-
-
-def _file_name(text: str) -> str:
-    if not Path(text).name:
-        raise argparse.ArgumentTypeError(f"'{text}' is not a file name")
-    return text
-
-
 def write_json(data: Mapping[str, Any], target: str) -> None:
     """``data`` as JSON to the file ``target``, or to stdout where it is ``-``. Raises ``InputError``."""
     if target == "-":

@@ -3,7 +3,6 @@
 import argparse
 
 from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
-from roadproof.frontends.cli.options import add_json_option
 from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.studies import Order
 
@@ -23,7 +22,6 @@ A run with --out that was broken off goes on where it was.
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     add_flags(parser, Order)
-    add_json_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -4,7 +4,6 @@ import argparse
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import add_drivers, hand_over, read_definitions, study_keywords
-from roadproof.frontends.cli.options import add_json_option
 from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.readers import flat
 from roadproof.frontends.settings.studies import Preventable
@@ -36,7 +35,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "manoeuvre", metavar="MANOEUVRE", help="cut-in, cut-out, deceleration; or a scenario: 1, 2 or 4"
     )
     add_flags(parser, Preventable)
-    add_json_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import in_order, read_definitions, study_keywords
-from roadproof.frontends.cli.options import add_json_option, write_json
+from roadproof.frontends.cli.options import write_json
 from roadproof.frontends.cli.progress import Counter, clear, tell_stage
 from roadproof.frontends.cli.streams import print_at_once
 from roadproof.frontends.settings.flags import add_flags
@@ -49,7 +49,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "claims", metavar="CLAIM", nargs="*", help="a formula, a property such as P1, or a scenario such as 4"
     )
     add_flags(parser, Prove)
-    add_json_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:

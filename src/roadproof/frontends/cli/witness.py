@@ -4,10 +4,10 @@ import argparse
 from typing import TYPE_CHECKING
 
 from roadproof.frontends.cli.basis import in_order, read_definitions, study_keywords
-from roadproof.frontends.cli.options import add_json_option, add_what_arguments, some_or_all, write_json
+from roadproof.frontends.cli.options import add_what_arguments, some_or_all, write_json
 from roadproof.frontends.cli.progress import clear, tell_stage
 from roadproof.frontends.cli.streams import print_at_once
-from roadproof.frontends.settings.flags import add_flags, mark_rare, section
+from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.questions import Witness
 from roadproof.runtime.progress import listening
 
@@ -35,12 +35,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     add_what_arguments(parser, "all 24 scenarios, in each --set")
     add_flags(parser, Witness)
-    mark_rare(
-        section(parser, "output").add_argument(
-            "--verbose", action="store_true", help="print sizes and seconds by stage"
-        )
-    )
-    add_json_option(parser)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -5,11 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from roadproof.frontends.settings.groups import Readings, Workers, folder_for
+from roadproof.frontends.settings.groups import Answered, Readings, Workers, folder_for
 from roadproof.frontends.settings.option import Settings, option, output
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+
+@dataclass(frozen=True, kw_only=True)
+class List(Readings, Answered):
+    """Options of ``roadproof list``."""
 
 
 @dataclass(frozen=True, kw_only=True)

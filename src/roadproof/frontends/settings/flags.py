@@ -23,7 +23,7 @@ A = TypeVar("A")
 
 def add_flags(parser: argparse.ArgumentParser, settings: type[Settings]) -> None:
     """The flags of a question, in groups."""
-    for name, option in settings.options().items():
+    for name, option in sorted(settings.options().items(), key=lambda x: x[1].last):
         if option.flag is not None:
             rules = {"dest": name, "help": option.help, **_rules(settings, name, option)}
             flag = section(parser, option.group).add_argument(option.flag, **rules)

@@ -8,7 +8,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from roadproof.frontends.settings.option import Settings, definition, option, output, search, work
-from roadproof.frontends.settings.readers import assignment, decimal, named, seconds, set_names, whole
+from roadproof.frontends.settings.readers import (
+    assignment,
+    decimal,
+    file_name,
+    named,
+    seconds,
+    set_names,
+    whole,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -95,6 +103,20 @@ def several_sets(*default: str) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Answered(Settings):
+    """An answer that may be wanted as JSON."""
+
+    json: str | None = output(
+        None,
+        "--json FILE",
+        "write JSON to FILE, or to stdout if FILE is -",
+        read=file_name,
+        keyword=False,
+        last=True,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
 class Readings(Settings):
     """A spec set, files on top of the library, and readings."""
 
@@ -113,7 +135,7 @@ class Readings(Settings):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Definitions(Readings):
+class Definitions(Readings, Answered):
     """The definitions that a question is asked in."""
 
     params: Mapping[str, Number] | None = definition(

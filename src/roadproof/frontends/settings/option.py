@@ -33,6 +33,8 @@ class Option:
     required: bool = False
     rare: bool = False
     """Only ``--help-all`` shows the flag."""
+    last: bool = False
+    """The flag is the last one of its group."""
 
     def check(self, name: str, value: object) -> None:
         """Raises ``UsageError`` where a Python caller gives a value that is not allowed."""

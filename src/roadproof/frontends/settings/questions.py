@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from roadproof.frontends.settings.groups import (
     OBJECTIVES,
+    Answered,
     Budget,
     Definitions,
     Method,
@@ -61,6 +62,7 @@ class Witness(SeveralSets, SearchPlace, Method, Prevention, Budget, Sharing, Run
     count: int = option(
         1, "--count K", "find K clearly different drives (default: 1)", read=whole(1), least=1
     )
+    verbose: bool = output(False, "--verbose", "print sizes and seconds by stage", keyword=False, rare=True)
     out: str | Path | None = folder_for("drive files, CSV and pictures")
     pictures: bool = pictures_of()
 
@@ -148,7 +150,7 @@ class Prove(Definitions, Models, Budget, Run):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Check(Budget, Workers):
+class Check(Answered, Budget, Workers):
     """Options of ``check``."""
 
     solver: Solver = checker_of("solver that checks certificates")

@@ -1,8 +1,10 @@
 """Readers of the texts behind flags; ``flags.py`` puts the flag before the ``UsageError`` that they raise."""
 
 import re
+from argparse import ArgumentTypeError
 from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 from roadproof.errors import UsageError
@@ -67,6 +69,13 @@ def named(usual: str) -> Callable[[str], tuple[str, str]]:
         return (name if equals else usual), value
 
     return read
+
+
+def file_name(text: str) -> str:
+    """The name of a file, or - for stdout."""
+    if not Path(text).name:
+        raise ArgumentTypeError(f"'{text}' is not a file name")
+    return text
 
 
 def assignment(flag: str) -> Callable[[str], tuple[str, str]]:
