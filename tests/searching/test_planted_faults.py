@@ -81,7 +81,7 @@ def test_only_a_none_within_makes_a_claim_proved_bounded(monkeypatch):
 
 
 def test_a_doubt_taken_for_a_bounded_proof_is_caught(monkeypatch):
-    right, wrong = "BoundedResult(Verdict.UNKNOWN", "BoundedResult(Verdict.PROVED_BOUNDED"
+    right, wrong = "BoundedResult(verdict=Verdict.UNKNOWN", "BoundedResult(verdict=Verdict.PROVED_BOUNDED"
     plant(monkeypatch, bounded, "check_bounded", right, wrong)
     assert answered(monkeypatch) != EXPECTED
 
