@@ -19,10 +19,11 @@ from hypothesis import strategies as st
 from asking import prove
 from monitoring.cases import random_traffic
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.classify import classes as dividing
+from roadproof.analysis.classify import divide as dividing
 from roadproof.analysis.classify import study as settling
 from roadproof.analysis.classify.cells import Axis, Cell, Outline, outline, query_of, refine, whole_cell
-from roadproof.analysis.classify.classes import Classes, divide, plan_of, what_axis, where_axis
+from roadproof.analysis.classify.classes import Classes, plan_of, what_axis, where_axis
+from roadproof.analysis.classify.divide import divide
 from roadproof.analysis.classify.drives import find_examples, patched, with_zones
 from roadproof.analysis.classify.shares import Shares, count_shares
 from roadproof.analysis.classify.study import ProofClaims, classification_of

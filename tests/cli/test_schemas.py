@@ -40,7 +40,7 @@ NAMES = {
 }
 DRIVE = ROOT / "examples" / "traffic" / "drives" / "scenario-04-base.json"
 # What evaluate keeps of one recording, and convert, and what a page gives to the viewer in it: for this very
-# version, which alone reads it; answers that are known.
+# version, which alone reads it; answers that are known, and cells of classes.
 INTERNAL = {
     "roadproof/recording-findings/4",
     "roadproof/recording/2",

@@ -58,7 +58,7 @@ def archive_of(found: StudyAnswers[Any, Any, Any]) -> KnownAnswers:
 def answers_of(found: StudyAnswers[Any, Any, Any]) -> dict[str, dict[str, Any]]:
     """The answers by name and key, without those that the clock of this machine cut off."""
     made: dict[str, dict[str, Any]] = {}
-    for name in found.study.wanted:
+    for name in found.study.wanted(found.found.answers):
         key = found.study.key(name)
         if key is not None and name in found.found.answers:
             content = known_answer(found.study, name, found.found.answers[name]).content

@@ -178,8 +178,7 @@ class Claims(Unprepared):
         """Whether there is evidence; PROVED-BOUNDED has none, and is about other limits the next time."""
         return answer.verdict in (Verdict.PROVED, Verdict.VACUOUS, Verdict.REFUTED)
 
-    @property
-    def wanted(self) -> Collection[str]:
+    def wanted(self, known: Mapping[str, ClaimResult]) -> Collection[str]:
         return self.named
 
     def key(self, name: str) -> str | None:

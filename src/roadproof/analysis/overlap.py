@@ -5,7 +5,7 @@ group. One pair is solved for each group; its drive is put on roads of the other
 there, and its core is looked up in the others, each of which gets a certificate of its own.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import combinations, permutations
@@ -193,12 +193,15 @@ class Overlap:
     def is_sure(self, answer: PairVerdict) -> bool:
         return answer.verdict in (Verdict.WITNESSED, Verdict.IMPOSSIBLE)
 
+    def wanted(self, known: Mapping[str, PairVerdict]) -> Collection[str]:
+        return self._named
+
     @cached_property
-    def wanted(self) -> dict[str, Pair]:
+    def _named(self) -> dict[str, Pair]:
         return {name_of(a, b): (a, b) for a, b in self.pairs}
 
     def key(self, name: str) -> str:
-        return self.basis.key(*map(definition_of, self.wanted[name]))
+        return self.basis.key(*map(definition_of, self._named[name]))
 
     def prepare(self) -> None:
         prepare()

@@ -5,7 +5,7 @@ needed where a judged drive tells the two apart. Drives found for one question a
 and those for one scenario on the scenarios that differ from it in the road sector only.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import ClassVar
@@ -218,12 +218,15 @@ class Redundancy(Unprepared):
     def is_sure(self, answer: ChangeFindings) -> bool:
         return all(x.verdict is not Verdict.UNKNOWN for x in answer)
 
+    def wanted(self, known: Mapping[str, ChangeFindings]) -> Collection[str]:
+        return self._named
+
     @cached_property
-    def wanted(self) -> dict[str, int]:
+    def _named(self) -> dict[str, int]:
         return {name_of(number): number for number in self.numbers}
 
     def key(self, name: str) -> str:
-        return self.basis.key(definition_of(self._scenario(self.wanted[name])))
+        return self.basis.key(definition_of(self._scenario(self._named[name])))
 
     def record(self, name: str, answer: ChangeFindings, shelf: EvidenceStore) -> Record:
         number = int(name.rpartition("-")[2])

@@ -65,8 +65,7 @@ class WitnessStudy:
         """Whether all drives that were asked for are there, or a proof that there is none."""
         return answer.verdict is Verdict.IMPOSSIBLE or (bool(answer.drives) and not answer.reason)
 
-    @property
-    def wanted(self) -> Collection[str]:
+    def wanted(self, known: Mapping[str, Outcome]) -> Collection[str]:
         return self.named
 
     def key(self, name: str) -> str:

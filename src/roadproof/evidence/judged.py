@@ -120,6 +120,7 @@ class KnownDrive(JudgedDrive):
             read_drive(content, where), self.__dict__["_library"], natural_of(content, where)
         )
         self.__dict__.update(vars(judged))
+        object.__setattr__(self, "__class__", JudgedDrive)  # from now on it is like any other
         return vars(judged)[name]
 
     def __reduce__(self) -> tuple[Callable[..., JudgedDrive], tuple[object, ...]]:

@@ -50,6 +50,7 @@ class StatedQuery(Query):
             raise AttributeError(name)
         read = read_claim(self.__dict__["_home"], self.written)
         self.__dict__.update(vars(read))
+        object.__setattr__(self, "__class__", Query)  # from now on it is like any other
         return vars(read)[name]
 
     def __reduce__(self) -> tuple[type[Query], tuple[object, ...]]:

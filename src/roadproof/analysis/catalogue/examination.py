@@ -15,7 +15,8 @@ from roadproof.analysis.catalogue.ranges import Reach, reaches_of
 from roadproof.analysis.catalogue.reading import read_catalogue
 from roadproof.analysis.catalogue.showing import ConcreteAnswer, show
 from roadproof.analysis.catalogue.tested import CLASSES, SCENARIOS, kind_of, targets_of, tested
-from roadproof.analysis.classify.classes import Classes, divide, plan_of
+from roadproof.analysis.classify.classes import Classes, plan_of
+from roadproof.analysis.classify.divide import divide
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.pool import Progress
 from roadproof.drivers.restriction import restriction_of, said_in, unrestricted

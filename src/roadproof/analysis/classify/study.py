@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import ClassVar
 
 from roadproof.analysis.basis import Basis, ProofResult
-from roadproof.analysis.classify.classes import Class, Classes, Division
+from roadproof.analysis.classify.classes import Class, Classes
+from roadproof.analysis.classify.divide import Division
 from roadproof.analysis.classify.drives import Example, find_examples
 from roadproof.analysis.classify.shares import Shares
 from roadproof.analysis.classify.text import ClassClaim, claims_of, with_classes, write_classes
@@ -112,8 +113,7 @@ class Classification(Unprepared):
     def is_sure(self, answer: Example | ProofResult[ClassClaim]) -> bool:
         return answer.verdict in (Verdict.WITNESSED, Verdict.PROVED, Verdict.VACUOUS)
 
-    @property
-    def wanted(self) -> Collection[str]:
+    def wanted(self, known: Mapping[str, Example | ProofResult[ClassClaim]]) -> Collection[str]:
         return self._named
 
     def key(self, name: str) -> str:

@@ -161,8 +161,7 @@ class Coverage(Unprepared):
             case _:
                 return all(x.verdict is not Verdict.UNKNOWN for x in answer)
 
-    @property
-    def wanted(self) -> Collection[str]:
+    def wanted(self, known: Mapping[str, Kept]) -> Collection[str]:
         needs = (name_of(NeededDefinition(x)) for x in self._replaced())
         return [*map(name_of, self.claims), *needs, *self.groups]
 

@@ -104,8 +104,7 @@ class Exploration:
         """A doubt that the count of work makes is the same in the next run, so it stands."""
         return not answer.late
 
-    @property
-    def wanted(self) -> Collection[str]:
+    def wanted(self, known: Mapping[str, ExplorationResult]) -> Collection[str]:
         return self.named
 
     def key(self, name: str) -> str:

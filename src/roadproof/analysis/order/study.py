@@ -109,8 +109,7 @@ class Ordering(Unprepared):
     def is_sure(self, answer: Decisions) -> bool:
         return not answer.doubts
 
-    @property
-    def wanted(self) -> Collection[str]:
+    def wanted(self, known: Mapping[str, Decisions]) -> Collection[str]:
         return self.families
 
     def key(self, name: str) -> str:

@@ -248,8 +248,7 @@ class Preventable(Unprepared):
             lemma, said, verdict=result.verdict, certificate=result.certificate, reason=result.reason
         )
 
-    @property
-    def wanted(self) -> Collection[str]:
+    def wanted(self, known: Mapping[str, Answer]) -> Collection[str]:
         return [*self.plates, *self.lemmas]
 
     def key(self, name: str) -> str:

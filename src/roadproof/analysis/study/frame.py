@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection, Container, Iterator, Mapping, 
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Generic, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.evidence_store import EvidenceStore, EvidenceTexts, Question
@@ -55,9 +55,8 @@ class Study(Protocol[Piece, Answer, Record]):
     def is_sure(self, answer: Answer) -> bool:
         """Whether an answer stands; others are asked again by the next run into the same folder."""
 
-    @property
-    def wanted(self) -> Collection[str]:
-        """The names of all answers that the question may need."""
+    def wanted(self, known: Mapping[str, Answer]) -> Collection[str]:
+        """The names of all answers that the question may need, as far as the ``known`` ones tell."""
 
     def key(self, name: str) -> str | None:
         """A digest of what an answer depends on besides ``question``: limits, definitions; None where none is
@@ -80,8 +79,7 @@ class Study(Protocol[Piece, Answer, Record]):
 class Unprepared:
     """A study of which no answer is known before it is asked, and whose workers need nothing beforehand."""
 
-    @property
-    def wanted(self) -> Collection[str]:
+    def wanted(self, known: Mapping[str, Any]) -> Collection[str]:
         return ()
 
     def key(self, name: str) -> str | None:
@@ -163,17 +161,32 @@ def conduct(
 
     take_over()
     known_answers = KnownAnswers.to(study.question.schema, study.question.said, study.question.more)
-    origins: list[Origin] = []
-    for name in [] if fresh else [x for x in study.wanted if x not in known]:
-        found = _known(study, known_answers, name, shelf)
-        if found is not None:
-            origin, record, answer = found
-            origins.append(origin)
-            add(name, record, answer)
-    for line in told_known(origins, len(study.wanted)):
+    origins: dict[str, Origin | None] = {}
+
+    def wanted() -> Collection[str]:
+        return () if fresh else study.wanted(known)
+
+    def look_up() -> bool:
+        """Take over answers that are known, and then those that are wanted because of them."""
+        before = len(known)
+        while not fresh and (
+            names := [x for x in study.wanted(known) if x not in known and x not in origins]
+        ):
+            for name in names:
+                found = _known(study, known_answers, name, shelf)
+                origins[name] = None if found is None else found[0]
+                if found is not None:
+                    add(name, *found[1:])
+        return len(known) > before
+
+    look_up()
+    came = [x for x in origins.values() if x is not None]
+    for line in told_known(came, len(wanted())):
         if say is not None:
             say(line)
     while pieces := study.pieces(known):
+        if look_up():
+            continue
         ours = [piece for piece in pieces if shard is None or shard.has(_name(study, piece))]
         if not ours:
             if take_over():
@@ -188,7 +201,8 @@ def conduct(
                     add(name, _keep(study, name, answer, shelf), answer)
                     _remember(study, known_answers, name, answer)
     known_answers.make_room()
-    return StudyResult(known, records, shelf, tuple(origins))
+    came = [x for x in origins.values() if x is not None]
+    return StudyResult(known, records, shelf, tuple(came))
 
 
 def _known(

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import ClassVar, Unpack
 
 from roadproof.analysis.basis import ProofResult
-from roadproof.analysis.classify.classes import divide, plan_of
+from roadproof.analysis.classify.classes import plan_of
+from roadproof.analysis.classify.divide import divide
 from roadproof.analysis.classify.drives import Example
 from roadproof.analysis.classify.shares import Shares, count_shares
 from roadproof.analysis.classify.study import (
@@ -141,7 +142,7 @@ def classify(
     if folder is not None:
         make_folder(folder)
     source, recordings = _recordings(given.on)
-    division = divide(basis, plan, given.jobs, given.progress)
+    division = divide(basis, plan, given.jobs, given.progress, fresh=given.fresh)
     study = classification_of(basis, division)
     if division.cut_off:
         folder = None  # what earlier runs have found stays
