@@ -65,6 +65,7 @@ if TYPE_CHECKING:
     from roadproof.frontends.api.studies import redundancy as redundancy
     from roadproof.frontends.api.traces import monitor as monitor
     from roadproof.frontends.api.traces import trace as trace
+    from roadproof.frontends.atlas.atlas import atlas as atlas
     from roadproof.library.diagnose import Proofreader as Proofreader
     from roadproof.runtime.executors import Cluster as Cluster
     from roadproof.runtime.executors import Executor as Executor
@@ -110,6 +111,7 @@ _HOMES = {
     "simulate": "frontends.api.simulating",
     "export": "frontends.api.exporting",
     "page": "frontends.api.reporting",
+    "atlas": "frontends.atlas.atlas",
     "check": "frontends.api.checking",
     "Verdict": "verdict",
     "Stage": "runtime.progress",

@@ -299,6 +299,7 @@ READERS = {
     # Raised for a catalogue that is asked for, and never for one that is judged again.
     "roadproof.analysis.catalogue.examination": {"--no-classes"},
     "roadproof.analysis.classify.classes": {"--among"},
+    "roadproof.frontends.api.covering": {"--wider"},
 }
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]*")
 

@@ -18,6 +18,7 @@ from roadproof.frontends.report.drive_data import (
     GRAIN,
     Box,
     Distance,
+    ShownRoad,
     Span,
     Strip,
     danger_spans,
@@ -46,10 +47,18 @@ STEPS, MOST_TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000), 12  # whole seco
 
 @dataclass(frozen=True)
 class Scene:
-    """A drive that is shown, with what is computed of it once."""
+    """A drive that is shown, with what is computed of it once.
+
+    ``width``, ``edge``, ``top``: pixels of the picture, its margin, and above the road; ``lane_pixels``: the
+    least for a metre across.
+    """
 
     file: DriveFile
     library: Library
+    width: float = WIDTH
+    edge: float = EDGE
+    top: float = TITLE
+    lane_pixels: float = LANE_PIXELS
 
     @cached_property
     def times(self) -> list[Fraction]:
@@ -77,8 +86,8 @@ class Scene:
     def scale(self) -> tuple[float, float]:
         """Pixels for each metre along and across."""
         low, high = self.window
-        along = (WIDTH - 2 * EDGE) / (high - low)
-        return along, max(along, LANE_PIXELS)
+        along = (self.width - 2 * self.edge) / (high - low)
+        return along, max(along, self.lane_pixels)
 
     @cached_property
     def across(self) -> Span:
@@ -116,7 +125,7 @@ class Scene:
         """Left, top, width and height of a box in m along, from SV's front, and across."""
         left, right, bottom, top = box
         along, across = self.scale
-        x, y = EDGE + (left - self.window[0]) * along, TITLE + (self.across[1] - top) * across
+        x, y = self.edge + (left - self.window[0]) * along, self.top + (self.across[1] - top) * across
         return x, y, (right - left) * along, (top - bottom) * across
 
     def box(self, name: str, k: int) -> Box:
@@ -124,6 +133,44 @@ class Scene:
         motion, state = self.file.drive.vehicles[name], self.states[name][k]
         s, d = float(state.s - self.states[self.subject][k].s), float(state.d)
         return s - float(motion.length), s, d - float(motion.width), d
+
+    @cached_property
+    def travel(self) -> list[float]:
+        """How far the subject has come at each instant, in m."""
+        states = self.states[self.subject]
+        return [float(state.s - states[0].s) for state in states]
+
+    @cached_property
+    def road(self) -> ShownRoad:
+        """What of the road is seen, in m along from the front of the subject at the start, and across."""
+        low, high = self.window
+        seen = low + min(self.travel), high + max(self.travel)
+        return road_in(self.file.road, self.states[self.subject][0].s, seen)
+
+    @cached_property
+    def envelopes(self) -> list["Envelope"]:
+        """For each other vehicle, the area within RSS distances of the subject."""
+        across = {x.other: x for x in distances_of(self.file, self.library, "across")}
+        instants = range(len(self.times))
+        found = []
+        for along in distances_of(self.file, self.library, "along"):
+            beside = across.get(along.other)
+            if beside is not None:
+                boxes = [_around(self.box(self.subject, k), along, beside, k) for k in instants]
+                near = [
+                    along.gap[k] <= along.needed[k] and beside.gap[k] <= beside.needed[k] for k in instants
+                ]
+                found.append(Envelope(along.other, [*map(self.pixels, boxes)], near))
+        return found
+
+
+@dataclass(frozen=True)
+class Envelope:
+    """Where ``other`` is too near to the subject at each instant, in pixels, and whether it is ``near``."""
+
+    other: str
+    boxes: Sequence[Box]
+    near: Sequence[bool]
 
 
 def draw_moving(file: DriveFile, library: Library, title: str = "") -> bytes:
@@ -166,21 +213,18 @@ def _legend(scene: Scene) -> str:
 
 def _road(scene: Scene) -> Iterator[Element]:
     """The lanes, which move to the left as SV goes on, and RSS distances; both end at the window."""
-    states = scene.states[scene.subject]
-    travel = [float(state.s - states[0].s) for state in states]
     low, high = scene.window
-    seen = road_in(scene.file.road, states[0].s, (low + min(travel), high + max(travel)))
     left, top, width, height = scene.pixels((low, high, *scene.across))
     cut = element("rect", x=_n(left), y=_n(top), width=_n(width), height=_n(height))
     yield element("clipPath", cut, id="window")
     pieces: list[Element] = []
-    for zone, along, (right, beyond) in seen.pieces:
+    for zone, along, (right, beyond) in scene.road.pieces:
         x, y, wide, high_ = scene.pixels((*along, right, beyond))
         pieces.append(element("rect", x=_n(x), y=_n(y), width=_n(wide), height=_n(high_), fill=SHADES[zone]))
         for edge in (y, y + high_):
             dash = " ".join(_n(x * scene.scale[0]) for x in DASH) if top + 1 < edge < top + height - 1 else ""
             pieces.append(_line((x, edge), (x + wide, edge), "#888888", dash))
-    shift = [-x * scene.scale[0] for x in travel]
+    shift = [-x * scene.scale[0] for x in scene.travel]
     moved = element("g", *pieces, _moved(scene, shift), transform=f"translate({_n(shift[scene.still])} 0)")
     yield element("g", moved, *_envelopes(scene), **{"clip-path": "url(#window)"})
 
@@ -199,17 +243,10 @@ def _vehicles(scene: Scene) -> Iterator[Element]:
 
 def _envelopes(scene: Scene) -> Iterator[Element]:
     """The area within RSS distances of SV, for each other vehicle; red while that vehicle is in it."""
-    across = {x.other: x for x in distances_of(scene.file, scene.library, "across")}
-    instants = range(len(scene.times))
-    for along in distances_of(scene.file, scene.library, "along"):
-        beside = across.get(along.other)
-        if beside is None:
-            continue
-        box = [_around(scene.box(scene.subject, k), along, beside, k) for k in instants]
-        near = [along.gap[k] <= along.needed[k] and beside.gap[k] <= beside.needed[k] for k in instants]
-        area = _moving_box(scene, [*map(scene.pixels, box)], scene.colours[along.other])
+    for x in scene.envelopes:
+        area = _moving_box(scene, x.boxes, scene.colours[x.other])
         area.attrib |= {"fill-opacity": "0.2"}
-        area.append(_switched(scene, near, DANGER, scene.colours[along.other]))
+        area.append(_switched(scene, x.near, DANGER, scene.colours[x.other]))
         yield area
 
 

@@ -273,11 +273,16 @@ def page_plates(result: Result, context: PageContext, words: Words) -> dict[str,
         "answer": index,
         "groups": [(dict(fixed), here) for fixed, here in groups.items()],
         "models": dict.fromkeys(x.model for x in index.plates),
-        "plane": _Plane(quantities, index.along, index.across),
+        "plane": plane_of(index),
         "legend": legend([x for name, x in quantities.items() if name in shown]),
         "title_of": lambda model: MODELS[model].title if model in MODELS else model,
         "colour_of": _colour,
     }
+
+
+def plane_of(index: kept.Index) -> "_Plane":
+    """The two initial values that vary on the plates of an answer."""
+    return _Plane(MANOEUVRES[index.manoeuvre].quantities, index.along, index.across)
 
 
 def _colour(model: str) -> str:

@@ -11,7 +11,6 @@ from importlib.resources.abc import Traversable
 
 _OWN = ("palette", "drive", "scene", "strips", "curves", "verdict", "viewer")
 _MODULES = ("vendor/view", *(f"viewer/{name}" for name in _OWN))
-_STYLES = ("vendor/uPlot.css", "viewer/viewer.css")
 
 
 def folder() -> Traversable:
@@ -27,8 +26,16 @@ def viewer_modules() -> dict[str, str]:
 
 @cache
 def viewer_style() -> str:
-    """All styles of the viewer."""
-    return "\n".join(_text(name.removeprefix("viewer/")) for name in _STYLES)
+    """All styles of the viewer; a script says on the root element whether its colours are dark."""
+    colours = f'{_text("tokens.css")}\n:root[data-theme="dark"] {{\n{_text("dark.css")}}}'
+    return "\n".join((_text("vendor/uPlot.css"), colours, _text("viewer.css")))
+
+
+@cache
+def plain_style() -> str:
+    """Colours and fonts for pages without scripts: dark on screens where the system's choice is dark."""
+    dark = f"@media screen and (prefers-color-scheme: dark) {{\n:root {{\n{_text('dark.css')}}}\n}}"
+    return f"{_text('tokens.css')}\n{dark}\n"
 
 
 def _text(path: str) -> str:

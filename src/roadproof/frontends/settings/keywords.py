@@ -152,6 +152,11 @@ class AskKeywords(SurveyKeywords, total=False):
     pass
 
 
+class AtlasKeywords(RunKeywords, total=False):
+    among: Among
+    topics: Sequence[str]
+
+
 class OverlapKeywords(SurveyKeywords, PreventionKeywords, total=False):
     lanes: Same
     roles: Same

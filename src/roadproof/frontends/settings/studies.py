@@ -12,6 +12,7 @@ from roadproof.frontends.settings.groups import (
     Definitions,
     Models,
     Prevention,
+    Readings,
     Run,
     SeveralSets,
     Sharing,
@@ -51,6 +52,21 @@ class Ask(Survey):
     """Options of ``ask``."""
 
     among: str | None = scenarios_such_as()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Atlas(Readings, Run):
+    """Options of ``atlas``."""
+
+    among: Among = scenarios_such_as("1-8", keyword=True)
+    topics: Sequence[str] = option(
+        (),
+        "--topics NAME,…",
+        "only these: proofs, drives, overlaps, implications, redundancy, gaps, classes or plates "
+        "(default: all)",
+        read=items_of("topics", ", such as drives,overlaps"),
+    )
+    out: str | Path | None = folder_for("pages and evidence", required=True)
 
 
 @dataclass(frozen=True, kw_only=True)

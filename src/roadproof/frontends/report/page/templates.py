@@ -21,7 +21,13 @@ from importlib import resources
 
 from roadproof.frontends.report.sheet import excerpt
 from roadproof.frontends.report.viewer_document import Document
-from roadproof.frontends.report.viewer_page import as_url, hash_of, viewer_modules, viewer_style
+from roadproof.frontends.report.viewer_page import (
+    as_url,
+    hash_of,
+    plain_style,
+    viewer_modules,
+    viewer_style,
+)
 
 
 class Sign(NamedTuple):
@@ -82,10 +88,11 @@ def short(value: object, most: int = 400) -> str:
 
 @cache
 def _environment() -> "Environment":
-    from jinja2 import Environment, PackageLoader, StrictUndefined
+    from jinja2 import ChoiceLoader, Environment, PackageLoader, PrefixLoader, StrictUndefined
 
+    atlas = PrefixLoader({"atlas": PackageLoader("roadproof.frontends.atlas")})
     made = Environment(
-        loader=PackageLoader("roadproof.frontends.report.page"),
+        loader=ChoiceLoader([PackageLoader("roadproof.frontends.report.page"), atlas]),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
@@ -95,8 +102,13 @@ def _environment() -> "Environment":
     return made
 
 
+def style_without_scripts() -> str:
+    """Colours, fonts and verdicts for pages without scripts."""
+    return plain_style() + _resource("pieces.css")
+
+
 def render(template: str, **values: object) -> str:
-    """A template of the folder ``templates`` as HTML; it escapes every text in ``values``."""
+    """A template of the folder ``templates``, or of the atlas, as HTML; it escapes ``values``."""
     return _environment().get_template(template).render(values)
 
 
@@ -111,7 +123,7 @@ def page(title: str, sections: Sequence[str], documents: Sequence[Document], mad
         made=made,
         sections=sections,
         documents=[_packed(x) for x in documents],
-        style=f"{viewer_style()}\n{_resource('page.css')}",
+        style="\n".join((viewer_style(), _resource("page.css"), _resource("pieces.css"))),
         theme=theme,
         imports=imports,
         script=script,

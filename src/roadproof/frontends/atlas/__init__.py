@@ -1,0 +1,1 @@
+"""The atlas: static pages about all scenarios, with moving pictures and the evidence for each statement."""

@@ -1,0 +1,161 @@
+"""The values of the front page and of the overview pages: pairs, implications, classes and gaps."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from roadproof.frontends.atlas.answers import Answers, Source
+from roadproof.frontends.atlas.notation import shown
+from roadproof.frontends.atlas.pictures import Drawn
+from roadproof.frontends.atlas.scenario_page import Gap, Statement, all_gaps, claims
+from roadproof.frontends.report.page.templates import counted
+from roadproof.library.words import Words
+
+
+@dataclass(frozen=True)
+class Card:
+    """A scenario on the front page."""
+
+    words: Words
+    drawn: Drawn | None
+
+
+@dataclass(frozen=True)
+class PairCell:
+    """A pair of scenarios, with the page and the part of it that tells of the pair."""
+
+    verdict: str
+    told: str
+    target: str
+    source: Source
+
+
+@dataclass(frozen=True)
+class ClassCard:
+    """A class: the scenarios in it, what happens where, and a drive."""
+
+    name: str
+    scenarios: str
+    description: str
+    verdict: str
+    html: str
+    source: Source
+    drawn: Drawn | None
+
+
+def page_of(number: int) -> str:
+    """The file of a scenario's page."""
+    return f"scenario-{number:02d}.html"
+
+
+def front_values(answers: Answers, drawn: Mapping[str, Drawn]) -> dict[str, object]:
+    """The grid of scenarios, and how often each verdict occurs on each overview."""
+    every = [answers.home.words(n) for n in answers.numbers]
+    sectors = [*dict.fromkeys(x.sector for x in every)]
+    rows: dict[str, dict[str, Card]] = {}
+    smooth = answers.drives.get("smooth", {})
+    for x in every:
+        found = smooth.get(x.number)
+        card = Card(x, None if found is None else drawn[found.source.file])
+        rows.setdefault(x.title, {})[x.sector] = card
+    return {"sectors": sectors, "rows": rows, "general": claims(answers, None), "counts": _counts(answers)}
+
+
+def _counts(answers: Answers) -> dict[str, list[tuple[str, int]]]:
+    """How often each verdict occurs, by topic."""
+    found: dict[str, list[tuple[str, int]]] = {}
+    if answers.proofs is not None:
+        found["proofs"] = counted(x.verdict for x in answers.proofs.claims)
+    if answers.overlap is not None:
+        found["overlaps"] = counted(x.verdict for x in answers.overlap.verdicts)
+    if answers.order is not None:
+        refuted = [("REFUTED", len(answers.order.missing))]
+        found["implications"] = [("PROVED", len(answers.order.proved)), *refuted]
+    if answers.classes is not None:
+        found["classes"] = counted(x.verdict for x in answers.classes.classes)
+    if answers.coverage is not None:
+        found["gaps"] = counted(x.verdict for x in answers.coverage.classes)
+    return found
+
+
+def overlap_values(answers: Answers) -> dict[str, object]:
+    """The matrix of pairs: cells by both numbers."""
+    cells: dict[tuple[int, int], PairCell] = {}
+    for x in () if answers.overlap is None else answers.overlap.verdicts:
+        source = answers.source("overlap", f"--among {x.a},{x.b}", "overlap", x.drive or x.certificate)
+        for one, other in ((x.a, x.b), (x.b, x.a)):
+            target = f"{page_of(one)}#with-{other}"
+            cells[one, other] = PairCell(x.verdict, f"{one} and {other}: {x.verdict}", target, source)
+    return {"names": [answers.home.words(n) for n in answers.numbers], "cells": cells}
+
+
+def implication_values(answers: Answers) -> dict[str, object]:
+    """The implications that follow from no others, the pairs that are refuted, and those in doubt."""
+    index = answers.order
+    assert index is not None, "it is asked only where there are implications"
+    proved = [
+        Statement(
+            "PROVED",
+            shown(x.claim),
+            answers.source("order", "", "order", x.certificate),
+            _implies(x.above, x.below),
+        )
+        for x in index.edges
+    ]
+    refuted = [
+        Statement(
+            "REFUTED",
+            f"{x.holds} holds; {', '.join(x.fails)} fail",
+            answers.source("order", "", "order", x.drive),
+        )
+        for x in index.drives
+    ]
+    same = [kind for kind in index.kinds if len(kind) > 1]
+    doubts = [(_implies(x.above, x.below), x.reason) for x in index.doubts]
+    return {"proved": proved, "refuted": refuted, "same": same, "doubts": doubts}
+
+
+def _implies(above: str, below: str) -> str:
+    return f"{above} implies {below}"
+
+
+def class_values(answers: Answers, drawn: Mapping[str, Drawn]) -> dict[str, object]:
+    """The classes, and the claims that they exclude each other and make up the scenarios."""
+    index = answers.classes
+    assert index is not None, "it is asked only where there are classes"
+    cards = []
+    for x in index.classes:
+        source = answers.source("classify", "--no-shares", "classes", x.drive)
+        numbers = ", ".join(map(str, x.scenarios))
+        cards.append(
+            ClassCard(
+                x.name, numbers, x.description, x.verdict, shown(x.formula), source, drawn.get(source.file)
+            )
+        )
+    proofs = [
+        Statement(
+            x.verdict,
+            shown(x.claim),
+            answers.source("classify", "--no-shares", "classes", x.certificate),
+            x.name,
+            x.kind,
+        )
+        for x in index.claims
+    ]
+    return {"cards": cards, "proofs": proofs, "kinds": counted(x.kind for x in index.claims)}
+
+
+def gap_values(answers: Answers, drawn: Mapping[str, Drawn]) -> dict[str, object]:
+    """The classes of gaps by scenario; None stands for those of no single scenario."""
+    groups: dict[Words | None, list[Gap]] = {}
+    for x in all_gaps(answers, drawn):
+        words = None if x.scenario is None else answers.home.words(x.scenario)
+        groups.setdefault(words, []).append(x)
+    index = answers.coverage
+    assert index is not None, "it is asked only where there are gaps"
+    general: Sequence[Statement] = [
+        Statement(
+            x.verdict, shown(x.claim), answers.source("coverage", "", "coverage", x.certificate), x.reason
+        )
+        for x in index.claims
+    ]
+    return {"groups": groups, "verdict": index.verdict, "general": general}

@@ -1,0 +1,266 @@
+"""The values of a scenario's page: all statements about it, each with its source."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from roadproof.drivers.models import course_in
+from roadproof.evidence.answers import overlap, plates
+from roadproof.frontends.atlas.answers import OBJECTIVES, Answers, Source
+from roadproof.frontends.atlas.notation import as_html, head_as_html, shown
+from roadproof.frontends.atlas.pictures import Drawn
+from roadproof.frontends.atlas.traffic import SOURCE, frequencies
+from roadproof.frontends.report.preventable import plane_of
+from roadproof.library.scenarios import name_of
+from roadproof.library.specification import Specification
+from roadproof.library.uses import definitions_used, parameters_used
+from roadproof.library.words import Words
+from roadproof.logic import syntax
+from roadproof.logic.show import decimal
+from roadproof.verdict import Verdict
+
+CAREFUL = "careful"
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A verdict on something, as HTML, with its source; ``told``: in words."""
+
+    verdict: str
+    html: str
+    source: Source
+    told: str = ""
+    set: str = ""
+
+
+@dataclass(frozen=True)
+class Partner:
+    """Another scenario that holds on one drive with this one."""
+
+    words: Words
+    drawn: Drawn
+    source: Source
+
+
+@dataclass(frozen=True)
+class Excluded:
+    """Scenarios that exclude this one because the same ``parts`` conflict, as HTML."""
+
+    parts: Sequence[str]
+    others: Sequence[tuple[Words, Source]]
+
+
+@dataclass(frozen=True)
+class Unfolded:
+    """A definition: its head and body as HTML, and what it says in words."""
+
+    name: str
+    head: str
+    doc: str
+    body: str
+
+
+def scenario_values(answers: Answers, drawn: Mapping[str, Drawn], number: int) -> dict[str, object]:
+    """What the template of the page shows."""
+    home = answers.home.alone
+    words = answers.home.words(number)
+    found = {x: answers.drives[x][number] for x in OBJECTIVES if number in answers.drives.get(x, {})}
+    before = [n for n in answers.numbers if n < number]
+    after = [n for n in answers.numbers if n > number]
+    return {
+        "words": words,
+        "before": answers.home.words(before[-1]) if before else None,
+        "after": answers.home.words(after[0]) if after else None,
+        "drives": {x: (drawn[y.source.file], y.source) for x, y in found.items()},
+        "definitions": unfolded(home, number),
+        "parameters": _parameters(home, number),
+        "claims": claims(answers, number),
+        "partners": [*_partners(answers, drawn, number)],
+        "excluded": _excluded(answers, number),
+        "open_pairs": _open_pairs(answers, number),
+        "implications": _implications(answers, number),
+        "parts": _parts(answers, number),
+        "plates": _plates(answers, number),
+        "gaps": _gaps(answers, drawn, number),
+        "frequencies": frequencies(number, words.sector),
+        "traffic_source": SOURCE,
+    }
+
+
+# --- the formula ----------------------------------------------------------------------------------
+
+
+def unfolded(home: Specification, number: int) -> list[Unfolded]:
+    """The definition of a scenario, and those that it uses, in reading order."""
+    used = definitions_used(home, syntax.Call(name_of(number), ()))
+    names = {x.name for x in used}
+    return [
+        Unfolded(x.name, head_as_html(x), home.describe(x), as_html(x.body, names - {x.name}, "d-"))
+        for x in used
+    ]
+
+
+def _parameters(home: Specification, number: int) -> list[tuple[str, str, str]]:
+    """The parameters of a scenario: name as HTML, value with unit, and words."""
+    call = syntax.Call(name_of(number), ())
+    found = parameters_used(home.library, call, definitions_used(home, call))
+    return [(shown(x.name), f"{decimal(x.value)} {x.unit}", x.doc) for x in found]
+
+
+# --- claims, pairs, implications, parts -------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A property as HTML, with its verdict and source in each spec set."""
+
+    name: str
+    title: str
+    html: str
+    found: Mapping[str, tuple[str, Source]]
+
+
+def claims(answers: Answers, number: int | None) -> list[Claim]:
+    """What is proved or refuted about a scenario, or in general where None."""
+    groups: dict[tuple[str, str], dict[str, tuple[str, Source]]] = {}
+    titles: dict[tuple[str, str], str] = {}
+    for x in () if answers.proofs is None else answers.proofs.claims:
+        if x.scenario == number:
+            arguments = x.property if number is None else f"{x.property} {number}"
+            flag = "" if x.set in answers.home.sets else f" --set {x.set}"
+            source = answers.source("prove", arguments + flag, "proofs", x.evidence)
+            name = f"{x.property} {x.part}".strip()
+            titles.setdefault((name, x.claim), answers.titles.get(f"{x.property}@{x.set}", ""))
+            groups.setdefault((name, x.claim), {})[x.set] = x.verdict, source
+    return [Claim(key[0], titles[key], shown(key[1]), found) for key, found in groups.items()]
+
+
+def _pairs(answers: Answers, number: int) -> Iterator[tuple[Words, Source, overlap.Pair]]:
+    """The pairs of a scenario with others."""
+    for x in () if answers.overlap is None else answers.overlap.verdicts:
+        if number in (x.a, x.b):
+            file = x.drive or x.certificate
+            source = answers.source("overlap", f"--among {x.a},{x.b}", "overlap", file)
+            yield answers.home.words(x.b if x.a == number else x.a), source, x
+
+
+def _partners(answers: Answers, drawn: Mapping[str, Drawn], number: int) -> Iterator[Partner]:
+    for words, source, pair in _pairs(answers, number):
+        if pair.verdict is Verdict.WITNESSED:
+            yield Partner(words, drawn[source.file], source)
+
+
+def _excluded(answers: Answers, number: int) -> list[Excluded]:
+    """The scenarios that exclude this one, those with the same conflicting parts together."""
+    groups: dict[tuple[str, ...], list[tuple[Words, Source]]] = {}
+    for words, source, pair in _pairs(answers, number):
+        if pair.verdict is Verdict.IMPOSSIBLE:
+            groups.setdefault(pair.core, []).append((words, source))
+    return [Excluded([*map(shown, parts)], others) for parts, others in groups.items()]
+
+
+def _open_pairs(answers: Answers, number: int) -> list[tuple[Words, str, Source]]:
+    decided = (Verdict.WITNESSED, Verdict.IMPOSSIBLE)
+    return [(w, x.reason, s) for w, s, x in _pairs(answers, number) if x.verdict not in decided]
+
+
+def _implications(answers: Answers, number: int) -> list[Statement]:
+    """The proved implications from or to a scenario, in any set."""
+    made = []
+    for x in () if answers.order is None else answers.order.proved:
+        ends = [end.partition("@") for end in x.pair]
+        if str(number) in [end[0] for end in ends]:
+            source = answers.source(
+                "order", f"--among {','.join({y[0]: 0 for y in ends})}", "order", x.certificate
+            )
+            made.append(
+                Statement("PROVED", f"{shown(x.claim)}", source, " implies ".join(map(_named, x.pair)))
+            )
+    return made
+
+
+def _named(name: str) -> str:
+    number, _, set_name = name.partition("@")
+    return f"{number} in {set_name}"
+
+
+def _parts(answers: Answers, number: int) -> list[Statement]:
+    """The parts of a scenario that could be left out: proved, and those in doubt after them."""
+    made = []
+    for x in () if answers.redundancy is None else answers.redundancy.verdicts:
+        if x.scenario == number:
+            source = answers.source("redundancy", f"--among {number}", "redundancy", x.certificate or x.drive)
+            told = {True: "can be left out", False: "is needed", None: "is in doubt"}[x.redundant]
+            where = " › ".join(x.where)
+            made.append(
+                Statement(x.verdict, shown(x.part), source, f"{told}: as {str(x.value).lower()}", where)
+            )
+    return sorted(made, key=lambda x: ("left out" not in x.told, "doubt" not in x.told))
+
+
+# --- plates and gaps ------------------------------------------------------------------------------
+
+
+def _plates(answers: Answers, number: int) -> dict[str, object] | None:
+    """The plates of a careful driver in the manoeuvre of a scenario, if it has one."""
+    manoeuvre = course_in(number)
+    index = None if manoeuvre is None else answers.plates.get(manoeuvre)
+    if index is None:
+        return None
+    careful = [x for x in index.plates if x.model == CAREFUL]
+    return {
+        "manoeuvre": manoeuvre,
+        "plane": plane_of(index),
+        "answer": index,
+        "shown": [(x.fixed, [x], _sides(answers, f"{manoeuvre}", x)) for x in careful],
+        "lemmas": [
+            Statement(
+                x.verdict,
+                shown(x.claim),
+                answers.source("preventable", str(manoeuvre), f"plates-{manoeuvre}", x.certificate),
+                x.title,
+            )
+            for x in index.lemmas
+            if CAREFUL in x.name
+        ],
+    }
+
+
+def _sides(answers: Answers, manoeuvre: str, plate: plates.Plate) -> list[tuple[str, Source]]:
+    """The drives on both sides of a plate."""
+    place = f"plates-{manoeuvre}"
+    return [(x.side, answers.source("preventable", manoeuvre, place, x.drive)) for x in plate.shown]
+
+
+@dataclass(frozen=True)
+class Gap:
+    """A class of disturbances that no scenario describes, with a drive if there is one."""
+
+    component: str
+    condition: str
+    description: str
+    verdict: str
+    scenario: int | None
+    source: Source
+    drawn: Drawn | None
+    reason: str
+
+
+def _gaps(answers: Answers, drawn: Mapping[str, Drawn], number: int) -> list[Gap]:
+    return [x for x in all_gaps(answers, drawn) if x.scenario == number]
+
+
+def all_gaps(answers: Answers, drawn: Mapping[str, Drawn]) -> list[Gap]:
+    """The classes of gaps of the set."""
+    if answers.coverage is None:
+        return []
+    files = {x.number: x.drive for x in answers.coverage.gaps}
+    made = []
+    for x in answers.coverage.classes:
+        file = files[x.gaps[0]] if x.gaps else x.certificate
+        source = answers.source("coverage", "", "coverage", file)
+        picture = drawn.get(source.file)
+        condition = shown(x.condition) if x.condition else ""
+        made.append(
+            Gap(x.component, condition, x.description, x.verdict, x.scenario, source, picture, x.reason)
+        )
+    return made
