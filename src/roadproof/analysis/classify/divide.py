@@ -51,7 +51,7 @@ class CellTask:
 
 
 @dataclass(frozen=True)
-class Late:
+class Undivided:
     """Why an axis was not outlined."""
 
     reason: str
@@ -73,14 +73,14 @@ class DivisionRecord:
 
 
 @dataclass(frozen=True)
-class Told:
+class CellAnswer:
     """A cell, with the reason of a doubt whether it has a shorter text."""
 
     cell: Cell
     reason: str = ""
 
 
-DivisionAnswer: TypeAlias = Outline | Late | Told
+DivisionAnswer: TypeAlias = Outline | Undivided | CellAnswer
 SCHEMA = "roadproof/division/1"
 
 
@@ -122,7 +122,7 @@ class Dividing(Unprepared):
 
     def pieces(self, known: Mapping[str, DivisionAnswer]) -> Sequence[str | CellTask]:
         left = [name for name in self.axes if name not in known]
-        if left or not self.in_few_words or any(isinstance(x, Late) for x in known.values()):
+        if left or not self.in_few_words or any(isinstance(x, Undivided) for x in known.values()):
             return left
         return [task for task in self.cells(known) if task.name not in known]
 
@@ -131,22 +131,22 @@ class Dividing(Unprepared):
             try:
                 return {piece: outline(self.axes[piece], self.basis)}
             except BudgetExceeded as late:
-                return {piece: Late(str(late))}
+                return {piece: Undivided(str(late))}
         axis = [*self.axes.values()][piece.axis]
         try:
-            return {piece.name: Told(refine(axis, self.basis, piece.holds, piece.others))}
+            return {piece.name: CellAnswer(refine(axis, self.basis, piece.holds, piece.others))}
         except BudgetExceeded as late:
             return self.doubt(piece, str(late))
 
     def doubt(self, piece: str | CellTask, reason: str) -> dict[str, DivisionAnswer]:
         """Nothing is known of what follows from what."""
         if isinstance(piece, str):
-            return {piece: Late(reason)}
+            return {piece: Undivided(reason)}
         axis = [*self.axes.values()][piece.axis]
-        return {piece.name: Told(whole_cell(axis, piece.holds, piece.others), reason)}
+        return {piece.name: CellAnswer(whole_cell(axis, piece.holds, piece.others), reason)}
 
     def is_sure(self, answer: DivisionAnswer) -> bool:
-        return isinstance(answer, Outline) or (isinstance(answer, Told) and not answer.reason)
+        return isinstance(answer, Outline) or (isinstance(answer, CellAnswer) and not answer.reason)
 
     def wanted(self, known: Mapping[str, DivisionAnswer]) -> Collection[str]:
         return [*self.axes, *(x.name for x in self.cells(known) if self.in_few_words)]
@@ -159,10 +159,10 @@ class Dividing(Unprepared):
         match answer:
             case Outline(cells, empty):
                 return DivisionRecord(name, cells=cells, empty=tuple(x.text for x in empty))
-            case Told(Cell(holds, said, denied)):
+            case CellAnswer(Cell(holds, said, denied)):
                 texts = tuple(x.text for x in denied)
                 return DivisionRecord(name, holds=holds, said=said, denied=texts)
-            case Late():
+            case Undivided():
                 return DivisionRecord(name)
 
     def recall(self, record: DivisionRecord, shelf: EvidenceStore) -> tuple[str, DivisionAnswer]:
@@ -170,7 +170,7 @@ class Dividing(Unprepared):
         if record.name in self.axes:
             return record.name, Outline(record.cells, tuple(StatedQuery(home, x) for x in record.empty))
         denied = tuple(StatedQuery(home, x) for x in record.denied)
-        return record.name, Told(Cell(record.holds, record.said, denied))
+        return record.name, CellAnswer(Cell(record.holds, record.said, denied))
 
 
 def divide(
@@ -187,18 +187,18 @@ def divide(
     """
     study = Dividing(basis, plan, in_few_words)
     found = conduct(study, None, hands, progress, "cells", fresh=fresh).answers
-    reasons = dict.fromkeys(x.reason for x in found.values() if isinstance(x, Late))
+    reasons = dict.fromkeys(x.reason for x in found.values() if isinstance(x, Undivided))
     if reasons:
         doubts = tuple(Doubt(about="which classes there are", reason=reason) for reason in reasons)
         return Division(Classes(plan, ((),) * len(plan.groups), ()), {}, doubts, cut_off=True)
     outlines = [x for name in study.axes if isinstance(x := found[name], Outline)]
     tasks = study.cells(found)
     told = [(found if in_few_words else study.doubt(task, ""))[task.name] for task in tasks]
-    return _division(plan, outlines, tasks, [x for x in told if isinstance(x, Told)])
+    return _division(plan, outlines, tasks, [x for x in told if isinstance(x, CellAnswer)])
 
 
 def _division(
-    plan: Plan, outlines: Sequence[Outline], tasks: Sequence[CellTask], cells: Sequence[Told]
+    plan: Plan, outlines: Sequence[Outline], tasks: Sequence[CellTask], cells: Sequence[CellAnswer]
 ) -> Division:
     waiting = iter(cells)
     by_axis = [tuple(next(waiting).cell for _ in made.cells) for made in outlines]

@@ -143,66 +143,84 @@ def conduct(
     shard = hands_of(hands).shard
     if shard is not None and folder is None:
         raise UsageError(f"--shard {shard} requires --out, the folder that the runs share")
-    shelf = EvidenceStore(folder, study.question)
-    records: dict[str, Record] = {}
-    known: dict[str, Answer] = {}
-
-    def add(name: str, record: Record, answer: Answer) -> None:
-        records[name], known[name] = record, answer
-        if each is not None:
-            each(name, answer)
-
-    def take_over() -> bool:
-        """Whether the folder has answers that are new to us."""
-        before = len(known)
-        for name, record, answer in _kept(study, shelf, known, say):
-            add(name, record, answer)
-        return len(known) > before
-
-    take_over()
-    known_answers = KnownAnswers.to(study.question.schema, study.question.said, study.question.more)
-    origins: dict[str, Origin | None] = {}
-
-    def wanted() -> Collection[str]:
-        return () if fresh else study.wanted(known)
-
-    def look_up() -> bool:
-        """Take over answers that are known, and then those that are wanted because of them."""
-        before = len(known)
-        while not fresh and (
-            names := [x for x in study.wanted(known) if x not in known and x not in origins]
-        ):
-            for name in names:
-                found = _known(study, known_answers, name, shelf)
-                origins[name] = None if found is None else found[0]
-                if found is not None:
-                    add(name, *found[1:])
-        return len(known) > before
-
-    look_up()
-    came = [x for x in origins.values() if x is not None]
-    for line in told_known(came, len(wanted())):
-        if say is not None:
+    run = _Run(study, EvidenceStore(folder, study.question), say, each, fresh)
+    run.take_over()
+    run.look_up()
+    if say is not None:
+        for line in told_known(run.origins, len(study.wanted(run.known))):
             say(line)
-    while pieces := study.pieces(known):
-        if look_up():
+    while pieces := study.pieces(run.known):
+        if run.look_up():
             continue
         ours = [piece for piece in pieces if shard is None or shard.has(_name(study, piece))]
         if not ours:
-            if take_over():
+            if run.take_over():
                 continue
-            unsure = sum(not study.is_sure(answer) for answer in known.values())
-            raise SharedError(_told(shard, len(known) - unsure, unsure, len(pieces), what))
+            unsure = sum(not study.is_sure(answer) for answer in run.known.values())
+            raise SharedError(_told(shard, len(run.known) - unsure, unsure, len(pieces), what))
         if pool.are_forked(ours, hands):
             study.prepare()
         with closing(pool.work(study.settle, ours, hands, study.doubt, progress, what)) as answered:
             for _, answers in answered:
                 for name, answer in answers.items():
-                    add(name, _keep(study, name, answer, shelf), answer)
-                    _remember(study, known_answers, name, answer)
-    known_answers.make_room()
-    came = [x for x in origins.values() if x is not None]
-    return StudyResult(known, records, shelf, tuple(came))
+                    run.keep(name, answer)
+    run.known_before.make_room()
+    return StudyResult(run.known, run.records, run.shelf, tuple(run.origins))
+
+
+class _Run(Generic[Piece, Answer, Record]):
+    """What is known so far of a study that is asked."""
+
+    def __init__(
+        self,
+        study: Study[Piece, Answer, Record],
+        shelf: EvidenceStore,
+        say: Callable[[str], None] | None,
+        each: Callable[[str, Answer], None] | None,
+        fresh: bool,
+    ) -> None:
+        self.study, self.shelf, self.say, self.each, self.fresh = study, shelf, say, each, fresh
+        question = study.question
+        self.known_before = KnownAnswers.to(question.schema, question.said, question.more)
+        self.records: dict[str, Record] = {}
+        self.known: dict[str, Answer] = {}
+        self.origins: list[Origin] = []
+        self._looked_up: set[str] = set()
+
+    def add(self, name: str, record: Record, answer: Answer) -> None:
+        self.records[name], self.known[name] = record, answer
+        if self.each is not None:
+            self.each(name, answer)
+
+    def take_over(self) -> bool:
+        """Whether the folder has answers that are new to us."""
+        before = len(self.known)
+        for name, record, answer in _kept(self.study, self.shelf, self.known, self.say):
+            self.add(name, record, answer)
+        return len(self.known) > before
+
+    def look_up(self) -> bool:
+        """Take over answers that are known, and then those that are wanted because of them."""
+        before = len(self.known)
+        while names := [] if self.fresh else self._unseen():
+            for name in names:
+                self._looked_up.add(name)
+                found = _known(self.study, self.known_before, name, self.shelf)
+                if found is not None:
+                    self.origins.append(found[0])
+                    self.add(name, *found[1:])
+        return len(self.known) > before
+
+    def _unseen(self) -> list[str]:
+        wanted = self.study.wanted(self.known)
+        return [x for x in wanted if x not in self.known and x not in self._looked_up]
+
+    def keep(self, name: str, answer: Answer) -> None:
+        """Keep an answer that was computed, for this run and, where it stands, for later ones."""
+        self.add(name, _keep(self.study, name, answer, self.shelf), answer)
+        key = self.study.key(name) if self.study.is_sure(answer) else None
+        if key is not None:
+            self.known_before.remember(name, key, known_answer(self.study, name, answer))
 
 
 def _known(
@@ -227,12 +245,6 @@ def known_answer(study: Study[Piece, Answer, Record], name: str, answer: Answer)
     texts = EvidenceTexts(study.question)
     record = write(study.record(name, answer, texts))
     return KnownAnswer(record, texts.files)
-
-
-def _remember(study: Study[Piece, Answer, Record], known: KnownAnswers, name: str, answer: Answer) -> None:
-    key = study.key(name) if study.is_sure(answer) else None
-    if key is not None:
-        known.remember(name, key, known_answer(study, name, answer))
 
 
 def _kept(
