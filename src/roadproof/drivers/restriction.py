@@ -7,7 +7,7 @@ options are told with every answer: so evidence is about the question that was a
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal, TypeAlias, get_args
+from typing import Literal, TypeAlias, get_args
 
 from roadproof.drivers.models import (
     BEGINS,
@@ -52,7 +52,7 @@ class Restriction:
         """The scenarios that begin so; all others are as they are."""
         return courses_of(self.model) if self.about == "scenarios" else ()
 
-    def as_data(self) -> dict[str, Any]:
+    def as_data(self) -> dict[str, object]:
         """What an answer says of it, as plain data."""
         return {
             "side": self.side,
@@ -83,7 +83,7 @@ def restriction_of(options: Mapping[str, str]) -> Restriction | None:
     return next((x for x in EVERY if x.options.items() <= options.items()), None)
 
 
-def told(options: Mapping[str, str]) -> dict[str, Any]:
+def told(options: Mapping[str, str]) -> dict[str, object]:
     """What the heading of an answer says of a restriction; nothing where there is none."""
     found = restriction_of(options)
     return {} if found is None else {"prevention": found.as_data()}

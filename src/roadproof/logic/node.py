@@ -27,7 +27,7 @@ def node(cls: type[T]) -> type[T]:
             self.__dict__["_hash"] = known
         return known
 
-    def state(self: Any) -> dict[str, Any]:
+    def state(self: Any) -> dict[str, object]:
         """What is pickled: all but what is remembered; another process would compute another hash."""
         return {name: value for name, value in self.__dict__.items() if name[0] != "_"}
 

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from itertools import combinations, pairwise
 from pathlib import Path
-from typing import Any, TypeAlias, cast, get_args
+from typing import TypeAlias, cast, get_args
 
 from roadproof.errors import InputError
 from roadproof.runtime.package_data import shipped
@@ -21,7 +21,7 @@ from roadproof.world.signals import KINDS, LIMITED, Kind
 from roadproof.world.vehicle import Range, Vehicle
 
 LARGEST_MODEL = 1_000_000
-Content: TypeAlias = Mapping[str, Any]
+Content: TypeAlias = Mapping[str, object]
 
 
 def names_of(kind: str) -> tuple[str, ...]:
@@ -47,7 +47,8 @@ def load_recorded_road(name_or_path: str | Path, directions: tuple[int, ...] = (
     path, content = _read("roads", name_or_path)
     _only(content, {"lanelet", "adjacent", "name", *(["direction"] if directions else [])}, f"{path}")
     way = content.get("direction", directions[0] if directions else 0)
-    if directions and (isinstance(way, bool) or way not in directions):
+    found = next((x for x in directions or (0,) if x == way and not isinstance(way, bool)), None)
+    if found is None:
         shown = " or ".join(map(str, directions))
         raise InputError(f"{path}: direction={way!r}, but it must be {shown}")
     entries = content.get("lanelet")
@@ -58,7 +59,7 @@ def load_recorded_road(name_or_path: str | Path, directions: tuple[int, ...] = (
     adjacent = shared_boundaries(lanelets)
     if "adjacent" in content:
         _check_declared(content.get("adjacent"), adjacent, str(path))
-    return Road(str(content.get("name", path.stem)), lanelets, adjacent), int(way)
+    return Road(str(content.get("name", path.stem)), lanelets, adjacent), found
 
 
 def load_vehicle(name_or_path: str | Path) -> Vehicle:

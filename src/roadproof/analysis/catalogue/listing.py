@@ -37,7 +37,7 @@ class Fragment:
     """
 
     number: int
-    fields: Mapping[str, Any] = field(default_factory=dict)
+    fields: Mapping[str, object] = field(default_factory=dict)
     fault: str = ""
 
 
@@ -52,7 +52,7 @@ def fragments(path: Path) -> tuple[Fragment, ...]:
         return found
 
 
-def _of_content(content: Mapping[str, Any], path: Path) -> tuple[Fragment, ...]:
+def _of_content(content: Mapping[str, object], path: Path) -> tuple[Fragment, ...]:
     tests = content.get("test", [])
     strange = sorted(set(content) - {"test"})
     if not isinstance(tests, list) or not tests:
@@ -153,13 +153,13 @@ def _unreadable(path: Path, fragment: Fragment, own_id: str, fault: str) -> Conc
     return Concrete(own_id, place, _said(fragment.fields, "title"), fault=fault)
 
 
-def _said(fields: Mapping[str, Any], name: str) -> str:
+def _said(fields: Mapping[str, object], name: str) -> str:
     """A text of a test, empty where there is none."""
     value = fields.get(name)
     return value.strip() if isinstance(value, str) else ""
 
 
-def _entry(path: Path, test: Mapping[str, Any], where: str, specification: Specification) -> Entry:
+def _entry(path: Path, test: Mapping[str, object], where: str, specification: Specification) -> Entry:
     for name in test:
         if name not in _FIELDS:
             near = unknown("key", name, _FIELDS).partition("; ")[2]
@@ -190,7 +190,7 @@ def _remedy(near: str) -> str:
     return near if near.startswith("did you mean") else f"a test has {', '.join(_FIELDS)}"
 
 
-def _roles(test: Mapping[str, Any], where: str) -> dict[str, str]:
+def _roles(test: Mapping[str, object], where: str) -> dict[str, str]:
     """The vehicle of each role by its name, or by its number in a recording."""
     table = test.get("roles", {})
     if not isinstance(table, Mapping):
@@ -206,7 +206,7 @@ def _roles(test: Mapping[str, Any], where: str) -> dict[str, str]:
     return roles
 
 
-def _parts(test: Mapping[str, Any], where: str, specification: Specification) -> Iterator[Query]:
+def _parts(test: Mapping[str, object], where: str, specification: Specification) -> Iterator[Query]:
     """The formula, and each of its ranges as a formula."""
     said, claim = split(_text(test, "formula", where), f"{where}, formula")
     if said:
@@ -232,7 +232,7 @@ def _claims(said: object, where: str, specification: Specification) -> Iterator[
         yield claimed(specification, one, where)
 
 
-def _text(test: Mapping[str, Any], field: str, where: str) -> str:
+def _text(test: Mapping[str, object], field: str, where: str) -> str:
     value = test.get(field)
     if not isinstance(value, str) or not value.strip():
         told = f"{field}={value!r}; write a text" if field in test else f"there is no {field}; write one"
@@ -240,7 +240,7 @@ def _text(test: Mapping[str, Any], field: str, where: str) -> str:
     return value.strip()
 
 
-def _table(test: Mapping[str, Any], field: str, where: str) -> dict[str, str]:
+def _table(test: Mapping[str, object], field: str, where: str) -> dict[str, str]:
     table = test.get(field, {})
     if not isinstance(table, Mapping) or not all(isinstance(x, str) for x in table.values()):
         raise InputError(f"{where}: {field}={table!r}; write a table of texts")

@@ -124,7 +124,7 @@ def _motion(menu: Menu, duration: Fraction, row: Sequence[float], share: float) 
     return Motion(model.length, model.width, place, side, begun, drift, tuple(pieces), kind=model.kind)
 
 
-def _samples(menu: Menu, durations: Shares, rows: Shares, shares: Shares, times: Shares) -> dict[str, Any]:
+def _samples(menu: Menu, durations: Shares, rows: Shares, shares: Shares, times: Shares) -> dict[str, Shares]:
     """What ``_motion`` makes of each row, sampled."""
     speed = begun = _floats(menu.speeds, rows[:, 0])
     along: list[Shares] = []

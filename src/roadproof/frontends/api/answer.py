@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
+from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.table import Row, Table
 from roadproof.frontends.report.figures import as_bytes
 from roadproof.frontends.report.sheet import Sheet, as_rows
@@ -79,7 +80,7 @@ class Answer(Table):
         return as_rows(self._sheet)
 
     @abstractmethod
-    def as_data(self) -> dict[str, Any]:
+    def as_data(self) -> JsonObject:
         """The answer as the plain data of ``--json``."""
 
     @abstractmethod

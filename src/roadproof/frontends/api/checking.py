@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any, Literal, TypeAlias, Unpack
+from typing import Literal, TypeAlias, Unpack
 
 from roadproof.analysis.study import pool
 from roadproof.engines.prove.properties import find_label
@@ -18,6 +18,7 @@ from roadproof.evidence.finding import Acceptance, Finding, OtherVerdict, exit_c
 from roadproof.evidence.folder import conclude, survey
 from roadproof.evidence.heading import heading
 from roadproof.evidence.kernel import coq
+from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api import kernel as kernels
 from roadproof.frontends.api.settings import work_of
 from roadproof.frontends.api.table import Row, Table
@@ -67,7 +68,7 @@ class CheckReport(Table):
     def exit_code(self) -> ExitCode:
         return exit_code(self.findings, self.strict)
 
-    def as_data(self) -> dict[str, Any]:
+    def as_data(self) -> JsonObject:
         """As the plain data of ``--json``."""
         answer = kept.Answer(
             **heading(kept.SCHEMA, self.library),

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Unpack
+from typing import Unpack
 
 from roadproof.analysis.study.evidence_store import keep_specifications, specification_names
 from roadproof.analysis.study.pool import count_workers
@@ -19,6 +19,7 @@ from roadproof.evidence.certificate import to_json
 from roadproof.evidence.codec import write
 from roadproof.evidence.heading import heading
 from roadproof.evidence.kinds import Evidence
+from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Answer, Picture
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.settings import setting, work_of
@@ -67,7 +68,7 @@ class ComparisonAnswer(Answer):
     def _sheet(self) -> Sheet[tuple[str, Direction]]:
         return compare_report.sheet_of(self.comparison)
 
-    def as_data(self) -> dict[str, Any]:
+    def as_data(self) -> JsonObject:
         found = self.comparison
         one, two = found.sets
         answer = kept.Answer(

@@ -143,6 +143,7 @@ def _with_known(path: Path, entries: Sequence[Concrete]) -> str:
     """The text of a ``catalogue.toml``, with what it says already."""
     if not path.exists():
         return catalogue_text(entries)
-    known = {test.get("id") for test in read_toml(path).get("test", [])}
+    tests = read_toml(path).get("test")
+    known = {x.get("id") for x in tests if isinstance(x, Mapping)} if isinstance(tests, list) else set()
     new = [x for x in entries if x.id not in known]
     return "\n".join([path.read_text("utf-8").rstrip("\n") + "\n", *([catalogue_text(new)] if new else [])])

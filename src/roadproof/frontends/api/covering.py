@@ -104,9 +104,9 @@ class Coverages(StudyAnswers[Coverage, Kept, kept.Record]):
         """A picture of each gap beside its file, where answers were kept in a folder."""
         if self.folder is None:
             return
-        library, kept = self.study.survey.basis.library, self.as_data()["gaps"]
+        library, kept = self.study.survey.basis.library, self._index(self.found.records).gaps
         shown = [(x, gap) for x in self.surveyed.classes for gap in x.gaps]
-        pairs = [(*one, Path(said["drive"])) for one, said in zip(shown, kept, strict=True)]
+        pairs = [(*one, self.folder / str(said.drive)) for one, said in zip(shown, kept, strict=True)]
         draw = partial(report.draw_beside, library)
         with closing(pool.work(draw, pairs, jobs, None, progress, "pictures")) as done:
             list(done)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import product
 from pathlib import Path
-from typing import Any, ClassVar, Unpack
+from typing import ClassVar, Unpack
 
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.frame import StudyResult, put_away
@@ -19,6 +19,7 @@ from roadproof.evidence.answers.drives import Answer
 from roadproof.evidence.codec import write
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.kinds import Evidence
+from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.restricting import restricted
@@ -95,7 +96,7 @@ class Witnesses(StudyAnswers[WitnessStudy, Outcome, kept.Record]):
         homes = (search.specification for search in self.study.named.values())
         return sheet_of([*zip(self.outcomes, homes, strict=True)])
 
-    def as_data(self) -> dict[str, Any]:
+    def as_data(self) -> JsonObject:
         return write(self._index(self.found.records))
 
     def _index(self, records: Mapping[str, kept.Record]) -> Answer:

@@ -18,6 +18,7 @@ from roadproof.evidence.heading import heading
 from roadproof.evidence.kernel import coq
 from roadproof.evidence.kernel.accept import Ruling
 from roadproof.evidence.kinds import Evidence
+from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api import kernel as kernels
 from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.definitions import Definitions, What, load
@@ -117,7 +118,7 @@ class Proofs(StudyAnswers[Claims, ClaimResult, Record]):
     def _sheet(self) -> Sheet[ClaimResult]:
         return claims_text.sheet_of(self.answers)
 
-    def as_data(self) -> dict[str, Any]:
+    def as_data(self) -> JsonObject:
         files = {name: x.claim.evidence for name, x in self.found.records.items()}
         named = {name: file for name, file in files.items() if isinstance(file, str)}
         says = {} if self.kernel is None else self.kernel.rulings

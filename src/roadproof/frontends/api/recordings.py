@@ -5,11 +5,12 @@ import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Unpack
+from typing import Unpack
 
 from roadproof.analysis.study.pool import Say
 from roadproof.drivers.models import DRIVERS
 from roadproof.errors import UsageError
+from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, load
 from roadproof.frontends.api.table import Row, Table
@@ -145,7 +146,7 @@ class Evaluation(Table):
                 rows.append(row | {name: (pair, trace.min_danger, name) in matched for name in sets})
         return frame_of(rows)
 
-    def as_data(self) -> dict[str, Any]:
+    def as_data(self) -> JsonObject:
         """As the plain data of ``--json``."""
         return as_json(self.totals, self.failed)
 

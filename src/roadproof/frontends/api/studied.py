@@ -16,6 +16,7 @@ from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.codec import write
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.kinds import Evidence
+from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Answer, Picture, picture
 from roadproof.frontends.api.definitions import Among, Definitions, load
 from roadproof.frontends.api.settings import basis_of
@@ -89,7 +90,7 @@ class StudyAnswers(Answer, Generic[S, A, R]):
         doubt = Verdict.UNKNOWN in self.verdicts.values()
         return ExitCode.UNKNOWN if doubt else ExitCode.AS_EXPECTED
 
-    def as_data(self) -> dict[str, Any]:
+    def as_data(self) -> JsonObject:
         return self.found.as_data(self._index(self.found.records))
 
     def _write(self, folder: Path, pictures: bool) -> None:

@@ -14,6 +14,7 @@ from roadproof.evidence.codec import write
 from roadproof.evidence.drive_file import DriveFile, load_drive
 from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.settings import as_road, positive
@@ -81,7 +82,7 @@ class MonitorAnswer(Table):
             for begin, end in spans
         ]
 
-    def as_data(self) -> dict[str, Any]:
+    def as_data(self) -> JsonObject:
         """As the plain data of ``--json``."""
         x = self.observed
         answer = kept.Answer(

@@ -3,7 +3,7 @@
 import argparse
 from collections.abc import Iterable, Iterator
 from itertools import groupby
-from typing import Any
+from typing import TYPE_CHECKING
 
 from roadproof.frontends.cli.basis import read_definitions
 from roadproof.frontends.cli.options import write_json
@@ -16,6 +16,9 @@ from roadproof.library.words import words_of
 from roadproof.logic.show import decimal
 from roadproof.logic.syntax import Definition, ParameterDeclaration, SetBlock
 from roadproof.verdict import ExitCode
+
+if TYPE_CHECKING:
+    from roadproof.evidence.strict import JsonObject
 
 SUMMARY = "list scenarios, definitions, spec sets, options and parameters"
 
@@ -41,7 +44,7 @@ def run(args: argparse.Namespace) -> int:
     return ExitCode.AS_EXPECTED
 
 
-def take_inventory(specification: Specification) -> dict[str, Any]:
+def take_inventory(specification: Specification) -> "JsonObject":
     """What there is to talk about under one spec set and choice of options, as plain data."""
     from roadproof.evidence.answers import library as kept
     from roadproof.evidence.answers.shared import Binding

@@ -5,7 +5,7 @@ import json
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.streams import takes_everything
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from roadproof.runtime.executors import Executor
 
 
-def write_json(data: Mapping[str, Any], target: str) -> None:
+def write_json(data: Mapping[str, object], target: str) -> None:
     """``data`` as JSON to the file ``target``, or to stdout where it is ``-``. Raises ``InputError``."""
     if target == "-":
         print(json_text(data, plain=not takes_everything(sys.stdout)), end="")
@@ -24,7 +24,7 @@ def write_json(data: Mapping[str, Any], target: str) -> None:
         write_text(Path(target), json_text(data))
 
 
-def json_text(data: Mapping[str, Any], plain: bool = False) -> str:
+def json_text(data: Mapping[str, object], plain: bool = False) -> str:
     """``data`` as the text of a JSON file; with ``plain``, in ASCII."""
     return json.dumps(data, indent=2, ensure_ascii=plain) + "\n"
 

@@ -5,13 +5,13 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import Any
 
 from roadproof.errors import InputError
 from roadproof.evidence.answers import show as kept
 from roadproof.evidence.answers.tree import claim_node, definition_node
 from roadproof.evidence.codec import write
 from roadproof.evidence.heading import heading
+from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.cli.basis import read_definitions
 from roadproof.frontends.cli.options import write_json
 from roadproof.frontends.cli.terminal import width_of_terminal
@@ -199,7 +199,7 @@ def _as_latex(exhibit: Exhibit) -> str:
     return "\n\n".join(block for block in blocks if block)
 
 
-def _as_json(exhibit: Exhibit, specification: Specification) -> dict[str, Any]:
+def _as_json(exhibit: Exhibit, specification: Specification) -> JsonObject:
     claim = exhibit.claim
     answer = kept.Answer(
         **heading(kept.SCHEMA, specification.library),

@@ -71,7 +71,7 @@ class Settings:
         return {x.name: x.metadata["option"] for x in dataclasses.fields(cls)}
 
     @classmethod
-    def of(cls, given: Mapping[str, Any]) -> Self:
+    def of(cls, given: Mapping[str, object]) -> Self:
         """The settings that keyword arguments give. Raises ``TypeError``, ``UsageError``."""
         known = cls.options()
         for name, value in given.items():

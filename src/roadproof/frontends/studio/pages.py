@@ -71,7 +71,7 @@ class Begun:
     text: str = ""
     drives: tuple[tuple[str, Any], ...] = ()
 
-    def as_data(self) -> dict[str, Any]:
+    def as_data(self) -> dict[str, object]:
         """As plain data, with the options that the page offers."""
         drives = [{"name": name, "drive": x} for name, x in self.drives]
         return {"text": self.text, "drives": drives, "form": form()}

@@ -20,6 +20,7 @@ from roadproof.drivers.models import MODELS, course_in
 from roadproof.evidence.answers import traffic as kept
 from roadproof.evidence.codec import write
 from roadproof.evidence.heading import heading
+from roadproof.evidence.strict import JsonObject
 from roadproof.library.scenarios import MIN_DANGER
 from roadproof.library.words import Called, called_in
 from roadproof.recordings.evaluate.detectors import Detection
@@ -171,7 +172,7 @@ def write_results(
     return totals
 
 
-def as_json(totals: Totals, failed: Mapping[str, str]) -> dict[str, Any]:
+def as_json(totals: Totals, failed: Mapping[str, str]) -> JsonObject:
     """The totals as plain data; ``failed``: which recordings are left out, and why."""
     answer = kept.Answer(
         **heading(kept.SCHEMA, totals.settings.library),
