@@ -23,7 +23,9 @@ from roadproof.drivers.manoeuvres import (
 )
 from roadproof.drivers.models import MODELS
 from roadproof.drivers.stepped import course_of
+from roadproof.errors import UsageError
 from roadproof.library.scenarios import SUBJECT
+from roadproof.library.specification import Specification
 from roadproof.world.drive import Across, Along, Drive, motion_of
 from roadproof.world.road import Lanelet, Road, pairs
 
@@ -93,6 +95,28 @@ class DriverSettings:
     def has_aeb(self, model: str) -> bool:
         """Whether there is AEB in a cut-in of the model."""
         return model == "careful" and self.choices.cc_aeb != "none"
+
+
+def require(specification: Specification, values: Mapping[str, Fraction]) -> None:
+    """Raises ``UsageError`` where definitions of drivers are not read, or do not go with ``values`` (SI)."""
+    name = "unpreventable_cutIn_careful"
+    if name not in specification.definitions:
+        raise UsageError(f"there is no definition '{name}': driver models need the specification 'driver'")
+    settings = DriverSettings(values, specification.options)
+    choices = settings.choices
+    if choices.cc_aeb == "none":
+        return
+    driver, aeb = settings.parameters.cc_braking, settings.parameters.aeb_braking
+    if aeb < driver:
+        raise UsageError(
+            f"aeb_braking={float(aeb):g} m/s^2: AEB brakes at least as hard as the driver, by "
+            f"cc_braking={float(driver):g} m/s^2; raise aeb_braking, or choose cc_aeb=none"
+        )
+    if choices.cc_aeb == "add" and choices.cc_gate != "none":
+        raise UsageError(
+            f"cc_aeb=add, cc_gate={choices.cc_gate}: this combination is not supported, as a gate may "
+            "open while AEB brakes; choose cc_gate=none, cc_aeb=replace or cc_aeb=max"
+        )
 
 
 def drive_of(manoeuvre: Manoeuvre, model: str, values: Values, reading: DriverSettings) -> Drive:

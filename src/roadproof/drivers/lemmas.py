@@ -61,32 +61,41 @@ class _Entry:
         return Lemma(f"{prefix}-{self.id}", self.title, claim, tuple(x for x in parameters if x in claim))
 
 
+@dataclass(frozen=True)
+class _Entries:
+    """The lemmas of ``lemmas.toml``, of any braking, of AEB and of RSS."""
+
+    lemma: tuple[_Entry, ...]
+    aeb: tuple[_Entry, ...]
+    rss: tuple[_Entry, ...]
+
+
 def lemmas_for(manoeuvre: ManoeuvreName, models: Sequence[Model], aeb: str = "none") -> list[Lemma]:
     """The lemmas on which the boundaries of these models rest, each model with its own braking.
 
     ``aeb``: what AEB does in a cut-in of the careful driver, as the option ``cc_aeb``.
     """
     content = tomllib.loads(resources.files("roadproof.drivers").joinpath("lemmas.toml").read_text("utf-8"))
-    entries = {kind: [_Entry(**x) for x in said] for kind, said in content.items()}
+    entries = _Entries(**{kind: tuple(_Entry(**x) for x in said) for kind, said in content.items()})
     names = {x.name for x in models}
     found: list[Lemma] = []
     if manoeuvre == "cut-in" and aeb != "none" and "careful" in names:
-        found = [x.lemma("aeb", _PARAMETERS) for x in entries["aeb"] if aeb in x.readings]
-        for name, (ramp, full) in _RAMPS.items() if aeb == "add" else [("aeb", _RAMPS["aeb"])]:
-            ever = [x for x in entries["lemma"] if x.id in _EVER]
-            found += [
-                replace(x, title=f"{name}: {x.title}").lemma(name, _PARAMETERS, ramp, full) for x in ever
-            ]
+        found = [x.lemma("aeb", _PARAMETERS) for x in entries.aeb if aeb in x.readings]
+        ever = [x for x in entries.lemma if x.id in _EVER]
+        for name, (ramp, full) in _RAMPS.items():
+            if name == "aeb" or aeb == "add":
+                titled = (replace(x, title=f"{name}: {x.title}") for x in ever)
+                found += [x.lemma(name, _PARAMETERS, ramp, full) for x in titled]
     for model in (x for x in models if not x.is_stepped):
         ramp, full = _BRAKING[model.name]
         gradual = ramp != AT_ONCE
         found += [
             replace(x.lemma(model.name, (), ramp, full), parameters=(full, ramp) if gradual else (full,))
-            for x in entries["lemma"]
+            for x in entries.lemma
             if manoeuvre in x.manoeuvres and (gradual or not x.ramp)
         ]
     if manoeuvre == "cut-in" and "rss" in names:
-        found += [x.lemma("rss", _RESPONSE) for x in entries["rss"]]
+        found += [x.lemma("rss", _RESPONSE) for x in entries.rss]
     return found
 
 

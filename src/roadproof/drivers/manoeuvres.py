@@ -269,7 +269,7 @@ def _vehicle(
     braking: Fraction = _NONE,
 ) -> dict[tuple[SignalName, str], Fraction]:
     known: dict[str, Fraction] = dict(zip(STARTING, (place, left, speed, lateral), strict=True))
-    known["a_lon"] = -braking
+    known |= {"a_lon": -braking}
     return {(signal, name): known.get(signal, _NONE) + 0 * speed for signal in SIGNALS}
 
 

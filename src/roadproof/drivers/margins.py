@@ -80,7 +80,7 @@ class State:
         first, other, last = vehicles[0], vehicles[1], vehicles[-1]
         signals, speed = self.signals, self.signals["v_lon", first]
         box: tuple[SizeName, ...] = ("length", "width")
-        sizes = {str(x): (self.sizes[x, first] + self.sizes[x, last]) / 2 for x in box}
+        length, width = ((self.sizes[x, first] + self.sizes[x, last]) / 2 for x in box)
         gap, nothing = self.gap(first, other), Fraction(0)
         match manoeuvre:
             case "cut-in":
@@ -90,10 +90,10 @@ class State:
                 near = gap if speed else nothing
                 said = {"Vf0": signals["v_lon", last], "Vy": abs(signals["v_lat", other])}
                 said |= {"headway": near / speed if speed else nothing}
-                said |= {"dx0_f": self.gap(first, last) - near - sizes["length"]}
+                said |= {"dx0_f": self.gap(first, last) - near - length}
             case "deceleration":
                 said = {"dV0": speed - signals["v_lon", other], "Gx": -signals["a_lon", other], "dx0": gap}
-        return {"Ve0": speed, **said, **sizes}
+        return {"Ve0": speed, **said, "length": length, "width": width}
 
 
 @dataclass(frozen=True)

@@ -2,14 +2,13 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from types import MappingProxyType
 from typing import Final
 
 from roadproof.drivers.manoeuvres import Course, ManoeuvreName
 from roadproof.errors import UsageError
 from roadproof.library.scenarios import LANE, disturbance_name, name_of, number_in
-from roadproof.library.specification import Specification, unknown
+from roadproof.library.specification import unknown
 
 DRIVERS = "driver"
 """What the file of the definitions is called, among those that are read on request."""
@@ -193,24 +192,3 @@ def foreseen(manoeuvre: Course, vehicles: tuple[str, ...]) -> str:
 def follows(manoeuvre: Course, model: str, vehicles: tuple[str, ...], numbers: tuple[str, ...]) -> str:
     """The formula: SV drives as the model does; ``numbers`` are of the start, with units."""
     return f"follows_{_word(manoeuvre)}_{model}({', '.join((*vehicles, *numbers))})"
-
-
-def require(specification: Specification, values: Mapping[str, Fraction]) -> None:
-    """Raises ``UsageError`` where definitions of drivers are not read, or do not go with ``values`` (SI)."""
-    name = "unpreventable_cutIn_careful"
-    if name not in specification.definitions:
-        raise UsageError(f"there is no definition '{name}': driver models need the specification 'driver'")
-    options = specification.options
-    if options["cc_aeb"] == "none":
-        return
-    driver, aeb = values["cc_braking"], values["aeb_braking"]
-    if aeb < driver:
-        raise UsageError(
-            f"aeb_braking={float(aeb):g} m/s^2: AEB brakes at least as hard as the driver, by "
-            f"cc_braking={float(driver):g} m/s^2; raise aeb_braking, or choose cc_aeb=none"
-        )
-    if options["cc_aeb"] == "add" and options["cc_gate"] != "none":
-        raise UsageError(
-            f"cc_aeb=add, cc_gate={options['cc_gate']}: this combination is not supported, as a gate may "
-            "open while AEB brakes; choose cc_gate=none, cc_aeb=replace or cc_aeb=max"
-        )

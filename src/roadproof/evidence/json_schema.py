@@ -221,7 +221,7 @@ def _inline(kind: object, made: JsonObject) -> JsonObject:
     for note in told:
         match note:
             case Doc(text):
-                made["description"] = text
+                made |= {"description": text}
             case Rule():
                 made |= _facets(note, made.get("type"))
             case Whole(schema):

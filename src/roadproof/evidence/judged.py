@@ -109,16 +109,18 @@ class KnownDrive(JudgedDrive):
     Raises ``RejectedError`` then, where the judge rejects it.
     """
 
+    _content: Callable[[], object]
+    _where: str
+    _library: Library
+
     def __init__(self, content: Callable[[], object], where: str, library: Library) -> None:
         self.__dict__.update(_content=content, _where=where, _library=library)
 
     def __getattr__(self, name: str) -> object:
         if name not in ("file", "judgement", "natural"):
             raise AttributeError(name)
-        content, where = self.__dict__["_content"](), self.__dict__["_where"]
-        judged = JudgedDrive(
-            read_drive(content, where), self.__dict__["_library"], natural_of(content, where)
-        )
+        content, where = self._content(), self._where
+        judged = JudgedDrive(read_drive(content, where), self._library, natural_of(content, where))
         self.__dict__.update(vars(judged))
         object.__setattr__(self, "__class__", JudgedDrive)  # from now on it is like any other
         return vars(judged)[name]

@@ -42,13 +42,15 @@ def _walk(specification: Specification) -> Elaborator:
 class StatedQuery(Query):
     """A query whose text is known to be right, and is read when more than the text is asked for."""
 
+    _home: Specification
+
     def __init__(self, specification: Specification, text: str) -> None:
         self.__dict__.update(written=text, _home=specification)
 
     def __getattr__(self, name: str) -> object:
         if name not in ("claim", "formula", "vehicles", "lanes"):
             raise AttributeError(name)
-        read = read_claim(self.__dict__["_home"], self.written)
+        read = read_claim(self._home, self.written)
         self.__dict__.update(vars(read))
         object.__setattr__(self, "__class__", Query)  # from now on it is like any other
         return vars(read)[name]

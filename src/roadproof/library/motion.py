@@ -158,8 +158,9 @@ def split(written: str, source: str = "claim") -> tuple[tuple[str, ...], str]:
         if begun := _ASSUMING.match(written):
             raise _unknown_word(written, begun.end(), "cannot be assumed", source)
         return (), written
-    said = str(found["motion"] or found["values"])
-    begin = place = found.start("motion" if found["motion"] else "values")
+    kind = found.lastgroup or ""  # motion or values
+    said = str(found[kind])
+    begin = place = found.start(kind)
     for limit in said.split(","):
         if place > begin and _COMPARISON.search(limit) is None:
             raise _unknown_word(written, place + len(limit) - len(limit.lstrip()), "is no limit", source)

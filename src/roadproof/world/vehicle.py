@@ -61,8 +61,9 @@ def with_limits(vehicle: Vehicle, limits: Mapping[str, Fraction]) -> Vehicle:
             raise UsageError(f"v_lon from {low} {unit}: a vehicle never reverses: use 0 or more")
         if name != "v_lon" and not low <= 0 <= high:
             raise UsageError(f"{name} from {low} to {high} {unit} leaves out 0, so no vehicle could drive on")
-    slow, fast = ranges["v_lon"]
+    made = replace(vehicle, **ranges)
+    slow, fast = made.v_lon
     cruise = max(slow, vehicle.cruise[0]), min(fast, vehicle.cruise[1])
     cruise = cruise if cruise[0] < cruise[1] else (slow, fast)
     changed = ", ".join(f"{limit}={value}" for limit, value in limits.items())
-    return replace(vehicle, name=f"{vehicle.name} with {changed}", cruise=cruise, **ranges)
+    return replace(made, name=f"{vehicle.name} with {changed}", cruise=cruise)

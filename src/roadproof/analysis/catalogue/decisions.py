@@ -228,7 +228,7 @@ def decide_formula(found: Sequence[Decision], missed: Collection[tuple[str, str]
     for key, those in groups.items():
         made = replace(those[0], at=None, metres=None, seconds=None, start={})
         counts = Counter(x.side for x in those)
-        if counts["preventable"] and counts["unpreventable"]:
+        if {"preventable", "unpreventable"} <= counts.keys():
             yield replace(made, side="partly", reason="drives were found on both sides")
         else:
             told = ", ".join(f"{count} {side}" for side, count in counts.items())

@@ -121,7 +121,7 @@ def _unit(specification: Specification, term: str) -> str:
 
 def _span(target: str, term: str, unit: str, tested: tuple[float, float], ends: Mapping[str, Fact]) -> Span:
     """With the values of tests, which may go farther than the drives that were looked for."""
-    low, high = ends["least"], ends["greatest"]
+    low, high = (ends[sense] for sense in ("least", "greatest"))
     reached = min(float(low.at or 0), tested[0]), max(float(high.at or 0), tested[1])
     return Span(target, term, unit, tested, reached, (low.reason, high.reason))
 

@@ -15,7 +15,7 @@ from roadproof.analysis.classify.classes import Class, Classes
 from roadproof.engines.search.impossible import parts
 from roadproof.evidence.answers import classify
 from roadproof.library.elaborate import apply_definition
-from roadproof.library.scenarios import LANE, PAIR, TRIPLE, disturbance, name_of, number_in
+from roadproof.library.scenarios import LANE, MIN_DANGER, PAIR, TRIPLE, disturbance, name_of, number_in
 from roadproof.library.specification import Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
@@ -91,7 +91,7 @@ def count_shares(
         specification.options,
         values,
         sets=(specification.set_name,),
-        min_danger=(values["minDanger"],),
+        min_danger=(values[MIN_DANGER],),
         scenarios=(4,),
         classes=tuple(kinds),
         convention="clip",

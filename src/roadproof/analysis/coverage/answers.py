@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TypeAlias, TypedDict
 
 from roadproof.analysis.basis import ProofResult
 from roadproof.analysis.coverage.classes import GapGroup, Part
@@ -82,7 +82,16 @@ def _kept_class(answer: ClassAnswer, stem: str, shelf: EvidenceStore) -> kept.Ke
     )
 
 
-def names_of(part: Part | None) -> dict[str, Any]:
+class ClassNames(TypedDict):
+    """The fields that tell one class of gaps from another."""
+
+    scenario: int | None
+    component: str
+    description: str
+    condition: str
+
+
+def names_of(part: Part | None) -> ClassNames:
     """What a class is called: the scenario, component and condition to blame."""
     return {
         "scenario": None if part is None else part.scenario,

@@ -168,8 +168,8 @@ class EvidenceStore:
         if self.folder is not None and sure:
             refuse_vanished(self.folder)
             sealed: JsonObject = {"evidence": [*names], **record}
-            sealed["seal"] = seal_of(sealed, self.question, self.folder)
-            write_json(self.folder / ANSWERS / f"{name}.json", sealed)
+            seal = seal_of(sealed, self.question, self.folder)
+            write_json(self.folder / ANSWERS / f"{name}.json", {**sealed, "seal": seal})
 
     def with_paths(self, data: Any) -> Any:
         """``data`` with the names of evidence files as paths from here."""

@@ -13,9 +13,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 from roadproof.evidence.heading import version
+from roadproof.evidence.strict import Fields, JsonObject
 from roadproof.runtime.cache import keep_bytes, kept_bytes, make_room
 from roadproof.runtime.files import write_whole
 from roadproof.runtime.package_data import shipped
@@ -30,14 +31,20 @@ Origin = Literal["shipped", "cache"]
 class KnownAnswer:
     """A record as it is kept, and the texts of the evidence files that it names."""
 
-    record: Mapping[str, Any]
+    record: JsonObject
     files: Mapping[str, str]
     origin: Origin = "cache"
 
+    @classmethod
+    def of(cls, content: object, origin: Origin) -> "KnownAnswer":
+        """The answer that plain data say. Raises ``InputError``."""
+        data = Fields(content, "a known answer")
+        return cls(data.mapping("record"), data.named_texts("files"), origin)
+
     @property
-    def content(self) -> dict[str, Any]:
+    def content(self) -> JsonObject:
         """The answer as plain data."""
-        return {"record": self.record, "files": self.files}
+        return {"record": self.record, "files": dict(self.files)}
 
 
 @dataclass(frozen=True)
@@ -48,7 +55,7 @@ class KnownAnswers:
     asked: str
 
     @classmethod
-    def to(cls, schema: str, said: Mapping[str, Any], more: Mapping[str, str]) -> "KnownAnswers":
+    def to(cls, schema: str, said: Mapping[str, object], more: Mapping[str, str]) -> "KnownAnswers":
         """Those to a question with answers of ``schema``; parameters and files count where they are used."""
         rest = {name: value for name, value in said.items() if name not in ("parameters", "specs")}
         kind = schema.removeprefix("roadproof/").partition("/")[0]
@@ -60,9 +67,9 @@ class KnownAnswers:
             return None
         found = self.read(shipped("proofs") / "known").get(self.entry(name, key))
         if found is not None:
-            return KnownAnswer(found["record"], found["files"], "shipped")
+            return KnownAnswer.of(found, "shipped")
         data = kept_bytes(CACHE, self._cached(name, key))
-        return None if data is None else KnownAnswer(**json.loads(lzma.decompress(data)))
+        return None if data is None else KnownAnswer.of(json.loads(lzma.decompress(data)), "cache")
 
     def remember(self, name: str, key: str, answer: KnownAnswer) -> None:
         """Keep an answer in the cache of this user."""
@@ -79,11 +86,11 @@ class KnownAnswers:
         """Under which name an archive has an answer."""
         return f"{name} {_digest(key)}"
 
-    def read(self, folder: Path) -> Mapping[str, Any]:
+    def read(self, folder: Path) -> Mapping[str, object]:
         """The answers of an archive, by entry; none where it is not there or was changed."""
         return _read(self._archive(folder))
 
-    def ship(self, folder: Path, answers: Mapping[str, Any]) -> Path:
+    def ship(self, folder: Path, answers: Mapping[str, object]) -> Path:
         """Write answers by entry into an archive, beside those that it has."""
         every = dict(sorted({**self.read(folder), **answers}.items()))
         text = json.dumps({"schema": SCHEMA, "seal": _digest(every), "answers": every})
@@ -103,12 +110,13 @@ def _digest(*parts: object) -> str:
 
 
 @cache
-def _read(path: Path) -> Mapping[str, Any]:
+def _read(path: Path) -> Mapping[str, object]:
     if not path.is_file():
         return {}
-    content = json.loads(lzma.decompress(path.read_bytes()))
-    sound = content["schema"] == SCHEMA and content["seal"] == _digest(content["answers"])
-    return content["answers"] if sound else {}
+    content = Fields(json.loads(lzma.decompress(path.read_bytes())), str(path))
+    answers = content.mapping("answers")
+    sound = content.text("schema") == SCHEMA and content.text("seal") == _digest(answers)
+    return answers if sound else {}
 
 
 @cache

@@ -15,7 +15,7 @@ from roadproof.logic.custom_names import kind_of
 from roadproof.logic.formula import is_state
 from roadproof.logic.initial_conditions import pins
 from roadproof.world.drive import Drive, Motion, Piece
-from roadproof.world.signals import FIXED, SIGNALS, STARTING
+from roadproof.world.signals import FIXED, SIGNALS, SIZES, STARTING
 
 _JERK = "j_lon"
 
@@ -73,7 +73,7 @@ def _steady(vehicle: str, values: Mapping[str, Fraction]) -> Motion:
         return values.get(f"{name}({vehicle})", usual)
 
     kind = values.get(f"kind({vehicle})")
-    length, width = of("length", TYPICAL_SIZE["length"]), of("width", TYPICAL_SIZE["width"])
+    length, width = (of(name, TYPICAL_SIZE[name]) for name in SIZES)
     begins = {name: of(name) for name in STARTING}
     pieces = (Piece(None, of("a_lon"), of("a_lat")),)
     return Motion(length, width, **begins, pieces=pieces, kind=None if kind is None else kind_of(kind))

@@ -25,7 +25,7 @@ from roadproof.logic.terms import Own, Signal, Size
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.signals import AbstractSignals
 from roadproof.semantics.sampled.batch import Batch
-from roadproof.semantics.sampled.compiled import compile
+from roadproof.semantics.sampled.compiled import Monitor, compile
 from roadproof.world.vehicle import Range
 
 State: TypeAlias = Mapping[Signal, Fraction]
@@ -188,19 +188,20 @@ class _StateSampler:
         for turn in range(SPREAD if self.axes else 1):
             points = self._around(np.full((1, len(self.axes)), 0.5), 0.5, turn)
             batch = self._batch(points)
-            found = np.concatenate([found, points[monitor.evaluate(batch, "clip").answers["all"].true]])
+            found = np.concatenate([found, points[_true_at(monitor, batch)]])
             if len(found) >= ENOUGH:
                 return found
         if len(found) or batch is None or not self.axes:
             return found
         nearness = compile({"all": _scaled(self.formula, batch)})
         for turn in range(1, CLOSER):
-            margins = np.nan_to_num(nearness.measure(batch, "clip").margins["all"].low, nan=-np.inf)
+            [margin] = nearness.measure(batch, "clip").margins.values()
+            margins = np.nan_to_num(margin.low, nan=-np.inf)
             nearest = points[np.argsort(-margins, kind="stable")[:NEAREST]]
             shares = (nearest + 0.5) / [x.count + 1 for x in self.axes]
             points = self._around(shares, 0.5 / NARROWER**turn, turn)
             batch = self._batch(points)
-            found = points[monitor.evaluate(batch, "clip").answers["all"].true]
+            found = points[_true_at(monitor, batch)]
             if len(found):
                 break
         return found
@@ -239,6 +240,12 @@ class _StateSampler:
         for signal, polynomial in reversed([*self.solved.items()]):
             state[signal] = values[_quantity(signal)] = polynomial.value(values.__getitem__)
         return state
+
+
+def _true_at(monitor: Monitor[str], batch: Batch) -> NDArray[np.bool_]:
+    """For each point of a batch whether the one formula of a monitor holds there."""
+    [answer] = monitor.evaluate(batch, "clip").answers.values()
+    return answer.true
 
 
 def _scaled(formula: Formula, batch: Batch) -> Formula:

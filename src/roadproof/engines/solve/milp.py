@@ -248,10 +248,8 @@ def _run(tableau: _Tableau, wanted: int, known: SolverFacts, meter: Budget) -> S
     equal = low == high
     above, below = ~equal & np.isfinite(low), ~equal & np.isfinite(high)
     limits = np.array(tableau.box)
-    attributes: dict[str, Any] = {"bounds": [limits[:, 0], limits[:, 1]]}
-    if tableau.binaries:
-        attributes["boolean"] = [np.array(tableau.binaries)]
-    x = cvxpy.Variable(count, **attributes)
+    boolean = [np.array(tableau.binaries)] if tableau.binaries else False
+    x = cvxpy.Variable(count, bounds=[limits[:, 0], limits[:, 1]], boolean=boolean)
     constraints = [matrix[equal] @ x == low[equal]] if equal.any() else []
     if above.any():
         constraints.append(matrix[above] @ x >= low[above])
@@ -310,8 +308,9 @@ def prepare() -> None:
     """Import cvxpy and HiGHS now rather than at the first question, for processes about to be forked."""
     if find_spec("cvxpy") is not None:
         modelling()
-    if find_spec(SOLVERS["highs"].module) is not None:
-        import_module(SOLVERS["highs"].module)
+    usual, *_ = SOLVERS.values()
+    if find_spec(usual.module) is not None:
+        import_module(usual.module)
 
 
 def modelling() -> Any:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, get_args
+from typing import get_args
 
 from roadproof.analysis.basis import ProofResult
 from roadproof.analysis.catalogue.entries import Abstract, Request, read_request
@@ -19,11 +19,11 @@ from roadproof.analysis.study.evidence_store import EvidenceStore, inside
 from roadproof.analysis.study.pool import Progress
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers import coverage
-from roadproof.evidence.answers.catalogue_index import SCHEMA, KeptFact
+from roadproof.evidence.answers.catalogue_index import SCHEMA, AbstractTest, ConcreteTest, Index, KeptFact
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.evidence.folder import INDEX, FolderStatements
-from roadproof.evidence.strict import Fields, read_json
+from roadproof.evidence.strict import Fields, JsonObject, read_json
 from roadproof.frontends.api.definitions import Definitions
 from roadproof.frontends.api.restricting import drivers_of
 from roadproof.frontends.api.settings import basis_of
@@ -78,7 +78,7 @@ def compare(told: FolderStatements, jobs: Jobs = None, progress: Progress | None
         return Comparison((Finding(where, "index", Acceptance.UNDECIDED, reason),))
     known: dict[str, Kept] = {"facts": facts, **gaps}
     again = DerivedResult(made, known)
-    now = inside(write(again.index({}, 0.0)), told.folder)
+    now = read(Index, inside(write(again.index({}, 0.0)), told.folder), where)
     findings = [*_tests(index, now, where), *_about_facts(made, facts, where), *_whole(index, now, where)]
     compared = ["parameters"]
     for name, content in tables(again).items():
@@ -142,10 +142,10 @@ def _gaps(index: Fields, study: Meanings) -> Iterator[tuple[str, Kept]]:
 # --- tests ---------------------------------------------------------------------------------------
 
 
-def _tests(index: Fields, data: Mapping[str, Any], where: str) -> Iterator[Finding]:
+def _tests(index: Fields, again: Index, where: str) -> Iterator[Finding]:
     """A finding for each test that is in the index or among the tests now."""
     said = {str(x.get("id")): x for x in index.items("tests") if isinstance(x, dict)}
-    now = {str(x["id"]): x for x in data["tests"]}
+    now = {x.id: x for x in again.tests}
     if len(said) < len(index.items("tests")):
         yield _rejected(where, "two tests of it have one id, or one is no object")
     for name, test in now.items():
@@ -155,22 +155,21 @@ def _tests(index: Fields, data: Mapping[str, Any], where: str) -> Iterator[Findi
             yield _rejected(where, "there is no such test now: the answer is stale; ask again", name)
 
 
-def _of_test(name: str, said: Mapping[str, Any] | None, now: Mapping[str, Any], where: str) -> Finding:
+def _of_test(name: str, said: JsonObject | None, now: ConcreteTest | AbstractTest, where: str) -> Finding:
     if said is None:
         return _rejected(where, "the answer does not know this test: it is stale; ask again", name)
-    if "file" in now and said.get("sha256") != now["sha256"]:
-        gone = "is not there any more" if not now["sha256"] else "has changed since it was judged"
-        return _rejected(where, f"{now['file']} {gone}: the answer is stale; ask again", name)
-    wrong = [key for key in dict.fromkeys((*said, *now)) if said.get(key) != now.get(key)]
+    if isinstance(now, ConcreteTest) and said.get("sha256") != now.sha256:
+        gone = "is not there any more" if not now.sha256 else "has changed since it was judged"
+        return _rejected(where, f"{now.file} {gone}: the answer is stale; ask again", name)
+    data = write(now)
+    wrong = [key for key in dict.fromkeys((*said, *data)) if said.get(key) != data.get(key)]
     if wrong:
         return _rejected(where, f"{', '.join(wrong)}: not what judging it again gives", name)
-    if "file" not in now:
-        return Finding(where, "index", Acceptance.ACCEPTED, "", "READ", f"test {name}", now["formula"])
-    shown = ", ".join(dict.fromkeys(x["what"] for x in now["shown"])) or "no scenario"
-    how = (
-        "read again" if now["fault"] else "judged again in dense time" if now["dense"] else "monitored again"
-    )
-    told = f"cannot be read: {now['fault']}" if now["fault"] else f"shows {shown}"
+    if isinstance(now, AbstractTest):
+        return Finding(where, "index", Acceptance.ACCEPTED, "", "READ", f"test {name}", now.formula)
+    shown = ", ".join(dict.fromkeys(x.what for x in now.shown)) or "no scenario"
+    how = "read again" if now.fault else "judged again in dense time" if now.dense else "monitored again"
+    told = f"cannot be read: {now.fault}" if now.fault else f"shows {shown}"
     checked = (how, "its file is unchanged")
     return Finding(where, "test", Acceptance.ACCEPTED, "", "JUDGED", f"test {name}", told, checked)
 
@@ -252,22 +251,22 @@ def _wrong_target(fact: Fact, made: Examination) -> str:
     return f"its drive is not {wanted} for {model}"
 
 
-def _whole(index: Fields, now: Mapping[str, Any], where: str) -> Iterator[Finding]:
+def _whole(index: Fields, again: Index, where: str) -> Iterator[Finding]:
     """Whether all that follows from tests and facts is as it is derived now; one finding where it is."""
-    said = index.content
+    said, now, gaps = index.content, write(again), write(again.gaps)
     wrong = [key for key in (*_ASKED, *_DERIVED) if said.get(key) != now[key]]
     found = Fields(index.mapping("gaps"), f"{where}, gaps").content
     evidence = ("claims", "classes")  # what the reader of the index checks with their files
     wrong += [
         f"gaps.{key}"
-        for key in dict.fromkeys((*found, *now["gaps"]))
-        if key not in evidence and found.get(key) != now["gaps"].get(key)
+        for key in dict.fromkeys((*found, *gaps))
+        if key not in evidence and found.get(key) != gaps.get(key)
     ]
     for key in wrong:
         yield _rejected(where, f"{key}: not what follows from the tests; ask again")
     if not wrong:
-        kinds = (x for x in now["figures"] if not x["sector"])
-        told = ", ".join(f"{x['kind']} {x['tested']} of {x['total']} (set {x['set_name']})" for x in kinds)
+        kinds = (x for x in again.figures if not x.sector)
+        told = ", ".join(f"{x.kind} {x.tested} of {x.total} (set {x.set_name})" for x in kinds)
         checked = ("derived again from tests and facts",)
         yield Finding(where, "test", Acceptance.ACCEPTED, "", "DERIVED", "what is tested", told, checked)
 

@@ -7,9 +7,10 @@ from typing import Unpack
 
 from roadproof.analysis.preventable.study import Answer as Found
 from roadproof.analysis.preventable.study import LemmaResult, Plate, Preventable
+from roadproof.drivers.driving import require
 from roadproof.drivers.gradual import RATE, check_gradual
 from roadproof.drivers.manoeuvres import MANOEUVRES, Manoeuvre
-from roadproof.drivers.models import DRIVERS, manoeuvre_of, models_for, require
+from roadproof.drivers.models import DRIVERS, manoeuvre_of, models_for
 from roadproof.errors import UsageError
 from roadproof.evidence.answers import plates as kept
 from roadproof.evidence.kinds import Evidence

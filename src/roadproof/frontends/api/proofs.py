@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, ClassVar, Self, Unpack
+from typing import ClassVar, Self, Unpack
 
 from roadproof.analysis.claims import ClaimResult, Claims, former_claims, name_of, write_claims
 from roadproof.analysis.study.frame import StudyResult
@@ -56,7 +56,7 @@ class Proofs(StudyAnswers[Claims, ClaimResult, Record]):
         study: Claims,
         given: Run,
         each: Callable[[str, ClaimResult], None] | None = None,
-        more: Callable[[], Mapping[str, Any]] = dict,
+        more: Callable[[], Mapping[str, object]] = dict,
         begun: float | None = None,
     ) -> Self:
         """As of all studies; a folder of claims grows, and only one run at a time may write into it."""

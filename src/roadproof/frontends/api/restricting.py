@@ -5,7 +5,8 @@ from dataclasses import replace
 from typing import get_args
 
 from roadproof.analysis.catalogue.decisions import Drivers
-from roadproof.drivers.models import DRIVERS, check_courses, check_driver, require
+from roadproof.drivers.driving import require
+from roadproof.drivers.models import DRIVERS, check_courses, check_driver
 from roadproof.drivers.restriction import About, Restriction, Side, check_library, files_for
 from roadproof.errors import UsageError
 from roadproof.frontends.api.definitions import Among, Definitions, What

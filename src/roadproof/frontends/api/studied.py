@@ -51,7 +51,7 @@ class StudyAnswers(Answer, Generic[S, A, R]):
         study: S,
         given: Run,
         each: Callable[[str, A], None] | None = None,
-        more: Callable[[], Mapping[str, Any]] = dict,
+        more: Callable[[], Mapping[str, object]] = dict,
         begun: float | None = None,
     ) -> Self:
         """Ask ``study`` (``study.frame.conduct``); what was kept in ``given.out`` before is not asked again.

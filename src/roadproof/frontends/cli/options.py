@@ -63,14 +63,15 @@ def read_hands(args: argparse.Namespace) -> "Executor":
     from roadproof.runtime.executors import Cluster, Executor, Shard
 
     said = vars(args)
-    files = {name: said.get(f"tls_{name}") for name in ("ca", "cert", "key")}
+    names = ("ca", "cert", "key")
+    ca, cert, key = files = [said.get(f"tls_{name}") for name in names]
     address, share = said.get("cluster"), said.get("shard")
-    named = [f"--tls-{name}" for name, file in files.items() if file is not None]
+    named = [f"--tls-{name}" for name, file in zip(names, files, strict=True) if file is not None]
     if named and address is None:
         raise UsageError(f"{named[0]} requires --cluster SCHEDULER")
     if address is not None and args.jobs is not None:
         raise UsageError("--jobs and --cluster exclude each other: omit one of them")
     if share is not None and args.json is not None:
         raise UsageError("--shard gives a part of the answer: use --json in the run without --shard")
-    cluster = None if address is None else Cluster(address, files["ca"], files["cert"], files["key"], note)
+    cluster = None if address is None else Cluster(address, ca, cert, key, note)
     return Executor(args.jobs, cluster, None if share is None else Shard.read(share))

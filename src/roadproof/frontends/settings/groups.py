@@ -42,8 +42,8 @@ def effort_for(what: str, units: float) -> Any:
 
 def folder_for(what: str, command_line_only: bool = False, required: bool = False) -> Any:
     """``out`` of a question that writes ``what``."""
-    rules: dict[str, Any] = {"keyword": not command_line_only, "required": required}
-    return output(None, "--out DIR", f"write {what}", read=Path, **rules)
+    keyword = not command_line_only
+    return output(None, "--out DIR", f"write {what}", read=Path, keyword=keyword, required=required)
 
 
 def specifications_of(what: str) -> Any:

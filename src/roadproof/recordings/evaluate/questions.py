@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
-from roadproof.drivers.models import check_drivers, require
+from roadproof.drivers.driving import require
+from roadproof.drivers.models import check_drivers
 from roadproof.errors import InputError, UsageError
 from roadproof.library.bind import default_values
 from roadproof.library.elaborate import apply_definition

@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
 
 from roadproof.drivers.manoeuvres import MANOEUVRES
 from roadproof.drivers.models import MODELS
@@ -126,9 +125,17 @@ def _provenance(data: Index, context: PageContext) -> dict[str, object]:
 
 def as_settings(request: KeptRequest) -> Catalogue:
     """A request as the options of the command that asks it."""
-    said: dict[str, Any] = {name: x for name, x in vars(request).items() if name != "paths"}
-    drivers = None if request.drivers == (*MODELS,) else request.drivers
-    return Catalogue(**said | {"sets": (",".join(request.sets),), "drivers": drivers})
+    return Catalogue(
+        sets=(",".join(request.sets),),
+        classes=request.classes,
+        gaps=request.gaps,
+        explore=request.explore,
+        roles=request.roles,
+        lanes=request.lanes,
+        start=request.start,
+        near=request.near,
+        drivers=None if request.drivers == (*MODELS,) else request.drivers,
+    )
 
 
 def _definitions(
