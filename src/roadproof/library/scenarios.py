@@ -113,7 +113,8 @@ def applied(
     roles = tuple(vehicles) or vehicles_of(specification, scenario)
     known: Query | None = specification.worked_out.get(("applied", scenario, roles, lane))
     if known is None:
-        name = _in_set(name_of(scenario.number), scenario, specification)
+        is_here = scenario.set_name == specification.set_name
+        name = name_of(scenario.number) if is_here else definition_of(scenario)
         known = apply_definition(specification, name, (*roles, lane), walk)
         specification.worked_out["applied", scenario, roles, lane] = known
     return known
@@ -197,11 +198,6 @@ def components(specification: Specification, number: int, vehicles: Sequence[str
 def follows_template(specification: Specification, number: int) -> bool:
     """Whether a scenario has a road sector and a disturbance of its own, as the template says."""
     return not missing_part(specification, number)
-
-
-def is_disturbance(name: str, number: int) -> bool:
-    """Whether a definition is what happens in the scenario."""
-    return name == disturbance_name(number)
 
 
 def is_sector(name: str) -> bool:
@@ -300,10 +296,6 @@ def in_some_zone(specification: Specification, vehicle: str) -> Query:
     return either(*(in_zone(specification, vehicle, zone) for zone in _ZONES))
 
 
-def _in_set(name: str, scenario: Scenario, home: Specification) -> str:
-    return name if scenario.set_name == home.set_name else f"{name}@{scenario.set_name}"
-
-
 # --- what classes are made of --------------------------------------------------------------------
 
 TEMPLATE = "initSafe and roadSector_i and disturb_i"
@@ -323,9 +315,8 @@ def behaviour_words(specification: Specification, number: int) -> tuple[str, str
 
 def happening_words(specification: Specification, number: int) -> str:
     """What happens in a scenario, in the words of its behaviours, else in its own."""
-    docs = behaviour_words(specification, number)
-    own = name_of(number)
-    return ", ".join(filter(None, docs)) or _words(specification, own) or f"scenario {number}"
+    does = ", ".join(filter(None, behaviour_words(specification, number)))
+    return does or _words(specification, name_of(number)) or f"scenario {number}"
 
 
 def own_words(specification: Specification, number: int) -> str:

@@ -37,9 +37,9 @@ from roadproof.library.scenarios import (
     applied,
     asked_between,
     danger,
+    disturbance_name,
     in_lane,
     in_some_zone,
-    is_disturbance,
     likes_of,
     numbers_of,
     safe,
@@ -111,7 +111,7 @@ def _components(whole: Formula, number: int) -> Iterator[tuple[f.Application, Re
     def walk(current: Formula, rebuild: Rebuild, inside: bool) -> Iterator[tuple[f.Application, Rebuild]]:
         match current:
             case f.Application(name, _, body) if not inside:
-                yield from walk(body, rebuild, is_disturbance(name, number))
+                yield from walk(body, rebuild, name == disturbance_name(number))
             case f.Application():
                 yield current, rebuild
             case f.And(parts):

@@ -11,6 +11,8 @@ from collections.abc import Awaitable, Callable, Mapping, MutableMapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
+from roadproof.evidence.strict import JsonObject
+
 Message: TypeAlias = MutableMapping[str, Any]
 Receive: TypeAlias = Callable[[], Awaitable[Message]]
 Send: TypeAlias = Callable[[Message], Awaitable[None]]
@@ -43,16 +45,16 @@ class Guard:
     largest_body: int = LARGEST_BODY
 
     async def __call__(self, scope: Message, receive: Receive, send: Send) -> None:
-        if scope["type"] != "http":
-            if scope["type"] == "lifespan":
+        match scope:
+            case {"type": "lifespan"}:
                 await self.app(scope, receive, send)
-            return
-        try:
-            self.admit(scope["method"], headers_of(scope))
-        except RefusedError as refused:
-            await refuse(send, refused)
-            return
-        await self.app(scope, receive, _safely(send))
+            case {"type": "http", "method": str(method)}:
+                try:
+                    self.admit(method, headers_of(scope))
+                except RefusedError as refused:
+                    await refuse(send, refused)
+                    return
+                await self.app(scope, receive, _safely(send))
 
     def admit(self, method: str, headers: Mapping[str, str]) -> None:
         """Raises ``RefusedError``."""
@@ -79,9 +81,11 @@ class Guard:
 def headers_of(scope: Message) -> dict[str, str]:
     """The headers by name. A name that comes twice, as in smuggled requests, has no value that is known."""
     found: dict[str, str] = {}
-    for name, value in scope["headers"]:
-        key = name.decode("latin-1").lower()
-        found[key] = "" if key in found else value.decode("latin-1")
+    match scope:
+        case {"headers": pairs}:
+            for name, value in pairs:
+                key = name.decode("latin-1").lower()
+                found[key] = "" if key in found else value.decode("latin-1")
     return found
 
 
@@ -89,11 +93,12 @@ def _safely(send: Send) -> Send:
     """As ``send``, with the headers of ``safe_headers`` where an answer does not have its own."""
 
     async def safe_send(message: Message) -> None:
-        if message["type"] == "http.response.start":
-            said = list(message.get("headers", []))
-            names = {name.lower() for name, _ in said}
-            said += [(name, value) for name, value in safe_headers() if name not in names]
-            message = {**message, "headers": said}
+        match message:
+            case {"type": "http.response.start"}:
+                said = list(message.get("headers", []))
+                names = {name.lower() for name, _ in said}
+                said += [(name, value) for name, value in safe_headers() if name not in names]
+                message = {**message, "headers": said}
         await send(message)
 
     return safe_send
@@ -122,7 +127,7 @@ def safe_headers(nonce: str = "") -> list[tuple[bytes, bytes]]:
     ]
 
 
-async def read_json(receive: Receive, announced: str, most: int) -> dict[str, Any]:
+async def read_json(receive: Receive, announced: str, most: int) -> JsonObject:
     """The body as a JSON object; its size is counted while it comes, whatever was ``announced``.
 
     Raises ``RefusedError``.
@@ -131,9 +136,9 @@ async def read_json(receive: Receive, announced: str, most: int) -> dict[str, An
         raise RefusedError(413, f"the request is larger than {most} bytes")
     body = bytearray()
     while True:
-        message = await receive()
-        if message["type"] == "http.disconnect":
-            raise RefusedError(400, "the request ended too early")
+        match message := await receive():
+            case {"type": "http.disconnect"}:
+                raise RefusedError(400, "the request ended too early")
         body += message.get("body", b"")
         if len(body) > most:
             raise RefusedError(413, f"the request is larger than {most} bytes")

@@ -8,7 +8,7 @@ import socket
 import webbrowser
 from collections.abc import AsyncGenerator, AsyncIterator, Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from roadproof.errors import MissingSolverError, UsageError
 from roadproof.frontends.studio.pages import Begun, page_of, served
@@ -86,16 +86,15 @@ class Studio:
         from roadproof.frontends.studio.jobs import LIVE as quick
         from roadproof.frontends.studio.jobs import LONG as long
 
-        if isinstance(kind, str) and kind in quick:
-            return self.crews["live"], kind
-        if isinstance(kind, str) and kind in long:
-            return self.crews["long"], kind
+        for name, kinds in (("live", quick), ("long", long)):
+            if isinstance(kind, str) and kind in kinds:
+                return self.crews[name], kind
         raise RefusedError(400, "unknown kind of request")
 
 
 async def _told(
-    crew: WorkerPool, kind: str, asked: Mapping[str, Any]
-) -> AsyncGenerator[dict[str, Any], None]:
+    crew: WorkerPool, kind: str, asked: Mapping[str, object]
+) -> AsyncGenerator[dict[str, object], None]:
     try:
         async with contextlib.aclosing(crew.work(kind, asked)) as told:
             async for message in told:
@@ -105,8 +104,10 @@ async def _told(
 
 
 async def _until_gone(receive: Receive) -> None:
-    while (await receive())["type"] != "http.disconnect":
-        pass
+    while True:
+        match await receive():
+            case {"type": "http.disconnect"}:
+                return
 
 
 def application(studio: Studio, port: int, token: str, largest_body: int = LARGEST_BODY) -> Guard:

@@ -8,10 +8,14 @@ import json
 import os
 import resource
 import sys
-from typing import Any, TextIO
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TextIO, TypeAlias
 
 from roadproof.errors import RoadproofError
 from roadproof.runtime.parent_watchdog import die_with
+
+Say: TypeAlias = Callable[[str], None]
 
 
 def main(memory: int, long: bool) -> int:
@@ -29,7 +33,7 @@ def main(memory: int, long: bool) -> int:
     _limit_memory(memory)
     _tell(answers, {"ready": True})
     for line in sys.stdin:
-        job = json.loads(line)
+        job = Job(**json.loads(line))
 
         def say(stage: str) -> None:
             _tell(answers, {"stage": stage})
@@ -38,9 +42,17 @@ def main(memory: int, long: bool) -> int:
     return 0
 
 
-def _answered(answer: Any, job: dict[str, Any], say: Any) -> dict[str, Any]:
+@dataclass(frozen=True)
+class Job:
+    """A line on stdin: what is asked, by the kind of the job."""
+
+    kind: str
+    ask: object
+
+
+def _answered(answer: Callable[[str, object, Say], object], job: Job, say: Say) -> dict[str, object]:
     try:
-        return {"answer": answer(job["kind"], job["ask"], say)}
+        return {"answer": answer(job.kind, job.ask, say)}
     except RoadproofError as error:
         return {"error": str(error), "exit_code": error.exit_code}
     except MemoryError:
@@ -61,7 +73,7 @@ def _limit_memory(memory: int) -> None:
     resource.setrlimit(resource.RLIMIT_AS, (most, most))
 
 
-def _tell(answers: TextIO, message: dict[str, Any]) -> None:
+def _tell(answers: TextIO, message: Mapping[str, object]) -> None:
     answers.write(json.dumps(message) + "\n")
     answers.flush()
 

@@ -102,7 +102,7 @@ class WorkerPool:
         self.every.clear()
 
     async def work(
-        self, kind: str, ask: Mapping[str, Any], seconds: float | None = None
+        self, kind: str, ask: Mapping[str, object], seconds: float | None = None
     ) -> AsyncGenerator[Message, None]:
         """What is told of a job: ``waiting``, ``stage`` and ``seconds`` while it runs, ``answer`` or
         ``error`` at last. A job whose listener goes away (``aclose``) is ended with its worker.
@@ -152,7 +152,7 @@ class WorkerPool:
         await self._add()
 
     async def _run(
-        self, worker: Worker, kind: str, ask: Mapping[str, Any], seconds: float | None
+        self, worker: Worker, kind: str, ask: Mapping[str, object], seconds: float | None
     ) -> AsyncGenerator[Message, None]:
         """One job of a worker. Whatever ends it before it is answered ends the worker too."""
         most = self.limits.seconds if seconds is None else seconds
