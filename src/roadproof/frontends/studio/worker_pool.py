@@ -9,14 +9,13 @@ import sys
 import time
 from collections.abc import AsyncGenerator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 from roadproof.errors import RoadproofError
 from roadproof.runtime.executors import OUTSIDE, ended_by
 
 BEAT = 0.25  # seconds between two words about a job that runs
 LONGEST_LINE = 256 * 2**20
-Message = dict[str, Any]
+Message = dict[str, object]
 
 
 @dataclass(frozen=True)
