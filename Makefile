@@ -41,6 +41,7 @@ demo: $(READY)
 # The documentation site, in out/site: open out/site/index.html in a browser; it needs no network.
 docs: $(READY)
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build
+	$(BIN)/roadproof atlas --out out/site/atlas
 
 # The answers that come with roadproof, computed and written to proofs/known; ARGS='--only overlap' computes some.
 evidence: $(READY)
@@ -60,7 +61,7 @@ man: $(READY)
 
 # The studio in a real browser: Debian's Chromium (apt-get install chromium fonts-dejavu-core), or CHROMIUM=/path/to/it.
 browser: $(READY)
-	ROADPROOF_BROWSER=1 $(BIN)/python -m pytest -q -rs tests/studio/test_browser.py tests/report/test_page.py $(ARGS)
+	ROADPROOF_BROWSER=1 $(BIN)/python -m pytest -q -rs tests/studio/test_browser.py tests/report/test_page.py tests/atlas $(ARGS)
 
 # Every figure of the documents again; ARGS=--update puts the pages right, --only PATTERN asks for less.
 findings: $(READY)

@@ -16,7 +16,7 @@ from roadproof.evidence.answers import plates as kept_plates
 from roadproof.evidence.answers import proofs as kept_claims
 from roadproof.evidence.answers import redundancy as kept_changes
 from roadproof.evidence.codec import read
-from roadproof.evidence.drive_file import DriveFile, load_drive
+from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.folder import INDEX
 from roadproof.evidence.strict import LARGEST_INDEX, read_json
 from roadproof.frontends.api import classifying, covering, drives, preventing, studies
@@ -27,6 +27,7 @@ from roadproof.frontends.settings.flags import flags_of
 from roadproof.frontends.settings.groups import Readings
 from roadproof.frontends.settings.studies import Atlas
 from roadproof.library.scenarios import numbers_of
+from roadproof.library.specification import Library
 
 T = TypeVar("T")
 TOPICS: Final = ("proofs", "drives", "overlaps", "implications", "redundancy", "gaps", "classes", "plates")
@@ -58,7 +59,7 @@ class Answers:
 
     ``folder``: that of the pages. ``titles``: what the properties of the list say, by id and set (P1@base).
     ``drives``: by objective
-    and number. ``diagram``: a picture of the implications.
+    and number. ``diagram``: a picture of the implications. ``library``: that with the classes.
     """
 
     home: Definitions
@@ -73,17 +74,14 @@ class Answers:
     redundancy: kept_changes.Index | None = None
     coverage: kept_gaps.Index | None = None
     classes: kept_classes.Index | None = None
+    library: Library | None = None
     plates: dict[str, kept_plates.Index] = field(default_factory=dict)
 
     def source(self, command: str, arguments: str, place: str = "", file: object = None) -> Source:
-        """The source of a statement; ``file``: its evidence in the folder ``place``, if it has any."""
-        name = f"{EVIDENCE}/{place}/{file}" if isinstance(file, str) else ""
+        """The source of a statement; ``file``: its evidence in the folder ``place``, or else in its index."""
+        name = f"{EVIDENCE}/{place}/{file if isinstance(file, str) else INDEX}" if place else ""
         words = ["roadproof", command, *arguments.split(), *_flags(self.home, command)]
         return Source(shlex.join(words), name)
-
-    def drive(self, source: Source) -> DriveFile:
-        """The drive of a source. Raises ``InputError``."""
-        return load_drive(self.folder / source.file)
 
 
 def _flags(home: Definitions, command: str) -> list[str]:
@@ -179,7 +177,8 @@ class _Questions:
 
     def classes(self) -> None:
         told: Any = {"shares": False, **self._keywords("classes")}
-        classifying.classify(self.among, self.answers.home, **told)
+        found = classifying.classify(self.among, self.answers.home, **told)
+        self.answers.library = found.study.question.library
         self.answers.classes = self._index(kept_classes.Index, "classes")
 
     def plates(self) -> None:

@@ -17,11 +17,15 @@ NEAR_ENOUGH = 0.4  # pixels between a picture and the motion that it shows
 _CLASSES = ("sv", "pov", "pov2", "pov3")
 
 
-def miniature(file: DriveFile, library: Library, name: str, told: str) -> str:
-    """The picture as SVG. ``name`` is unique on the page, and begins the names of its keyframes; ``told``
-    describes the picture in words.
+def small_scene(file: DriveFile, library: Library) -> Scene:
+    """A drive in the size of a small picture."""
+    return Scene(file, library, WIDTH, 0.0, MARGIN, LANE_PIXELS)
+
+
+def miniature(scene: Scene, name: str, told: str) -> str:
+    """The picture of a ``small_scene`` as SVG. ``name`` is unique on the page, and begins the names of its
+    keyframes; ``told`` describes the picture in words.
     """
-    scene = Scene(file, library, WIDTH, 0.0, MARGIN, LANE_PIXELS)
     drawn = _Drawing(scene, name)
     height = 2 * MARGIN + (scene.across[1] - scene.across[0]) * scene.scale[1]
     shapes = [drawn.road(), *drawn.envelopes(), *drawn.vehicles()]

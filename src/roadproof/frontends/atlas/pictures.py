@@ -10,10 +10,9 @@ from roadproof.analysis.study import pool
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import judge_file
 from roadproof.frontends.atlas.answers import EVIDENCE, OBJECTIVES, Answers
-from roadproof.frontends.atlas.miniature import miniature
+from roadproof.frontends.atlas.miniature import miniature, small_scene
 from roadproof.frontends.atlas.notation import shown
-from roadproof.frontends.report.drive_data import Span, distances_of, strips_of
-from roadproof.frontends.report.moving import Scene
+from roadproof.frontends.report.drive_data import Span, strips_of
 from roadproof.frontends.settings.studies import Atlas
 from roadproof.library.specification import Library
 
@@ -58,7 +57,7 @@ def draw_all(answers: Answers, given: Atlas) -> dict[str, Drawn]:
     """Every picture by the file of its drive, relative to the pages."""
     told = dict(_drives(answers))
     jobs = [_Job(answers.folder / file, f"m{k}", x) for k, (file, x) in enumerate(told.items())]
-    draw = partial(_draw, answers.home.library)
+    draw = partial(_draw, answers.library or answers.home.library)
     with closing(pool.work(draw, jobs, given.jobs, None, given.progress, "pictures")) as done:
         found = dict(done)
     return {file: found[k] for k, file in enumerate(told)}
@@ -82,13 +81,13 @@ def _drives(answers: Answers) -> Iterator[tuple[str, str]]:
 
 def _draw(library: Library, job: _Job) -> Drawn:
     file = load_drive(job.path)
-    scene = Scene(file, library)
+    scene = small_scene(file, library)
     judgement = judge_file(file, library).judgement
     strips = () if judgement is None else strips_of(judgement, file.horizon)
     speeds = {name: (float(x[0].v_lon), float(x[-1].v_lon)) for name, x in scene.states.items()}
-    gaps = {x.other: (x.gap[0], min(x.gap)) for x in distances_of(file, library, "along")}
+    gaps = {x.other: (x.gap[0], min(x.gap)) for x in scene.distances}
     figures = Figures(speeds, gaps, scene.begins)
     parts = [(shown(x.name), x.depth, x.spans) for x in strips if x.depth <= DEEPEST][:MOST_STRIPS]
-    svg = miniature(file, library, job.name, job.told)
+    svg = miniature(scene, job.name, job.told)
     still = float(scene.times[scene.still])
     return Drawn(svg, float(file.horizon), float(scene.lasts), still, figures, parts)

@@ -184,17 +184,14 @@ def _named(name: str) -> str:
 
 
 def _parts(answers: Answers, number: int) -> list[Statement]:
-    """The parts of a scenario that could be left out: proved, and those in doubt after them."""
+    """The changes of a scenario's parts: those that change nothing, those in doubt, those that matter."""
     made = []
     for x in () if answers.redundancy is None else answers.redundancy.verdicts:
         if x.scenario == number:
             source = answers.source("redundancy", f"--among {number}", "redundancy", x.certificate or x.drive)
-            told = {True: "can be left out", False: "is needed", None: "is in doubt"}[x.redundant]
-            where = " › ".join(x.where)
-            made.append(
-                Statement(x.verdict, shown(x.part), source, f"{told}: as {str(x.value).lower()}", where)
-            )
-    return sorted(made, key=lambda x: ("left out" not in x.told, "doubt" not in x.told))
+            told = f"{x.where[-1]}, with {str(x.value).lower()} in place of" if x.where else ""
+            made.append(Statement(x.verdict, shown(x.part), source, told))
+    return sorted(made, key=lambda x: (x.verdict != Verdict.PROVED, x.verdict == Verdict.REFUTED))
 
 
 # --- plates and gaps ------------------------------------------------------------------------------
@@ -228,7 +225,8 @@ def _plates(answers: Answers, number: int) -> dict[str, object] | None:
 def _sides(answers: Answers, manoeuvre: str, plate: plates.Plate) -> list[tuple[str, Source]]:
     """The drives on both sides of a plate."""
     place = f"plates-{manoeuvre}"
-    return [(x.side, answers.source("preventable", manoeuvre, place, x.drive)) for x in plate.shown]
+    shown_by = [x for x in plate.shown if isinstance(x.drive, str)]
+    return [(x.side, answers.source("preventable", manoeuvre, place, x.drive)) for x in shown_by]
 
 
 @dataclass(frozen=True)

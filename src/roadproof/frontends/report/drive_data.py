@@ -21,7 +21,7 @@ from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.exact import Judgement, judge
 from roadproof.semantics.exact.robust import robustness
 from roadproof.semantics.exact.truth import TruthSet
-from roadproof.world.motion import state_at, states_at
+from roadproof.world.motion import states_at
 from roadproof.world.road import Road, Zone
 
 Span: TypeAlias = tuple[float, float]
@@ -227,11 +227,11 @@ def _bound(file: DriveFile, library: Library, said: Callable[[Specification], Qu
 def window_of(file: DriveFile, times: Sequence[Fraction]) -> Span:
     """What has to be seen along the road, in metres from the first vehicle: all of them at these times."""
     first, *_ = vehicles_of(file)
+    origins = [x.s for x in states_at(file.drive.vehicles[first], times)]
     places = []
-    for time in times:
-        origin = state_at(file.drive.vehicles[first], time).s
-        for motion in file.drive.vehicles.values():
-            front = state_at(motion, time).s - origin
+    for motion in file.drive.vehicles.values():
+        for state, origin in zip(states_at(motion, times), origins, strict=True):
+            front = state.s - origin
             places += [float(front - motion.length), float(front)]
     room = 0.1 * max(40.0, max(places) - min(places))
     return min(-20.0, min(places) - room), max(20.0, max(places) + room)

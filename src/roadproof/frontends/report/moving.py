@@ -106,7 +106,7 @@ class Scene:
         spans = {name: danger_spans(self.file, self.library, self.subject, name) for name in others}
         return {name: x for name, x in spans.items() if x is not None}
 
-    @property
+    @cached_property
     def begins(self) -> float | None:
         """When the first danger begins, in s."""
         return min((spans[0][0] for spans in self.dangers.values() if spans), default=None)
@@ -148,12 +148,17 @@ class Scene:
         return road_in(self.file.road, self.states[self.subject][0].s, seen)
 
     @cached_property
+    def distances(self) -> tuple[Distance, ...]:
+        """Those of the subject from each other vehicle along the road."""
+        return distances_of(self.file, self.library, "along")
+
+    @cached_property
     def envelopes(self) -> list["Envelope"]:
         """For each other vehicle, the area within RSS distances of the subject."""
         across = {x.other: x for x in distances_of(self.file, self.library, "across")}
         instants = range(len(self.times))
         found = []
-        for along in distances_of(self.file, self.library, "along"):
+        for along in self.distances:
             beside = across.get(along.other)
             if beside is not None:
                 boxes = [_around(self.box(self.subject, k), along, beside, k) for k in instants]

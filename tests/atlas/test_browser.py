@@ -1,0 +1,108 @@
+"""The atlas in a real browser: it fits, plays, can be used by keyboard, and is readable in light and dark."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from studio.browser import browsing, why_none
+
+pytestmark = pytest.mark.skipif(bool(why_none()), reason=why_none() or "there is a browser")
+
+# The texts whose contrast with the background behind them is below that of WCAG 2.1 AA.
+PALE = """() => {
+  const rgb = (text) => (text.match(/[\\d.]+/g) ?? []).map(Number);
+  const light = (parts) => parts.slice(0, 3).map((x) => x / 255)
+    .map((x) => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4))
+    .reduce((sum, x, k) => sum + x * [0.2126, 0.7152, 0.0722][k], 0);
+  const behind = (x) => {
+    for (let at = x; at; at = at.parentElement) {
+      const found = rgb(getComputedStyle(at).backgroundColor);
+      if (found.length === 3 || found[3] === 1) return found;
+    }
+    return [255, 255, 255];
+  };
+  const pale = [];
+  for (const x of document.querySelectorAll("body *:not(svg *):not(style)")) {
+    const own = [...x.childNodes].some((y) => y.nodeType === 3 && y.textContent.trim());
+    if (!own || !x.checkVisibility() || x.closest(".doubt")) continue;
+    const style = getComputedStyle(x), [a, b] = [light(rgb(style.color)), light(behind(x))];
+    const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+    if (ratio < (parseFloat(style.fontSize) >= 24 ? 3 : 4.5)) pale.push(`${ratio} ${x.textContent.trim()}`);
+  }
+  return pale;
+}"""
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    with browsing() as made:
+        yield made
+
+
+def opened(browser: Any, path: Path, **more: Any) -> tuple[Any, list[str]]:
+    """A page, and what a reader should never see: errors, and requests to others."""
+    page, faults = browser.new_page(**more), list[str]()
+    page.on("console", lambda x: faults.append(x.text))
+    page.on("pageerror", lambda x: faults.append(str(x)))
+    page.on("requestfailed", lambda x: faults.append(x.url))
+    page.on("request", lambda x: None if x.url.startswith("file:") else faults.append(x.url))
+    page.goto(path.as_uri())
+    return page, faults
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_each_page_fits_and_can_be_read(browser, made, width, scheme):
+    for name in made.pages:
+        more = {"viewport": {"width": width, "height": 900}, "color_scheme": scheme}
+        page, faults = opened(browser, made.folder / name, **more)
+        page.evaluate("document.querySelectorAll('details').forEach((x) => { x.open = true; })")
+        assert page.evaluate("document.documentElement.scrollWidth") <= width, name
+        assert page.evaluate(PALE) == [], name
+        assert faults == []
+        page.evaluate("document.body.style.color = '#808890'")
+        assert page.evaluate(PALE) != []
+        page.close()
+
+
+def state_of(page: Any, picture: str) -> str:
+    found = page.evaluate(
+        "(x) => getComputedStyle(document.querySelector(x + ' .plays')).animationPlayState", picture
+    )
+    return str(found)
+
+
+def test_a_picture_plays_when_the_keyboard_reaches_it_and_leads_to_its_page(browser, made):
+    page, _ = opened(browser, made.path)
+    assert state_of(page, ".card") == "paused"
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.textContent") == "Skip to the content"
+    for _ in range(5):
+        page.keyboard.press("Tab")
+        if page.evaluate("document.activeElement.className") == "card":
+            break
+    assert state_of(page, ".card") == "running"
+    page.keyboard.press("Enter")
+    page.wait_for_url("**/scenario-01.html")
+    page.close()
+
+
+def test_pictures_stand_still_where_the_reader_says_so(browser, made):
+    page, _ = opened(browser, made.folder / "scenario-01.html")
+    assert state_of(page, ".big") == "running"
+    page.locator("#pause").focus()
+    page.keyboard.press("Space")
+    assert state_of(page, ".big") == "paused"
+    page.close()
+    page, _ = opened(browser, made.folder / "scenario-01.html", reduced_motion="reduce")
+    assert state_of(page, ".big") == "paused"
+    page.close()
+
+
+def test_a_link_in_a_formula_unfolds_the_definition(browser, made):
+    page, _ = opened(browser, made.folder / "scenario-01.html")
+    page.locator(".formula.main a", has_text="initSafe").click()
+    assert page.locator("#d-initSafe").is_visible()
+    page.close()
