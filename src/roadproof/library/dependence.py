@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
-from roadproof.library.scenarios import TEMPLATE_NAMES
+from roadproof.library.scenarios import TEMPLATE_NAMES, name_of
 from roadproof.library.specification import Specification
 from roadproof.library.uses import definitions_used, parameters_used
 from roadproof.logic import syntax
@@ -30,7 +30,7 @@ def digest_of(
         parts |= _parts_of(specification, name)
     given = {name: str(value) for name, value in (values or {}).items() if f"parameter {name}" in parts}
     rest = [repr(sorted(library.signals.items()))] if library.signals else []
-    lanes = [repr(x) for x in sorted(library.lanes.items()) if f"scenario_{x[0]}" in parts]
+    lanes = [repr(x) for x in sorted(library.lanes.items()) if name_of(x[0]) in parts]
     told = repr((sorted(parts.items()), sorted(given.items()), lanes, rest))
     return hashlib.sha256(told.encode()).hexdigest()[:16]
 
