@@ -6,7 +6,7 @@ Anything that is not a ``RoadproofError`` is our own fault and exits with 70.
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import ClassVar, Self
 
 
 class RoadproofError(Exception):
@@ -98,8 +98,8 @@ class TextErrors(TextError):
         self.source, self.text = first.source, first.text
         self.errors = tuple(errors)
 
-    def __reduce__(self) -> tuple[type["TextErrors"], tuple[tuple[TextError, ...]]]:
-        return TextErrors, (self.errors,)
+    def __reduce__(self) -> tuple[type[Self], tuple[tuple[TextError, ...]]]:
+        return type(self), (self.errors,)
 
     def __str__(self) -> str:
         shown = [str(error) for error in self.errors[:MOST_SHOWN]]

@@ -84,8 +84,9 @@ def elaborate(specification: Specification, claim: syntax.Claim, walk: Elaborato
     elaborator = Elaborator(specification) if walk is None else walk.again()
     made = elaborator.formula(claim.body, elaborator.given(claim))
     declared = [b.name for b in claim.given if b.sort == "vehicle"]
-    vehicles = tuple(dict.fromkeys([*declared, *sorted(elaborator.free["vehicle"])]))
-    return Query(claim, made, vehicles or vehicles_of(made), tuple(sorted(elaborator.free["lane"])))
+    free, lanes = (tuple(sorted(elaborator.free[sort])) for sort in ("vehicle", "lane"))
+    vehicles = tuple(dict.fromkeys((*declared, *free)))
+    return Query(claim, made, vehicles or vehicles_of(made), lanes)
 
 
 def notes_of(specification: Specification, claim: syntax.Claim) -> list[Note]:

@@ -8,6 +8,7 @@ that counting fails, and what it cuts off is in doubt: ``BudgetExceeded``.
 import math
 import time
 from dataclasses import dataclass, field, replace
+from typing import Self
 
 from roadproof.errors import RoadproofError
 
@@ -29,8 +30,8 @@ class BudgetExceeded(RoadproofError):
         )
         self.seconds = seconds
 
-    def __reduce__(self) -> tuple[type["BudgetExceeded"], tuple[float]]:
-        return BudgetExceeded, (self.seconds,)
+    def __reduce__(self) -> tuple[type[Self], tuple[float]]:
+        return type(self), (self.seconds,)
 
 
 @dataclass(frozen=True)

@@ -102,7 +102,7 @@ class Meanings(Unprepared):
         more |= {f"set {x.specification.set_name}": "" for x in self.beside} | self.basis.models
         if self.entries and self.drivers is not None:
             values = sorted(self.drivers.values.items())
-            more["drivers"] = repr((self.drivers.models, self.drivers.specification.options, values))
+            more |= {"drivers": repr((self.drivers.models, self.drivers.specification.options, values))}
         return Question(kept.SCHEMA, said | self.basis.said(), more, self.basis.library)
 
     @cached_property

@@ -64,9 +64,6 @@ WITHOUT_END = Fraction(10**6)
 PRECISION = Fraction(1, 10)  # of a measure, where none is given
 
 
-FindAll: TypeAlias = Callable[[Sequence["ExtremeQuestion"]], Iterable["Extreme"]]
-
-
 @dataclass(frozen=True)
 class ExtremeQuestion:
     """What ``measure`` is sought for: drives of the query of ``search`` with ``knobs`` at ``point``.
@@ -287,6 +284,9 @@ class _ExtremeSearch:
         if ruling.judgement is None:
             raise InputError(ruling.reason)
         return ruling.accepted
+
+
+FindAll: TypeAlias = Callable[[Sequence[ExtremeQuestion]], Iterable[Extreme]]
 
 
 def find_extremes(soughts: Sequence[ExtremeQuestion], find_all: FindAll) -> list[Extreme]:

@@ -148,7 +148,7 @@ class Preventable(Unprepared):
     @cached_property
     def lemmas(self) -> dict[str, Lemma]:
         """The lemmas by name."""
-        aeb = self.basis.specification.options["cc_aeb"]
+        aeb = self.reading.choices.cc_aeb
         is_said = gradual.RATE not in self.fixed and gradual.RATE not in self.sheet
         asked = lemmas_for(self.manoeuvre.name, self.models, aeb) if self.with_lemmas and is_said else []
         return {f"lemma-{lemma.name}": lemma for lemma in asked}

@@ -87,7 +87,7 @@ class Claim:
     @property
     def scenario(self) -> int | None:
         """The number of the scenario that classes cover; None in the name of another claim."""
-        told = self.name.removeprefix(_BEGINNING["covers"])
+        told = self.name.removeprefix(_BEGINNING[self.kind])
         return int(told) if self.kind == "covers" and told.isdecimal() else None
 
     def expected(self, common: Common) -> list[Formula]:

@@ -80,13 +80,12 @@ def compare(told: FolderStatements, jobs: Jobs = None, progress: Progress | None
     again = DerivedResult(made, known)
     now = read(Index, inside(write(again.index({}, 0.0)), told.folder), where)
     findings = [*_tests(index, now, where), *_about_facts(made, facts, where), *_whole(index, now, where)]
-    compared = ["parameters"]
-    for name, content in tables(again).items():
+    written = tables(again)
+    for name, content in written.items():
         path = told.folder / name
-        compared.append(name)
         if path.is_file() and path.read_bytes() != content:
             findings.append(_rejected(str(path), "it is not the table of these tests"))
-    return Comparison(tuple(findings), tuple(compared))
+    return Comparison(tuple(findings), ("parameters", *written))
 
 
 def _definitions(index: Fields, library: Library, request: Request) -> Definitions:

@@ -148,8 +148,8 @@ def _routes(studio: Studio, largest_body: int) -> "Starlette":
         routes=[
             Route("/", page),
             Route("/page/{name:path}", file),
-            Route("/start", start, methods=["POST"]),
-            Route("/ask", AskEndpoint(), methods=["POST"]),
+            Route("/start", start, methods=("POST",)),
+            Route("/ask", AskEndpoint(), methods=("POST",)),
         ],
         lifespan=studio.run,
     )

@@ -6,6 +6,7 @@ from dataclasses import replace
 from roadproof.evidence.drive_file import DriveFile, read_drive
 from roadproof.frontends.api.drafting import BEFORE, place_in
 from roadproof.frontends.report.viewer_data import ShownFormula, viewer_data
+from roadproof.frontends.report.viewer_document import Document
 from roadproof.frontends.report.viewer_page import viewer_page
 from roadproof.frontends.studio.requests import Answer, Ask
 from roadproof.library.specification import Library, Specification
@@ -22,15 +23,22 @@ def show(ask: Ask, say: object) -> Answer:
 
 
 def view(ask: Ask, file: DriveFile) -> Answer:
-    """The document of the viewer for a drive, with what the page asks of it."""
+    """The document of the viewer for a drive, with what the page asks of it, as plain data."""
+    return _with_marks(_document(ask, file))
+
+
+def _with_marks(document: Document) -> Answer:
+    return {**document.as_json(), "marks": marks_of(document.formulas[0].said or (), "why")}
+
+
+def _document(ask: Ask, file: DriveFile) -> Document:
     home = ask.home
     asked = [ShownFormula("question", ask.formula, home.specification, home.values, ask.explained)]
     if ask.compare:
         other = ask.draft.definitions(BEFORE if ask.draft.before is not None else ask.draft.base)
         asked.append(ShownFormula("before", ask.formula, other.specification, home.values))
     asked += [ShownFormula("watch", x, home.specification, home.values) for x in ask.watches]
-    document = viewer_data(*_readable(file, home.specification), asked)
-    return {**document.as_json(), "marks": marks_of(document.formulas[0].said or (), "why")}
+    return viewer_data(*_readable(file, home.specification), asked)
 
 
 def marks_of(places: Iterable[Place], kind: str) -> list[Answer]:
@@ -59,5 +67,5 @@ def _readable(file: DriveFile, home: Specification) -> tuple[DriveFile, Library]
 
 def page(ask: Ask, say: object) -> Answer:
     """The drive that is shown as a page of its own."""
-    document = view(ask, read_drive(ask.drive, "the drive"))
-    return {"page": viewer_page([document], str(document["title"]))}
+    document = _document(ask, read_drive(ask.drive, "the drive"))
+    return {"page": viewer_page([_with_marks(document)], document.title)}
