@@ -29,8 +29,9 @@ from roadproof.frontends.report.drive_data import (
     vehicles_of,
     window_of,
 )
-from roadproof.frontends.report.moving import Scene, draw_moving
+from roadproof.frontends.report.moving import draw_moving
 from roadproof.frontends.report.one_trace import draw_strips
+from roadproof.frontends.report.scene import Scene
 from roadproof.frontends.report.viewer_data import ShownFormula, viewer_data
 from roadproof.frontends.report.viewer_page import json_in_html, viewer_modules, viewer_page, viewer_style
 from roadproof.frontends.report.viewer_recorded import recorded_data
@@ -337,7 +338,7 @@ def test_a_drive_of_one_vehicle_speaks_of_no_distances() -> None:
 
 
 def test_danger_that_no_definition_speaks_of_has_no_row(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("roadproof.frontends.report.moving.danger_spans", lambda *_: None)
+    monkeypatch.setattr("roadproof.frontends.report.scene.danger_spans", lambda *_: None)
     shown = draw_moving(file_of(), LIBRARY).decode()
     assert "danger between" not in shown
     assert "danger begins" not in shown

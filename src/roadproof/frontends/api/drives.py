@@ -22,11 +22,14 @@ from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.definitions import Definitions, What, load
+from roadproof.frontends.api.exporting import formats_in
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import searches_of, setting, work_of
 from roadproof.frontends.api.studied import StudyAnswers, drive_pictures
+from roadproof.frontends.report.animation import ENDINGS
+from roadproof.frontends.report.film import need
 from roadproof.frontends.report.sheet import Sheet
-from roadproof.frontends.report.witness import SearchedFor, as_line, files_of, kinds, sheet_of
+from roadproof.frontends.report.witness import EVERY_VIEW, SearchedFor, Views, as_line, sheet_of
 from roadproof.frontends.settings.keywords import WitnessKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Witness
@@ -38,24 +41,27 @@ from roadproof.verdict import ExitCode, Verdict, exit_code
 
 @dataclass(frozen=True)
 class DriveFolder:
-    """Writes samples, and ``pictures``, of drives into a folder, where they are not there yet."""
+    """Writes samples, pictures and animations of drives into a folder, where they are not there yet."""
 
     folder: Path
     library: Library
-    pictures: bool
+    views: Views
 
     def __call__(self, name: str, outcome: Outcome) -> None:
         make_folder(self.folder)
         for stem, judged in zip(stems(name, outcome), outcome.drives, strict=True):
-            for file, content in files_of(judged, stem, self.library, self.pictures):
-                write_whole(self.folder / file, content)
-            for kind in set(kinds(True)) - set(kinds(self.pictures)):
-                (self.folder / f"{stem}.{kind}").unlink(missing_ok=True)  # that of a former drive
+            samples = self.folder / f"{stem}.csv"
+            former = samples.read_bytes() if samples.is_file() else b""
+            for ending, content in self.views.of(judged, self.library):
+                write_whole(self.folder / f"{stem}{ending}", content)
+            if samples.read_bytes() != former:  # the other files are those of a former drive
+                for ending in {*EVERY_VIEW.endings} - {*self.views.endings}:
+                    (self.folder / f"{stem}{ending}").unlink(missing_ok=True)
 
     def lacks(self, name: str, outcome: Outcome) -> bool:
         """Whether any is not there."""
-        every = product(stems(name, outcome), kinds(self.pictures))
-        return any(not (self.folder / f"{stem}.{kind}").exists() for stem, kind in every)
+        every = product(stems(name, outcome), self.views.endings)
+        return any(not (self.folder / f"{stem}{ending}").exists() for stem, ending in every)
 
 
 @dataclass(frozen=True, repr=False)
@@ -112,7 +118,7 @@ class Witnesses(StudyAnswers[WitnessStudy, Outcome, kept.Record]):
         if folder != self.folder:
             put_away(self.study, {name: self.found.answers[name] for name in self.study.named}, folder)
         for name in self.study.named:
-            DriveFolder(folder, self.library, pictures)(name, self.found.answers[name])
+            DriveFolder(folder, self.library, Views(pictures))(name, self.found.answers[name])
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         return drive_pictures(((f"drive-{k}", x) for k, x in enumerate(self.drives, 1)), self.library)
@@ -144,7 +150,8 @@ def witness(
     ``unpreventable``: the name of a driver model, for scenarios that begin with a manoeuvre whose collision
     it prevents, or cannot prevent (``preventing.restriction``). ``effort``: units
     of work for a search, each about a second of a solver; ``timeout``: seconds after which the clock ends it.
-    ``out``: a folder in which drives are kept as they come, with samples and ``pictures``. ``stage`` is told
+    ``out``: a folder in which drives are kept as they come, with samples and ``pictures``; ``animate``:
+    formats of animations there, such as "svg,gif" (mp4 needs the program ffmpeg). ``stage`` is told
     of each stage that begins (``stages.Stage``), and ends all by raising.
     Raises ``TextError``, ``InputError``, ``UsageError``, ``MissingSolverError``.
 
@@ -171,8 +178,8 @@ def witness_all(
     """As ``witness``, with searches as values; ``each`` is told of every outcome under its name."""
     if not searches:
         raise UsageError("the spec set has no scenario: name formulas")
-    library, out = searches[0].specification.library, given.out
-    beside = None if out is None else DriveFolder(Path(out), library, given.pictures)
+    library, out, views = searches[0].specification.library, given.out, views_of(given)
+    beside = None if out is None else DriveFolder(Path(out), library, views)
     study = WitnessStudy(tuple(searches), beside)
     found = Witnesses.asked(study, given, each)
     if beside is not None:
@@ -187,7 +194,16 @@ def _finish(beside: DriveFolder, of: tuple[str, Outcome]) -> None:
     beside(*of)
 
 
-def files_written(name: str, outcome: Outcome, pictures: bool) -> list[str]:
+def views_of(given: Witness) -> Views:
+    """The files that are wanted beside each drive. Raises ``UsageError``, ``MissingSolverError``."""
+    wanted = formats_in(given.animate, ENDINGS) if given.animate else []
+    if wanted and given.out is None:
+        raise UsageError(f"animate={','.join(wanted)}: name a folder for the animations with --out DIR")
+    need(wanted)
+    return Views(given.pictures, tuple(wanted))
+
+
+def files_written(name: str, outcome: Outcome, views: Views) -> list[str]:
     """The names of the files that an outcome has in a folder."""
-    every = (f"{stem}.{kind}" for stem in stems(name, outcome) for kind in ("json", *kinds(pictures)))
+    every = (f"{stem}{ending}" for stem in stems(name, outcome) for ending in (".json", *views.endings))
     return list(every) if outcome.drives else evidence_files(name, outcome)

@@ -1,6 +1,6 @@
 """Drives for other people's tools."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias, Unpack
@@ -10,7 +10,7 @@ from roadproof.evidence.drive_file import SCHEMAS_READ, DriveFile, load_drive
 from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.evidence.strict import read_json
 from roadproof.frontends.api.table import Row, Table
-from roadproof.frontends.report.moving import draw_moving
+from roadproof.frontends.report.animation import ENDINGS, draw_animation
 from roadproof.frontends.settings.keywords import ExportKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.recordings import Export
@@ -20,9 +20,9 @@ from roadproof.recordings.export.registry import FORMATS
 from roadproof.recordings.export.subject import Subject, subject_of
 from roadproof.runtime.files import hold_folder, write_whole
 
-ANIMATION = "animation"
-"""A moving picture, which shows RSS distances of the library too, and so is made here."""
-NAMES = (*FORMATS, ANIMATION)
+ANIMATIONS = {"animation": "svg", "gif": "gif", "mp4": "mp4"}
+"""Animations, which show RSS distances of the library too, and so are made here."""
+NAMES = (*FORMATS, *ANIMATIONS)
 """The formats by name."""
 # A drive, a drive file, or the path of one or of a folder of them.
 DriveLike: TypeAlias = JudgedDrive | DriveFile | str | Path
@@ -77,7 +77,7 @@ def export(
     out: str | Path,
     **options: Unpack[ExportKeywords],
 ) -> Exports:
-    """Write drives for other tools (openscenario, opendrive, commonroad, highd, csv), or as a moving picture.
+    """Write drives for other tools (openscenario, opendrive, commonroad, highd, csv), or as animations.
 
     Every drive is judged first. ``to``: a format or several, which go into folders of their own then;
     ``rate``: samples a second where a format has samples; ``specs``: specification files that the drives were
@@ -104,8 +104,9 @@ def export(
 
 def _files(subject: Subject, name: str, library: Library) -> dict[str, bytes]:
     """The files of a drive in a format: their contents by name."""
-    if name == ANIMATION:
-        return {f"{subject.name}-moving.svg": draw_moving(subject.file, library)}
+    if name in ANIMATIONS:
+        kind = ANIMATIONS[name]
+        return {f"{subject.name}{ENDINGS[kind]}": draw_animation(subject.file, library, kind)}
     return FORMATS[name](subject)
 
 
@@ -122,15 +123,15 @@ def can_export(drive: str | Path, to: str, specs: Iterable[str | Path] = ()) -> 
     _files(subject_of(name, 1, file, 25), to, library)
 
 
-def formats_in(to: str | Iterable[str]) -> list[str]:
+def formats_in(to: str | Iterable[str], known: Collection[str] = NAMES) -> list[str]:
     """Formats by name, each once, from names with commas. Raises ``UsageError``."""
     texts = to.split(",") if isinstance(to, str) else [x for text in to for x in text.split(",")]
     names = list(dict.fromkeys(text.strip() for text in texts))
     for name in names:
-        if name not in NAMES:
-            raise UsageError(unknown("format", name, NAMES))
+        if name not in known:
+            raise UsageError(unknown("format", name, known))
     if not names:
-        raise UsageError(f"to: name a format: {', '.join(NAMES)}")
+        raise UsageError(f"to: name a format: {', '.join(known)}")
     return names
 
 

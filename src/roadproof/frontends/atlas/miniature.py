@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from xml.etree.ElementTree import Element, tostring
 
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.frontends.report.moving import DASH, Scene
+from roadproof.frontends.report.scene import DASH, Scene
 from roadproof.library.specification import Library
 from roadproof.recordings.export.xml import element
 

@@ -124,8 +124,19 @@ def _drivers(prefix: str) -> Values:
 def _formats(prefix: str) -> Values:
     from roadproof.frontends.api.exporting import NAMES
 
+    return _listed(prefix, NAMES)
+
+
+def _animations(prefix: str) -> Values:
+    from roadproof.frontends.report.animation import ENDINGS
+
+    return _listed(prefix, ENDINGS)
+
+
+def _listed(prefix: str, names: Iterable[str]) -> Values:
+    """Names behind those that stand before a comma."""
     head = prefix[: prefix.rfind(",") + 1]
-    return dict.fromkeys((f"{head}{name}" for name in NAMES), "")
+    return dict.fromkeys((f"{head}{name}" for name in names), "")
 
 
 def _models(kind: str) -> Callable[[str], Values]:
@@ -161,6 +172,7 @@ _VALUES = {
     **_by(_parameters, ("--param", "--vary")),
     **_by(_drivers, ("--preventable", "--unpreventable", "--drivers", "--model")),
     **_by(_formats, ("--to", "--format")),
+    **_by(_animations, ("--animate",)),
     **_by(_models("roads"), ("--road",)),
     **_by(_models("vehicles"), ("--vehicle",)),
     **_by(_files_on_request, ("--spec",)),

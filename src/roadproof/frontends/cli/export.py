@@ -17,6 +17,7 @@ formats:
   highd          recordings 01, 02, ...: three CSV files each; XX_road.toml where the road has zones
   csv            NAME.csv, a row a time and vehicle; NAME_road.toml
   animation      NAME-moving.svg, which a browser plays: the road, RSS distances of SV, what is true when
+  gif, mp4       NAME.gif, NAME.mp4: the same as frames; mp4 needs the program ffmpeg
 
 Each drive is judged before it is written. One format goes into DIR, several into a folder for each. What is
 converted how is in docs/how-to/interop.md.

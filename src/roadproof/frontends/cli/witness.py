@@ -19,13 +19,12 @@ SUMMARY = "find a drive on which a scenario or a formula holds"
 _EXAMPLES = """\
 examples:
   roadproof witness 4                                 scenario 4, deceleration ahead, on its reference road
-  roadproof witness 12 --set ext --out drives         drive file, CSV and picture
+  roadproof witness 12 --out drives --animate gif     drive file, CSV, picture and animation
   roadproof witness 1,3-8                             a drive for each of these scenarios
   roadproof witness --all --set base --set extA --set ext --out drives
   roadproof witness 'scenario_8(SV,POV,L) and not scenario_6(SV,POV,L)' --lane L=main-2 --road main-3
   roadproof witness 1 --objective severe --count 3
   roadproof witness 1 --unpreventable careful         begins with a cut-in that no careful driver survives
-  roadproof witness --spec driver 'scenario_1(SV,POV,L) and unpreventable_cutIn_careful(SV,POV)'
 
 A run with --out that was broken off goes on where it was; what is there for the same search stands.
 """
@@ -39,18 +38,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from roadproof.analysis.witnesses import WitnessStudy
-    from roadproof.frontends.api.drives import files_written, searches_for, witness_all
+    from roadproof.frontends.api.drives import files_written, searches_for, views_of, witness_all
     from roadproof.frontends.report.witness import as_line
 
     what = some_or_all(args)
     given = Witness.of(study_keywords(args, Witness, args.out))
+    views = views_of(given)
     searches = searches_for(what, read_definitions(args, Witness), given)
     named = WitnessStudy(tuple(searches)).named
     plain = args.json != "-"
     written: list[str] = []
 
     def show(name: str, outcome: "Outcome") -> None:
-        files = [] if args.out is None else files_written(name, outcome, given.pictures)
+        files = [] if args.out is None else files_written(name, outcome, views)
         written.extend(files)
         clear()
         told = f"\n  written to {args.out}: {', '.join(files)}" if files else ""

@@ -105,9 +105,9 @@ def heading_of(file: DriveFile, library: Library) -> list[str]:
     return [f"S{str(words)[1:]}", words.sentence]
 
 
-def times_of(file: DriveFile) -> list[Fraction]:
-    """The instants at which curves are drawn."""
-    return [k * GRAIN for k in range(int(file.horizon / GRAIN) + 1)]
+def times_of(file: DriveFile, grain: Fraction = GRAIN) -> list[Fraction]:
+    """The instants at which curves are drawn, ``grain`` seconds apart."""
+    return [k * grain for k in range(int(file.horizon / grain) + 1)]
 
 
 def strips_of(judgement: Judgement, horizon: Fraction) -> tuple[Strip, ...]:
@@ -147,20 +147,23 @@ def danger_spans(file: DriveFile, library: Library, one: str, other: str) -> tup
     return tuple(_spans(judge(formula, file.drive).truth(formula), float(file.horizon)))
 
 
-def distances_of(file: DriveFile, library: Library, direction: Direction) -> tuple[Distance, ...]:
+def distances_of(
+    file: DriveFile, library: Library, direction: Direction, grain: Fraction = GRAIN
+) -> tuple[Distance, ...]:
     """Of the first vehicle from each other one; those are left out that the library has no distance for."""
     first, *others = vehicles_of(file)
-    made = (_distance(file, library, direction, first, other) for other in others)
+    made = (_distance(file, library, direction, (first, other), times_of(file, grain)) for other in others)
     return tuple(x for x in made if x is not None)
 
 
 def _distance(
-    file: DriveFile, library: Library, direction: Direction, one: str, other: str
+    file: DriveFile, library: Library, direction: Direction, of: tuple[str, str], times: Sequence[Fraction]
 ) -> Distance | None:
-    gaps = {pair: _gaps(file, direction, *pair) for pair in ((one, other), (other, one))}
-    margins = {pair: _margins(file, library, direction, *pair) for pair in gaps}
+    one, other = of
+    gaps = {pair: _gaps(file, direction, pair, times) for pair in (of, (other, one))}
+    margins = {pair: _margins(file, library, direction, pair, times) for pair in gaps}
     gap, needed, one_behind = [], [], []
-    for k in range(len(times_of(file))):
+    for k in range(len(times)):
         pair = max(gaps, key=lambda pair: gaps[pair][k].order)
         known = margins[pair]
         if known is None:
@@ -179,10 +182,11 @@ class _Gap:
     gap: float
 
 
-def _gaps(file: DriveFile, direction: Direction, low: str, high: str) -> list[_Gap]:
+def _gaps(
+    file: DriveFile, direction: Direction, pair: tuple[str, str], times: Sequence[Fraction]
+) -> list[_Gap]:
     """From the front of one vehicle to the rear of another, or from a left to a right side."""
-    lower, higher = file.drive.vehicles[low], file.drive.vehicles[high]
-    times = times_of(file)
+    lower, higher = (file.drive.vehicles[name] for name in pair)
     found = []
     for a, b in zip(states_at(lower, times), states_at(higher, times), strict=True):
         if direction == "along":
@@ -194,14 +198,19 @@ def _gaps(file: DriveFile, direction: Direction, low: str, high: str) -> list[_G
 
 
 def _margins(
-    file: DriveFile, library: Library, direction: Direction, low: str, high: str
+    file: DriveFile,
+    library: Library,
+    direction: Direction,
+    pair: tuple[str, str],
+    times: Sequence[Fraction],
 ) -> Sequence[float] | None:
     """RSS distance less gap at each time; None where the library's definition is of another form."""
-    formula = _bound(file, library, lambda home: too_near(home, direction, low, high))
+    formula = _bound(file, library, lambda home: too_near(home, direction, *pair))
     nearer = None if formula is None else nearer_in(formula)
     if nearer is None:
         return None
-    return list(robustness(nearer, file.drive, GRAIN, times_of(file)[-1]).margins[nearer])
+    grain = times[1] if len(times) > 1 else GRAIN
+    return list(robustness(nearer, file.drive, grain, times[-1]).margins[nearer])
 
 
 def too_near(home: Specification, direction: Direction, low: str, high: str) -> Query:

@@ -1,7 +1,7 @@
 """The one home of matplotlib: a figure with rows of axes, and its bytes."""
 
 import io
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from roadproof.errors import MissingSolverError
@@ -21,13 +21,13 @@ def make_figure(heights: Sequence[float], width: float = 9.0) -> tuple[Any, list
     return figure, [axes for (axes,) in rows]
 
 
-def make_page(width: float, height: float) -> Any:
-    """An empty figure of that size (inches), on which each axes is put in its place.
+def make_page(width: float, height: float, dots: float | None = None) -> Any:
+    """An empty figure of that size (inches of ``dots`` pixels), on which each axes is put in its place.
 
     Raises ``MissingSolverError`` where matplotlib is not installed.
     """
     figure_class, canvas = _matplotlib()
-    figure = figure_class(figsize=(width, height))
+    figure = figure_class(figsize=(width, height), dpi=dots)
     canvas(figure)
     return figure
 
@@ -110,6 +110,23 @@ def as_bytes(figure: Any) -> dict[str, bytes]:
             figure.savefig(out, format=kind, dpi=_DPI, metadata=metadata)
             made[kind] = out.getvalue()
     return made
+
+
+def draw_again(figure: Any, moving: Sequence[Any]) -> Callable[[], bytes]:
+    """A function that draws ``moving`` artists where they are then, above all others, as RGBA bytes."""
+    for artist in moving:
+        artist.set_animated(True)
+    canvas = figure.canvas
+    canvas.draw()
+    still = canvas.copy_from_bbox(figure.bbox)
+
+    def pixels() -> bytes:
+        canvas.restore_region(still)
+        for artist in moving:
+            figure.draw_artist(artist)
+        return bytes(canvas.buffer_rgba())
+
+    return pixels
 
 
 def settle(figure: Any) -> None:

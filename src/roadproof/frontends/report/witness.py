@@ -1,10 +1,12 @@
 """Drives that were found: a line about each search, a sheet of all, and the files of the drives."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import TypeAlias
 
 from roadproof.engines.search.ask import Outcome
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.frontends.report.animation import ENDINGS, draw_animation
 from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.figures import as_bytes
 from roadproof.frontends.report.sheet import Column, Sheet
@@ -73,14 +75,27 @@ def _core_of(outcome: Outcome) -> str:
     return "" if outcome.impossibility is None else f"core: {'; '.join(outcome.impossibility.told)}"
 
 
-def kinds(pictures: bool) -> tuple[str, ...]:
-    """How the files end that lie beside a drive file to be looked at."""
-    return ("csv", "png", "svg") if pictures else ("csv",)
+@dataclass(frozen=True)
+class Views:
+    """The files beside a drive file: samples, ``pictures`` where wanted, ``animations`` by format."""
+
+    pictures: bool = True
+    animations: tuple[str, ...] = ()
+
+    @property
+    def endings(self) -> tuple[str, ...]:
+        """How the names of the files end."""
+        drawn = (".png", ".svg") if self.pictures else ()
+        return (".csv", *drawn, *(ENDINGS[x] for x in self.animations))
+
+    def of(self, judged: JudgedDrive, library: Library) -> Iterator[tuple[str, bytes]]:
+        """The same, with their contents; the samples come first."""
+        yield ".csv", csv_of(judged.file).encode()
+        if self.pictures:
+            for kind, content in as_bytes(draw_drive(judged.file, library)).items():
+                yield f".{kind}", content
+        for name in self.animations:
+            yield ENDINGS[name], draw_animation(judged.file, library, name)
 
 
-def files_of(judged: JudgedDrive, stem: str, library: Library, pictures: bool) -> Iterator[tuple[str, bytes]]:
-    """The same by name, with what is in them: samples, pictures."""
-    yield f"{stem}.csv", csv_of(judged.file).encode()
-    if pictures:
-        for kind, content in as_bytes(draw_drive(judged.file, library)).items():
-            yield f"{stem}.{kind}", content
+EVERY_VIEW = Views(True, tuple(ENDINGS))

@@ -102,6 +102,7 @@ class WitnessKeywords(
     objective: Objective
     count: int
     pictures: bool
+    animate: str | Iterable[str]
 
 
 class ExploreKeywords(

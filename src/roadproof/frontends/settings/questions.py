@@ -65,6 +65,9 @@ class Witness(SeveralSets, SearchPlace, Method, Prevention, Budget, Sharing, Run
     verbose: bool = output(False, "--verbose", "print sizes and seconds by stage", keyword=False, rare=True)
     out: str | Path | None = folder_for("drive files, CSV and pictures")
     pictures: bool = pictures_of()
+    animate: str | Iterable[str] = output(
+        (), "--animate FORMAT", "with --out: write animations: svg, gif or mp4", gather=list
+    )
 
 
 @dataclass(frozen=True, kw_only=True)

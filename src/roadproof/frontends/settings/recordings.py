@@ -167,7 +167,7 @@ class Export(Settings):
     to: Iterable[str] = option(
         (),
         "--to FORMAT",
-        "openscenario, opendrive, commonroad, highd, csv or animation; may be repeated",
+        "openscenario, opendrive, commonroad, highd, csv, animation, gif or mp4; may be repeated",
         gather=list,
         keyword=False,
         required=True,
