@@ -62,7 +62,7 @@ def test_each_page_fits_and_can_be_read(browser, made, width, scheme):
         assert page.evaluate("document.documentElement.scrollWidth") <= width, name
         assert page.evaluate(PALE) == [], name
         assert faults == []
-        page.evaluate("document.body.style.color = '#808890'")
+        page.evaluate("document.body.style.color = '#777777'")
         assert page.evaluate(PALE) != []
         page.close()
 

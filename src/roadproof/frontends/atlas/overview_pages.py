@@ -68,8 +68,9 @@ def _counts(answers: Answers) -> dict[str, list[tuple[str, int]]]:
     if answers.overlap is not None:
         found["overlaps"] = counted(x.verdict for x in answers.overlap.verdicts)
     if answers.order is not None:
-        refuted = [("REFUTED", len(answers.order.missing))]
-        found["implications"] = [("PROVED", len(answers.order.proved)), *refuted]
+        index = answers.order
+        every = {"PROVED": index.proved, "REFUTED": index.missing, "UNKNOWN": index.doubts}
+        found["implications"] = [(word, len(x)) for word, x in every.items() if x]
     if answers.classes is not None:
         found["classes"] = counted(x.verdict for x in answers.classes.classes)
     if answers.coverage is not None:
@@ -99,7 +100,7 @@ def implication_values(answers: Answers) -> dict[str, object]:
             answers.source("order", "", "order", x.certificate),
             _implies(x.above, x.below),
         )
-        for x in index.edges
+        for x in sorted(index.edges, key=lambda x: (int(x.above.partition("@")[0]), x.pair))
     ]
     refuted = [
         Statement(
