@@ -257,7 +257,9 @@ def all_gaps(answers: Answers, drawn: Mapping[str, Drawn]) -> list[Gap]:
         file = files[x.gaps[0]] if x.gaps else x.certificate
         source = answers.source("coverage", "", "coverage", file)
         picture = drawn.get(source.file)
-        condition = shown(x.condition) if x.condition else ""
+        formula, _, home = x.condition.rpartition(" in ")  # such as "aheadOf(SV, POV) in cutIn"
+        is_inside = bool(formula) and home.isidentifier()
+        condition = f"{shown(formula)} in {shown(home)}" if is_inside else shown(x.condition)
         made.append(
             Gap(x.component, condition, x.description, x.verdict, x.scenario, source, picture, x.reason)
         )
