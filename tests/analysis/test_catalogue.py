@@ -20,7 +20,8 @@ from roadproof.analysis.catalogue.reading import read_catalogue
 from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, show
 from roadproof.analysis.catalogue.tested import figures
 from roadproof.analysis.classify.cells import Cell
-from roadproof.analysis.classify.classes import Classes, Division, divide, plan_of
+from roadproof.analysis.classify.classes import Classes, plan_of
+from roadproof.analysis.classify.divide import Division, divide
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile, drive_data, load_drive
 from roadproof.frontends.api.cataloguing import CatalogueAnswer, catalogue

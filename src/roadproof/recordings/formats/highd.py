@@ -47,15 +47,16 @@ from roadproof.world.signals import SignalName, SizeName
 
 LARGEST_PLACE = 10_000.0
 """x and y (m) of a section that one camera sees."""
-_COLUMNS: Mapping[SignalName | SizeName, str] = {
-    "s": "x",
-    "d": "y",
-    "v_lon": "xVelocity",
-    "v_lat": "yVelocity",
-    "a_lon": "xAcceleration",
-    "length": "width",
-    "width": "height",
+_SIGNALS: Mapping[str, SignalName | SizeName] = {
+    "x": "s",
+    "y": "d",
+    "xVelocity": "v_lon",
+    "yVelocity": "v_lat",
+    "xAcceleration": "a_lon",
+    "width": "length",
+    "height": "width",
 }
+_COLUMNS = {signal: column for column, signal in _SIGNALS.items()}
 """The columns of the signals that rules of ``plausible`` are about."""
 
 RECORDING_COLUMNS = names_in(
