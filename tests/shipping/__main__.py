@@ -15,8 +15,7 @@ from typing import Any
 
 from roadproof.analysis.study.frame import known_answer
 from roadproof.analysis.study.known import SWITCH, KnownAnswers
-from roadproof.frontends.api.studied import StudyAnswers
-from shipping.questions import QUESTIONS
+from shipping.questions import QUESTIONS, Asked
 
 FOLDER = Path(__file__).parents[2] / "proofs/known"
 CLOCK = "cut off by the clock"
@@ -49,13 +48,13 @@ def main() -> int:
     return 1 if wrong else 0
 
 
-def archive_of(found: StudyAnswers[Any, Any, Any]) -> KnownAnswers:
+def archive_of(found: Asked) -> KnownAnswers:
     """Where the answers to a question are."""
     question = found.study.question
     return KnownAnswers.to(question.schema, question.said, question.more)
 
 
-def answers_of(found: StudyAnswers[Any, Any, Any]) -> dict[str, dict[str, Any]]:
+def answers_of(found: Asked) -> dict[str, dict[str, Any]]:
     """The answers by name and key, without those that the clock of this machine cut off."""
     made: dict[str, dict[str, Any]] = {}
     for name in found.study.wanted(found.found.answers):

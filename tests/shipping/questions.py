@@ -1,14 +1,38 @@
 """The questions whose answers come with roadproof, each with its default settings."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import roadproof as rp
-from roadproof.frontends.api.studied import StudyAnswers
+from roadproof.analysis.classify.classes import plan_of
+from roadproof.analysis.classify.divide import Dividing
+from roadproof.analysis.study.frame import Study, StudyResult, conduct
+from roadproof.frontends.api.settings import basis_of
+from roadproof.frontends.settings.studies import Classify
+from roadproof.library.scenarios import numbers_of
 
 SETS = ("base", "extA", "ext")
 MANOEUVRES = ("cut-in", "cut-out", "deceleration")
-Ask = Callable[..., StudyAnswers[Any, Any, Any]]
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A study with its answers, as all answers of the API have them."""
+
+    study: Study[Any, Any, Any]
+    found: StudyResult[Any, Any]
+
+
+Ask = Callable[..., Any]
+
+
+def divide(jobs: int | None = None) -> Asked:
+    """The cells of the classes, which ``classify`` and ``catalogue`` begin with."""
+    home, given = rp.load(), Classify.of({})
+    basis = basis_of(home, given, given.vehicles)
+    study = Dividing(basis, plan_of(home.alone, numbers_of(home.alone)))
+    return Asked(study, conduct(study, hands=jobs))
 
 
 def _questions() -> Mapping[str, Ask]:
@@ -28,6 +52,7 @@ def _questions() -> Mapping[str, Ask]:
         found[f"redundancy --set {name}"] = lambda s=name, **more: rp.redundancy(using=rp.load(s), **more)
         found[f"coverage --set {name}"] = lambda s=name, **more: rp.coverage(using=rp.load(s), **more)
     found["order"] = rp.order
+    found["division of classes"] = divide
     found["classify"] = lambda **more: rp.classify(shares=False, **more)
     for manoeuvre in MANOEUVRES:
         found[f"preventable {manoeuvre}"] = lambda x=manoeuvre, **more: rp.preventable(x, **more)

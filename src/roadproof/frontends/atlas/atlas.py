@@ -10,7 +10,7 @@ from roadproof.evidence.heading import version
 from roadproof.frontends.api.definitions import Definitions, load
 from roadproof.frontends.atlas import overview_pages as overviews
 from roadproof.frontends.atlas.answers import EVIDENCE, Answers, ask
-from roadproof.frontends.atlas.pictures import Drawn, draw_all
+from roadproof.frontends.atlas.pictures import DrivePicture, draw_all
 from roadproof.frontends.atlas.scenario_page import scenario_values
 from roadproof.frontends.report.page.templates import render, style_without_scripts
 from roadproof.frontends.settings.keywords import AtlasKeywords
@@ -60,7 +60,7 @@ def atlas(using: Definitions | None = None, **options: Unpack[AtlasKeywords]) ->
     return Atlas(answers.folder, pages, len(drawn))
 
 
-def _write(answers: Answers, drawn: dict[str, Drawn]) -> Iterator[str]:
+def _write(answers: Answers, drawn: dict[str, DrivePicture]) -> Iterator[str]:
     """Write the pages, and yield their names."""
     folder = answers.folder
     style = resources.files("roadproof.frontends.atlas").joinpath(STYLE).read_text("utf-8")
@@ -80,7 +80,7 @@ def _write(answers: Answers, drawn: dict[str, Drawn]) -> Iterator[str]:
         yield name
 
 
-def _pages(answers: Answers, drawn: dict[str, Drawn]) -> Iterator[tuple[str, str, dict[str, object]]]:
+def _pages(answers: Answers, drawn: dict[str, DrivePicture]) -> Iterator[tuple[str, str, dict[str, object]]]:
     """Name, template and values of each page."""
     yield "index.html", "index", overviews.front_values(answers, drawn)
     if answers.overlap is not None:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from roadproof.frontends.atlas.answers import Answers, Source
 from roadproof.frontends.atlas.notation import shown
-from roadproof.frontends.atlas.pictures import Drawn
+from roadproof.frontends.atlas.pictures import DrivePicture
 from roadproof.frontends.atlas.scenario_page import Gap, Statement, all_gaps, claims
 from roadproof.frontends.report.page.templates import counted
 from roadproof.library.words import Words
@@ -16,7 +16,7 @@ class Card:
     """A scenario on the front page."""
 
     words: Words
-    drawn: Drawn | None
+    drawn: DrivePicture | None
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class ClassCard:
     verdict: str
     html: str
     source: Source
-    drawn: Drawn | None
+    drawn: DrivePicture | None
 
 
 def page_of(number: int) -> str:
@@ -47,7 +47,7 @@ def page_of(number: int) -> str:
     return f"scenario-{number:02d}.html"
 
 
-def front_values(answers: Answers, drawn: Mapping[str, Drawn]) -> dict[str, object]:
+def front_values(answers: Answers, drawn: Mapping[str, DrivePicture]) -> dict[str, object]:
     """The grid of scenarios, and how often each verdict occurs on each overview."""
     every = [answers.home.words(n) for n in answers.numbers]
     sectors = [*dict.fromkeys(x.sector for x in every)]
@@ -119,7 +119,7 @@ def _implies(above: str, below: str) -> str:
     return f"{above} implies {below}"
 
 
-def class_values(answers: Answers, drawn: Mapping[str, Drawn]) -> dict[str, object]:
+def class_values(answers: Answers, drawn: Mapping[str, DrivePicture]) -> dict[str, object]:
     """The classes, and the claims that they exclude each other and make up the scenarios."""
     index = answers.classes
     assert index is not None, "it is asked only where there are classes"
@@ -145,7 +145,7 @@ def class_values(answers: Answers, drawn: Mapping[str, Drawn]) -> dict[str, obje
     return {"cards": cards, "proofs": proofs, "kinds": counted(x.kind for x in index.claims)}
 
 
-def gap_values(answers: Answers, drawn: Mapping[str, Drawn]) -> dict[str, object]:
+def gap_values(answers: Answers, drawn: Mapping[str, DrivePicture]) -> dict[str, object]:
     """The classes of gaps by scenario; None stands for those of no single scenario."""
     groups: dict[Words | None, list[Gap]] = {}
     for x in all_gaps(answers, drawn):

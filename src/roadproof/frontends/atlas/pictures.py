@@ -31,7 +31,7 @@ class Figures:
 
 
 @dataclass(frozen=True)
-class Drawn:
+class DrivePicture:
     """A picture as SVG with what a page tells about it.
 
     ``still``: the instant at which it stands, in s; ``strips``: parts of the formula as HTML, in how many
@@ -53,7 +53,7 @@ class _Job:
     told: str
 
 
-def draw_all(answers: Answers, given: Atlas) -> dict[str, Drawn]:
+def draw_all(answers: Answers, given: Atlas) -> dict[str, DrivePicture]:
     """Every picture by the file of its drive, relative to the pages."""
     told = dict(_drives(answers))
     jobs = [_Job(answers.folder / file, f"m{k}", x) for k, (file, x) in enumerate(told.items())]
@@ -79,7 +79,7 @@ def _drives(answers: Answers) -> Iterator[tuple[str, str]]:
             yield f"{EVIDENCE}/coverage/{z.drive}", f"A drive of gap {z.number}, which no scenario describes"
 
 
-def _draw(library: Library, job: _Job) -> Drawn:
+def _draw(library: Library, job: _Job) -> DrivePicture:
     file = load_drive(job.path)
     scene = small_scene(file, library)
     judgement = judge_file(file, library).judgement
@@ -90,4 +90,4 @@ def _draw(library: Library, job: _Job) -> Drawn:
     parts = [(shown(x.name), x.depth, x.spans) for x in strips if x.depth <= DEEPEST][:MOST_STRIPS]
     svg = miniature(scene, job.name, job.told)
     still = float(scene.times[scene.still])
-    return Drawn(svg, float(file.horizon), float(scene.lasts), still, figures, parts)
+    return DrivePicture(svg, float(file.horizon), float(scene.lasts), still, figures, parts)

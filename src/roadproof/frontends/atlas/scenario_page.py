@@ -7,7 +7,7 @@ from roadproof.drivers.models import course_in
 from roadproof.evidence.answers import overlap, plates
 from roadproof.frontends.atlas.answers import OBJECTIVES, Answers, Source
 from roadproof.frontends.atlas.notation import as_html, head_as_html, shown
-from roadproof.frontends.atlas.pictures import Drawn
+from roadproof.frontends.atlas.pictures import DrivePicture
 from roadproof.frontends.atlas.traffic import SOURCE, frequencies
 from roadproof.frontends.report.preventable import plane_of
 from roadproof.library.scenarios import name_of
@@ -37,7 +37,7 @@ class Partner:
     """Another scenario that holds on one drive with this one."""
 
     words: Words
-    drawn: Drawn
+    drawn: DrivePicture
     source: Source
 
 
@@ -59,7 +59,7 @@ class Unfolded:
     body: str
 
 
-def scenario_values(answers: Answers, drawn: Mapping[str, Drawn], number: int) -> dict[str, object]:
+def scenario_values(answers: Answers, drawn: Mapping[str, DrivePicture], number: int) -> dict[str, object]:
     """What the template of the page shows."""
     home = answers.home.alone
     words = answers.home.words(number)
@@ -143,7 +143,7 @@ def _pairs(answers: Answers, number: int) -> Iterator[tuple[Words, Source, overl
             yield answers.home.words(x.b if x.a == number else x.a), source, x
 
 
-def _partners(answers: Answers, drawn: Mapping[str, Drawn], number: int) -> Iterator[Partner]:
+def _partners(answers: Answers, drawn: Mapping[str, DrivePicture], number: int) -> Iterator[Partner]:
     for words, source, pair in _pairs(answers, number):
         if pair.verdict is Verdict.WITNESSED:
             yield Partner(words, drawn[source.file], source)
@@ -239,15 +239,15 @@ class Gap:
     verdict: str
     scenario: int | None
     source: Source
-    drawn: Drawn | None
+    drawn: DrivePicture | None
     reason: str
 
 
-def _gaps(answers: Answers, drawn: Mapping[str, Drawn], number: int) -> list[Gap]:
+def _gaps(answers: Answers, drawn: Mapping[str, DrivePicture], number: int) -> list[Gap]:
     return [x for x in all_gaps(answers, drawn) if x.scenario == number]
 
 
-def all_gaps(answers: Answers, drawn: Mapping[str, Drawn]) -> list[Gap]:
+def all_gaps(answers: Answers, drawn: Mapping[str, DrivePicture]) -> list[Gap]:
     """The classes of gaps of the set."""
     if answers.coverage is None:
         return []

@@ -34,7 +34,7 @@ V = TypeVar("V")
 
 
 @dataclass(frozen=True)
-class _Drawn:
+class _Mobile:
     """A shape and the artist that draws it; ``shifts``: pixels to the right at each instant."""
 
     shape: Shape
@@ -70,13 +70,13 @@ def draw_film(file: DriveFile, library: Library, title: str = "") -> Film:
     axes = figure.add_axes((0, 0, 1, 1), xlim=(0, size[0]), ylim=(size[1], 0))
     axes.set_axis_off()
     lanes = pavement(scene)
-    road = [_Drawn(x, _draw(axes, x), lanes.shifts) for x in lanes.shapes]
-    road += [_Drawn(x, _draw(axes, x)) for x in areas(scene)]
+    road = [_Mobile(x, _draw(axes, x), lanes.shifts) for x in lanes.shapes]
+    road += [_Mobile(x, _draw(axes, x)) for x in areas(scene)]
     left, top, width, height = lanes.window
     window = _draw(axes, Rectangle([(left, top - 1, width, height + 2)], "none"))  # with the edge lines
     for x in road:
         x.artist.set_clip_path(window)
-    others = [_Drawn(x, _draw(axes, x)) for x in (*headings(scene, title), *vehicles(scene), *rows(scene))]
+    others = [_Mobile(x, _draw(axes, x)) for x in (*headings(scene, title), *vehicles(scene), *rows(scene))]
     for order, x in enumerate((*road, *others)):
         x.artist.set_zorder(order)
     moving = [x for x in (*road, *others) if x.moves]
