@@ -172,6 +172,17 @@ def test_long_chains_are_refused_before_the_stack_ends() -> None:
         formula("p_900(SV)", chain)
 
 
+def test_a_chain_is_refused_whatever_was_read_before() -> None:
+    chain = "def p_0(a: vehicle) := true each i in 1..120 { def p_{i}(a: vehicle) := p_{i-1}(a) }"
+    home = with_definitions(chain)
+    for number in (40, 80, 95):
+        read_claim(home, f"p_{number}(SV)")
+    for text in ("p_110(SV)", "not not not not not not p_95(SV)"):
+        with pytest.raises(TextError, match="nested deeper than 100"):
+            read_claim(home, text)
+    assert read_claim(home, "p_95(SV) and p_40(POV)").vehicles == ("POV", "SV")
+
+
 DOUBLING = (
     "def p_0(a: vehicle) := v_lon(a) > 0 each i in 1..60 "
     "{ def p_{i}(a: vehicle) := p_{i-1}(a) and F p_{i-1}(a) }"

@@ -16,6 +16,9 @@ from roadproof.logic.rewrite import vehicles_of
 from roadproof.logic.terms import Dimension
 from roadproof.world.units import UNITS
 
+MOST_REMEMBERED = 500_000
+"""So many parts of formulas are remembered of what was read in one specification."""
+
 
 def read_claim(specification: Specification, text: str, source: str = "claim") -> Query:
     """Parse and elaborate a claim such as ``scenario_8(SV,POV,L) -> F danger(SV,POV)``.
@@ -35,7 +38,9 @@ def read_claim(specification: Specification, text: str, source: str = "claim") -
 
 def _walk(specification: Specification) -> Elaborator:
     """A walk that remembers the definitions it has read, one for each specification."""
-    walk: Elaborator = specification.worked_out.setdefault((_walk,), Elaborator(specification))
+    walk: Elaborator | None = specification.worked_out.get((_walk,))
+    if walk is None or len(walk.sizes.known) > MOST_REMEMBERED:
+        walk = specification.worked_out[(_walk,)] = Elaborator(specification)
     return walk
 
 
@@ -54,6 +59,12 @@ class StatedQuery(Query):
         self.__dict__.update(vars(read))
         object.__setattr__(self, "__class__", Query)  # from now on it is like any other
         return vars(read)[name]
+
+    def __eq__(self, other: object) -> bool:
+        self.formula, getattr(other, "formula", None)
+        return Query.__eq__(self, other)
+
+    __hash__ = Query.__hash__
 
     def __reduce__(self) -> tuple[type[Query], tuple[object, ...]]:
         return Query, (self.claim, self.formula, self.vehicles, self.lanes, self.written)
@@ -83,6 +94,7 @@ def elaborate(specification: Specification, claim: syntax.Claim, walk: Elaborato
     """
     elaborator = Elaborator(specification) if walk is None else walk.again()
     made = elaborator.formula(claim.body, elaborator.given(claim))
+    elaborator.refuse_deeper(elaborator.deepest, claim.body.at)  # whatever the walk has read before
     declared = [b.name for b in claim.given if b.sort == "vehicle"]
     free, lanes = (tuple(sorted(elaborator.free[sort])) for sort in ("vehicle", "lane"))
     vehicles = tuple(dict.fromkeys((*declared, *free)))

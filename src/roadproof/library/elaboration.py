@@ -27,8 +27,8 @@ DEEPEST_FORMULA = 100
 MOST_ERRORS = 200
 _ANY_NUMBER = Quantity(t.number(1), None)  # fits wherever a number is wrong
 
-# What definitions of a set mean, applied to values.
-Known: TypeAlias = dict[tuple[str, str, tuple[Value, ...]], Formula | Quantity]
+# What definitions of a set mean, applied to values, and how deep expressions are nested in each.
+Known: TypeAlias = dict[tuple[str, str, tuple[Value, ...]], tuple[Formula | Quantity, int]]
 A = TypeVar("A")
 
 
@@ -59,6 +59,7 @@ class Elaborator:
     free: Free = field(default_factory=lambda: {"vehicle": set(), "lane": set()})
     stack: list[str] = field(default_factory=list)
     depth: int = 0
+    deepest: int = 0
     known: Known = field(default_factory=dict)
     sizes: Sizes = field(default_factory=Sizes)
     errors: list[TextError] | None = None
@@ -146,7 +147,9 @@ class Elaborator:
             lost=self.lost,
             notes=self.notes,
         )
-        return inner.call(syntax.Call(name, call.arguments, call.at), scope)
+        made = inner.call(syntax.Call(name, call.arguments, call.at), scope)
+        self.deepest = max(self.deepest, inner.deepest)
+        return made
 
     def apply(self, definition: Definition, bound: Scope, at: Position) -> Formula | Quantity:
         key = (definition.name, self.specification.set_name, tuple(bound.values()))
@@ -154,8 +157,12 @@ class Elaborator:
             if definition.name in self.stack:
                 cycle = " -> ".join([*self.stack[self.stack.index(definition.name) :], definition.name])
                 raise TextError(f"'{definition.name}' is defined by itself: {cycle}", at)
-            self.known[key] = self.body_of(definition.name, bound)
-        made = self.known[key]
+            before, self.deepest = self.deepest, self.depth
+            body = self.body_of(definition.name, bound)
+            self.known[key] = body, self.deepest - self.depth
+            self.deepest = max(before, self.deepest)
+        made, height = self.known[key]
+        self.deepest = max(self.deepest, self.depth + height)
         if isinstance(made, Quantity):
             return made
         if self.home is not None:
@@ -228,12 +235,8 @@ class Elaborator:
     def expression(self, expression: Expression, scope: Scope) -> Formula | Quantity:
         self.depth += 1
         try:
-            if self.depth > DEEPEST_FORMULA:
-                raise TextError(
-                    f"definitions and formula together are nested deeper than {DEEPEST_FORMULA}",
-                    expression.at,
-                    "Look for a chain of definitions that only call each other.",
-                )
+            self.deepest = max(self.deepest, self.depth)
+            self.refuse_deeper(self.depth, expression.at)
             self.sizes.count_reading(expression.at)
             made = self._expression(expression, scope)
             self.sizes.check(made.term if isinstance(made, Quantity) else made, expression.at)
@@ -243,6 +246,15 @@ class Elaborator:
             return made
         finally:
             self.depth -= 1
+
+    def refuse_deeper(self, depth: int, at: Position) -> None:
+        """Raises ``TextError`` where expressions are nested deeper than allowed."""
+        if depth > DEEPEST_FORMULA:
+            raise TextError(
+                f"definitions and formula together are nested deeper than {DEEPEST_FORMULA}",
+                at,
+                "Look for a chain of definitions that only call each other.",
+            )
 
     def _expression(self, expression: Expression, scope: Scope) -> Formula | Quantity:
         match expression:
