@@ -2,6 +2,7 @@
 
 import json
 import lzma
+import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -185,6 +186,47 @@ def test_shipped_answers_count_and_changed_ones_do_not(tmp_path: Path) -> None:
     path.write_bytes(lzma.compress(json.dumps(content).encode()))
     known._read.cache_clear()
     assert pair().found.known == ("cache",)
+
+
+@pytest.mark.parametrize(
+    "damage", [b"", b"no archive", lzma.compress(b"[1]"), lzma.compress(b'{"schema": 3}'), None]
+)
+def test_a_damaged_archive_is_as_none(damage: bytes | None, tmp_path: Path) -> None:
+    found = pair()
+    path = archive_of(found).ship(tmp_path / "shipped/known", answers_of(found))
+    path.write_bytes(path.read_bytes()[:-40] if damage is None else damage)
+    known._read.cache_clear()
+    assert pair().found.known == ("cache",)
+    assert pair(fresh=True).verdicts == found.verdicts
+
+
+def test_an_archive_that_this_program_cannot_read_is_computed_again(tmp_path: Path) -> None:
+    found = pair()
+    shutil.rmtree(tmp_path / "cache")
+    [(entry, content)] = answers_of(found).items()
+    content["record"] = {**content["record"], "later": 1}
+    archive_of(found).ship(tmp_path / "shipped/known", {entry: content})
+    assert pair().found.known == ()
+
+
+def test_an_answer_under_the_name_of_another_does_not_count(home: Path, tmp_path: Path) -> None:
+    one, other = rp.overlap("3,4", jobs=1), rp.overlap("3,5", jobs=1)
+    shutil.rmtree(home)
+    [entry] = answers_of(one)
+    [content] = answers_of(other).values()
+    archive_of(one).ship(tmp_path / "shipped/known", {entry: content})
+    assert pair().found.known == ()
+
+
+def test_known_evidence_equals_the_computed(home: Path) -> None:
+    first, second = drive(), drive()
+    assert second.found.known == ("cache",)
+    assert first.drives == second.drives == drive().drives
+    computed, known_one, known_other = (rp.overlap("1,5", jobs=1).pairs[0].query for _ in range(3))
+    assert known_one == known_other
+    assert known_one is not None
+    assert computed is not None
+    assert known_one.formula == computed.formula
 
 
 def test_every_shipped_archive_is_that_of_a_question() -> None:

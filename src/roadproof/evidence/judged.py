@@ -125,6 +125,10 @@ class KnownDrive(JudgedDrive):
         object.__setattr__(self, "__class__", JudgedDrive)  # from now on it is like any other
         return vars(judged)[name]
 
+    def __eq__(self, other: object) -> bool:
+        self.file, getattr(other, "file", None)
+        return JudgedDrive.__eq__(self, other)
+
     def __reduce__(self) -> tuple[Callable[..., JudgedDrive], tuple[object, ...]]:
         return _judged, (self.file, self.judgement, self.natural)
 

@@ -70,13 +70,13 @@ def kept_bytes(folder: str, name: str, made_of: bytes = b"") -> bytes | None:
     home = _home(folder)
     if home is None or not is_ours(home / name):
         return None
-    content = (home / name).read_bytes()
-    digest, data = content[:32], content[32:]
-    if digest != hashlib.sha256(name.encode() + made_of + data).digest():
-        return None
-    with contextlib.suppress(OSError):
-        os.utime(home / name)
-    return data
+    with contextlib.suppress(OSError):  # another run may remove it
+        content = (home / name).read_bytes()
+        digest, data = content[:32], content[32:]
+        if digest == hashlib.sha256(name.encode() + made_of + data).digest():
+            os.utime(home / name)
+            return data
+    return None
 
 
 def keep_bytes(folder: str, name: str, data: bytes, made_of: bytes = b"") -> None:
@@ -90,17 +90,20 @@ def keep_bytes(folder: str, name: str, data: bytes, made_of: bytes = b"") -> Non
 def make_room(folder: str) -> None:
     """Remove what was used so long ago that its version is hardly in use, and the oldest of too much."""
     total = 0
-    with contextlib.suppress(OSError):
-        for path, said in sorted(sizes(folder).items(), key=lambda x: -x[1].st_mtime):
-            total += said.st_size
-            if said.st_mtime < time.time() - _OLD or total > MOST_BYTES:
+    for path, said in sorted(files(folder).items(), key=lambda x: -x[1].st_mtime):
+        total += said.st_size
+        if said.st_mtime < time.time() - _OLD or total > MOST_BYTES:
+            with contextlib.suppress(OSError):
                 path.unlink()
 
 
-def sizes(folder: str) -> dict[Path, os.stat_result]:
-    """The files of a folder of the cache."""
-    home = _home(folder)
-    return {} if home is None else {path: path.stat() for path in home.iterdir() if path.is_file()}
+def files(folder: str) -> dict[Path, os.stat_result]:
+    """The files of a folder of the cache, with what the system says of each."""
+    home, found = _home(folder), {}
+    for path in () if home is None else home.iterdir():
+        with contextlib.suppress(OSError):  # another run may remove it
+            found[path] = path.lstat()
+    return found
 
 
 def _home(folder: str) -> Path | None:

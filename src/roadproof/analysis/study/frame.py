@@ -164,7 +164,8 @@ def conduct(
             for _, answers in answered:
                 for name, answer in answers.items():
                     run.keep(name, answer)
-    run.known_before.make_room()
+    if run.has_remembered:
+        run.known_before.make_room()
     return StudyResult(run.known, run.records, run.shelf, tuple(run.origins))
 
 
@@ -185,6 +186,7 @@ class _Run(Generic[Piece, Answer, Record]):
         self.records: dict[str, Record] = {}
         self.known: dict[str, Answer] = {}
         self.origins: list[Origin] = []
+        self.has_remembered = False
         self._looked_up: set[str] = set()
 
     def add(self, name: str, record: Record, answer: Answer) -> None:
@@ -220,6 +222,7 @@ class _Run(Generic[Piece, Answer, Record]):
         self.add(name, _keep(self.study, name, answer, self.shelf), answer)
         key = self.study.key(name) if self.study.is_sure(answer) else None
         if key is not None:
+            self.has_remembered = True
             self.known_before.remember(name, key, known_answer(self.study, name, answer))
 
 
@@ -233,8 +236,13 @@ def _known(
         return None
     texts = EvidenceTexts(study.question, found.files)
     content = found.record if shelf.folder is not None else texts.inside(found.record)
-    record = read(study.record_type, content, "a known answer")
-    _, answer = study.recall(read(study.record_type, found.record, "a known answer"), texts)
+    try:
+        record = read(study.record_type, content, "a known answer")
+        said, answer = study.recall(read(study.record_type, found.record, "a known answer"), texts)
+    except InputError:  # the program has changed since, which versions do not tell
+        return None
+    if said != name:
+        return None
     shelf.adopt(found.files)
     shelf.keep(name, dict(found.record), study.is_sure(answer))
     return found.origin, record, answer

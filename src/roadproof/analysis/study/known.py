@@ -15,6 +15,7 @@ from functools import cache
 from pathlib import Path
 from typing import Literal
 
+from roadproof.errors import InputError
 from roadproof.evidence.heading import version
 from roadproof.evidence.strict import Fields, JsonObject
 from roadproof.runtime.cache import keep_bytes, kept_bytes, make_room
@@ -113,18 +114,23 @@ def _digest(*parts: object) -> str:
 def _read(path: Path) -> Mapping[str, object]:
     if not path.is_file():
         return {}
-    content = Fields(json.loads(lzma.decompress(path.read_bytes())), str(path))
-    answers = content.mapping("answers")
-    sound = content.text("schema") == SCHEMA and content.text("seal") == _digest(answers)
+    try:
+        content = Fields(json.loads(lzma.decompress(path.read_bytes())), str(path))
+        answers = content.mapping("answers")
+        sound = content.text("schema") == SCHEMA and content.text("seal") == _digest(answers)
+    except (OSError, EOFError, lzma.LZMAError, ValueError, InputError):
+        return {}
     return answers if sound else {}
 
 
 @cache
 def _sources() -> str:
-    """A digest that changes when the program does, so that no version answers for another."""
-    package = Path(__file__).parents[2]
-    found = [(x.relative_to(package).as_posix(), x.stat()) for x in sorted(package.rglob("*.py"))]
-    return _digest([(name, stat.st_size, stat.st_mtime_ns) for name, stat in found])
+    """A digest that changes when the program or a model does, so that no state of it answers for another."""
+    files = [
+        x for place in (Path(__file__).parents[2], shipped("models")) for x in sorted(place.rglob("*.*"))
+    ]
+    stats = [(str(x), x.stat()) for x in files if x.suffix != ".pyc"]
+    return _digest([(name, said.st_size, said.st_mtime_ns) for name, said in stats])
 
 
 def told(origins: Sequence[Origin], total: int) -> Iterator[str]:

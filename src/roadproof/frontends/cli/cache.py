@@ -27,7 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.runtime.cache import private_folder, sizes
+    from roadproof.runtime.cache import files, private_folder
 
     home = private_folder("answers")
     if home is None:
@@ -35,7 +35,7 @@ def run(args: argparse.Namespace) -> int:
         return ExitCode.AS_EXPECTED
     print(home.parent)
     for name, what in _FOLDERS.items():
-        found = sizes(name)
+        found = files(name)
         size = sum(said.st_size for said in found.values())
         for path in found if args.clear else ():
             try:
