@@ -1,5 +1,6 @@
 """The atlas: its pages agree with the answers, lead to evidence that check accepts, and need no network."""
 
+import json
 import re
 from html.parser import HTMLParser
 from pathlib import Path
@@ -9,8 +10,10 @@ import pytest
 import roadproof as rp
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import load_drive
+from roadproof.evidence.judged import RejectedError
 from roadproof.frontends.atlas.miniature import miniature, small_scene
 from roadproof.frontends.atlas.notation import shown
+from roadproof.frontends.atlas.pictures import _draw, _Job
 from roadproof.frontends.atlas.traffic import frequencies
 from roadproof.frontends.cli.main import main
 
@@ -105,6 +108,14 @@ def test_small_pictures_are_small_and_stand_still_at_the_danger(made):
     assert re.search(r"--d:7s;--s:-[1-9]", picture)
     frames = re.findall(r"@keyframes (\w+)", picture)
     assert len(frames) == len({*frames}) == picture.count('style="--a:')
+
+
+def test_a_drive_that_the_judge_rejects_is_not_drawn(made, tmp_path):
+    path = tmp_path / "drive.json"
+    content = json.loads((made.folder / "evidence/drives-smooth/scenario-04-base.json").read_text())
+    path.write_text(json.dumps({**content, "formula": f"not {content['formula']}"}))
+    with pytest.raises(RejectedError, match="does not hold on the drive"):
+        _draw(rp.load().library, _Job(path, "m0", ""))
 
 
 def test_formulas_are_in_the_notation_of_the_paper():

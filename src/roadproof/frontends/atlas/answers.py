@@ -34,7 +34,6 @@ TOPICS: Final = ("proofs", "drives", "overlaps", "implications", "redundancy", "
 """What the atlas asks, in the words of ``--topics``."""
 OBJECTIVES: Final = ("smooth", "mild", "severe")
 EVIDENCE: Final = "evidence"
-_SETS = ("base", "extA", "ext")
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from roadproof.analysis.study import pool
 from roadproof.evidence.drive_file import load_drive
-from roadproof.evidence.judged import judge_file
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.atlas.answers import EVIDENCE, OBJECTIVES, Answers
 from roadproof.frontends.atlas.miniature import miniature, small_scene
 from roadproof.frontends.atlas.notation import shown
@@ -54,7 +54,10 @@ class _Job:
 
 
 def draw_all(answers: Answers, given: Atlas) -> dict[str, DrivePicture]:
-    """Every picture by the file of its drive, relative to the pages."""
+    """Every picture by the file of its drive, relative to the pages.
+
+    Raises ``RejectedError`` where the judge rejects a drive, whatever an index says of it.
+    """
     told = dict(_drives(answers))
     jobs = [_Job(answers.folder / file, f"m{k}", x) for k, (file, x) in enumerate(told.items())]
     draw = partial(_draw, answers.library or answers.home.library)
@@ -81,9 +84,8 @@ def _drives(answers: Answers) -> Iterator[tuple[str, str]]:
 
 def _draw(library: Library, job: _Job) -> DrivePicture:
     file = load_drive(job.path)
-    scene = small_scene(file, library)
-    judgement = judge_file(file, library).judgement
-    strips = () if judgement is None else strips_of(judgement, file.horizon)
+    judged = JudgedDrive(file, library)
+    scene, strips = small_scene(file, library), strips_of(judged.judgement, file.horizon)
     speeds = {name: (float(x[0].v_lon), float(x[-1].v_lon)) for name, x in scene.states.items()}
     gaps = {x.other: (x.gap[0], min(x.gap)) for x in scene.distances}
     figures = Figures(speeds, gaps, scene.begins)
