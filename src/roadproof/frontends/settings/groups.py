@@ -263,7 +263,7 @@ class Run(Workers, Listeners):
     fresh: bool = option(
         False,
         "--fresh",
-        help="compute answers again that are known, from roadproof itself or from earlier runs",
+        help="compute known answers again: those of roadproof itself and of the cache, not those in --out",
         group="work",
         rare=True,
     )
