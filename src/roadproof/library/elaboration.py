@@ -10,12 +10,12 @@ from fractions import Fraction
 from typing import TypeAlias, TypeVar
 
 from roadproof.errors import Position, TextError
-from roadproof.library import arithmetic, scopes
+from roadproof.library import arithmetic, kinds, scopes
 from roadproof.library.quantity import Quantity, Sizes
 from roadproof.library.scopes import SORTS, Free, Ref, Scope, Value, Vehicles
 from roadproof.library.specification import BUILT_IN, Specification, source_of, unknown
-from roadproof.logic import custom_names, syntax
 from roadproof.logic import formula as f
+from roadproof.logic import syntax
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.parse import instead_of
@@ -315,36 +315,11 @@ class Elaborator:
         if op in arithmetic.COMPARISONS and (
             syntax.is_kind(expression.left) or syntax.is_kind(expression.right)
         ):
-            return self._of_kind(expression, scope)
+            return kinds.compare(expression, lambda call: self._whose_kind(call, scope))
         left, right = self.term(expression.left, scope), self.term(expression.right, scope)
         if op in arithmetic.COMPARISONS:
             return arithmetic.compare(op, left, right, at)
         return arithmetic.combine(op, left, right, self.specification.library.parameters, at)
-
-    def _of_kind(self, expression: syntax.Binary, scope: Scope) -> Formula:
-        """``kind(a) = truck``, or the kinds of two vehicles compared; < and >= go by the order of kinds."""
-        left, right, op = expression.left, expression.right, expression.op
-        if not syntax.is_kind(left):
-            left, right = right, left
-        vehicle = self._whose_kind(left, scope)
-        if syntax.is_kind(right) and op in ("=", "!="):
-            other = self._whose_kind(right, scope)
-            alike = (f.And((custom_names.is_kind(vehicle, k), custom_names.is_kind(other, k))) for k in KINDS)
-            same = f.disjunction(*alike)
-            return same if op == "=" else f.negation(same)
-        kind = next((k for k in KINDS if isinstance(right, syntax.Name) and right.name == k), None)
-        if kind is None:
-            told = right.name if isinstance(right, syntax.Name | syntax.Call) else "this"
-            raise TextError(
-                f"kind({vehicle}) is compared with '{told}', which is no kind of vehicle",
-                right.at,
-                f"Kinds are {', '.join(KINDS)}: write kind({vehicle}) = {KINDS[1]}.",
-            )
-        if op in ("<", ">=") and kind != KINDS[0] and left is expression.left:
-            return custom_names.from_kind(vehicle, "<" if op == "<" else ">=", kind)
-        if op not in ("=", "!="):
-            raise TextError("kinds are compared with = and != only", expression.at)
-        return custom_names.is_kind(vehicle, kind, op == "=")
 
     def _whose_kind(self, call: Expression, scope: Scope) -> str:
         if not isinstance(call, syntax.Call) or len(call.arguments) != 1:
