@@ -3,7 +3,6 @@
 A job whose process ends before it is done is tried once more, alone.
 """
 
-import hashlib
 import re
 import signal
 from collections.abc import Callable, Generator, Sequence
@@ -44,6 +43,8 @@ class Shard:
 
     def has(self, name: str) -> bool:
         """Whether the piece of a name is in this share: the same on every machine, whatever else is known."""
+        import hashlib  # here, because --help need not wait for it
+
         return int(hashlib.sha256(name.encode()).hexdigest()[:12], 16) % self.of == self.number - 1
 
     def among(self, items: Sequence[Item]) -> Sequence[Item]:
