@@ -1,6 +1,7 @@
 """A server of the studio to be asked by tests: raw requests, so that anything can be sent."""
 
 import json
+import os
 import re
 import socket
 import subprocess
@@ -85,10 +86,11 @@ def serving(largest_body: int = 100_000, limits: Limits = NOBODY) -> Iterator[Se
 
 
 @contextmanager
-def running(*arguments: str) -> Iterator[tuple[str, "subprocess.Popen[str]"]]:
-    """The address that the command prints, and its process."""
+def running(*arguments: str, known: bool = False) -> Iterator[tuple[str, "subprocess.Popen[str]"]]:
+    """The address that the command prints, and its process; ``known``: whether it takes known answers."""
+    env = {**os.environ, "ROADPROOF_KNOWN": "on" if known else "off"}
     words = [sys.executable, "-m", "roadproof", "studio", "--no-browser", "--port", "0", *arguments]
-    process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=env)
     try:
         assert process.stdout is not None
         found = re.search(r"http://\S+", process.stdout.readline())

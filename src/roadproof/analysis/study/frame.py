@@ -169,6 +169,13 @@ def conduct(
     return StudyResult(run.known, run.records, run.shelf, tuple(run.origins))
 
 
+def look_up(study: Study[Piece, Answer, Record]) -> dict[str, Answer]:
+    """The answers that are known before a question is asked, by name; nothing is computed."""
+    run = _Run(study, EvidenceStore(None, study.question), None, None, False)
+    run.look_up()
+    return run.known
+
+
 class _Run(Generic[Piece, Answer, Record]):
     """What is known so far of a study that is asked."""
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import ClassVar, Unpack
 
 from roadproof.analysis.study import pool
-from roadproof.analysis.study.frame import StudyResult, put_away
+from roadproof.analysis.study.frame import StudyResult, look_up, put_away
 from roadproof.analysis.witnesses import WitnessStudy, evidence_files, stems
 from roadproof.engines.search.ask import Outcome, Search
 from roadproof.engines.search.question import SearchOptions
@@ -162,6 +162,16 @@ def witness(
     searches = searches_for(what, using or load(), given)
     with listening(stage):
         return witness_all(searches, given)
+
+
+def known_drives(numbers: Sequence[int], using: Definitions) -> dict[int, JudgedDrive]:
+    """The drives of scenarios, by number, that are known without a search (``study.known``).
+
+    Raises ``InputError`` for a number that the spec set does not have.
+    """
+    study = WitnessStudy(tuple(searches_for(numbers, using, Witness())))
+    found = look_up(study) if study.searches else {}
+    return {x.scenario: x.drives[0] for x in found.values() if x.scenario is not None and x.drives}
 
 
 def searches_for(what: Sequence[What], using: Definitions, given: Witness) -> list[Search]:

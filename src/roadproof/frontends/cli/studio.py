@@ -12,6 +12,7 @@ _EXAMPLES = """\
 examples:
   roadproof studio                          opens the browser
   roadproof studio mine.spec drive.json     with definitions of yours, and a drive
+  roadproof studio drives                   with the drives and definitions of a folder to choose from
   roadproof studio --no-browser --port 9000
 
 The page is served on this machine's loopback interface only, at the address that is printed; its token is
@@ -22,21 +23,21 @@ made anew at each start. Nothing is sent anywhere else. Ctrl-C ends it. Needs th
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = _EXAMPLES
     parser.set_defaults(quiet=True)  # how far it is, the page says
-    parser.add_argument(
-        "files", metavar="FILE", nargs="*", type=Path, help="a .spec file, or a drive (.json)"
-    )
+    told = "a .spec file, a drive (.json), or a folder of such files (default: those of the working folder)"
+    parser.add_argument("files", metavar="FILE", nargs="*", type=Path, help=told)
     add_flags(parser, settings.Studio)
 
 
 def run(args: argparse.Namespace) -> int:
     from roadproof.errors import UsageError
-    from roadproof.frontends.studio.pages import begin_with
+    from roadproof.frontends.studio.pages import begin_with, found_in
     from roadproof.frontends.studio.server import Studio, serve
     from roadproof.verdict import ExitCode
 
     if args.port is not None and not 0 <= args.port < 65536:
         raise UsageError(f"--port {args.port}: write a number from 1 to 65535, or 0 for any that is free")
-    serve(Studio(begin_with(args.files)), args.port, args.browser, _say)
+    begun = begin_with(args.files) if args.files else found_in(Path.cwd())
+    serve(Studio(begun), args.port, args.browser, _say)
     return ExitCode.AS_EXPECTED
 
 

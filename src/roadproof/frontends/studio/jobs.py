@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from typing import TypeAlias
 
 from roadproof.frontends.api.drafting import Draft
-from roadproof.frontends.studio import asking, dropping, naming, showing
+from roadproof.frontends.studio import asking, dropping, gallery, naming, showing
 from roadproof.frontends.studio.requests import Answer, Ask, Say, read_ask
 
 Job: TypeAlias = Callable[[Ask, Say], Answer]
@@ -16,6 +16,7 @@ LIVE: Mapping[str, Job] = {
     "read": naming.read,
     "show": showing.show,
     "page": showing.page,
+    "gallery": gallery.cards,
 }
 LONG: Mapping[str, Job] = {
     "find": asking.find,

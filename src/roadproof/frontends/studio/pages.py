@@ -2,20 +2,26 @@
 
 import json
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from roadproof.errors import InputError
+from roadproof.errors import InputError, RoadproofError
+from roadproof.evidence.drive_file import SCHEMAS_READ
 from roadproof.evidence.strict import read_json
 from roadproof.frontends.report.viewer_page import viewer_modules, viewer_style
 from roadproof.frontends.studio.requests import form
 from roadproof.library.specification import read_specification
 
 _SCRIPT, _STYLE = "text/javascript; charset=utf-8", "text/css; charset=utf-8"
-_OWN = ("server", "address", "state", "editor", "actions", "live", "bar", "side", "app")
+_OWN = (
+    *("store", "server", "address", "state", "editor", "actions", "live", "picture", "gallery"),
+    *("bar", "side", "app"),
+)
+MOST_FILES, LARGEST_FILE = 60, 1_000_000  # of a folder that is looked through; bytes
 
 
 @dataclass(frozen=True)
@@ -66,26 +72,66 @@ def _read(name: str) -> str:
 
 @dataclass(frozen=True)
 class Begun:
-    """``text``: the definitions that the editor begins with; ``drives``: drive files by name."""
+    """``text``: the definitions that the editor begins with; ``drives``, ``specs``: the contents of drive
+    files and the texts of specification files that the page lists, by name; ``shows``: whether the page
+    begins with the first drive.
+    """
 
     text: str = ""
     drives: tuple[tuple[str, Any], ...] = ()
+    specs: tuple[tuple[str, str], ...] = ()
+    shows: bool = True
 
     def as_data(self) -> dict[str, object]:
         """As plain data, with the options that the page offers."""
-        drives = [{"name": name, "drive": x} for name, x in self.drives]
-        return {"text": self.text, "drives": drives, "form": form()}
+        return {
+            "text": self.text,
+            "drives": [{"name": name, "drive": x} for name, x in self.drives],
+            "specs": [{"name": name, "text": x} for name, x in self.specs],
+            "shows": self.shows and bool(self.drives),
+            "form": form(),
+        }
 
 
 def begin_with(paths: Sequence[Path]) -> Begun:
-    """Read specification files (.spec) and drive files (.json). Raises ``InputError``."""
+    """Read specification files (.spec), drive files (.json), and folders of such. Raises ``InputError``.
+
+    The editor begins with the definitions of the files that are named, not with those of folders.
+    """
     texts: list[str] = []
     drives: list[tuple[str, Any]] = []
+    specs: list[tuple[str, str]] = []
     for path in paths:
-        if path.suffix == ".json":
+        if path.is_dir():
+            inside = found_in(path)
+            drives += inside.drives
+            specs += inside.specs
+        elif path.suffix == ".json":
             drives.append((path.name, read_json(path)))
         elif path.suffix == ".spec":
             texts.append(read_specification(path).text)
+            specs.append((path.name, texts[-1]))
         else:
-            raise InputError(f"{path}: the studio opens specification files (.spec) and drive files (.json)")
-    return Begun("\n".join(texts), tuple(drives))
+            raise InputError(
+                f"{path}: the studio opens specification files (.spec), drive files (.json) and folders"
+            )
+    return Begun("\n".join(texts), tuple(drives), tuple(specs))
+
+
+def found_in(folder: Path) -> Begun:
+    """The specification and drive files of a folder, to choose from.
+
+    Other files, large ones, those that cannot be read, and all beyond ``MOST_FILES`` are left out.
+    """
+    drives: list[tuple[str, Any]] = []
+    specs: list[tuple[str, str]] = []
+    for path in sorted(folder.glob("*.spec"))[:MOST_FILES]:
+        with suppress(RoadproofError, OSError, UnicodeDecodeError):
+            if path.stat().st_size <= LARGEST_FILE:
+                specs.append((path.name, read_specification(path).text))
+    for path in sorted(folder.glob("*.json"))[:MOST_FILES]:
+        with suppress(RoadproofError, OSError):
+            content = read_json(path, LARGEST_FILE)
+            if isinstance(content, dict) and content.get("schema") in SCHEMAS_READ:
+                drives.append((path.name, content))
+    return Begun("", tuple(drives), tuple(specs), shows=False)

@@ -17,6 +17,7 @@ LATEST = 3600
 MOST_DRIVES = 12
 MOST_FILES = 12
 MOST_WATCHES = 12
+MOST_CARDS = 24
 FORM: Mapping[str, tuple[type[Settings], tuple[str, ...]]] = {
     "find": (Witness, ("objective",)),
     "prove": (Prove, ("declared",)),
@@ -71,6 +72,7 @@ class Ask:
     files: tuple[File, ...] = ()
     pair: Pair | None = None
     name: str = ""
+    scenarios: tuple[int, ...] = ()
     formulas: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -85,6 +87,8 @@ class Ask:
             raise UsageError(f"count={self.count}: ask for 1 to {MOST_DRIVES}")
         if len(self.watches) > MOST_WATCHES:
             raise UsageError(f"watches={len(self.watches)}: at most {MOST_WATCHES} formulas are watched")
+        if len(self.scenarios) > MOST_CARDS:
+            raise UsageError(f"scenarios={len(self.scenarios)}: at most {MOST_CARDS} are shown at once")
         if self.explain is not None and not 0 <= self.explain.at <= LATEST:
             raise UsageError(f"at={self.explain.at}: explain an instant from 0 to {LATEST} s")
 

@@ -90,18 +90,20 @@ export function showDrive(drive, view, compared = false) {
     state.explain.value = null;
     state.pair.value = null;
     state.look.playing.value = false;
+    state.plays.value = false;
     state.look.time.value = 0;
     state.look.open.value = new Map();
     state.look.selected.value = { formula: 0, key: "/0", id: 0 };
   });
 }
 
-/** A drive of a file, with the formula that the file is about as the question. */
-export function showFile(drive, view) {
+/** A drive of a file, with the formula that the file is about as the question; `play`: begin to play it. */
+export function showFile(drive, view, { play = false } = {}) {
   batch(() => {
     state.recording.value = null;
     state.kept.formula.value = drive.formula ?? state.kept.formula.value;
     showDrive(drive, view);
+    state.plays.value = play && !state.wantsRest();
   });
 }
 

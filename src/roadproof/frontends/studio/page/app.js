@@ -6,7 +6,9 @@ import * as actions from "studio/actions";
 import { fromAddress, toAddress } from "studio/address";
 import { Bar, toggleTheme } from "studio/bar";
 import { followEdits } from "studio/live";
+import { followSets, Gallery, toGallery } from "studio/gallery";
 import { start, takeToken } from "studio/server";
+import { recall } from "studio/store";
 import { addWatch, Side } from "studio/side";
 import * as state from "studio/state";
 
@@ -22,6 +24,7 @@ const KEYS = [
   [" ", "Play or pause", () => state.view.value && toggle(state.look, state.view.value.drive)],
   ["x", "Save as a page", () => actions.savePage()],
   ["l", "Copy the address", () => actions.copy(location.href)],
+  ["g", "To the gallery", () => toGallery()],
   ["d", "To the definitions", () => document.querySelector(".definitions .cm-content")?.focus()],
   ["q", "To the question", () => document.querySelector(".asked .cm-content")?.focus()],
   ["s", "To the strips", () => document.querySelector(".tree")?.focus()],
@@ -59,13 +62,13 @@ function Main() {
       ? html`<${Viewer} ...${{ doc, look: state.look, titles, theme: state.theme }} />`
       : html`<div class="empty">
           <p>No drive is shown.</p>
-          <p class="faint">Find one, or drop a drive file here.</p>
+          <p class="faint">Choose a scenario, find a drive, or drop a file here.</p>
         </div>`}
   </main>`;
 }
 
 function App() {
-  return html`<${Bar} /><div class="panes"><${Side} /><${Main} /></div><${Help} />`;
+  return html`<${Bar} /><div class="panes"><${Gallery} /><${Side} /><${Main} /></div><${Help} />`;
 }
 
 function isTyping(target) {
@@ -97,18 +100,19 @@ function onDrop(event) {
 
 async function begin() {
   takeToken();
-  const wanted = localStorage.getItem("roadproof-theme");
+  const wanted = recall("theme");
   const dark = wanted ? wanted === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
   document.documentElement.dataset.theme = dark ? "dark" : "light";
   state.theme.value = dark ? "dark" : "light";
   const begun = await start();
   state.drives.value = begun.drives;
+  state.specs.value = begun.specs;
   state.form.value = begun.form;
   const said = await fromAddress();
   if (said) state.takeOver(said);
   else {
     if (begun.text) state.kept.text.value = begun.text;
-    if (begun.drives.length) actions.showFile(begun.drives[0].drive);
+    if (begun.shows) actions.showFile(begun.drives[0].drive);
   }
   const app = document.getElementById("app");
   app.textContent = "";
@@ -119,6 +123,7 @@ async function begin() {
   addEventListener("popstate", async () => state.takeOver((await fromAddress()) ?? {}));
   keepAddress();
   followEdits();
+  followSets(!said && !begun.shows);
   document.documentElement.dataset.ready = "yes";
 }
 
@@ -130,7 +135,7 @@ function keepAddress() {
     const data = state.asData();
     clearTimeout(timer);
     timer = setTimeout(() => {
-      toAddress(data, data.drive !== last);
+      toAddress(data, data.drive !== last && last !== null);
       last = data.drive;
     }, 300);
   });

@@ -3,7 +3,9 @@
 import { html } from "vendor/view";
 import * as actions from "studio/actions";
 import { Editor } from "studio/editor";
+import { isOpen, toggleGallery } from "studio/gallery";
 import * as state from "studio/state";
+import { remember } from "studio/store";
 
 // The options of a job, as the server describes them: a list of words to choose from, or a switch.
 function Options({ job }) {
@@ -24,6 +26,7 @@ export function Bar() {
   const wrong = state.mistakes.value.find((x) => x.where === "formula");
   return html`<header class="bar">
     <div class="first">
+      <button class="gallery-switch" title="g" aria-expanded=${isOpen.value} aria-controls="gallery" onClick=${toggleGallery}>☰ Gallery</button>
       <h1>roadproof studio</h1>
       <label>on top of
         <select aria-label="Spec set" value=${kept.base.value} onChange=${(e) => (kept.base.value = e.target.value)}>
@@ -71,6 +74,6 @@ export function Bar() {
 export function toggleTheme() {
   const next = state.theme.value === "dark" ? "light" : "dark";
   document.documentElement.dataset.theme = next;
-  localStorage.setItem("roadproof-theme", next);
+  remember("theme", next);
   state.theme.value = next;
 }

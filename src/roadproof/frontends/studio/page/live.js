@@ -1,6 +1,6 @@
 // Each edit is read and judged again, one question at a time and always the latest.
 
-import { effect } from "vendor/view";
+import { batch, effect } from "vendor/view";
 import { showPair } from "studio/actions";
 import { ask } from "studio/server";
 import * as state from "studio/state";
@@ -81,7 +81,12 @@ export function followEdits() {
       return { ...state.question.value, drive, compare, explain: state.explain.value };
     },
     (answer, asked) => {
-      if (asked.drive === state.kept.drive.peek()) state.view.value = answer.view;
+      if (asked.drive !== state.kept.drive.peek()) return;
+      batch(() => {
+        state.view.value = answer.view;
+        if (state.plays.peek()) state.look.playing.value = true;
+        state.plays.value = false;
+      });
     },
     () => {},
   );

@@ -1,15 +1,16 @@
 // Questions to the server: POST with the token, answered by JSON lines.
 
-const KEY = "roadproof-token";
+import { recall, remember } from "studio/store";
+
+const KEY = "token";
 let token = "";
 
 /** Take the token out of the address, so that it is not copied with it; a bookmark uses the last one. */
 export function takeToken() {
   const found = new URLSearchParams(location.hash.slice(1));
-  token = found.get("token") ?? sessionStorage.getItem(KEY) ?? localStorage.getItem(KEY) ?? "";
+  token = found.get("token") ?? recall(KEY, "");
   if (found.has("token")) {
-    sessionStorage.setItem(KEY, token);
-    localStorage.setItem(KEY, token);
+    remember(KEY, token);
     found.delete("token");
     history.replaceState(history.state, "", `${location.pathname}#${found}`);
   }

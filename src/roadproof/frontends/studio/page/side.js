@@ -33,7 +33,6 @@ export function Side() {
       ${kept.watches.value.map((_, k) => html`<${WatchLine} key=${k} ...${{ k }} />`)}
       ${kept.watches.value.length ? null : html`<p class="faint">Any formula typed here gets a strip on the drive that is shown.</p>`}
     </section>
-    <${Drives} />
     <${Recording} />
     <section class="pane answers" aria-label="Answers">
       <h2>Answers</h2>
@@ -73,19 +72,6 @@ function Readings() {
       )}
     </dl>
   </details>`;
-}
-
-/** The drives that the studio was started with and those that were dropped, where there are several. */
-function Drives() {
-  const list = state.drives.value;
-  if (list.length < 2) return null;
-  const shown = JSON.stringify(state.kept.drive.value);
-  return html`<section class="pane drives" aria-label="Drives">
-    <h2>Drives <small>${list.length} files</small></h2>
-    <ul>${list.map(
-      (x) => html`<li><button aria-pressed=${JSON.stringify(x.drive) === shown} title=${x.drive.formula ?? ""} onClick=${() => actions.showFile(x.drive)}>${x.name}</button></li>`,
-    )}</ul>
-  </section>`;
 }
 
 /** The pairs of a recording on which danger arises, and which scenarios match them. */

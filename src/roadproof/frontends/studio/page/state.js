@@ -1,6 +1,6 @@
 // What the page is about. All of `kept` is in the address; the rest follows from it, or is asked for again.
 
-import { computed, signal } from "vendor/view";
+import { computed, effect, signal } from "vendor/view";
 import { makeLook } from "viewer/viewer";
 
 export const kept = {
@@ -27,6 +27,8 @@ export const trouble = signal(""); // what went wrong with the page itself
 export const said = signal(""); // a word for the user, such as "copied"
 export const help = signal(false);
 export const drives = signal([]); // those of the command line, and dropped ones: {name, drive}
+export const specs = signal([]); // definitions of files: {name, text}
+export const plays = signal(false); // whether the drive that is loaded plays once it is there
 export const recording = signal(null); // a recording that was dropped: its pairs, matches and files
 export const pair = signal(null); // the vehicles of it that are shown
 export const explain = signal(null); // {part, at}: what is to be explained
@@ -60,6 +62,20 @@ export function settingOf(option) {
 export function settingsOf(job) {
   const own = form.value.filter((x) => x.job === job);
   return Object.fromEntries(own.map((x) => [x.name, settingOf(x)]));
+}
+
+/** What there is to be named, once it is known. */
+export function named() {
+  return new Promise((done) => {
+    const stop = effect(() => {
+      if (names.value) queueMicrotask(() => (stop(), done(names.peek())));
+    });
+  });
+}
+
+/** Whether the user prefers pictures at rest. */
+export function wantsRest() {
+  return matchMedia("(prefers-reduced-motion: reduce)").matches;
 }
 
 /** All that is kept, as plain data. */

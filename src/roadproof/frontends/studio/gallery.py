@@ -1,0 +1,37 @@
+"""The gallery: scenarios of the chosen spec set, each with a drive that is known without a search."""
+
+from dataclasses import asdict
+from functools import lru_cache
+
+from roadproof.evidence.judged import JudgedDrive
+from roadproof.frontends.api.definitions import Definitions, load
+from roadproof.frontends.api.drives import known_drives
+from roadproof.frontends.report.viewer_data import shown_drive
+from roadproof.frontends.studio.requests import Answer, Ask
+from roadproof.library.scenarios import numbers_of
+from roadproof.library.words import words_of
+
+
+def cards(ask: Ask, say: object) -> Answer:
+    """Drives of ``scenarios`` in the set below the draft: the drive file, and what a small picture shows.
+
+    A scenario without a known drive has none; numbers that the set does not have are left out.
+    """
+    return {"cards": list(_cards(ask.draft.base, ask.scenarios))}
+
+
+@lru_cache(maxsize=64)
+def _cards(set_name: str, numbers: tuple[int, ...]) -> tuple[Answer, ...]:
+    home = load(set_name)
+    there = [x for x in numbers_of(home.specification) if x in numbers]
+    drives = known_drives(there, home)
+    return tuple(_card(home, number, drives.get(number)) for number in there)
+
+
+def _card(home: Definitions, number: int, drive: JudgedDrive | None) -> Answer:
+    words = words_of(home.specification, number)
+    formula = home.read(str(number)).text
+    told: Answer = {"number": number, "formula": formula, "sentence": words.sentence}
+    if drive is None:
+        return told
+    return {**told, "drive": drive.as_data(), "picture": asdict(shown_drive(drive.file, home.library))}

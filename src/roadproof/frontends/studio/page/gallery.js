@@ -1,0 +1,166 @@
+// The left edge: scenarios with small pictures, and the user's files. On narrow screens it is a drawer.
+
+import { batch, effect, html, signal, useRef } from "vendor/view";
+import * as actions from "studio/actions";
+import { Picture } from "studio/picture";
+import { ask } from "studio/server";
+import * as state from "studio/state";
+import { recall, remember } from "studio/store";
+
+const WIDE = 1180; // pixels from which there is room for it beside the other panes
+const SHARE = 8; // scenarios that are asked for at once
+const FIRST = 1;
+
+const cards = signal(new Map()); // of the chosen set, by number
+const touched = signal(null); // the number of the card that plays
+export const isOpen = signal(isBeside() && recall("gallery", true));
+
+function isBeside() {
+  return matchMedia(`(min-width: ${WIDE}px)`).matches;
+}
+
+/** Show or hide it; as a drawer it takes the focus, and gives it back. */
+export function toggleGallery() {
+  isOpen.value = !isOpen.value;
+  if (isBeside()) remember("gallery", isOpen.value);
+  if (isOpen.value) requestAnimationFrame(focusGallery);
+  else document.querySelector(".bar .gallery-switch")?.focus();
+}
+
+function focusGallery() {
+  document.querySelector(".gallery .card[tabindex='0']")?.focus();
+}
+
+/** To the card at hand, by keyboard. */
+export function toGallery() {
+  if (isOpen.value) focusGallery();
+  else toggleGallery();
+}
+
+/** Load the cards of the chosen set, now and whenever another one is chosen; `play`: begin with scenario 1. */
+export function followSets(play) {
+  let isFirst = play;
+  const known = (set) => set === state.kept.base.peek();
+  const load = async (set, numbers) => {
+    if (!numbers.length || !known(set)) return;
+    const told = await ask("gallery", { draft: { base: set }, scenarios: numbers }).catch(() => ({}));
+    if (!told.answer || !known(set)) return;
+    cards.value = new Map([...cards.value, ...told.answer.cards.map((x) => [x.number, x])]);
+  };
+  effect(() => {
+    const set = state.kept.base.value;
+    cards.value = new Map();
+    const all = async () => {
+      await load(set, [FIRST]);
+      if (isFirst && isUntouched()) show(FIRST, false);
+      isFirst = false;
+      const rest = numbersOf(await state.named()).filter((x) => x !== FIRST);
+      for (let k = 0; k < rest.length; k += SHARE) await load(set, rest.slice(k, k + SHARE));
+    };
+    all();
+  });
+}
+
+function isUntouched() {
+  return state.view.peek() === null && state.kept.text.peek() === "" && !state.job.peek();
+}
+
+const numbersOf = (names) => names.scenarios.map((x) => x.number);
+
+/** A scenario as the question, with its drive if one is known; `search`: else look for one. */
+function show(number, search = true) {
+  const card = cards.peek().get(number);
+  batch(() => {
+    actions.askAnother(card?.formula ?? String(number));
+    if (card?.drive) actions.showFile(card.drive, null, { play: true });
+  });
+  if (search && !card?.drive) actions.find();
+  if (search && !isBeside()) isOpen.value = false;
+}
+
+export function Gallery() {
+  if (!isOpen.value) return null;
+  const scenarios = state.names.value?.scenarios ?? [];
+  const close = () => !isBeside() && toggleGallery();
+  const onKey = (event) => {
+    if (event.key === "Escape" && !isBeside()) {
+      event.stopPropagation();
+      toggleGallery();
+    }
+  };
+  return html`<div class="drawer" onKeyDown=${onKey}>
+    <div class="behind" onClick=${close}></div>
+    <nav class="gallery" id="gallery" aria-label="Gallery">
+      <h2>Scenarios <small>click one: its drive plays</small>
+        <span class="right"><button class="icon" aria-label="Hide the gallery" title="Hide the gallery" onClick=${toggleGallery}>×</button></span>
+      </h2>
+      ${scenarios.length ? html`<${Cards} ...${{ scenarios }} />` : html`<p class="faint">The scenarios are being read …</p>`}
+      <${Files} />
+    </nav>
+  </div>`;
+}
+
+/** Cards by road sector. One of them is in the order of tabs; arrows move to the others. */
+function Cards({ scenarios }) {
+  const list = useRef(null);
+  const sectors = [...new Set(scenarios.map((x) => x.sector))];
+  const shown = scenarioShown(scenarios);
+  const onKey = (event) => {
+    const step = { ArrowDown: 1, ArrowRight: 1, ArrowUp: -1, ArrowLeft: -1 }[event.key];
+    const all = [...list.current.querySelectorAll("details[open] .card")];
+    const at = all.indexOf(event.target);
+    if (!step || at < 0) return;
+    event.preventDefault();
+    all[Math.max(0, Math.min(all.length - 1, at + step))].focus();
+  };
+  return html`<div class="cards" ref=${list} onKeyDown=${onKey}>
+    ${sectors.map((sector) => html`<details open key=${sector}>
+      <summary>${sector || "your scenarios"}</summary>
+      ${scenarios
+        .filter((x) => x.sector === sector)
+        .map((x) => html`<${Card} key=${x.number} words=${x} isShown=${x.number === shown} isFirst=${x.number === (touched.value ?? shown ?? FIRST)} />`)}
+    </details>`)}
+  </div>`;
+}
+
+/** The number of the scenario that is asked about, if it is one. */
+function scenarioShown(scenarios) {
+  const said = state.about.value.formula?.text ?? state.kept.formula.value;
+  const number = Number(/^scenario_(\d+)\(SV, ?POV\w*, ?/.exec(said)?.[1] ?? said);
+  return scenarios.some((x) => x.number === number) ? number : null;
+}
+
+function Card({ words, isShown, isFirst }) {
+  const { number, title, sector, sentence } = words;
+  const [what, ...rest] = title.split(", ");
+  const picture = cards.value.get(number)?.picture;
+  const touch = (on) => () => {
+    if (on) touched.value = number;
+    else if (touched.value === number) touched.value = null;
+  };
+  return html`<button class="card" title=${sentence} tabindex=${isFirst ? 0 : -1} aria-current=${isShown ? "true" : undefined}
+    aria-label=${`Scenario ${number}: ${title}, ${sector}`} onClick=${() => show(number)}
+    onMouseEnter=${touch(true)} onMouseLeave=${touch(false)} onFocus=${touch(true)} onBlur=${touch(false)}>
+    <span class="look">${picture
+      ? html`<${Picture} drive=${picture} playing=${touched.value === number && !state.wantsRest()} />`
+      : html`<span class="blank"></span>`}</span>
+    <span class="words"><b>${number}</b> ${what}<small>${rest.join(", ")}</small></span>
+  </button>`;
+}
+
+/** Files that the studio was started with, and dropped ones. */
+function Files() {
+  const { drives, specs } = state;
+  const total = drives.value.length + specs.value.length;
+  const shown = JSON.stringify(state.kept.drive.value);
+  return html`<details class="files" open>
+    <summary>your files <small>${total || "none"}</small></summary>
+    ${total ? null : html`<p class="faint">Drop drives, definitions or recordings on the page, or start <code>roadproof studio FOLDER</code>.</p>`}
+    <ul class="specs">${specs.value.map(
+      (x) => html`<li><button title="Put these definitions into the editor" aria-pressed=${x.text === state.kept.text.value} onClick=${() => actions.rewrite(x.text)}>${x.name}</button></li>`,
+    )}</ul>
+    <ul class="drives">${drives.value.map(
+      (x) => html`<li><button aria-pressed=${JSON.stringify(x.drive) === shown} title=${x.drive.formula ?? ""} onClick=${() => actions.showFile(x.drive)}>${x.name}</button></li>`,
+    )}</ul>
+  </details>`;
+}

@@ -1,0 +1,107 @@
+"""The studio as a newcomer meets it, in a real browser: the gallery, with answers that are known."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from studio.browser import Tab, browsing, why_none
+from studio.serving import running
+
+pytestmark = pytest.mark.skipif(bool(why_none()), reason=why_none() or "there is a browser")
+
+DRIVES = Path(__file__).parents[2] / "examples" / "traffic" / "drives"
+TIME = "Number(document.querySelector('.scrubber').value)"
+QUESTION = "document.querySelector('.asked .cm-content').textContent"
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    with browsing() as made:
+        yield made
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    folder = tmp_path_factory.mktemp("files")
+    (folder / "own.spec").write_text("def laneKeep(a: vehicle, L: lane) := true\n", "utf-8")
+    with running(str(folder), known=True) as (found, _):
+        yield found
+
+
+@pytest.fixture
+def tab(browser: Any, address: str) -> Iterator[Tab]:
+    made = Tab(browser, address)
+    try:
+        yield made
+        assert made.faults == []
+    finally:
+        made.close()
+
+
+def test_scenario_1_plays_and_every_card_has_a_picture(tab: Tab) -> None:
+    tab.until(f"() => document.querySelector('.scrubber') && {TIME} > 0.3")
+    tab.holds("true")
+    assert tab.see(".card[aria-current]").get_attribute("aria-label") == (
+        "Scenario 1: cut-in, lane keep, main road"
+    )
+    tab.until("() => document.querySelectorAll('.gallery .picture').length === 24")
+    assert tab.page.locator(".gallery summary").all_inner_texts()[:3] == [
+        "Main road",
+        "Merge zone",
+        "Departure zone",
+    ]
+
+
+def test_a_card_is_loaded_by_keyboard_and_arrows_move_among_cards(tab: Tab) -> None:
+    tab.until("() => document.querySelectorAll('.gallery .picture').length === 24")
+    tab.leave()
+    tab.press("g", "ArrowDown", "ArrowDown", "ArrowDown", "ArrowUp", "Enter")
+    tab.until("() => document.querySelector('.row .words')?.textContent.startsWith('scenario_3')")
+    tab.holds("true")
+    assert tab.page.evaluate("document.activeElement.ariaLabel").startswith("Scenario 3:")
+    assert tab.page.locator(".gallery .card[tabindex='0']").count() == 1
+
+
+def test_whoever_prefers_rest_gets_the_drive_at_rest(browser: Any, address: str) -> None:
+    tab = Tab(browser, address, reduced_motion="reduce")
+    tab.holds("true")
+    tab.page.wait_for_timeout(300)
+    assert tab.page.evaluate(TIME) == 0
+    assert tab.faults == []
+    tab.close()
+
+
+def test_files_are_put_into_the_editor_and_the_gallery_is_folded_for_good(tab: Tab) -> None:
+    tab.holds("true")
+    tab.page.get_by_role("button", name="own.spec").click()
+    tab.until("() => document.querySelector('.definitions .cm-content').textContent.includes('laneKeep')")
+    tab.page.get_by_role("button", name="Hide the gallery").click()
+    assert tab.page.locator(".gallery").count() == 0
+    tab.page.reload()
+    tab.ready()
+    assert tab.page.locator(".gallery").count() == 0
+    tab.page.get_by_role("button", name="Gallery").click()
+    tab.see(".gallery .card")
+
+
+def test_on_a_phone_the_gallery_is_a_drawer(browser: Any, address: str) -> None:
+    tab = Tab(browser, address)
+    tab.page.set_viewport_size({"width": 390, "height": 844})
+    tab.page.reload()
+    tab.ready()
+    tab.holds("true")
+    assert tab.page.locator(".gallery").count() == 0
+    tab.page.get_by_role("button", name="Gallery").click()
+    tab.page.locator(".gallery .card", has_text="deceleration").first.click()
+    tab.until("() => document.querySelector('.row .words')?.textContent.startsWith('scenario_4')")
+    assert tab.page.locator(".gallery").count() == 0
+    tab.page.get_by_role("button", name="Gallery").click()
+    tab.see(".gallery .card[aria-current]")
+    tab.press("Escape")
+    assert tab.page.locator(".gallery").count() == 0
+    assert tab.page.evaluate("document.activeElement.className") == "gallery-switch"
+    assert tab.page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+    assert tab.faults == []
+    tab.close()
