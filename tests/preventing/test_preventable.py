@@ -12,6 +12,7 @@ import pytest
 import roadproof as rp
 from preventing.read import boundary, specification, values
 from roadproof.analysis.preventable.sides import beside_boundary, first_drive, judged_drive
+from roadproof.analysis.study.evidence_store import EvidenceStore
 from roadproof.drivers.driving import DriverSettings
 from roadproof.drivers.lemmas import lemmas_for
 from roadproof.drivers.lines import SIDES
@@ -19,6 +20,8 @@ from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MAN
 from roadproof.drivers.models import MODELS, manoeuvre_of, models_for
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.report import preventable as report
+from roadproof.logic import parse
+from roadproof.logic.parse import parse_claim
 from roadproof.semantics.exact.algebraic import moved
 from roadproof.semantics.exact.truth import Cut, TruthSet, union
 
@@ -129,6 +132,34 @@ def test_lemmas_name_values_of_the_model_that_they_are_about():
     names = {x.name for x in lemmas_for("cut-in", tuple(MODELS.values()))}
     assert {"careful-greatest", "r157-greatest", "careful-falls-slow"} <= names
     assert "r157-falls-slow" not in names  # it has no ramp
+
+
+def test_a_lemma_is_the_tree_of_its_text():
+    for name, joined in (
+        ("cut-in", "none"),
+        ("cut-in", "add"),
+        ("cut-out", "none"),
+        ("deceleration", "none"),
+    ):
+        lemmas = lemmas_for(name, models_for(name), joined)
+        assert lemmas or name == "deceleration"
+        assert [x.tree for x in lemmas] == [parse_claim(x.claim) for x in lemmas]
+
+
+def test_a_lemma_is_proved_and_kept_without_reading_its_text(monkeypatch, tmp_path):
+    """Trees are handed on: of all texts only values of parameters are parsed, as evidence has them."""
+    home = rp.load(specs=["driver"])
+    study = rp.preventable("cut-in", ["r157"], using=home, lines=2, lemmas=False).study
+    lemma = next(x for x in lemmas_for("cut-in", models_for("cut-in", ("r157",))) if x.name == "r157-faster")
+    shelf, read = EvidenceStore(tmp_path / "kept", study.question), list[str]()
+    honest = parse._parse
+    monkeypatch.setattr(parse, "_parse", lambda text, *more: read.append(text) or honest(text, *more))
+    parse_claim.cache_clear()
+    ((name, answer),) = study.settle(lemma).items()
+    study.record(name, answer, shelf)
+    assert read == ["r157_braking = 6 m/s^2"]
+    assert (tmp_path / "kept" / f"{name}.json").exists()
+    assert answer.certificate.tableau
 
 
 def test_a_false_lemma_is_refuted():

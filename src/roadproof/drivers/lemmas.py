@@ -4,16 +4,20 @@ Lemmas are claims that are proved anew wherever the boundary is told.
 """
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cache
 from importlib import resources
 
 from roadproof.drivers.manoeuvres import Manoeuvre, ManoeuvreName
-from roadproof.drivers.models import Model, unpreventable
+from roadproof.drivers.models import Model, boundary_name
 from roadproof.library.bind import default_values
-from roadproof.library.elaborate import read_claim
+from roadproof.library.elaborate import apply_definition
 from roadproof.library.specification import Specification
+from roadproof.logic import syntax
+from roadproof.logic.formula import Formula
+from roadproof.logic.parse import parse_bundled
 from roadproof.logic.rewrite import parameters_of
 
 AT_ONCE = "0 s"
@@ -36,29 +40,47 @@ _EVER = ("greatest", "reached")
 
 @dataclass(frozen=True)
 class Lemma:
-    """A claim at the values of the ``parameters``; ``title`` says what it means."""
+    """A claim at the values of the ``parameters``, as text and as a tree; ``title`` says what it means."""
 
     name: str
     title: str
     claim: str
     parameters: tuple[str, ...]
+    tree: syntax.Claim
 
 
 @dataclass(frozen=True)
 class _Entry:
-    """A lemma of ``lemmas.toml``: for whom, and with {T} and {A} for the ramp and the full braking."""
+    """A lemma of ``lemmas.toml``: for whom, with {T} and {A} for the ramp and the full braking.
+
+    ``given``: the names that it is about, as a claim declares them. ``ramp``: whether it has no part
+    where the ramp is 0 s.
+    """
 
     id: str
     title: str
+    given: str
     claim: str
     manoeuvres: tuple[ManoeuvreName, ...] = ()
     readings: tuple[str, ...] = ()
     ramp: bool = False
 
-    def lemma(self, prefix: str, parameters: Sequence[str] = (), ramp: str = "", full: str = "") -> Lemma:
+    def at(self, prefix: str, parameters: Sequence[str] = (), ramp: str = "", full: str = "") -> "_Stated":
         """It at a ramp and a full braking; of the ``parameters`` those that it names."""
         claim = self.claim.replace("{T}", ramp).replace("{A}", full)
-        return Lemma(f"{prefix}-{self.id}", self.title, claim, tuple(x for x in parameters if x in claim))
+        named = tuple(x for x in parameters if x in claim)
+        return _Stated(f"{prefix}-{self.id}", self.title, self.given, claim, named)
+
+
+@dataclass(frozen=True)
+class _Stated:
+    """A lemma as text, of which no tree is made yet."""
+
+    name: str
+    title: str
+    given: str
+    claim: str
+    parameters: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -75,28 +97,44 @@ def lemmas_for(manoeuvre: ManoeuvreName, models: Sequence[Model], aeb: str = "no
 
     ``aeb``: what AEB does in a cut-in of the careful driver, as the option ``cc_aeb``.
     """
-    content = tomllib.loads(resources.files("roadproof.drivers").joinpath("lemmas.toml").read_text("utf-8"))
-    entries = _Entries(**{kind: tuple(_Entry(**x) for x in said) for kind, said in content.items()})
-    names = {x.name for x in models}
-    found: list[Lemma] = []
+    stated = list(_stated(manoeuvre, models, aeb))
+    trees = _trees(tuple((x.given, x.claim) for x in stated))
+    return [
+        Lemma(x.name, x.title, f"given {x.given}: {x.claim}", x.parameters, tree)
+        for x, tree in zip(stated, trees, strict=True)
+    ]
+
+
+def _stated(manoeuvre: ManoeuvreName, models: Sequence[Model], aeb: str) -> Iterator[_Stated]:
+    entries, names = _entries(), {x.name for x in models}
     if manoeuvre == "cut-in" and aeb != "none" and "careful" in names:
-        found = [x.lemma("aeb", _PARAMETERS) for x in entries.aeb if aeb in x.readings]
-        ever = [x for x in entries.lemma if x.id in _EVER]
+        yield from (x.at("aeb", _PARAMETERS) for x in entries.aeb if aeb in x.readings)
         for name, (ramp, full) in _RAMPS.items():
             if name == "aeb" or aeb == "add":
-                titled = (replace(x, title=f"{name}: {x.title}") for x in ever)
-                found += [x.lemma(name, _PARAMETERS, ramp, full) for x in titled]
+                titled = (replace(x, title=f"{name}: {x.title}") for x in entries.lemma if x.id in _EVER)
+                yield from (x.at(name, _PARAMETERS, ramp, full) for x in titled)
     for model in (x for x in models if not x.is_stepped):
         ramp, full = _BRAKING[model.name]
-        gradual = ramp != AT_ONCE
-        found += [
-            replace(x.lemma(model.name, (), ramp, full), parameters=(full, ramp) if gradual else (full,))
-            for x in entries.lemma
-            if manoeuvre in x.manoeuvres and (gradual or not x.ramp)
-        ]
+        parameters = (full,) if ramp == AT_ONCE else (full, ramp)
+        for x in entries.lemma:
+            if manoeuvre in x.manoeuvres and not (x.ramp and ramp == AT_ONCE):
+                yield replace(x.at(model.name, (), ramp, full), parameters=parameters)
     if manoeuvre == "cut-in" and "rss" in names:
-        found += [x.lemma("rss", _RESPONSE) for x in entries.rss]
-    return found
+        yield from (x.at("rss", _RESPONSE) for x in entries.rss)
+
+
+@cache
+def _entries() -> _Entries:
+    content = tomllib.loads(resources.files("roadproof.drivers").joinpath("lemmas.toml").read_text("utf-8"))
+    return _Entries(**{kind: tuple(_Entry(**x) for x in said) for kind, said in content.items()})
+
+
+@cache
+def _trees(stated: tuple[tuple[str, str], ...]) -> tuple[syntax.Claim, ...]:
+    """What ``given A: B`` reads as, for each A and B: all are parsed at once, as definitions of one file."""
+    lines = (f"def lemma_{k}({given.replace(';', ',')}) := {b}" for k, (given, b) in enumerate(stated))
+    found = parse_bundled("\n".join(lines), "lemmas.toml")
+    return tuple(syntax.Claim(x.parameters, x.body) for x in found if isinstance(x, syntax.Definition))
 
 
 def chosen(specification: Specification, values: Mapping[str, Fraction]) -> dict[str, str]:
@@ -118,8 +156,12 @@ def idle(
     A controller that is stepped depends on none of them.
     """
     names = [x.name for x in models if not x.is_stepped]
-    claims = [unpreventable(manoeuvre.name, name, manoeuvre.vehicles) for name in names]
-    said = [read_claim(specification, claim).formula for claim in claims]
+
+    def boundaries(home: Specification) -> list[Formula]:
+        called = (boundary_name(manoeuvre.name, name) for name in names)
+        return [apply_definition(home, x, manoeuvre.vehicles).formula for x in called]
+
+    said = boundaries(specification)
     spoken = {name for formula in said for name in parameters_of(formula)}
 
     def has_a_say(name: str) -> bool:
@@ -128,7 +170,7 @@ def idle(
         declared = specification.library.options[name].values[0]
         options = {**specification.options, name: declared}
         other = specification.library.select(specification.set_name, options)
-        return [read_claim(other, claim).formula for claim in claims] != said
+        return boundaries(other) != said
 
     made = chosen(specification, values)
     return tuple(f"{name}={value}" for name, value in made.items() if not has_a_say(name))

@@ -21,9 +21,18 @@ from roadproof.drivers.manoeuvres import (
     line,
     start_of,
 )
-from roadproof.drivers.models import GRADUAL, MODELS, follows, foreseen, touched, unpreventable, untouched
+from roadproof.drivers.models import (
+    GRADUAL,
+    MODELS,
+    boundary_name,
+    follows,
+    foreseen,
+    touched,
+    unpreventable,
+    untouched,
+)
 from roadproof.library.bind import bind
-from roadproof.library.elaborate import read_claim
+from roadproof.library.elaborate import apply_definition
 from roadproof.library.specification import Specification
 from roadproof.semantics.exact.algebraic import Point, Root, approximate
 from roadproof.semantics.exact.truth import TruthSet
@@ -115,8 +124,8 @@ def truths(
     if gradual.RATE in plane.fixed:
         reading = DriverSettings(values, specification.options)
         return (gradual.line(plane, model, reading, row) for row in plane.rows)
-    text = unpreventable(plane.manoeuvre.name, model, plane.manoeuvre.vehicles)
-    formula = bind(read_claim(specification, text).formula, _NO_ROAD, {}, values)
+    name, vehicles = boundary_name(plane.manoeuvre.name, model), plane.manoeuvre.vehicles
+    formula = bind(apply_definition(specification, name, vehicles).formula, _NO_ROAD, {}, values)
     return (line(plane, formula, row) for row in plane.rows)
 
 

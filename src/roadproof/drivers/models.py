@@ -162,7 +162,12 @@ def _word(manoeuvre: Course) -> str:
 
 def unpreventable(manoeuvre: Course, model: str, vehicles: tuple[str, ...]) -> str:
     """The formula: the manoeuvre, from this state on, ends in a collision though SV is driven so."""
-    return f"unpreventable_{_word(manoeuvre)}_{model}({', '.join(vehicles)})"
+    return f"{boundary_name(manoeuvre, model)}({', '.join(vehicles)})"
+
+
+def boundary_name(manoeuvre: Course, model: str) -> str:
+    """The name of the definition that ``unpreventable`` applies to vehicles."""
+    return f"unpreventable_{_word(manoeuvre)}_{model}"
 
 
 def touched(vehicles: tuple[str, ...]) -> str:

@@ -29,11 +29,16 @@ def read_claim(specification: Specification, text: str, source: str = "claim") -
     """
     claim = parse_claim(text, source)
     try:
-        return replace(elaborate(specification, claim, _walk(specification)), written=text.strip())
+        return read_tree(specification, claim, text.strip())
     except TextError as error:
         first = error.locate(source, text)
     raise_all(mistakes_in(specification, claim, source, text) or [first])
     raise AssertionError("one mistake was found, and then none")
+
+
+def read_tree(specification: Specification, claim: syntax.Claim, written: str) -> Query:
+    """As ``read_claim``, for a claim whose tree is known; ``written`` is its text. Raises ``TextError``."""
+    return replace(elaborate(specification, claim, _walk(specification)), written=written)
 
 
 def _walk(specification: Specification) -> Elaborator:

@@ -5,7 +5,7 @@ formula is the boundary.
 """
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from itertools import product
@@ -26,9 +26,10 @@ from roadproof.engines.prove.prover import prove
 from roadproof.errors import InputError
 from roadproof.evidence.answers import plates as kept
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.evidence.kernel.accept import find_tableau
 from roadproof.evidence.settled import Settled
 from roadproof.evidence.strict import JsonObject
-from roadproof.library.elaborate import read_claim
+from roadproof.library.elaborate import read_tree
 from roadproof.library.motion import Assumption, statement, value_texts
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.verdict import ClaimVerdict, Verdict
@@ -240,13 +241,14 @@ class Preventable(Unprepared):
     def _prove(self, lemma: Lemma) -> LemmaResult:
         home, said = self.basis.specification, self._said(lemma)
         try:
-            query, effort = read_claim(home, lemma.claim), self.basis.effort.of(20)
+            query, effort = read_tree(home, lemma.tree, lemma.claim), self.basis.effort.of(20)
             result = prove(home, query, effort, assumed=Assumption(said))
         except BudgetExceeded as late:
             return LemmaResult(lemma, said, verdict=Verdict.UNKNOWN, reason=str(late))
-        return LemmaResult(
-            lemma, said, verdict=result.verdict, certificate=result.certificate, reason=result.reason
-        )
+        certificate = result.certificate
+        if certificate is not None:
+            certificate = replace(certificate, tableau=find_tableau(certificate, home.library, query))
+        return LemmaResult(lemma, said, verdict=result.verdict, certificate=certificate, reason=result.reason)
 
     def wanted(self, known: Mapping[str, Answer]) -> Collection[str]:
         return [*self.plates, *self.lemmas]

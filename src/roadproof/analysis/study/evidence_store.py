@@ -90,8 +90,10 @@ class EvidenceStore:
 
     def certificate(self, name: str, certificate: Certificate | None) -> str | JsonObject | None:
         """The name of a file with a certificate, or its data; a file has its tableau too, if one is found."""
-        if certificate is None or self.folder is None:
-            return None if certificate is None else certificate_data(certificate)
+        if certificate is None:
+            return None
+        if self.folder is None:
+            return certificate_data(replace(certificate, tableau=None))
         if certificate.tableau is None:
             certificate = replace(certificate, tableau=find_tableau(certificate, self.library))
         return self._put(self.folder, name, to_json(certificate).encode())

@@ -17,7 +17,7 @@ from roadproof.evidence.kernel.search import find
 from roadproof.evidence.kernel.source import Module, UnreasonedError, file, module
 from roadproof.evidence.kernel.statement import NO_PREMISES, Premises, Statement, state
 from roadproof.evidence.kernel.tableau import Tableau, lines, read_lines
-from roadproof.library.specification import Library
+from roadproof.library.specification import Library, Query
 
 # Those of Coq's real numbers and of classical logic; nothing else may be relied on.
 AXIOMS = frozenset(
@@ -79,10 +79,15 @@ class KernelRulings:
     megabytes: float = 0.0
 
 
-def find_tableau(certificate: Certificate, library: Library) -> tuple[str, ...] | None:
-    """The lines of a tableau for a certificate, None where none is found. Coq is not asked."""
+def find_tableau(
+    certificate: Certificate, library: Library, query: Query | None = None
+) -> tuple[str, ...] | None:
+    """The lines of a tableau for a certificate, None where none is found. Coq is not asked.
+
+    ``query``: its claim, where that is known.
+    """
     try:
-        return lines(find(state(certificate, library).goal))
+        return lines(find(state(certificate, library, query).goal))
     except (NotFoundError, RoadproofError):
         return None
 

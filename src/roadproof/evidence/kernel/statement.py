@@ -72,14 +72,15 @@ class Statement:
     goal: Goal
 
 
-def state(certificate: Certificate, library: Library) -> Statement:
+def state(certificate: Certificate, library: Library, query: Query | None = None) -> Statement:
     """What is to be proved, values of parameters that are assumed put in.
 
+    ``query``: the claim, where it need not be read again, since nobody rests on the statement.
     Raises ``InputError`` where the certificate does not fit the library, and ``NotFoundError`` where the
     search puts in what the claim has as a premise.
     """
     specification = library.select(certificate.set_name, certificate.options)
-    query = read_claim(specification, certificate.claim)
+    query = query or read_claim(specification, certificate.claim)
     if certificate.pinned:
         raise NotFoundError("values that its own premise demands are put in before it is proved")
     assumed = certificate.assumed

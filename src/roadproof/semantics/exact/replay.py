@@ -25,6 +25,7 @@ from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.truth import Cut, TruthSet, complement
 from roadproof.world.drive import Drive
 from roadproof.world.motion import State, state_at
+from roadproof.world.units import unit_text
 from roadproof.world.vehicle import Range, Vehicle
 
 
@@ -103,7 +104,7 @@ def _rules(name: str, limits: Vehicle) -> Iterator[tuple[str, Formula]]:
     ranges: dict[SignalName, Range] = {"v_lon": limits.v_lon, "v_lat": limits.v_lat}
     ranges |= {"a_lon": limits.a_lon, "a_lat": limits.a_lat}
     for signal, (low, high) in ranges.items():
-        unit = "m/s" if signal.startswith("v_") else "m/s²"
+        unit = unit_text(SIGNAL_DIMENSIONS[signal]).replace("^2", "²")
         bounds: tuple[tuple[Comparison, Fraction], ...] = ((">=", low), ("<=", high))
         for op, limit in bounds:
             bound = Number(limit, SIGNAL_DIMENSIONS[signal])
