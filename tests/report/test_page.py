@@ -13,6 +13,7 @@ import pytest
 import roadproof as rp
 from evidence.folders import some_proofs
 from roadproof.frontends.cli.main import main
+from roadproof.frontends.report.page.summary import Overview
 from roadproof.frontends.report.page.templates import page as page_of
 from roadproof.frontends.report.page.templates import render
 from roadproof.runtime.package_data import shipped
@@ -48,25 +49,26 @@ def body_of(text: str) -> str:
 
 
 def test_every_text_is_escaped_wherever_it_is_put():
-    page = page_of(HOSTILE, ["<p>made</p>"], [], CLOSED)
+    page = page_of(HOSTILE, "<p>summary</p>", ["<p>made</p>"], [])
     assert "<h1>&lt;img src=x onerror=alert(1)&gt;</h1>" in page
     assert "<img" not in page
     assert page.count("<script") == page.count("</script") == 3
-    assert "<main>\n<p>made</p>\n</main>" in page
+    assert "<main>\n<p>summary</p>\n<p>made</p>\n</main>" in page
     finding = {"outcome": '"><i>', "label": HOSTILE, "where": HOSTILE, "reason": "a & b"}
-    shown = render("evidence.html", page=None, solver="z3", count=1, wrong=[finding], **NOTHING)
+    shown = render("evidence.html", **EVIDENCE | {"wrong": [finding]})
     assert "<td>&#34;&gt;&lt;i&gt;</td>" in shown
     assert "<td>a &amp; b</td>" in shown
     assert "<img" not in shown
 
 
-NOTHING: dict[str, list] = {"accepted": [], "proofs": [], "drives": []}
+HEAD = Overview("Evidence", "", "evidence")
+EVIDENCE = {"page": None, "solver": "z3", "count": 1, "head": HEAD, "accepted": [], "wrong": []}
 
 
 def test_a_value_that_a_template_lacks_is_an_error():
     """A name that is misspelt in a template is found by the first page that is made with it."""
     with pytest.raises(jinja2.UndefinedError, match="'solver' is undefined"):
-        render("evidence.html", page=None, count=0, wrong=[], **NOTHING)
+        render("evidence.html", **{name: x for name, x in EVIDENCE.items() if name != "solver"})
 
 
 def test_only_a_page_imports_the_engine_of_templates():
@@ -78,7 +80,7 @@ def test_only_a_page_imports_the_engine_of_templates():
 def test_proofs_and_drives_with_what_was_found_of_them(tmp_path, drives):
     found, text = made(some_proofs(tmp_path / "proofs"), drives, out=tmp_path / "page.html")
     seen = body_of(text)
-    assert '5 claims: 3 <span class="verdict-word proof">✓ PROVED</span>' in seen
+    assert '5 claims: <span class="count">3 <span class="verdict-word proof">✓ PROVED</span>' in seen
     assert "scenario_4(SV,POV,L) -&gt; dangerArises(SV,POV)" in seen
     assert "1 of 1 accepted by z3 and the exact judge" in seen
     assert (found.results, found.drives, found.exit_code) == (2, 2, 0)
@@ -329,7 +331,7 @@ def test_a_hostile_text_stays_text_in_every_section(tmp_path, drives):
     assert "<img" not in text
     assert text.count("<script") == text.count("</script") == 3 + found.drives
     assert body_of(text).count("&lt;img src=x onerror=alert(1)&gt;") > 15
-    assert "Which scenarios can hold together" in text
+    assert "Which pairs can one drive show?" in text
     led = re.findall(r'href="#([^"]*)"', body_of(text))
     assert {x.partition("-")[0] for x in led} >= {
         "pair",

@@ -68,14 +68,18 @@ def template_properties() -> list[Task]:
 
 def find_label(claim: str, set_name: str) -> tuple[str, str, int | None] | None:
     """Property, part and scenario of a claim in a set, where it is a template property."""
-    return _labels().get((" ".join(claim.split()), set_name))
+    task = find_task(claim, set_name)
+    return None if task is None else (task.id, task.part, task.scenario)
+
+
+def find_task(claim: str, set_name: str) -> Task | None:
+    """The template property that says a claim in a set, None where there is none."""
+    return _tasks_by_claim().get((" ".join(claim.split()), set_name))
 
 
 @cache
-def _labels() -> dict[tuple[str, str], tuple[str, str, int | None]]:
-    return {
-        (" ".join(x.claim.split()), x.set_name): (x.id, x.part, x.scenario) for x in template_properties()
-    }
+def _tasks_by_claim() -> dict[tuple[str, str], Task]:
+    return {(" ".join(x.claim.split()), x.set_name): x for x in template_properties()}
 
 
 @dataclass(frozen=True)

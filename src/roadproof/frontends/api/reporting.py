@@ -1,18 +1,19 @@
 """Results of any kind as one page that needs no network."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Unpack
 
 from roadproof.errors import RoadproofError, UsageError
-from roadproof.evidence.finding import Acceptance, Finding, summary
+from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.evidence.folder import INDEX
 from roadproof.evidence.heading import version
 from roadproof.frontends.api.checking import CheckReport, check
 from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.results import Given, Result, read_results
-from roadproof.frontends.report.page.sections import evidence_section, section
+from roadproof.frontends.report.page.sections import drive_section, evidence_section, section
+from roadproof.frontends.report.page.summary import summary_section
 from roadproof.frontends.report.page.templates import page as page_of
 from roadproof.frontends.settings import questions as settings
 from roadproof.frontends.settings.keywords import CheckKeywords, PageKeywords
@@ -78,24 +79,36 @@ def page(*results: str | Path, out: str | Path, **options: Unpack[PageKeywords])
     library = load_library((*named, *(checked.specs if checked else ())))
     inside = {} if checked is None else {x.where: x for x in checked.findings if x.kind == "index"}
     book = PageContext(library, _by_file(checked), inside, _rejected(checked))
-    sections = [section(x, book, _words(x, library)) for x in given.results]
     alone = _alone(given, checked)
-    if alone and checked is not None:
-        sections.append(evidence_section(alone, book, asked.solver))
+    sections = sorted(
+        [
+            *([drive_section(alone, book)] if any(_is_accepted_drive(x) for x in alone) else []),
+            *(section(x, book, _words(x, library)) for x in given.results),
+        ],
+        key=lambda x: x.overview.rank,
+    )
+    sections += [evidence_section(alone, book, asked.solver)] if alone else []
     said = asked.title or f"roadproof: {', '.join(x.name or str(x) for x in paths)[:120]}"
-    text = page_of(said, sections, book.documents, _made(checked))
+    findings = () if checked is None else checked.findings
+    summary = summary_section(
+        [x.overview for x in sections], findings, asked.solver, given.results, _made(checked, library)
+    )
+    text = page_of(said, summary, [x.html for x in sections], book.documents)
     with whole_file(target) as file:
         file.write(text.encode("utf-8"))
     return Page(target, text, len(book.documents), len(given.results) + bool(alone), checked)
 
 
-def _made(checked: CheckReport | None) -> str:
-    """Which version made a page, how much evidence was accepted, and what nothing was compared with."""
-    made = f"Made by roadproof {version('roadproof')}"
-    if checked is None:
-        return f"{made}."
-    left = (f"not checked in {folder}: {', '.join(x)}" for folder, x in checked.not_checked.items())
-    return "; ".join([made, summary(checked.findings, checked.solver), *left]) + "."
+def _made(checked: CheckReport | None, library: Library) -> Iterator[tuple[str, str]]:
+    """What made the page, and what nothing was compared with."""
+    yield "page made by", f"roadproof {version('roadproof')} with definitions {library.fingerprint}"
+    if checked is not None:
+        for folder, fields in checked.not_checked.items():
+            yield f"not checked in {folder}", ", ".join(fields)
+
+
+def _is_accepted_drive(finding: Finding) -> bool:
+    return finding.kind == "drive" and finding.outcome is Acceptance.ACCEPTED
 
 
 def _rejected(checked: CheckReport | None) -> dict[str, list[str]]:

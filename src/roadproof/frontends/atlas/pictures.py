@@ -10,9 +10,9 @@ from roadproof.analysis.study import pool
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.atlas.answers import EVIDENCE, OBJECTIVES, Answers
-from roadproof.frontends.atlas.miniature import miniature, small_scene
 from roadproof.frontends.atlas.notation import shown
 from roadproof.frontends.report.drive_data import Span, strips_of
+from roadproof.frontends.report.miniature import miniature, small_scene
 from roadproof.frontends.settings.studies import Atlas
 from roadproof.library.specification import Library
 

@@ -100,11 +100,15 @@ class Linked(NamedTuple):
 
 @dataclass(frozen=True)
 class Matrix:
-    """A sheet of linked cells, each in a row and a column; places without a cell stay empty."""
+    """A sheet of linked cells, each in a row and a column; places without a cell stay empty.
+
+    ``groups``: names above columns, each with the number of columns below it.
+    """
 
     rows: Sequence[Heading]
     columns: Sequence[Heading]
     cells: Mapping[tuple[object, object], Linked]
+    groups: Sequence[tuple[str, int]] = ()
 
 
 def as_csv(sheet: Sheet[T]) -> str:

@@ -1,15 +1,19 @@
-// Opens drives when they are asked for, leads links into folded parts, filters tables.
+// Opens drives when they are asked for, leads links into folded parts, prepares tables and prints.
 import { mount } from "viewer/viewer";
+import "page/tables";
 
 const shown = new Set();
 
-function open(place) {
-  if (shown.has(place)) return;
+/** Shows the viewer of a drive, or its picture again. */
+function toggle(place, wanted = !place.classList.contains("opened")) {
+  place.classList.toggle("opened", wanted);
+  place.querySelector("button.open").setAttribute("aria-expanded", String(wanted));
+  if (!wanted || shown.has(place)) return;
   shown.add(place);
-  const data = document.getElementById(`document-${place.dataset.document}`);
-  place.replaceChildren(...place.querySelectorAll(":scope > p.wrong"));
   const room = document.createElement("div");
+  room.className = "viewer-room";
   place.append(room);
+  const data = document.getElementById(`document-${place.dataset.document}`);
   unpacked(data.textContent).then((text) => mount(room, JSON.parse(text)));
 }
 
@@ -21,7 +25,7 @@ function unpacked(base64) {
 }
 
 for (const button of document.querySelectorAll("button.open")) {
-  button.addEventListener("click", () => open(button.closest(".place")));
+  button.addEventListener("click", () => toggle(button.closest(".place")));
 }
 
 /** A link leads into what is folded: it is unfolded, and its first drive is shown. */
@@ -29,29 +33,25 @@ function follow() {
   const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
   if (!target) return;
   for (let up = target; up; up = up.parentElement) if (up.tagName === "DETAILS") up.open = true;
-  const drive = target.querySelector(".place");
-  if (drive) open(drive);
+  const drive = target.matches(".place") ? target : target.matches("section") ? null : target.querySelector(".place");
+  if (drive) toggle(drive, true);
   target.scrollIntoView();
 }
 addEventListener("hashchange", follow);
 follow();
 
-for (const box of document.querySelectorAll("input.filter")) {
-  const rows = [...box.parentElement.querySelectorAll("tbody tr")].map((row) => [row, row.textContent.toLowerCase()]);
-  box.addEventListener("input", () => {
-    const wanted = box.value.trim().toLowerCase();
-    for (const [row, text] of rows) row.hidden = !text.includes(wanted);
-  });
-}
+document.getElementById("unfold").addEventListener("click", () => {
+  for (const part of document.querySelectorAll("details")) part.open = true;
+});
 
-// On paper nothing is folded, and it is light.
+// Paper is light, and parts of class "printed" are unfolded on it.
 const root = document.documentElement;
-let folded = [];
 let theme = "light";
+let folded = [];
 addEventListener("beforeprint", () => {
   theme = root.dataset.theme;
   root.dataset.theme = "light";
-  folded = [...document.querySelectorAll("details:not([open])")];
+  folded = [...document.querySelectorAll("details.printed:not([open])")];
   for (const part of folded) part.open = true;
 });
 addEventListener("afterprint", () => {
@@ -59,4 +59,4 @@ addEventListener("afterprint", () => {
   for (const part of folded) part.open = false;
 });
 
-document.documentElement.dataset.ready = String(Math.round(performance.now()));
+root.dataset.ready = String(Math.round(performance.now()));

@@ -8,6 +8,7 @@ from roadproof.errors import RoadproofError
 from roadproof.evidence.drive_file import DriveFile, read_drive
 from roadproof.evidence.finding import Finding
 from roadproof.evidence.strict import read_json
+from roadproof.frontends.report.miniature import miniature, small_scene
 from roadproof.frontends.report.viewer_data import ShownFormula, viewer_data
 from roadproof.frontends.report.viewer_document import Document, FormulaView, Span
 from roadproof.library.specification import Library
@@ -21,12 +22,13 @@ class ShownDrive:
     """A drive on the page.
 
     ``number``: that of its ``document`` for the viewer; ``wrong``: the formulas that are not true on it;
-    ``fault``: why it cannot be shown.
+    ``svg``: a small moving picture of it; ``fault``: why it cannot be shown.
     """
 
     number: int = 0
     document: Document | None = None
     wrong: Sequence[str] = ()
+    svg: str = ""
     fault: str = ""
 
     @property
@@ -35,10 +37,31 @@ class ShownDrive:
         return "" if self.document is None else self.document.title
 
     @property
+    def scenario(self) -> int | None:
+        """The scenario that its file names, if any."""
+        file = None if self.document is None else self.document.file
+        number = file.get("scenario") if isinstance(file, Mapping) else None
+        return number if isinstance(number, int) else None
+
+    @property
     def strips(self) -> list[tuple[str, Sequence[Span]]]:
         """When the parts of its formula that have a name are true."""
         parts = None if self.document is None else self.document.formulas[0].parts
         return [(x.text, x.true) for x in parts or () if x.op == "name"][:MOST_STRIPS]
+
+
+@dataclass(frozen=True)
+class DriveCard:
+    """A drive in a gallery: what it shows with which verdict, and what was checked of it.
+
+    ``place``: where it is on the page.
+    """
+
+    drive: ShownDrive
+    verdict: str
+    claim: str
+    place: str
+    notes: str = ""
 
 
 @dataclass
@@ -69,13 +92,14 @@ class PageContext:
         """
         try:
             content = read_json(file) if isinstance(file, Path) else file
-            drive = read_drive(content, str(file) if isinstance(file, Path) else "the drive")
-            document = viewer_data(put(drive), self.library, asked)
+            drive = put(read_drive(content, str(file) if isinstance(file, Path) else "the drive"))
+            document = viewer_data(drive, self.library, asked)
+            svg = miniature(small_scene(drive, self.library), f"m{len(self.documents)}", document.title)
         except (RoadproofError, OSError) as error:
             return ShownDrive(fault=str(error))
         self.documents.append(document)
         wrong = [_wrong(x, at) for x, at in zip(document.formulas, since, strict=False)]
-        return ShownDrive(len(self.documents) - 1, document, [x for x in wrong if x])
+        return ShownDrive(len(self.documents) - 1, document, [x for x in wrong if x], svg)
 
     def finding(self, folder: Path | None, name: object) -> Finding | None:
         """What was found of a file of evidence that an answer names."""

@@ -1,5 +1,6 @@
 """Which results are in files and folders: answers of ``--json``, folders with an index, evidence alone."""
 
+import hashlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,7 +22,7 @@ EVIDENCE = (certificate.SCHEMA, *drive_file.SCHEMAS_READ)
 class Result:
     """An answer as plain data; ``folder``: where the evidence lies that it names, None where it has none.
 
-    ``id``: its place on the page.
+    ``id``: its place on the page. ``digest``: the SHA-256 of its file.
     """
 
     name: str
@@ -29,6 +30,7 @@ class Result:
     data: Mapping[str, Json]
     folder: Path | None = None
     id: int = 0
+    digest: str = ""
 
     @property
     def kind(self) -> str:
@@ -63,13 +65,13 @@ def read_results(paths: Sequence[Path]) -> Given:
                 f"{path} holds no result: name a folder or a JSON answer that a command has written"
             )
         for file in found:
-            schema, data = _read(file)
+            schema, data, digest = _read(file)
             if schema in EVIDENCE:
                 evidence.append(file)
             else:
                 here = file.parent if file.name in (INDEX, TRAFFIC) else _beside(file)
                 name = file.parent.name if file.name in (INDEX, TRAFFIC) else file.stem
-                results.append(Result(name or str(file), schema, data, here, len(results)))
+                results.append(Result(name or str(file), schema, data, here, len(results), digest))
     return Given(tuple(results), tuple(dict.fromkeys(evidence)))
 
 
@@ -95,9 +97,10 @@ def _in_folder(folder: Path) -> Iterator[Path]:
             yield path
 
 
-def _read(file: Path) -> tuple[str, Mapping[str, Json]]:
+def _read(file: Path) -> tuple[str, Mapping[str, Json], str]:
+    """Schema, content, and SHA-256 of a file."""
     data = Fields(read_json(file, LARGEST_INDEX), str(file))
     schema = data.text("schema") if "schema" in data.content else ""
     if not schema.startswith("roadproof/"):
         raise InputError(f"{file} is not a result of roadproof: its schema does not begin with roadproof/")
-    return schema, data.content
+    return schema, data.content, hashlib.sha256(file.read_bytes()).hexdigest()

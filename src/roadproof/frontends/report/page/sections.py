@@ -2,46 +2,76 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from roadproof.errors import InputError
-from roadproof.evidence.answers import compare, drives
+from roadproof.evidence.answers import compare
 from roadproof.evidence.codec import read
 from roadproof.evidence.finding import Finding
-from roadproof.frontends.report.page import catalogues, values
+from roadproof.frontends.report.page import catalogues, claims, values
 from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.results import Result, Words
+from roadproof.frontends.report.page.summary import Overview, Statement, overview
 from roadproof.frontends.report.page.templates import render
 from roadproof.frontends.report.preventable import page_plates
+from roadproof.library.words import spans
 
 Values: TypeAlias = Mapping[str, object]
 _HEADING = ("schema", "roadproof", "library", "seconds", "options", "parameters", "specs", "view")
 _EMPTY: tuple[object, ...] = (None, "", [], {})
 
 
-def section(result: Result, context: PageContext, words: Words) -> str:
+class Section(NamedTuple):
+    """A section as HTML, and what the summary says of it."""
+
+    overview: Overview
+    html: str
+
+
+def section(result: Result, context: PageContext, words: Words) -> Section:
     """A result of any kind as HTML; ``words`` are what scenarios are called. Raises ``InputError``."""
-    title, template, values_of = _SECTIONS.get(
-        result.kind, (_TITLES.get(result.kind, result.kind), "plain", _plain)
-    )
+    kind = _KINDS.get(result.kind, _Kind(result.kind, "", "plain", _plain))
     rejected = () if result.folder is None else context.rejected.get(str(result.folder / "index.json"), ())
-    frame = {"title": title, "set": result.data.get("set"), "rejections": rejected}
+    frame = {"title": kind.title, "question": kind.question, "set": result.data.get("set")}
     known = {number: x for number, x in words.items() if x}
     try:
-        said = values_of(result, context, known)
-        return render(f"{template}.html", page=context, result=result, words=known, **frame, **said)
+        told = kind.values(result, context, known)
+        html = render(
+            f"{kind.template}.html",
+            page=context,
+            result=result,
+            words=known,
+            rejections=rejected,
+            **frame,
+            **told,
+        )
     except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
         reason = f"{type(error).__name__}: {error}"[:200]
         raise InputError(
             f"{result.name}: it is no result that can be shown: what it says is not of the form of "
             f"{result.schema} ({reason}); make it again"
         ) from None
+    return Section(overview(result, kind.title, kind.question, len(rejected)), html)
 
 
-def evidence_section(findings: Sequence[Finding], context: PageContext, solver: str) -> str:
-    """Evidence that no result names, as HTML."""
-    said = values.evidence(findings, context)
-    return render("evidence.html", page=context, solver=solver, count=len(findings), **said)
+def drive_section(findings: Sequence[Finding], context: PageContext) -> Section:
+    """The gallery of accepted drives that no result names."""
+    cards = values.drives_alone(findings, context)
+    said = [Statement(x.verdict, x.drive.title or x.claim, x.place) for x in cards]
+    scenarios = {x.drive.scenario for x in cards if x.drive.scenario is not None}
+    subject = f"scenarios {spans(scenarios)}" if scenarios else ""
+    head = Overview("Drives", "Which drives show the scenarios?", "drives", "", subject, statements=said)
+    return Section(head, render("drives.html", page=context, cards=cards, head=head))
+
+
+def evidence_section(findings: Sequence[Finding], context: PageContext, solver: str) -> Section:
+    """Evidence that no result names: a row for each file."""
+    said = values.evidence(findings)
+    proofs = [Statement(x.verdict, x.label, "evidence") for x in findings if x.kind == "certificate"]
+    told = "" if proofs else f"{len(findings)} files"
+    head = Overview("Evidence", "Does independent code accept it?", "evidence", told=told, statements=proofs)
+    html = render("evidence.html", page=context, solver=solver, count=len(findings), head=head, **said)
+    return Section(head, html)
 
 
 @dataclass(frozen=True)
@@ -70,26 +100,43 @@ def _columns(value: object) -> Sequence[str] | None:
     return [key for key in names if any(x.get(key) not in _EMPTY for x in value)]
 
 
+class _Kind(NamedTuple):
+    """How results of a kind are shown: title, question, template, and the values for it."""
+
+    title: str
+    question: str
+    template: str
+    values: Callable[[Result, PageContext, Words], Values]
+
+
 def _read_as(answer: type) -> Callable[[Result, PageContext, Words], Values]:
     """Values of a section that needs no more than the answer itself."""
     return lambda result, context, words: {"answer": read(answer, result.data, result.name)}
 
 
-_SECTIONS: Mapping[str, tuple[str, str, Callable[[Result, PageContext, Words], Values]]] = {
-    "index": ("Claims", "claims", values.claims),
-    "verdicts": ("Claims", "claims", values.claims),
-    "witness": ("Drives that were looked for", "witness", _read_as(drives.Answer)),
-    "compare": ("Two formulas side by side", "compare", _read_as(compare.Answer)),
-    "overlap": ("Which scenarios can hold together", "overlap", values.overlap),
-    "coverage": ("Which dangers are missed", "coverage", values.coverage),
-    "classify": ("Classes that exclude each other", "classify", values.classes),
-    "order": ("Which scenarios imply which", "order", values.order),
-    "redundancy": ("Which parts could be left out", "redundancy", values.redundancy),
-    "explore": ("How far it can go", "explore", values.explored),
-    "monitor": ("Where it holds on one trace", "monitor", values.monitored),
-    "catalogue": ("What a catalogue of tests covers", "catalogue", catalogues.catalogue),
-    "preventable": ("From where a driver prevents a collision", "preventable", page_plates),
-    "traffic-results": ("Recordings, evaluated", "traffic-results", values.traffic),
+_CLAIMS = _Kind("Claims", "Which claims hold in all traffic?", "claims", claims.claims)
+_KINDS: Mapping[str, _Kind] = {
+    "index": _CLAIMS,
+    "verdicts": _CLAIMS,
+    "witness": _Kind("Drives", "Does a drive show each formula?", "witness", values.witnessed),
+    "compare": _Kind("Two formulas", "Does one imply the other?", "compare", _read_as(compare.Answer)),
+    "overlap": _Kind("Compatible scenarios", "Which pairs can one drive show?", "overlap", values.overlap),
+    "coverage": _Kind("Gaps", "Which dangers does the set of scenarios miss?", "coverage", values.coverage),
+    "classify": _Kind("Classes", "Which classes partition the scenarios?", "classify", values.classes),
+    "order": _Kind("Implications", "Which scenarios imply which?", "order", values.order),
+    "redundancy": _Kind("Redundant parts", "Which parts change nothing?", "redundancy", values.redundancy),
+    "explore": _Kind("Extremes", "How far can a drive of the formula go?", "explore", values.explored),
+    "monitor": _Kind("One trace", "Where does the formula hold on it?", "monitor", values.monitored),
+    "catalogue": _Kind(
+        "Catalogue of tests", "Which scenarios do they cover?", "catalogue", catalogues.catalogue
+    ),
+    "preventable": _Kind(
+        "Preventable collisions", "From which states does a driver prevent one?", "preventable", page_plates
+    ),
+    "traffic-results": _Kind(
+        "Recordings", "How often do the scenarios occur in traffic?", "traffic-results", values.traffic
+    ),
+    "list": _Kind("Library", "Which definitions does it hold?", "plain", _plain),
+    "show": _Kind("Definition", "What does it say?", "plain", _plain),
+    "check": _Kind("Check of evidence", "Does independent code accept it?", "plain", _plain),
 }
-"""The title of a section, its template, and the function that gives the values for it."""
-_TITLES = {"list": "What the library holds", "show": "A definition", "check": "Evidence that was checked"}

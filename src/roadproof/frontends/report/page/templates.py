@@ -112,15 +112,16 @@ def render(template: str, **values: object) -> str:
     return _environment().get_template(template).render(values)
 
 
-def page(title: str, sections: Sequence[str], documents: Sequence[Document], made: str) -> str:
+def page(title: str, summary: str, sections: Sequence[str], documents: Sequence[Document]) -> str:
     """The page as a text; ``documents`` are those of the viewers, read by the browser one by one."""
-    modules = {name: as_url(text) for name, text in viewer_modules().items()}
+    texts = {**viewer_modules(), "page/tables": _resource("tables.js")}
+    modules = {name: as_url(text) for name, text in texts.items()}
     imports = json.dumps({"imports": modules})
     theme, script = _resource("theme.js"), _resource("page.js")
     return render(
         "page.html",
         title=title,
-        made=made,
+        summary=summary,
         sections=sections,
         documents=[_packed(x) for x in documents],
         style="\n".join((viewer_style(), _resource("page.css"), _resource("pieces.css"))),

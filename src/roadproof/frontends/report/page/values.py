@@ -1,101 +1,60 @@
-"""Values of the sections of a page: claims, matrices, recordings, and evidence that lies alone."""
+"""Values of the sections of a page: matrices, recordings, and evidence that lies alone."""
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
-from roadproof.analysis.study.evidence_store import INDEX
-from roadproof.evidence.answers import classify, monitor
+from roadproof.evidence.answers import classify, drives, monitor
 from roadproof.evidence.answers import coverage as gaps
 from roadproof.evidence.answers import explore as explorations
 from roadproof.evidence.answers import order as implications
 from roadproof.evidence.answers import overlap as pairs
 from roadproof.evidence.answers import redundancy as changes
 from roadproof.evidence.answers import traffic as evaluations
-from roadproof.evidence.answers.proofs import ANSWER_SCHEMA, OWN, Answer, Claim, ClaimAnswer, Index
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.finding import Acceptance, Finding
-from roadproof.evidence.strict import Fields
 from roadproof.frontends.report.classify import sheet_of
 from roadproof.frontends.report.coverage import sheet_of as sheet_of_classes
-from roadproof.frontends.report.page.page_context import PageContext
+from roadproof.frontends.report.page.page_context import DriveCard, PageContext
 from roadproof.frontends.report.page.results import Result, Words
-from roadproof.frontends.report.page.templates import in_unit
+from roadproof.frontends.report.page.templates import in_unit, notes
 from roadproof.frontends.report.redundancy import sheet_of as sheet_of_changes
 from roadproof.frontends.report.sheet import Heading, Linked, Matrix
-from roadproof.library.motion import statement
-from roadproof.verdict import Verdict
 
 
-def evidence(findings: Sequence[Finding], context: PageContext) -> dict[str, object]:
-    """The findings: what is not accepted, proofs, and drives with their files."""
+def evidence(findings: Sequence[Finding]) -> dict[str, object]:
+    """The findings: those that are not accepted, and the others."""
     accepted = [x for x in findings if x.outcome is Acceptance.ACCEPTED]
+    return {"accepted": accepted, "wrong": [x for x in findings if x not in accepted]}
+
+
+def drives_alone(findings: Sequence[Finding], context: PageContext) -> list[DriveCard]:
+    """The accepted drives, each with what was checked."""
     paths = {id(finding): path for path, finding in context.findings.items()}
-    return {
-        "accepted": accepted,
-        "wrong": [x for x in findings if x not in accepted],
-        "proofs": [x for x in accepted if x.kind != "drive"],
-        "drives": [(paths[id(x)], x) for x in accepted if x.kind == "drive" and id(x) in paths],
-    }
+    wanted = [
+        x for x in findings if x.kind == "drive" and x.outcome is Acceptance.ACCEPTED and id(x) in paths
+    ]
+    return [
+        DriveCard(context.drive(paths[id(x)]), x.verdict, x.claim, f"drive-{k}", notes(x))
+        for k, x in enumerate(wanted)
+    ]
 
 
-@dataclass(frozen=True)
-class _ShownClaim:
-    """A claim with what was found of its evidence, and the drive that refutes it."""
-
-    verdict: Verdict
-    label: str
-    set: str
-    claim: str
-    finding: Finding | None
-    drive: Path | Mapping[str, object] | None
-
-    @property
-    def outcome(self) -> str:
-        return "" if self.finding is None else str(self.finding.outcome)
-
-
-def claims(result: Result, context: PageContext, words: Words) -> dict[str, object]:
-    """An index of claims, or the answer of ``prove --json``."""
-    shown = [*_shown_claims(result, context)]
-    accepted = sum(x.outcome == Acceptance.ACCEPTED for x in shown)
-    return {"claims": shown, "accepted": accepted}
-
-
-def _shown_claims(result: Result, context: PageContext) -> Iterator[_ShownClaim]:
-    for number, x in enumerate(_entries_of(result), 1):
-        finding = context.finding(result.folder, x.evidence if isinstance(x, Claim) else x.certificate)
-        if finding is None and result.folder is not None:
-            finding = context.inside.get(f"{result.folder / INDEX}, claim {number}")
-        claim = statement(x.assuming, x.claim)
-        yield _ShownClaim(x.verdict, _label(x), x.set, claim, finding, _drive_against(x, result))
-
-
-def _entries_of(result: Result) -> Sequence[Claim | ClaimAnswer]:
-    if result.schema == ANSWER_SCHEMA:
-        return read(Answer, result.data, result.name).verdicts
-    return read(Index, result.data, result.name).claims
-
-
-def _label(claim: Claim | ClaimAnswer) -> str:
-    if claim.property == OWN:
-        return ""
-    scenario = "" if claim.scenario is None else f" {claim.scenario}"
-    return f"{claim.property}{f'-{claim.part}' if claim.part else ''}{scenario}"
-
-
-def _drive_against(claim: Claim | ClaimAnswer, result: Result) -> Path | Mapping[str, object] | None:
-    if claim.verdict is not Verdict.REFUTED:
-        return None
-    if isinstance(claim, ClaimAnswer):
-        is_drive = claim.refuted_by == "drive"
-        return Fields(claim.counterexample, "its counterexample").mapping("drive") if is_drive else None
-    return None if claim.evidence is None or result.folder is None else result.folder / str(claim.evidence)
+def witnessed(result: Result, context: PageContext, words: Words) -> dict[str, object]:
+    """The drives of ``witness --json`` as cards; ``without``: the verdicts that have none."""
+    answer = read(drives.Answer, result.data, result.name)
+    cards = [
+        DriveCard(context.drive(drive), x.verdict, x.formula, f"sought-{result.id}-{k}{f'-{n}' * (n > 0)}")
+        for k, x in enumerate(answer.verdicts)
+        for n, drive in enumerate(x.drives)
+        if isinstance(drive, Mapping)
+    ]
+    without = [(f"sought-{result.id}-{k}", x) for k, x in enumerate(answer.verdicts) if not x.drives]
+    return {"answer": answer, "cards": cards, "without": without}
 
 
 def overlap(result: Result, context: PageContext, words: Words) -> dict[str, object]:
-    """Pairs of scenarios, and a matrix of them; ``ends``: each scenario by name, with its number."""
+    """Pairs of scenarios, and a matrix of them."""
     found = read(pairs.Index, result.data, result.name).verdicts
     several = len({x for pair in found for x in (pair.set_a, pair.set_b)}) > 1
     names: dict[tuple[str, int], str] = {}
@@ -110,7 +69,7 @@ def overlap(result: Result, context: PageContext, words: Words) -> dict[str, obj
         cells.setdefault((other, one), cells[one, other])
     ends = [(name, number) for (_, number), name in sorted(names.items())]
     heads = [Heading(name, name, words.get(number)) for name, number in ends]
-    return {"pairs": found, "ends": ends, "matrix": Matrix(heads, heads, cells)}
+    return {"pairs": found, "matrix": Matrix(heads, heads, cells)}
 
 
 def coverage(result: Result, context: PageContext, words: Words) -> dict[str, object]:

@@ -1,0 +1,224 @@
+"""The summary at the head of a page: question and answer of each result, findings, and versions."""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from roadproof.engines.prove.properties import find_task
+from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding, summary
+from roadproof.evidence.strict import Json
+from roadproof.frontends.report.page.results import Result
+from roadproof.frontends.report.page.templates import render
+from roadproof.frontends.report.sheet import excerpt
+from roadproof.library.words import spans
+
+OPEN: Final = ("UNKNOWN", "NONE-WITHIN", "PROVED-BOUNDED", "VACUOUS", "CROSSCHECK-FAILED", "undecided")
+"""Verdicts that leave a question open."""
+_SKIPPED = ("drive", "drives", "counterexample", "boundaries", "missed", "surely", "words")
+_ANCHORS = {
+    ("index", "claims"): "claim",
+    ("verdicts", "verdicts"): "claim",
+    ("overlap", "verdicts"): "pair",
+    ("witness", "verdicts"): "sought",
+}
+"""What the ids of entries begin with, by kind of result and field; other entries have no id of their own."""
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A verdict in words; ``target``: the part of the page with its evidence.
+
+    ``expected``: of a claim whether the verdict is the one that was expected; None of other statements.
+    """
+
+    verdict: str
+    told: str
+    target: str
+    expected: bool | None = None
+
+
+@dataclass(frozen=True)
+class Overview:
+    """A section of the page in a line; ``told``: its answer in words, where it has no verdicts."""
+
+    title: str
+    question: str
+    target: str
+    name: str = ""
+    subject: str = ""
+    told: str = ""
+    statements: Sequence[Statement] = ()
+    rejected: int = 0
+
+    @property
+    def verdicts(self) -> list[str]:
+        """The verdict of each statement."""
+        return [x.verdict for x in self.statements]
+
+    @property
+    def rank(self) -> int:
+        """How soon it is to be read: 0 where evidence is rejected, then refuted and open statements."""
+        if self.rejected:
+            return 0
+        surprising = any(x.verdict == "REFUTED" and x.expected is False for x in self.statements)
+        return 1 if surprising or any(x.verdict in OPEN for x in self.statements) else 2
+
+
+def overview(result: Result, title: str, question: str, rejected: int = 0) -> Overview:
+    """A result in a line."""
+    found = [*_statements(result)]
+    target = f"result-{result.id}"
+    statements = [Statement(str(x["verdict"]), _told(x), at, _is_expected(x, result)) for x, at in found]
+    subject = _subject(result, [x for x, _ in found])
+    return Overview(title, question, target, result.name, subject, _counts_of(result), statements, rejected)
+
+
+def _statements(result: Result) -> Iterator[tuple[Mapping[str, Json], str]]:
+    """The entries that have a verdict, each with the id of the part of the page that shows it."""
+    if result.kind == "order":
+        yield from _implications(result)
+        return
+    count = 0
+    for key, value in result.data.items():
+        prefix = _ANCHORS.get((result.kind, key))
+        for k, entry in enumerate(value if isinstance(value, list) else [value]):
+            target = f"{prefix}-{result.id}-{k}" if prefix else f"result-{result.id}"
+            for x in () if key in _SKIPPED else _with_verdict(entry):
+                count += 1
+                yield x, target
+    if not count and isinstance(result.data.get("verdict"), str):
+        yield result.data, f"result-{result.id}"
+
+
+def _implications(result: Result) -> Iterator[tuple[Mapping[str, Json], str]]:
+    for key, verdict in (("proved", "PROVED"), ("missing", "REFUTED"), ("doubts", "UNKNOWN")):
+        found = result.data.get(key)
+        for k, x in enumerate(found if isinstance(found, list) else []):
+            if isinstance(x, dict):
+                target = f"implied-{result.id}-{k}" if key == "proved" else f"result-{result.id}"
+                told = f"{x.get('from')} implies {x.get('to')}"
+                yield {"verdict": verdict, "name": told}, target
+
+
+def _with_verdict(value: Json) -> Iterator[Mapping[str, Json]]:
+    if isinstance(value, list):
+        for x in value:
+            yield from _with_verdict(x)
+    elif isinstance(value, dict) and isinstance(value.get("verdict"), str):
+        yield value
+    elif isinstance(value, dict):
+        for key, x in value.items():
+            if key not in _SKIPPED:
+                yield from _with_verdict(x)
+
+
+def _told(x: Mapping[str, Json]) -> str:
+    """An entry in words: of a claim its property, of a pair its scenarios, else a name or a formula."""
+    scenario = x.get("scenario")
+    numbered = "" if scenario is None else f"scenario {scenario}"
+    if x.get("property") not in (None, "claim"):
+        name = "-".join(str(x[key]) for key in ("property", "part") if x.get(key))
+        task = find_task(str(x.get("claim", "")), str(x.get("set", "")))
+        head = " ".join(filter(None, (name, numbered, "" if task is None else task.title)))
+    elif "a" in x and "b" in x:
+        head = f"scenarios {x['a']} and {x['b']}"
+    else:
+        named = next((str(x[key]) for key in ("name", "claim", "formula", "description") if x.get(key)), "")
+        head = ": ".join(filter(None, (numbered, named)))
+    of = f" in {x['set']}" if x.get("set") else ""
+    reason = f": {x['reason']}" if x.get("reason") else ""
+    return excerpt(f"{head}{of}{reason}", 240)
+
+
+def _is_expected(x: Mapping[str, Json], result: Result) -> bool | None:
+    """Whether a claim has the verdict that the answer or the list of properties expects."""
+    if result.kind not in ("index", "verdicts"):
+        return None
+    if isinstance(x.get("expected"), str):
+        return x["expected"] == x["verdict"]
+    task = find_task(str(x.get("claim", "")), str(x.get("set", "")))
+    return task is not None and not x.get("assuming") and task.expected == x["verdict"]
+
+
+def _subject(result: Result, statements: Iterable[Mapping[str, Json]]) -> str:
+    """What a result speaks of: scenarios, spec sets, recordings."""
+    entries = [result.data, *statements]
+    settings = result.data.get("settings")
+    entries += [settings] if isinstance(settings, dict) else []
+    numbers = {n for x in entries for key in ("scenario", "scenarios", "a", "b") for n in _whole(x.get(key))}
+    sets = [y for x in entries for key in ("set", "sets", "set_a", "set_b") for y in _texts(x.get(key))]
+    named = dict.fromkeys(sets)
+    parts = [f"scenario{'s' if len(numbers) > 1 else ''} {spans(numbers)}"] if numbers else []
+    parts += [f"set{'s' if len(named) > 1 else ''} {', '.join(named)}"] if named else []
+    return excerpt("; ".join(parts), 200)
+
+
+def _whole(value: Json) -> list[int]:
+    found = value if isinstance(value, list) else [value]
+    return [x for x in found if isinstance(x, int) and not isinstance(x, bool)]
+
+
+def _texts(value: Json) -> list[str]:
+    return [x for x in (value if isinstance(value, list) else [value]) if isinstance(x, str)]
+
+
+def _counts_of(result: Result) -> str:
+    """Of recordings how many were read, and how many critical traces match with the first ``minDanger``."""
+    if result.kind != "traffic-results":
+        return ""
+    table = result.data.get("table")
+    rows = [x for x in table if isinstance(x, dict)] if isinstance(table, list) else []
+    sums: dict[str, Counter[str]] = {}
+    for x in rows:
+        if x.get("min_danger") == rows[0].get("min_danger"):
+            counts = {key: x[key] for key in ("matching", "traces") if isinstance(x.get(key), int)}
+            sums.setdefault(str(x.get("set")), Counter()).update(counts)
+    many = result.data.get("recordings")
+    read = f"{many} recording{'s' if many != 1 else ''}, {result.data.get('vehicles')} vehicles"
+    matches = [f"{n['matching']} of {n['traces']} critical traces match in {of}" for of, n in sums.items()]
+    return excerpt("; ".join([read, *matches]), 300)
+
+
+def summary_section(
+    overviews: Sequence[Overview],
+    findings: Sequence[Finding],
+    solver: str,
+    results: Sequence[Result],
+    lines: Iterable[tuple[str, str]],
+) -> str:
+    """The head of a page as HTML: a row for each section, findings by importance, versions and digests.
+
+    ``solver`` checked the ``findings``; ``lines`` are names with values that stand before the versions.
+    """
+    said = [x for section in overviews for x in section.statements]
+    return render(
+        "summary.html",
+        overviews=overviews,
+        checked=summary(findings, solver) if any(x.kind != NO_EVIDENCE for x in findings) else "",
+        wrong=[x for x in findings if x.outcome is not Acceptance.ACCEPTED and x.kind != NO_EVIDENCE],
+        open=[x for x in said if x.verdict in OPEN],
+        refuted=[x for x in said if x.verdict == "REFUTED" and x.expected is False],
+        controls=[x for x in said if x.verdict == "REFUTED" and x.expected],
+        lines=[*lines, *_origins(results)],
+        files=[(x.name, x.digest) for x in results],
+    )
+
+
+def _origins(results: Sequence[Result]) -> Iterator[tuple[str, str]]:
+    """Versions, definitions and settings of results."""
+    for name, key in (("results made by roadproof", "roadproof"), ("definitions", "library")):
+        found = dict.fromkeys(str(x.data[key]) for x in results if isinstance(x.data.get(key), str))
+        if found:
+            yield name, ", ".join(found)
+    for options in dict.fromkeys(map(_equations, results)):
+        if options:
+            yield "readings", options
+    specs = dict.fromkeys(str(y) for x in results for y in _texts(x.data.get("specs")))
+    if specs:
+        yield "specification files", ", ".join(specs)
+
+
+def _equations(result: Result) -> str:
+    options = result.data.get("options")
+    return ", ".join(f"{k}={v}" for k, v in options.items()) if isinstance(options, dict) else ""
