@@ -688,7 +688,7 @@ def test_a_specification_beside_evidence_may_only_add(
     ("line", "code", "said"),
     [
         (["--among", "4,9"], 2, "each road sector"),
-        (["--among", "99"], 3, "no scenario '99'"),
+        (["--among", "99"], 3, "no scenario 99"),
         (["--timeout", "0"], 2, "greater than 0"),
         (["--on", "/nowhere", "--no-shares"], 2, "contradict each other"),
         (["--on", "/nowhere"], 3, "/nowhere"),

@@ -321,7 +321,7 @@ def test_evidence_lies_beside_a_json_file(tmp_path: Path, capsys: pytest.Capture
     ("line", "code", "said"),
     [
         (["--among", "4"], 2, "at least two scenarios"),
-        (["--among", "4,99"], 3, "no scenario '99'"),
+        (["--among", "4,99"], 3, "no scenario 99"),
         (["--set", "base", "--set", "base"], 2, "a spec set is repeated"),
         (["--set", "bas"], 3, "did you mean 'base'"),
         (["--timeout", "0"], 2, "greater than 0"),

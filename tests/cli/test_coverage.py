@@ -288,7 +288,7 @@ def test_a_list_of_scenarios_gives_a_drive_for_each(capsys):
     assert out.endswith("3 of 3 witnessed in " + out.rpartition("witnessed in ")[2])
     assert witness(capsys, "witness", "1,99")[::2] == (
         3,
-        "roadproof: there is no scenario '99'; did you mean '9'?\n",
+        "roadproof: there is no scenario 99; known scenarios: 1-24\n",
     )
     assert witness(capsys, "witness", "1-")[::2] == (
         2,

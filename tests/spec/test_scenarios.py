@@ -118,7 +118,7 @@ def test_a_scenario_is_named_by_its_number(text: str, number: int | None, means:
 
 
 def test_a_number_of_no_scenario_is_refused() -> None:
-    with pytest.raises(TextError, match="scenario_99"):
+    with pytest.raises(InputError, match="no scenario 99"):
         references.read_query(BASE, "99")
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from roadproof.errors import InputError, UsageError
 from roadproof.library.elaborate import apply_definition, read_claim
 from roadproof.library.scenarios import Scenario, are_numbers, name_of, number_in, numbers_of
-from roadproof.library.specification import Query, Specification, unknown
+from roadproof.library.specification import Query, Specification
 from roadproof.library.words import called
 from roadproof.logic import syntax
 
@@ -34,10 +34,26 @@ def read_numbers(specification: Specification, text: str) -> tuple[int, ...]:
             numbers |= set(found)
         else:
             raise UsageError(f"'{piece[:40]}' is not a range of scenarios; write 1-8 or 1,3-8")
-    known = numbers_of(specification)
-    for number in sorted(numbers - set(known)):
-        raise InputError(unknown("scenario", str(number), map(str, known)))
+    for number in sorted(numbers):
+        refuse_unknown(specification, number)
     return tuple(sorted(numbers))
+
+
+def refuse_unknown(specification: Specification, number: int) -> None:
+    """Raises ``InputError`` for the number of no scenario."""
+    known = numbers_of(specification)
+    if number not in known:
+        raise InputError(f"there is no scenario {number}; {_listed(known)}")
+
+
+def _listed(numbers: tuple[int, ...]) -> str:
+    """The numbers of scenarios in a message, neighbours as a range."""
+    if not numbers:
+        return "the specification has no scenarios"
+    starts = [n for n in numbers if n - 1 not in numbers]
+    ends = [n for n in numbers if n + 1 not in numbers]
+    ranges = [str(a) if a == b else f"{a}-{b}" for a, b in zip(starts, ends, strict=True)]
+    return f"known scenarios: {', '.join(ranges[:8])}{', …' if len(ranges) > 8 else ''}"
 
 
 def numbers_called(specification: Specification, text: str) -> tuple[int, ...]:
@@ -73,8 +89,8 @@ def one_called(specification: Specification, text: str) -> int | None:
 def read_query(specification: Specification, text: str, source: str = "claim") -> tuple[int | None, Query]:
     """A scenario by ``4``, ``scenario_4`` or its name, applied to its own arguments, or else a formula.
 
-    The number comes first, None for a formula. Raises ``TextError``; ``UsageError`` for a name that several
-    scenarios have.
+    The number comes first, None for a formula. Raises ``TextError``; ``InputError`` for an unknown number;
+    ``UsageError`` for a name that several scenarios have.
     """
     word = text.strip()
     number = int(word) if word.isdecimal() and word.isascii() and len(word) < 7 else number_in(word)
@@ -82,6 +98,7 @@ def read_query(specification: Specification, text: str, source: str = "claim") -
         number = one_called(specification, word)
     if number is None:
         return None, read_claim(specification, text, source)
+    refuse_unknown(specification, number)
     return number, apply_definition(specification, name_of(number))
 
 

@@ -18,7 +18,7 @@ from roadproof.frontends.cli.terminal import width_of_terminal
 from roadproof.frontends.settings.commands import Show
 from roadproof.frontends.settings.flags import add_flags
 from roadproof.library.elaborate import read_claim, signature
-from roadproof.library.scenario_references import numbers_called, one_called
+from roadproof.library.scenario_references import numbers_called, one_called, refuse_unknown
 from roadproof.library.scenarios import name_of, number_in
 from roadproof.library.specification import Specification, unknown
 from roadproof.library.uses import definitions_used, parameters_used
@@ -97,8 +97,10 @@ def _find(specification: Specification, what: str, expand: bool) -> Exhibit:
         return _find_claim(specification, what, expand)
     if named[2] is not None:
         specification = specification.in_set(named[2])
-    exhibit = _find_definition(specification, named[1], expand)
     number = number_in(named[1])
+    if number is not None:
+        refuse_unknown(specification, number)
+    exhibit = _find_definition(specification, named[1], expand)
     return exhibit if number is None else replace(exhibit, about=_about(specification, number))
 
 
