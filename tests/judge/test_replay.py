@@ -32,7 +32,7 @@ from roadproof.semantics.exact import replay
 from roadproof.semantics.exact.algebraic import real_roots
 from roadproof.semantics.exact.blame import Blame, blame
 from roadproof.semantics.exact.exact import Judgement, judge, seconds
-from roadproof.semantics.exact.replay import first_breach, first_overlap, states_at
+from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.semantics.exact.truth import (
     NEVER,
     TruthSet,
@@ -48,6 +48,7 @@ from roadproof.semantics.sampled.compiled import compile
 from roadproof.semantics.sampled.recursive import TraceReader
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_vehicle
+from roadproof.world.motion import state_at
 from roadproof.world.signals import KINDS, STARTING
 
 ONE, TEN = Fraction(1), Fraction(10)
@@ -64,7 +65,7 @@ class Car:
 
 def test_states_are_exact():
     drive = Drive({"A": motion(1, 2, 3, 0, [(Fraction(1, 3), 3, 0)], last=(0, 6))})
-    state = states_at(drive, Fraction(4, 3))["A"]
+    state = state_at(drive.vehicles["A"], Fraction(4, 3))
     assert (state.s, state.d) == (1 + 1 + Fraction(1, 6) + 4, 2 + 3)
     assert (state.v_lon, state.v_lat, state.a_lon, state.a_lat) == (4, 6, 0, 6)
 
@@ -180,7 +181,7 @@ def test_wrong_questions():
     with pytest.raises(UsageError, match="horizon=-1"):
         first_overlap(drive, -ONE)
     with pytest.raises(UsageError, match="time=-1"):
-        states_at(drive, -ONE)
+        state_at(drive.vehicles["A"], -ONE)
 
 
 def horizon_is_kept():

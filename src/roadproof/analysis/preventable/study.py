@@ -30,7 +30,7 @@ from roadproof.evidence.kernel.accept import find_tableau
 from roadproof.evidence.settled import Settled
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.elaborate import read_tree
-from roadproof.library.motion import Assumption, statement, value_texts
+from roadproof.library.motion import Assumption, value_texts
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.verdict import ClaimVerdict, Verdict
 
@@ -341,8 +341,3 @@ def _kept_drive(plate: str, shown: Shown, shelf: EvidenceStore) -> kept.SideDriv
 
 def _exact(values: Mapping[str, str]) -> dict[str, Fraction]:
     return {name: Fraction(value) for name, value in values.items()}
-
-
-def said_of(proved: LemmaResult) -> str:
-    """A lemma as a claim, with the values of parameters in front."""
-    return statement(proved.assuming, proved.lemma.claim)

@@ -113,7 +113,7 @@ class Coverages(StudyAnswers[Coverage, Kept, kept.Record]):
 
     def __str__(self) -> str:
         name = self.study.survey.basis.specification.set_name
-        return report.as_text(self.surveyed, name, round(self.seconds, 1), self.words)
+        return report.as_text(self.surveyed, self._index(self.found.records), name, self.words)
 
 
 def _name(answer: ClassAnswer) -> str:

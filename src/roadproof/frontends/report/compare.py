@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from roadproof.engines.search.compare import Comparison, Direction
-from roadproof.frontends.report.sheet import Column, Sheet
+from roadproof.frontends.report.sheet import Column, Sheet, as_outline
 from roadproof.library.scenarios import scenario_number
 from roadproof.library.specification import Query, Specification
 from roadproof.library.words import words_of
@@ -31,13 +31,15 @@ def as_text(comparison: Comparison, specification: Specification) -> str:
     ]
     both = told_freedom(conjunction(comparison.first.formula, comparison.second.formula))
     lines += [f"  {said}" for said in both]
-    for name, direction in comparison.directions.items():
-        shown = f"  {name}: {direction.verdict}"
-        shown += " for all time, on every road" if direction.certificate else ""
-        shown += " by a judged drive" if direction.drive else ""
-        shown += f"; {direction.reason}" if direction.reason else ""
-        lines.append(shown)
-    return "\n".join(lines)
+    return "\n".join([*lines, *as_outline(sheet_of(comparison))])
+
+
+def _shown(direction: Direction) -> str:
+    """A verdict with what shows it, and the reason."""
+    shown = str(direction.verdict)
+    shown += " for all time, on every road" if direction.certificate else ""
+    shown += " by a judged drive" if direction.drive else ""
+    return shown + (f"; {direction.reason}" if direction.reason else "")
 
 
 def sheet_of(comparison: Comparison) -> Sheet[tuple[str, Direction]]:
@@ -48,6 +50,8 @@ def sheet_of(comparison: Comparison) -> Sheet[tuple[str, Direction]]:
             Column("claim", lambda x: x[1].claim.text, look="code"),
             Column("verdict", lambda x: x[1].verdict, look="verdict"),
             Column("reason", lambda x: x[1].reason),
+            Column("direction", lambda x: f"{x[0]}:", "outline"),
+            Column("verdict", lambda x: _shown(x[1]), "outline"),
         ),
         [*comparison.directions.items()],
     )

@@ -10,21 +10,21 @@ from roadproof.analysis.coverage.found import Need
 from roadproof.evidence.answers import coverage as kept
 from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.figures import as_bytes
-from roadproof.frontends.report.sheet import Column, Sheet
+from roadproof.frontends.report.sheet import Column, Sheet, as_outline
 from roadproof.library.scenarios import PAIR, Scenario, applied, danger_comes
 from roadproof.library.specification import Library
-from roadproof.library.words import Called, words_of
+from roadproof.library.words import Called, Words, words_of
 from roadproof.runtime.files import write_whole
 from roadproof.verdict import Verdict
 
 
-def as_text(surveyed: Survey, name: str, seconds: float, words: Called) -> str:
-    """All that is known of the set ``name``, after so many seconds."""
+def as_text(surveyed: Survey, index: kept.Index, name: str, words: Called) -> str:
+    """All that is known of the set ``name``."""
     lines: list[str] = []
-    if surveyed.classes:
-        gaps = sum(len(x.gaps) for x in surveyed.classes)
-        lines += [as_table(surveyed.classes, words), f"set {name}: " + "\n".join(summary(surveyed.classes))]
-        lines += [f"{gaps} gaps in {seconds:.1f} s"]
+    if index.classes:
+        sheet = sheet_of(index, {number: x.name for number, x in words.items()})
+        lines += [*as_outline(sheet), f"set {name}: " + "\n".join(summary(surveyed.classes))]
+        lines += [f"{len(index.gaps)} gaps in {index.seconds:.1f} s"]
     else:
         lines += [f"proved: {x.claim.text}" for x in surveyed.claims]
     lines += [f"{need.definition}: {_needed(need)}" for need in surveyed.needs]
@@ -49,34 +49,32 @@ def _in_traffic(traffic: GapTraffic) -> list[str]:
     return lines
 
 
-def as_table(classes: Sequence[ClassAnswer], words: Called) -> str:
-    """One line a class, below its component and scenario; gaps by numbers from 1 on."""
-    lines: list[str] = []
-    number, last = 1, 0
-    for answer in classes:
-        part = answer.part
-        what = "" if part is None else part.condition or "the component"
-        if part is None:
-            lines.append("no single condition is to blame: in every scenario two or more are false")
-        elif not part.condition:
-            lines += [str(words[part.scenario])] * (part.scenario != last)
-            lines.append(f"{part.component}: {part.description}")
-            last = part.scenario
-        lines.append(f"  {what:<70} {answer.verdict:<10} {_evidence(answer, number)}".rstrip())
-        number += len(answer.gaps)
-    return "\n".join(lines)
+def _place(said: kept.CountedClass, names: Mapping[int, str]) -> str:
+    """The line above the classes of a scenario, and above the one of none."""
+    if said.scenario is None:
+        return "no single condition is to blame: in every scenario two or more are false"
+    return "" if said.condition else str(Words(said.scenario, names.get(said.scenario, "")))
 
 
-def _evidence(answer: ClassAnswer, first: int) -> str:
-    said = [f"drive {number} ({_catching(gap)})" for number, gap in enumerate(answer.gaps, first)]
-    said += [answer.reason] if answer.reason else []
-    said += [f"{answer.in_traffic} in traffic"] if answer.in_traffic else []
-    none = " or ".join(answer.none_for)
-    said += [f"no drive found that {none} is first to catch"] if none else []
-    return "; ".join(said)
+def _component(said: kept.CountedClass) -> str:
+    """The line above the classes of a component."""
+    return "" if said.condition or said.scenario is None else f"{said.component}: {said.description}"
 
 
-def _catching(gap: Gap) -> str:
+def _what(said: kept.CountedClass) -> str:
+    return said.condition or ("" if said.scenario is None else "the component")
+
+
+def _evidence(said: kept.CountedClass, gaps: Mapping[int, kept.NumberedGap]) -> str:
+    told = [f"drive {number} ({_catching(gaps[number])})" for number in said.gaps]
+    told += [said.reason] if said.reason else []
+    told += [f"{said.in_traffic} in traffic"] if said.in_traffic else []
+    none = " or ".join(said.none_for)
+    told += [f"no drive found that {none} is first to catch"] if none else []
+    return "; ".join(told)
+
+
+def _catching(gap: kept.NumberedGap) -> str:
     choices = " or ".join(" with ".join(names) for names in gap.caught_by)
     return f"{gap.first}: {choices}" if gap.first else "caught by no set"
 
@@ -96,9 +94,14 @@ def summary(classes: Sequence[ClassAnswer]) -> Iterator[str]:
 
 def sheet_of(index: kept.Index, names: Mapping[int, str]) -> Sheet[kept.CountedClass]:
     """An entry for each class of gaps; ``names``: what scenarios are called."""
-    first = {gap.number: gap.first for gap in index.gaps}
+    gaps = {gap.number: gap for gap in index.gaps}
     return Sheet(
         (
+            Column("scenario", lambda x: _place(x, names), "outline", look="heading"),
+            Column("component", _component, "outline", look="heading"),
+            Column("class", _what, "outline", width=70),
+            Column("verdict", lambda x: x.verdict, "outline", width=10),
+            Column("evidence", lambda x: _evidence(x, gaps), "outline"),
             Column("scenario", lambda x: x.scenario),
             Column("name", lambda x: names.get(x.scenario or 0, ""), "frame"),
             Column("component", lambda x: x.component, "frame"),
@@ -106,7 +109,7 @@ def sheet_of(index: kept.Index, names: Mapping[int, str]) -> Sheet[kept.CountedC
             Column("what", lambda x: x.description, "page"),
             Column("verdict", lambda x: x.verdict, "frame"),
             Column("drives", lambda x: len(x.gaps), "frame"),
-            Column("first_caught_by", lambda x: ", ".join(dict.fromkeys(first[k] for k in x.gaps)), "frame"),
+            Column("first_caught_by", lambda x: ", ".join({gaps[k].first: 0 for k in x.gaps}), "frame"),
             Column("reason", lambda x: x.reason, heading="note"),
         ),
         index.classes,

@@ -45,7 +45,7 @@ class Trail:
 
 Cell: TypeAlias = Value | Fraction | Scenario | Mark | Bar | Trail
 """CSV rounds a fraction and writes of a scenario its number; a frame has floats, and names such as 4@base."""
-Renderer: TypeAlias = Literal["csv", "frame", "terminal", "page"]
+Renderer: TypeAlias = Literal["csv", "frame", "terminal", "outline", "page"]
 
 
 @dataclass(frozen=True)
@@ -53,16 +53,18 @@ class Column(Generic[T]):
     """A column of a sheet.
 
     ``name``: in CSV files and frames; ``heading``: on terminals and pages, where it is another. ``cell``: the
-    value of an entry. ``only``: the one renderer that has the column; all have it where that is empty.
-    ``look``: how pages show a cell. ``link``: the kind of evidence on the page to which a cell leads.
+    value of an entry. ``only``: the one renderer that has the column; where that is empty all have it, except
+    an outline. ``look``: how pages show a cell; a ``heading`` is a line of an outline above its entries.
+    ``link``: the kind of evidence on the page to which a cell leads. ``width`` (letters): of an outline.
     """
 
     name: str
     cell: Callable[[T], Cell]
     only: Literal["", Renderer] = ""
     heading: str | None = None
-    look: Literal["", "verdict", "code", "strong"] = ""
+    look: Literal["", "verdict", "code", "strong", "heading"] = ""
     link: str = ""
+    width: int = 0
 
     @property
     def title(self) -> str:
@@ -79,7 +81,8 @@ class Sheet(Generic[T]):
 
     def columns_of(self, renderer: Renderer) -> list[Column[T]]:
         """The columns that a renderer has."""
-        return [x for x in self.columns if x.only in ("", renderer)]
+        shared = () if renderer == "outline" else ("",)
+        return [x for x in self.columns if x.only in (*shared, renderer)]
 
 
 class Heading(NamedTuple):
@@ -129,6 +132,22 @@ def as_lines(sheet: Sheet[T]) -> list[str]:
     columns = sheet.columns_of("terminal")
     body = ([str(_value(x.cell(entry))) for x in columns] for entry in sheet.entries)
     return aligned([[x.title for x in columns], *body])
+
+
+def as_outline(sheet: Sheet[T]) -> list[str]:
+    """A line for each entry; above it its headings: each where it changes, or stands below one that does."""
+    columns, last = sheet.columns_of("outline"), dict[str, str]()
+    headings = [x for x in columns if x.look == "heading"]
+    lines: list[str] = []
+    for entry in sheet.entries:
+        for place, column in enumerate(headings):
+            told = str(_value(column.cell(entry)))
+            if told and told != last.get(column.name):
+                lines.append(told)
+                last = {x.name: last.get(x.name, "") for x in headings[:place]} | {column.name: told}
+        cells = (str(_value(x.cell(entry))).ljust(x.width) for x in columns if x.look != "heading")
+        lines.append(f"  {' '.join(cells)}".rstrip())
+    return lines
 
 
 def aligned(rows: Sequence[Sequence[str]], right: Sequence[bool] = ()) -> list[str]:

@@ -24,7 +24,6 @@ from roadproof.semantics.exact.algebraic import Point, decimal
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.truth import Cut, TruthSet, complement
 from roadproof.world.drive import Drive
-from roadproof.world.motion import State, state_at
 from roadproof.world.units import unit_text
 from roadproof.world.vehicle import Range, Vehicle
 
@@ -53,11 +52,6 @@ class Breach:
 
     def __str__(self) -> str:
         return f"{self.vehicle} breaks {self.rule} from {decimal(self.time)} s on"
-
-
-def states_at(drive: Drive, time: Fraction) -> dict[str, State]:
-    """The state of every vehicle at ``time`` >= 0 seconds."""
-    return {name: state_at(motion, time) for name, motion in drive.vehicles.items()}
 
 
 def first_overlap(drive: Drive, horizon: Fraction | None) -> Overlap | None:
