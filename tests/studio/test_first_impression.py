@@ -105,3 +105,82 @@ def test_on_a_phone_the_gallery_is_a_drawer(browser: Any, address: str) -> None:
     assert tab.page.evaluate("document.documentElement.scrollWidth <= innerWidth")
     assert tab.faults == []
     tab.close()
+
+
+TEXT = "document.querySelector('.definitions .cm-content').textContent"
+DENIED = """for (const name of ['localStorage', 'sessionStorage'])
+  Object.defineProperty(window, name, { get() { throw new DOMException('denied', 'SecurityError'); } });"""
+
+
+def test_nothing_typed_is_lost_when_another_scenario_or_file_is_loaded(tab: Tab) -> None:
+    tab.until("() => document.querySelectorAll('.gallery .picture').length === 24")
+    tab.holds("true")
+    assert tab.page.get_by_role("button", name="Undo").is_disabled()
+    typed = "def laneKeep(a: vehicle, L: lane) := false"
+    tab.write("definitions", typed)
+    tab.write("asked", "scenario_1(SV,POV,L) and true")
+    tab.page.locator(".gallery .card", has_text="acceleration").first.click()
+    tab.until("() => document.querySelector('.row .words')?.textContent.startsWith('scenario_3')")
+    tab.page.get_by_role("button", name="own.spec").click()
+    tab.until(f"() => !{TEXT}.includes('false')")
+    tab.leave()
+    tab.press("u")
+    tab.until(f"(typed) => {TEXT} === typed", typed)
+    tab.press("Control+z")
+    tab.until(f"() => {QUESTION} === 'scenario_1(SV,POV,L) and true'")
+    tab.until("() => document.querySelector('.strips.question')?.textContent.includes('false at 0 s')")
+    tab.page.get_by_role("button", name="Redo").click()
+    tab.until(f"() => {QUESTION}.startsWith('scenario_3')")
+    tab.until("() => document.querySelector('.row .words')?.textContent.startsWith('scenario_3')")
+    tab.press("Control+y")
+    tab.until(f"() => {TEXT}.includes('true')")
+    tab.until("() => document.querySelector('button[aria-label=Redo]').disabled")
+
+
+def test_an_example_is_asked_by_a_click_and_is_among_the_recent_questions_afterwards(tab: Tab) -> None:
+    tab.holds("true")
+    tab.page.locator(".examples button", has_text="a false claim").click()
+    tab.answered("REFUTED")
+    told = tab.see(".verdict .cost").inner_text()
+    assert "processor" in told
+    tab.write("asked", "1")
+    tab.press("f")
+    tab.answered("WITNESSED")
+    cost = tab.see(".verdict .cost")
+    assert "shipped with roadproof" in cost.inner_text()
+    cost.get_by_role("button", name="Compute again").click()
+    tab.answered("WITNESSED", 2)
+    assert "shipped" not in tab.see(".verdict .cost").inner_text()
+    tab.page.reload()
+    tab.ready()
+    rows = tab.page.locator(".recent button")
+    rows.first.wait_for()
+    assert [x.split("\n")[0] for x in rows.locator(".word").all_inner_texts()] == ["WITNESSED", "REFUTED"]
+    rows.nth(1).click()
+    tab.until(f"() => {QUESTION} === 'rssViolation(SV,POV) -> danger(SV,POV)'")
+    tab.leave()
+    tab.press("u")
+    tab.until(f"() => {QUESTION} === '1'")
+    tab.page.get_by_role("button", name="Forget", exact=True).click()
+    assert tab.page.locator(".recent").count() == 0
+
+
+def test_a_browser_that_keeps_nothing_and_one_that_keeps_rubbish_show_the_page(
+    browser: Any, address: str
+) -> None:
+    rubbish = "localStorage.setItem('roadproof-recent', '[3, null, {\"formula\": 4}]');"
+    for script in (DENIED, rubbish):
+        context = browser.new_context(viewport={"width": 1440, "height": 900})
+        page = context.new_page()
+        faults: list[str] = []
+        page.on("pageerror", lambda x, faults=faults: faults.append(str(x)))
+        page.add_init_script(script)
+        page.goto(address)
+        page.wait_for_selector("html[data-ready=yes]")
+        page.wait_for_selector(".scene")
+        assert page.locator(".recent").count() == 0
+        page.locator(".examples button", has_text="always leads").click()
+        page.wait_for_selector(".verdict.yes")
+        page.wait_for_selector(".recent .word.yes")
+        assert faults == []
+        context.close()

@@ -2,8 +2,8 @@
 
 import contextlib
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Literal, TypeAlias
 
 import roadproof as rp
 from roadproof.evidence.certificate import Certificate, certificate_data
@@ -17,6 +17,7 @@ from roadproof.frontends.settings.questions import Compare, Prove, Witness
 from roadproof.frontends.studio.requests import Answer, Ask, Say
 from roadproof.frontends.studio.showing import marks_of, view
 from roadproof.library.compose import negation
+from roadproof.library.scenarios import scenario_number
 from roadproof.library.specification import Query
 from roadproof.library.uses import nearest, places_of
 from roadproof.logic.formula import Formula
@@ -24,6 +25,7 @@ from roadproof.runtime.progress import Listener
 from roadproof.verdict import Verdict
 
 FILE = "edit.spec"
+Origin: TypeAlias = Literal["shipped", "cache"]
 _STAGES = {
     "prove": "looking for a proof",
     "encode": "encoding the formula",
@@ -36,6 +38,18 @@ _STAGES = {
 
 
 @dataclass(frozen=True)
+class Cost:
+    """What an answer cost when it was computed: seconds of the clock, and units of effort where counted.
+
+    ``known``: where it is from, if it was known before it was asked for.
+    """
+
+    known: Origin | None
+    seconds: float
+    effort: float | None = None
+
+
+@dataclass(frozen=True)
 class _Settled:
     """A verdict with its evidence, and the command line that gives the same."""
 
@@ -45,6 +59,7 @@ class _Settled:
     command: str
     certificate: Certificate | None
     drive: JudgedDrive | None
+    cost: Cost | None = None
 
     def shown(self, ask: Ask) -> Answer:
         """The answer for the page, with the document of the viewer where there is a drive."""
@@ -57,6 +72,7 @@ class _Settled:
             "drive": None if drive is None else drive.as_data(),
             "spec": ask.draft.file(),
             "command": self.command,
+            "cost": None if self.cost is None else asdict(self.cost),
             **({} if drive is None else {"view": view(ask, drive.file)}),
         }
 
@@ -66,20 +82,31 @@ def find(ask: Ask, say: Say) -> Answer:
     home, how = ask.home, {**ask.options("find"), "count": ask.count}
     query = home.read(ask.formula)
     query = negation(query) if ask.negated else query
+    what = _shortly(home, query)
     say("looking for a drive")
-    outcome = rp.witness(query, using=home, jobs=1, stage=_telling(say), **how).outcomes[0]
+    answers = rp.witness(what, using=home, jobs=1, stage=_telling(say), fresh=ask.fresh, **how)
+    outcome = answers.outcomes[0]
     drive = outcome.drives[-1] if len(outcome.drives) == ask.count else None
     if drive is not None:
         say("judging the drive")
-    proof, command = outcome.impossibility, _command("witness", [query.text], ask, home, Witness.of(how))
+    words = [query.text if what is query else str(what)]
+    proof, command = outcome.impossibility, _command("witness", words, ask, home, Witness.of(how))
     certificate = None if proof is None else proof.certificate
-    found = _Settled(outcome.verdict, outcome.told(()), query.text, command, certificate, drive)
+    cost = Cost(next(iter(answers.found.known), None), sum(outcome.seconds.values()))
+    found = _Settled(outcome.verdict, outcome.told(()), query.text, command, certificate, drive, cost)
     return found.shown(ask) | {
         "road": outcome.road,
         "core": [] if proof is None else list(proof.told),
         "marks": [] if proof is None else _clash(home, query, proof.core),
         "drives": [x.as_data() for x in outcome.drives],
     }
+
+
+def _shortly(home: Definitions, query: Query) -> int | Query:
+    """The number of the scenario that a query is, under which its drive may be known; else the query."""
+    number = scenario_number(query)
+    same = number is not None and home.read(number).formula == query.formula
+    return number if number is not None and same else query
 
 
 class _AnsweredError(Exception):
@@ -118,10 +145,13 @@ def prove(ask: Ask, say: Say) -> Answer:
     """
     home, how = ask.home, ask.options("prove")
     say("looking for a proof")
-    [found] = rp.prove(home.read(ask.formula), using=home, jobs=1, stage=_telling(say), **how).answers
+    claim = home.read(ask.formula)
+    answers = rp.prove(claim, using=home, jobs=1, stage=_telling(say), fresh=ask.fresh, **how)
+    [found] = answers.answers
     task, settled, result = found.task, found.settled, found.settled.result
+    cost = Cost(next(iter(answers.found.known), None), result.seconds, result.work or None)
     command = _command("prove", [task.claim], ask, home, Prove.of(how))
-    one = _Settled(found.verdict, result.reason, task.claim, command, result.certificate, settled.drive)
+    one = _Settled(found.verdict, result.reason, task.claim, command, result.certificate, settled.drive, cost)
     return one.shown(ask) | {"assuming": list(task.assuming), "refuted_by": settled.refuted_by}
 
 

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -13,13 +13,14 @@ from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.drive_file import SCHEMAS_READ
 from roadproof.evidence.strict import read_json
 from roadproof.frontends.report.viewer_page import viewer_modules, viewer_style
+from roadproof.frontends.studio.examples import EXAMPLES
 from roadproof.frontends.studio.requests import form
 from roadproof.library.specification import read_specification
 
 _SCRIPT, _STYLE = "text/javascript; charset=utf-8", "text/css; charset=utf-8"
 _OWN = (
-    *("store", "server", "address", "state", "editor", "actions", "live", "picture", "gallery"),
-    *("bar", "side", "app"),
+    *("store", "server", "address", "state", "history", "recent", "editor", "actions", "live"),
+    *("picture", "gallery", "bar", "side", "app"),
 )
 MOST_FILES, LARGEST_FILE = 60, 1_000_000  # of a folder that is looked through; bytes
 
@@ -90,6 +91,7 @@ class Begun:
             "specs": [{"name": name, "text": x} for name, x in self.specs],
             "shows": self.shows and bool(self.drives),
             "form": form(),
+            "examples": [asdict(x) for x in EXAMPLES],
         }
 
 

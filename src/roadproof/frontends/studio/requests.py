@@ -67,6 +67,7 @@ class Ask:
     count: int = 1
     forward: bool = False
     compare: bool = False
+    fresh: bool = False
     drive: object = None
     explain: Part | None = None
     files: tuple[File, ...] = ()

@@ -38,8 +38,16 @@ def main(memory: int, long: bool) -> int:
         def say(stage: str) -> None:
             _tell(answers, {"stage": stage})
 
-        _tell(answers, _answered(answer, job, say))
+        before = _processor_time()
+        told = _answered(answer, job, say)
+        _tell(answers, {**told, "cpu": round(_processor_time() - before, 3)})
     return 0
+
+
+def _processor_time() -> float:
+    """Seconds that this process has had of processors, with those of the processes that it waited for."""
+    used = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return sum(x.ru_utime + x.ru_stime for x in used)
 
 
 @dataclass(frozen=True)

@@ -24,10 +24,16 @@ const KINDS = {
   "PROVED-BOUNDED": "open",
 };
 
-/** One answer; `downloads` are {name, content} with texts, `onCopy` copies a text, `shows` are {name, show}, its drives. */
-export function Verdict({ answer, downloads = [], onCopy = null, shows = [] }) {
+/** How a verdict is coloured: yes, no, open, or not at all. */
+export const toneOf = (verdict) => KINDS[verdict] ?? "";
+
+/**
+ * One answer; `downloads` are {name, content} with texts, `onCopy` copies a text, `shows` are {name, show}, its
+ * drives; `cost` tells what it cost, beside `onAgain`, which computes it again.
+ */
+export function Verdict({ answer, downloads = [], onCopy = null, shows = [], cost = "", onAgain = null }) {
   if (!answer) return null;
-  return html`<section class=${`verdict ${KINDS[answer.verdict] ?? ""}`} aria-label="Verdict" aria-live="polite">
+  return html`<section class=${`verdict ${toneOf(answer.verdict)}`} aria-label="Verdict" aria-live="polite">
     <h3><span class="word">${answer.verdict}</span> <code class="claim">${answer.formula}</code></h3>
     <p>${answer.promise ?? PROMISES[answer.verdict] ?? ""}</p>
     ${answer.assuming?.length ? html`<p>At ${answer.assuming.join(", ")}.</p>` : null}
@@ -35,6 +41,9 @@ export function Verdict({ answer, downloads = [], onCopy = null, shows = [] }) {
     ${answer.core?.length
       ? html`<p>These parts clash:</p>
           <ul class="core">${answer.core.map((x) => html`<li><code>${x}</code></li>`)}</ul>`
+      : null}
+    ${cost
+      ? html`<p class="cost"><span>${cost}</span>${onAgain ? html`<button onClick=${onAgain}>Compute again</button>` : null}</p>`
       : null}
     ${answer.command
       ? html`<p class="command"><code>${answer.command}</code>${onCopy ? html`<button onClick=${() => onCopy(answer.command)}>Copy</button>` : null}</p>`

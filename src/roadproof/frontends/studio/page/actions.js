@@ -2,6 +2,8 @@
 
 import { batch } from "vendor/view";
 import { save } from "viewer/verdict";
+import { inOneStep } from "studio/history";
+import { keepQuestion, questionNow } from "studio/recent";
 import { ask } from "studio/server";
 import * as state from "studio/state";
 
@@ -14,6 +16,11 @@ export function rewrite(text) {
     forgetMarks();
     state.kept.text.value = text;
   });
+}
+
+/** The definitions of a file in place of those of the editor, which `undo` brings back. */
+export function loadText(text) {
+  inOneStep(() => rewrite(text));
 }
 
 /** Another question. */
@@ -59,7 +66,7 @@ async function askLong(title, kind, question) {
       state.trouble.value = told.error;
       return null;
     }
-    return { ...told.answer, seconds: told.seconds };
+    return { ...told.answer, seconds: told.seconds, cpu: told.cpu };
   } catch (error) {
     if (error.name !== "AbortError") state.trouble.value = error.message;
     return null;
@@ -87,13 +94,7 @@ export function showDrive(drive, view, compared = false) {
     state.kept.drive.value = drive;
     state.kept.compared.value = compared;
     if (view) state.view.value = view;
-    state.explain.value = null;
-    state.pair.value = null;
-    state.look.playing.value = false;
-    state.plays.value = false;
-    state.look.time.value = 0;
-    state.look.open.value = new Map();
-    state.look.selected.value = { formula: 0, key: "/0", id: 0 };
+    state.fromTheStart();
   });
 }
 
@@ -109,16 +110,21 @@ export function showFile(drive, view, { play = false } = {}) {
 
 let found = { text: "", count: 0 };
 
-/** Find a drive; `negated`: one without it; `next`: one that differs clearly from those before. */
-export async function find({ negated = false, next = false } = {}) {
+/**
+ * Find a drive; `negated`: one without it; `next`: one that differs clearly from those before; `fresh`: even if
+ * the answer is known.
+ */
+export async function find({ negated = false, next = false, fresh = false } = {}) {
   const question = { ...state.question.value, settings: state.settingsOf("find"), negated };
   const text = JSON.stringify(question);
   const count = next && found.text === text ? found.count + 1 : next ? 2 : 1;
   const title = negated ? "Find one without it" : count > 1 ? `Find drive ${count}` : "Find a drive";
-  const answer = await askLong(title, "find", { ...question, count });
+  const asked = questionNow(negated ? "without" : "find");
+  const answer = await askLong(title, "find", { ...question, count, fresh });
   if (!answer) return;
+  keepQuestion(asked, answer.verdict);
   found = { text, count: answer.drive ? count : found.count };
-  take(answer);
+  take({ ...answer, again: () => find({ negated, fresh: true }) });
 }
 
 /** Why the selected part of the question is true or false at the present time: in the strips, in the text. */
@@ -136,10 +142,13 @@ export function explain() {
   else state.explain.value = { part, at };
 }
 
-export async function prove() {
+export async function prove({ fresh = false } = {}) {
   const settings = state.settingsOf("prove");
-  const answer = await askLong("Prove", "prove", { ...state.question.value, settings });
-  if (answer) take(answer);
+  const asked = questionNow("prove");
+  const answer = await askLong("Prove", "prove", { ...state.question.value, settings, fresh });
+  if (!answer) return;
+  keepQuestion(asked, answer.verdict);
+  take({ ...answer, again: () => prove({ fresh: true }) });
 }
 
 /** Before against after the edit, both directions at once; each answer is shown when it is there. */
@@ -169,7 +178,7 @@ export async function compare() {
       const [one, other] = told.answer.sets.map((x) => (x === "edit" ? "after" : "before"));
       const so = { PROVED: "it holds", REFUTED: "it does not always hold" }[told.answer.verdict];
       const promise = `Where it holds ${one} the edit, ${so ?? "nobody knows whether it holds"} ${other} it.`;
-      take({ ...told.answer, promise }, { compared: true, show: !isShown });
+      take({ ...told.answer, promise, seconds: told.seconds, cpu: told.cpu }, { compared: true, show: !isShown });
       isShown ||= Boolean(told.answer.drive);
     }
   };
@@ -242,7 +251,8 @@ export async function open(list) {
   const spec = files.find((x) => x.name.endsWith(".spec"));
   if (spec) {
     state.trouble.value = "";
-    rewrite(spec.content);
+    state.specs.value = [...state.specs.value.filter((x) => x.name !== spec.name), { name: spec.name, text: spec.content }];
+    loadText(spec.content);
     return;
   }
   if (!files.every((x) => x.name.endsWith(".json"))) return openTogether(files);

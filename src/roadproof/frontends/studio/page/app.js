@@ -7,6 +7,8 @@ import { fromAddress, toAddress } from "studio/address";
 import { Bar, toggleTheme } from "studio/bar";
 import { followEdits } from "studio/live";
 import { followSets, Gallery, toGallery } from "studio/gallery";
+import { followChanges, redo, undo } from "studio/history";
+import { examples } from "studio/recent";
 import { start, takeToken } from "studio/server";
 import { recall } from "studio/store";
 import { addWatch, Side } from "studio/side";
@@ -24,6 +26,8 @@ const KEYS = [
   [" ", "Play or pause", () => state.view.value && toggle(state.look, state.view.value.drive)],
   ["x", "Save as a page", () => actions.savePage()],
   ["l", "Copy the address", () => actions.copy(location.href)],
+  ["u", "Undo", () => undo()],
+  ["r", "Redo", () => redo()],
   ["g", "To the gallery", () => toGallery()],
   ["d", "To the definitions", () => document.querySelector(".definitions .cm-content")?.focus()],
   ["q", "To the question", () => document.querySelector(".asked .cm-content")?.focus()],
@@ -40,6 +44,7 @@ const MORE = [
   ["Enter", "in the question: find a drive"],
   ["Escape", "in an editor: leave it"],
   ["Ctrl-Space", "in an editor: names"],
+  ["Ctrl-Z, Ctrl-Y", "undo and redo; in an editor, those of its text"],
 ];
 
 function Help() {
@@ -75,7 +80,20 @@ function isTyping(target) {
   return target.closest?.(".cm-editor, input[type=text], select, textarea") !== null;
 }
 
+/** Ctrl-Z and its like outside of editors, which have their own. */
+function undoneBy(event) {
+  if (!(event.ctrlKey || event.metaKey) || event.altKey || isTyping(event.target)) return null;
+  const key = event.key.toLowerCase();
+  if (key === "y" || (key === "z" && event.shiftKey)) return redo;
+  return key === "z" ? undo : null;
+}
+
 function onKey(event) {
+  const undone = undoneBy(event);
+  if (undone) {
+    event.preventDefault();
+    return undone();
+  }
   if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
   if (isTyping(event.target)) {
     if (event.key === "Escape") event.target.blur();
@@ -108,6 +126,7 @@ async function begin() {
   state.drives.value = begun.drives;
   state.specs.value = begun.specs;
   state.form.value = begun.form;
+  examples.value = begun.examples;
   const said = await fromAddress();
   if (said) state.takeOver(said);
   else {
@@ -122,6 +141,7 @@ async function begin() {
   document.addEventListener("drop", onDrop);
   addEventListener("popstate", async () => state.takeOver((await fromAddress()) ?? {}));
   keepAddress();
+  followChanges();
   followEdits();
   followSets(!said && !begun.shows);
   document.documentElement.dataset.ready = "yes";

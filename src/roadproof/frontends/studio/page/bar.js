@@ -4,6 +4,7 @@ import { html } from "vendor/view";
 import * as actions from "studio/actions";
 import { Editor } from "studio/editor";
 import { isOpen, toggleGallery } from "studio/gallery";
+import { canRedo, canUndo, redo, undo } from "studio/history";
 import * as state from "studio/state";
 import { remember } from "studio/store";
 
@@ -39,6 +40,10 @@ export function Bar() {
         <${Editor} where="formula" label="Question" line=${true} read=${() => kept.formula.value} hint="a formula, or a scenario's number"
           onChange=${actions.askAnother} onEnter=${() => actions.find()} />
       </div>
+      <span class="steps">
+        <button class="icon" title="Undo (u, Ctrl-Z)" aria-label="Undo" disabled=${!canUndo.value} onClick=${undo}>↶</button>
+        <button class="icon" title="Redo (r, Ctrl-Y)" aria-label="Redo" disabled=${!canRedo.value} onClick=${redo}>↷</button>
+      </span>
       <button title="l: the address holds everything" onClick=${() => actions.copy(location.href)}>Copy link</button>
       <button title="x: one file that needs no server" onClick=${() => actions.savePage()}>Save page</button>
       <button class="icon" title="Light or dark" aria-label="Light or dark" onClick=${toggleTheme}>◐</button>

@@ -1,7 +1,8 @@
 // The left edge: scenarios with small pictures, and the user's files. On narrow screens it is a drawer.
 
-import { batch, effect, html, signal, useRef } from "vendor/view";
+import { effect, html, signal, useRef } from "vendor/view";
 import * as actions from "studio/actions";
+import { forgetSteps, inOneStep } from "studio/history";
 import { Picture } from "studio/picture";
 import { ask } from "studio/server";
 import * as state from "studio/state";
@@ -52,7 +53,10 @@ export function followSets(play) {
     cards.value = new Map();
     const all = async () => {
       await load(set, [FIRST]);
-      if (isFirst && isUntouched()) show(FIRST, false);
+      if (isFirst && isUntouched() && cards.peek().get(FIRST)?.drive) {
+        show(FIRST);
+        forgetSteps();
+      }
       isFirst = false;
       const rest = numbersOf(await state.named()).filter((x) => x !== FIRST);
       for (let k = 0; k < rest.length; k += SHARE) await load(set, rest.slice(k, k + SHARE));
@@ -67,15 +71,15 @@ function isUntouched() {
 
 const numbersOf = (names) => names.scenarios.map((x) => x.number);
 
-/** A scenario as the question, with its drive if one is known; `search`: else look for one. */
-function show(number, search = true) {
+/** A scenario as the question, with its drive: the one that is known, or else one that is looked for. */
+function show(number) {
   const card = cards.peek().get(number);
-  batch(() => {
+  inOneStep(() => {
     actions.askAnother(card?.formula ?? String(number));
     if (card?.drive) actions.showFile(card.drive, null, { play: true });
   });
-  if (search && !card?.drive) actions.find();
-  if (search && !isBeside()) isOpen.value = false;
+  if (!card?.drive) actions.find();
+  if (!isBeside()) isOpen.value = false;
 }
 
 export function Gallery() {
@@ -157,7 +161,7 @@ function Files() {
     <summary>your files <small>${total || "none"}</small></summary>
     ${total ? null : html`<p class="faint">Drop drives, definitions or recordings on the page, or start <code>roadproof studio FOLDER</code>.</p>`}
     <ul class="specs">${specs.value.map(
-      (x) => html`<li><button title="Put these definitions into the editor" aria-pressed=${x.text === state.kept.text.value} onClick=${() => actions.rewrite(x.text)}>${x.name}</button></li>`,
+      (x) => html`<li><button title="Put these definitions into the editor" aria-pressed=${x.text === state.kept.text.value} onClick=${() => actions.loadText(x.text)}>${x.name}</button></li>`,
     )}</ul>
     <ul class="drives">${drives.value.map(
       (x) => html`<li><button aria-pressed=${JSON.stringify(x.drive) === shown} title=${x.drive.formula ?? ""} onClick=${() => actions.showFile(x.drive)}>${x.name}</button></li>`,

@@ -1,14 +1,20 @@
 // The left side: definitions, watched formulas, answers.
 
-import { html } from "vendor/view";
+import { html, useEffect, useRef } from "vendor/view";
 import { Verdict } from "viewer/verdict";
 import * as actions from "studio/actions";
 import { Editor } from "studio/editor";
+import { Try } from "studio/recent";
 import * as state from "studio/state";
 
 export function Side() {
   const { kept } = state;
   const wrong = state.mistakes.value.filter((x) => x.where === "definitions");
+  const answers = useRef(null);
+  const newest = state.answers.value[0]?.key;
+  useEffect(() => {
+    if (newest) answers.current.scrollIntoView({ block: "nearest" });
+  }, [newest]);
   return html`<aside class="side">
     <section class="pane definitions" aria-label="Definitions">
       <h2>Definitions <small>set <code>edit</code> on top of <code>${kept.base.value}</code></small>
@@ -34,14 +40,15 @@ export function Side() {
       ${kept.watches.value.length ? null : html`<p class="faint">Any formula typed here gets a strip on the drive that is shown.</p>`}
     </section>
     <${Recording} />
-    <section class="pane answers" aria-label="Answers">
+    <section class="pane answers" aria-label="Answers" ref=${answers}>
       <h2>Answers</h2>
       ${state.answers.value.map(
         (x) => html`<${Verdict} key=${x.key} answer=${x} downloads=${downloadsOf(x)} onCopy=${actions.copy}
-          shows=${showsOf(x)} />`,
+          shows=${showsOf(x)} cost=${costOf(x)} onAgain=${x.cost?.known ? x.again : null} />`,
       )}
       ${state.answers.value.length ? null : html`<p class="faint">None yet: press Find a drive.</p>`}
     </section>
+    <${Try} />
   </aside>`;
 }
 
@@ -135,6 +142,20 @@ function showsOf(answer) {
     show: () => actions.showDrive(drive, length === 1 || k === length - 1 ? answer.view : null, isCompared),
   }));
 }
+
+/** What an answer cost, in words: now, and when it was computed. */
+function costOf({ cost, cpu, seconds }) {
+  if (cpu === undefined || seconds === undefined) return "";
+  const told = [`${shownSeconds(seconds)} (processor ${shownSeconds(cpu)})`];
+  if (cost?.known) told.push(`known: ${KNOWN[cost.known]}`);
+  if (cost?.known && cost.seconds > 0) told.push(`computed in ${shownSeconds(cost.seconds)} then`);
+  if (cost?.effort) told.push(`${shownNumber(cost.effort)} units of effort`);
+  return told.join(" · ");
+}
+
+const KNOWN = { shipped: "shipped with roadproof", cache: "of an earlier run of yours" };
+const shownNumber = (x) => (x < 10 ? x.toFixed(2) : x.toFixed(0));
+const shownSeconds = (x) => `${shownNumber(x)} s`;
 
 function downloadsOf(answer) {
   const made = drivesOf(answer).map((drive, k, { length }) => ({

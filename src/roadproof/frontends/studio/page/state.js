@@ -53,6 +53,17 @@ export const question = computed(() => ({
   watches: kept.watches.value.filter((x) => x.trim()),
 }));
 
+/** Another drive is looked at: from its start, at rest, with nothing selected or explained. */
+export function fromTheStart() {
+  explain.value = null;
+  pair.value = null;
+  plays.value = false;
+  look.playing.value = false;
+  look.time.value = 0;
+  look.open.value = new Map();
+  look.selected.value = { formula: 0, key: "/0", id: 0 };
+}
+
 /** The value of an option of the page. */
 export function settingOf(option) {
   return kept.settings.value[option.name] ?? option.default;
@@ -85,6 +96,7 @@ export function asData() {
 
 /** Take over what an address says; what it does not say stays. */
 export function takeOver(data) {
+  if (data && data.drive === null && pair.peek() === null) view.value = null;
   for (const [name, x] of Object.entries(kept)) {
     if (data && name in data) x.value = data[name];
   }

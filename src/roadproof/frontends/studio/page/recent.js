@@ -1,0 +1,77 @@
+// Questions that were asked, with their verdicts, kept in the browser; and examples.
+
+import { html, signal } from "vendor/view";
+import { toneOf } from "viewer/verdict";
+import * as actions from "studio/actions";
+import { inOneStep } from "studio/history";
+import * as state from "studio/state";
+import { recall, remember } from "studio/store";
+
+const MOST = 12;
+const LONGEST = 20_000; // characters of definitions that are kept with a question
+const FIELDS = ["formula", "base", "text", "options", "params"];
+const WORDS = { find: "find", without: "without", prove: "prove", compare: "compare" };
+
+export const examples = signal([]);
+const recent = signal(readable(recall("recent", [])));
+
+/** What was kept, as far as it is ours: anything may be in the storage of a browser. */
+function readable(list) {
+  const isOurs = (x) => typeof x?.formula === "string" && typeof x.verdict === "string" && x.job in WORDS;
+  return (Array.isArray(list) ? list : []).filter(isOurs).slice(0, MOST);
+}
+
+/** What a question is about now, to be kept with its verdict later. */
+export function questionNow(job) {
+  const kept = Object.fromEntries(FIELDS.map((name) => [name, state.kept[name].peek()]));
+  return { job, ...kept, text: kept.text.length > LONGEST ? null : kept.text };
+}
+
+/** Keep a question that was answered; the same one is kept once. */
+export function keepQuestion(question, verdict) {
+  const same = (x) => JSON.stringify({ ...x, verdict: "" }) === JSON.stringify({ ...question, verdict: "" });
+  recent.value = [{ ...question, verdict }, ...recent.value.filter((x) => !same(x))].slice(0, MOST);
+  remember("recent", recent.value);
+}
+
+function restore(question) {
+  inOneStep(() => {
+    actions.askAnother(question.formula);
+    const { text, base, options, params } = question;
+    state.takeOver({ base, options, params, ...(text === null ? {} : { text }) });
+  });
+}
+
+/** Examples to click, and what was asked last. */
+export function Try() {
+  const isPlain = !state.kept.text.value.trim() && state.kept.base.value === "base";
+  const askExample = (x) => {
+    inOneStep(() => actions.askAnother(x.formula));
+    if (x.job === "prove") actions.prove();
+    else actions.find();
+  };
+  const forget = () => {
+    recent.value = [];
+    remember("recent", []);
+  };
+  return html`<section class="pane try" aria-label="Examples and recent questions">
+    ${recent.value.length
+      ? html`<h2>Recent questions <span class="right"><button onClick=${forget}>Forget</button></span></h2>
+          <ul class="recent">${recent.value.map(
+            (x) => html`<li><button title="Put this question back" onClick=${() => restore(x)}>
+              <${Word} verdict=${x.verdict} /><span class="what">${WORDS[x.job]}</span><code>${x.formula}</code>${x.text?.trim() ? html`<small>with definitions</small>` : null}
+            </button></li>`,
+          )}</ul>`
+      : null}
+    <h2>Examples <small>click one to ask it</small></h2>
+    <ul class="examples">${examples.value.map(
+      (x) => html`<li><button title=${`${x.job === "prove" ? "Prove" : "Find a drive for"} ${x.formula}`} onClick=${() => askExample(x)}>
+        ${isPlain ? html`<${Word} verdict=${x.verdict} />` : null}<span>${x.title}</span><code>${x.formula}</code>
+      </button></li>`,
+    )}</ul>
+  </section>`;
+}
+
+function Word({ verdict }) {
+  return html`<span class=${`word ${toneOf(verdict)}`}>${verdict}</span>`;
+}
