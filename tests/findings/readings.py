@@ -358,6 +358,16 @@ def claims_of_classes(outcome: Outcome) -> int:
     return len(read(outcome, "classes/index.json")["claims"])
 
 
+def claims_about_cells(outcome: Outcome) -> tuple[object, ...]:
+    """Claims, cells of what happens and of where; claims about pairs and unions of classes; classes."""
+    found = read(outcome, "classes/index.json")
+    happens = {tuple(x["happens"]) for x in found["classes"]}
+    classes, scenarios = len(found["classes"]), {y for x in found["classes"] for y in x["scenarios"]}
+    pairs = classes * (classes - 1) // 2
+    cells = len(happens), kinds_of_places(outcome)
+    return claims_of_classes(outcome), *cells, f"{pairs + len(scenarios):,}", all_witnessed(outcome)
+
+
 def classes_proofs_drives(outcome: Outcome) -> tuple[str, int, str]:
     return all_witnessed(outcome), claims_of_classes(outcome), all_witnessed(outcome)
 
