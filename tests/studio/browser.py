@@ -13,6 +13,7 @@ _FLAGS = (
     *("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking"),
     *("--disable-component-update", "--disable-sync"),
 )
+SEEN = "localStorage.setItem('roadproof-tour', '\"seen\"')"
 DROP = """(files) => {
   const carried = new DataTransfer();
   for (const x of files) carried.items.add(new File([x.content], x.name));
@@ -45,15 +46,20 @@ def browsing() -> Iterator[Any]:
 
 
 class Tab:
-    """A page of the studio; ``faults`` has what no page may do: errors, and requests to other origins."""
+    """A page of the studio; ``faults`` has what no page may do: errors, and requests to other origins.
 
-    def __init__(self, browser: Any, address: str, **options: Any) -> None:
+    ``newcomer``: one that begins with the tour.
+    """
+
+    def __init__(self, browser: Any, address: str, newcomer: bool = False, **options: Any) -> None:
         self.address = address
         self.faults: list[str] = []
         origin = address.partition("/#")[0]
         self.context = browser.new_context(viewport={"width": 1440, "height": 900}, **options)
         self.context.set_default_timeout(int(os.environ.get("BROWSER_TIMEOUT", "60")) * 1000)
         self.page = self.context.new_page()
+        if not newcomer:
+            self.page.add_init_script(SEEN)
         self.page.on(
             "console", lambda x: self.faults.append(x.text) if x.type in ("error", "warning") else None
         )

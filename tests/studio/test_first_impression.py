@@ -1,11 +1,13 @@
 """The studio as a newcomer meets it, in a real browser: the gallery, with answers that are known."""
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from report.reading import PALE
 from studio.browser import Tab, browsing, why_none
 from studio.serving import running
 
@@ -184,3 +186,115 @@ def test_a_browser_that_keeps_nothing_and_one_that_keeps_rubbish_show_the_page(
         page.wait_for_selector(".recent .word.yes")
         assert faults == []
         context.close()
+
+
+NAMELESS = """[...document.querySelectorAll('button, input, select, summary')]
+  .filter((x) => !(x.ariaLabel || x.textContent.trim() || x.labels?.length)).map((x) => x.outerHTML)"""
+CONTROLS = """() => {
+  const all = document.querySelectorAll('button, input, select, summary, .cm-content, .tree');
+  window.unreached = new Set([...all].filter((x) => x.checkVisibility() && !x.disabled && x.tabIndex >= 0));
+}"""
+REACHED = """() => {
+  const x = document.activeElement;
+  unreached.delete(x);
+  const shown = x === document.body || x.closest('.cm-editor') || getComputedStyle(x).outlineStyle !== 'none';
+  return shown ? [] : [x.outerHTML];
+}"""
+
+
+def focused(tab: Tab) -> str:
+    return str(tab.page.evaluate("document.activeElement.textContent"))
+
+
+def test_a_newcomer_is_shown_around_once(browser: Any, address: str) -> None:
+    tab = Tab(browser, address, newcomer=True)
+    tab.holds("true")
+    titles = []
+    for _ in range(6):
+        titles.append(tab.see(".tour h2").inner_text())
+        assert focused(tab) in ("Next", "Done")
+        frame, place = tab.see(".tour .frame").bounding_box(), tab.see(".tour .card").bounding_box()
+        assert frame is not None
+        assert place is not None
+        assert 0 <= place["x"] <= 1440 - place["width"]
+        assert 0 <= place["y"] <= 900 - place["height"]
+        tab.press("Enter")
+    assert len(set(titles)) == 6
+    assert tab.page.locator(".tour").count() == 0
+    tab.page.reload()
+    tab.ready()
+    tab.page.goto("about:blank")
+    tab.open(address)
+    tab.holds("true")
+    assert tab.page.locator(".tour").count() == 0
+    assert tab.faults == []
+    tab.close()
+
+
+def test_the_tour_goes_back_and_escape_ends_it_and_gives_back_the_focus(tab: Tab) -> None:
+    tab.holds("true")
+    tab.page.locator(".examples button").first.focus()
+    before = focused(tab)
+    tab.press("i", "ArrowRight", "ArrowRight", "ArrowLeft")
+    assert "2 of 6" in tab.see(".tour h2").inner_text()
+    tab.press("Escape")
+    assert tab.page.locator(".tour").count() == 0
+    assert focused(tab) == before
+    tab.press("i")
+    tab.page.get_by_role("button", name="Skip the tour").click()
+    assert tab.page.locator(".tour").count() == 0
+
+
+def test_words_of_the_viewer_are_explained_on_focus_and_on_hover(tab: Tab) -> None:
+    tab.holds("true")
+    for word in ("RSS envelope", "gap", "danger", "strips?", "margin?", "gap?"):
+        button = tab.page.locator(".term button", has_text=re.compile(f"^{re.escape(word)}$")).first
+        told = tab.page.locator(f"#{button.get_attribute('aria-describedby')}")
+        assert not told.is_visible()
+        button.focus()
+        assert told.is_visible()
+        tab.press("Escape")
+        assert not told.is_visible()
+        button.hover()
+        assert told.is_visible()
+        assert len(told.inner_text()) > 60
+        tab.page.mouse.move(2, 2)
+    tab.press("s", "ArrowDown")
+    about = tab.page.locator(f"#{tab.see('.tree').get_attribute('aria-describedby')}")
+    assert "durable safety at the start" in about.inner_text()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("width", [390, 1280])
+def test_every_text_has_contrast_and_nothing_is_wider_than_the_page(
+    browser: Any, address: str, scheme: str, width: int
+) -> None:
+    tab = Tab(browser, address, color_scheme=scheme, reduced_motion="reduce")
+    tab.page.set_viewport_size({"width": width, "height": 844})
+    tab.page.reload()
+    tab.ready()
+    tab.holds("true")
+    tab.page.locator(".examples button", has_text="a false claim").click()
+    tab.answered("REFUTED")
+    for key in ("Escape", "g", "i", "?"):
+        tab.press(key)
+        assert tab.page.evaluate(PALE) == []
+        assert tab.page.evaluate("document.documentElement.scrollWidth") <= width
+    assert tab.faults == []
+    tab.close()
+
+
+def test_every_control_is_reached_by_tab_shows_the_focus_and_has_a_name(tab: Tab) -> None:
+    tab.until("() => document.querySelectorAll('.gallery .picture').length === 24")
+    tab.holds("true")
+    assert tab.page.evaluate(NAMELESS) == []
+    tab.leave()
+    tab.page.evaluate(CONTROLS)
+    unseen = []
+    for _ in range(tab.page.evaluate("unreached.size") + 12):
+        tab.press("Tab")
+        unseen += tab.page.evaluate(REACHED)
+        if tab.page.evaluate("document.activeElement.closest('.editor')"):
+            tab.press("Escape")
+    assert unseen == []
+    assert tab.page.evaluate("[...unreached].map((x) => x.outerHTML)") == []

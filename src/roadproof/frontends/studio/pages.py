@@ -20,7 +20,7 @@ from roadproof.library.specification import read_specification
 _SCRIPT, _STYLE = "text/javascript; charset=utf-8", "text/css; charset=utf-8"
 _OWN = (
     *("store", "server", "address", "state", "history", "recent", "editor", "actions", "live"),
-    *("picture", "gallery", "bar", "side", "app"),
+    *("picture", "gallery", "tour", "bar", "side", "app"),
 )
 MOST_FILES, LARGEST_FILE = 60, 1_000_000  # of a folder that is looked through; bytes
 

@@ -3,6 +3,7 @@
 import { html, UPlot, useEffect, useRef } from "vendor/view";
 import { colour, coloursOf } from "viewer/palette";
 import { stateAt } from "viewer/drive";
+import { Term, TERMS } from "viewer/terms";
 
 const HEIGHT = 122;
 
@@ -13,6 +14,7 @@ function marginOf(formula, id, drive) {
   const clock = part.margins.map((_, k) => k * formula.step);
   return {
     title: `margin of ${part.text}`,
+    term: "margin",
     clock,
     lines: [{ label: "margin", values: part.margins, stroke: colour("--ink"), width: 1.8 }],
     zero: true,
@@ -39,7 +41,8 @@ function gapsOf(drive, direction) {
     { label: `gap ${x.one}–${x.other}`, values: x.gap, stroke: colours[x.other] },
     { label: `RSS ${x.one}–${x.other}`, values: x.needed, stroke: colours[x.other], dash: [6, 4] },
   ]);
-  return { title: `gap ${direction}, m (broken: RSS distance)`, clock: clockOf(drive), lines, zero: true };
+  const title = `gap ${direction}, m (broken: RSS distance)`;
+  return { title, term: "gap", clock: clockOf(drive), lines, zero: true };
 }
 
 function clockOf(drive) {
@@ -88,6 +91,7 @@ function Plot({ plot, drive, look, gutter, theme }) {
   return html`<figure class="plot">
     <figcaption style=${{ width: `${gutter - 58}px` }} title=${plot.title}>
       <span class="words">${plot.title}</span>
+      ${plot.term ? html`<${Term} name=${plot.term} label=${`${TERMS[plot.term].word}?`} />` : null}
       ${plot.lines.length > 1
         ? html`<span class="keys">
             ${plot.lines.map(

@@ -156,9 +156,9 @@ function paintNeeded(brush, drive, distance, time, place, colours) {
     line(brush, box[0] + box[2], box[1] - 3, box[0] + box[2], box[1] + box[3] + 3);
     brush.fillStyle = colour("--ink");
     brush.font = "11px system-ui, sans-serif";
-    brush.textAlign = "center";
+    brush.textAlign = "left";
     const words = `RSS to ${other} ${shown(needed)} m`;
-    if (box[2] > 96) brush.fillText(words, box[0] + box[2] / 2, box[1] + box[3] / 2 + 4);
+    if (box[2] > 110) brush.fillText(words, box[0] + 8, box[1] + box[3] / 2 + 4);
   } else {
     line(brush, box[0] - 3, box[1], box[0] + box[2] + 3, box[1]);
   }

@@ -2,6 +2,7 @@
 
 import { html, useEffect, useMemo } from "vendor/view";
 import { isTrue, switchesOf } from "viewer/drive";
+import { meaningOf, Term } from "viewer/terms";
 
 const JOINED = { and: "all of", or: "some of", not: "not", F: "F", G: "G", U: "U" };
 const SNAP = 7; // pixels around a switch that are the switch
@@ -103,6 +104,7 @@ export function Strips({ formula, index, drive, look, title, beside = null }) {
     </section>`;
   }
   const selected = look.selected.value;
+  const about = selected.formula === index ? formula.parts?.[selected.id] : null;
   const change = (key, on) => {
     const next = new Set(open);
     if (on) next.add(key);
@@ -132,11 +134,11 @@ export function Strips({ formula, index, drive, look, title, beside = null }) {
     }
   };
   return html`<section class=${`strips ${formula.role}`} aria-label=${title}>
-    <h3>${title} ${html`<span class=${formula.undecided ? "" : formula.holds ? "holds" : "fails"}>${formula.undecided ? "undecided" : formula.holds ? "true" : "false"} at 0 s</span>`}</h3>
+    <h3>${title} ${html`<span class=${formula.undecided ? "" : formula.holds ? "holds" : "fails"}>${formula.undecided ? "undecided" : formula.holds ? "true" : "false"} at 0 s</span>`} <${Term} name="strip" label="strips?" /></h3>
     ${beside?.parts
       ? html`<p class="legend"><span><i style=${{ background: "var(--true)" }}></i>after the edit</span><span><i style=${{ background: "var(--four)" }}></i>before the edit</span></p>`
       : null}
-    <div class="tree" role="tree" tabindex="0" aria-label=${title} onKeyDown=${onKey}>
+    <div class="tree" role="tree" tabindex="0" aria-label=${title} aria-describedby=${about ? `about-${index}` : undefined} onKeyDown=${onKey}>
       ${rows.map((row) => {
         const part = formula.parts[row.id];
         const chosen = selected.formula === index && selected.key === row.key;
@@ -150,7 +152,13 @@ export function Strips({ formula, index, drive, look, title, beside = null }) {
         />`;
       })}
     </div>
+    ${about ? html`<p class="about" id=${`about-${index}`}>${saysOf(about).join(" · ")}</p>` : null}
   </section>`;
+}
+
+/** What a part means, and when it is true. */
+function saysOf(part) {
+  return [part.says, meaningOf(part.text), `true: ${part.exact}`].filter(Boolean);
 }
 
 function Row({ row, part, drive, look, chosen, join, because, other, onFold, onSelect }) {
@@ -174,7 +182,7 @@ function Row({ row, part, drive, look, chosen, join, because, other, onFold, onS
       });
   const now = isTrue(part, look.time.value);
   const differs = other && other.exact !== part.exact;
-  const says = [part.text, part.says, `true: ${part.exact}`, differs ? `before: ${other.exact}` : ""].filter(Boolean).join("\n");
+  const says = [part.text, ...saysOf(part), ...(differs ? [`before: ${other.exact}`] : [])].join("\n");
   return html`<div
     class=${`row ${chosen ? "chosen" : ""} ${because ? "because" : ""} ${differs ? "differs" : ""}`}
     role="treeitem"

@@ -3,13 +3,14 @@
 //   import { mount } from "viewer/viewer";
 //   mount(element, document_)          // the data of roadproof.frontends.report.viewer_data
 
-import { html, render, signal, useEffect } from "vendor/view";
+import { html, render, signal, useEffect, useRef, useState } from "vendor/view";
 import { Curves } from "viewer/curves";
 import { Scene } from "viewer/scene";
 import { Strips } from "viewer/strips";
+import { Term } from "viewer/terms";
 import { Verdict } from "viewer/verdict";
 
-export const GUTTER = 340; // pixels of names left of the clock
+const GUTTER = { least: 130, most: 340, share: 0.42 }; // names left of the clock: pixels, and of the width
 const TITLES = { question: "Question", watch: "Watch", before: "Before the edit", after: "After the edit" };
 
 /** What is looked at: the time, the selected part, what is unfolded; signals that a page may share. */
@@ -26,9 +27,12 @@ export function makeLook() {
 /** Scene, clock, strips and curves of a document. `titles` are other titles of formulas, by role. */
 export function Viewer({ doc, look, titles = {}, theme = null, beside = null }) {
   const drive = doc.drive;
+  const place = useRef(null);
+  const gutter = useGutter(place);
   useEffect(() => play(look, drive), [drive]);
-  return html`<div class="viewer" style=${{ "--gutter": `${GUTTER}px` }}>
+  return html`<div class=${gutter < GUTTER.most ? "viewer narrow" : "viewer"} ref=${place} style=${{ "--gutter": `${gutter}px` }}>
     <${Scene} ...${{ drive, time: look.time, toScale: look.toScale, theme }} />
+    <p class="terms">${["envelope", "gap", "danger"].map((name) => html`<${Term} key=${name} name=${name} />`)}</p>
     <${Clock} ...${{ drive, look }} />
     <div class="below">
       <${Playhead} ...${{ drive, look }} />
@@ -40,10 +44,26 @@ export function Viewer({ doc, look, titles = {}, theme = null, beside = null }) 
           title=${titleOf(formula, titles)}
         />`,
       )}
-      <${Curves} ...${{ doc, look, gutter: GUTTER, theme }} />
+      <${Curves} ...${{ doc, look, gutter, theme }} />
     </div>
     ${beside}
   </div>`;
+}
+
+/** How many pixels of the width of an element names have. */
+function useGutter(place) {
+  const [gutter, set] = useState(GUTTER.most);
+  useEffect(() => {
+    const measure = () => {
+      const wanted = Math.round(place.current.clientWidth * GUTTER.share);
+      set(Math.max(GUTTER.least, Math.min(GUTTER.most, wanted)));
+    };
+    measure();
+    const watching = new ResizeObserver(measure);
+    watching.observe(place.current);
+    return () => watching.disconnect();
+  }, []);
+  return gutter;
 }
 
 function titleOf(formula, titles) {

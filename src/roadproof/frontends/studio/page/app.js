@@ -12,6 +12,7 @@ import { examples } from "studio/recent";
 import { start, takeToken } from "studio/server";
 import { recall } from "studio/store";
 import { addWatch, Side } from "studio/side";
+import { endTour, startTour, Tour, welcome } from "studio/tour";
 import * as state from "studio/state";
 
 const KEYS = [
@@ -35,6 +36,7 @@ const KEYS = [
   ["a", "Watch another formula", () => addWatch()],
   ["k", "Scene to scale or stretched", () => (state.look.toScale.value = !state.look.toScale.value)],
   ["t", "Light or dark", () => toggleTheme()],
+  ["i", "A tour of the page", () => startTour()],
   ["?", "These keys", () => (state.help.value = !state.help.value)],
 ];
 const MORE = [
@@ -54,7 +56,7 @@ function Help() {
     <div class="card">
       <h2>Keys</h2>
       <dl>${[...KEYS.map(([key, text]) => [key === " " ? "Space" : key, text]), ...MORE].map(([key, text]) => html`<dt><kbd>${key}</kbd></dt><dd>${text}</dd>`)}</dl>
-      <button onClick=${close}>Close</button>
+      <button onClick=${close}>Close</button> <button onClick=${startTour}>Take the tour</button>
     </div>
   </div>`;
 }
@@ -73,7 +75,7 @@ function Main() {
 }
 
 function App() {
-  return html`<${Bar} /><div class="panes"><${Gallery} /><${Side} /><${Main} /></div><${Help} />`;
+  return html`<${Bar} /><div class="panes"><${Gallery} /><${Side} /><${Main} /></div><${Help} /><${Tour} />`;
 }
 
 function isTyping(target) {
@@ -99,6 +101,7 @@ function onKey(event) {
     if (event.key === "Escape") event.target.blur();
     return;
   }
+  if (event.key === "Escape" && endTour()) return;
   if (event.key === "Escape" && state.help.value) {
     state.help.value = false;
     return;
@@ -144,6 +147,7 @@ async function begin() {
   followChanges();
   followEdits();
   followSets(!said && !begun.shows);
+  if (!said) welcome();
   document.documentElement.dataset.ready = "yes";
 }
 
