@@ -95,11 +95,11 @@ def test_no_field_is_changed_in_silence(home: Path, monkeypatch: pytest.MonkeyPa
     known: dict[object, examination.Examination] = {}
     examine = examination.examine
 
-    def once(request, basis, numbers, *more):  # type: ignore[no-untyped-def]
+    def once(request, basis, numbers, *more, **how):  # type: ignore[no-untyped-def]
         """The same tests are judged once: of the fields only those that are asked change what is."""
         key = repr((request, numbers, basis.specification.options, basis.values))
         if key not in known:
-            known[key] = examine(request, basis, numbers, *more)
+            known[key] = examine(request, basis, numbers, *more, **how)
         return known[key]
 
     monkeypatch.setattr(judging_again, "examine", once)

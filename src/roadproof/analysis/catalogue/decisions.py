@@ -117,6 +117,11 @@ class Drivers:
         return self._bound[text]
 
 
+def said_of(drivers: Drivers) -> str:
+    """A text that changes with the models, how their definitions are read, and parameters."""
+    return repr((drivers.models, drivers.specification.options, sorted(drivers.values.items())))
+
+
 def course_of(scenario: str) -> ManoeuvreName | None:
     """The manoeuvre of a scenario by name; None for classes, and for scenarios that no model speaks of."""
     number = number_in(scenario)

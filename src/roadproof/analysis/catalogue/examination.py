@@ -1,6 +1,6 @@
 """The tests of a request, read and judged: what concrete ones show, and what is to be asked of the others."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -8,6 +8,7 @@ from pathlib import Path
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.decisions import Drivers
+from roadproof.analysis.catalogue.earlier import EarlierAnswers
 from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete, Freedom, Request
 from roadproof.analysis.catalogue.gaps import PREFIX, gap_kinds
 from roadproof.analysis.catalogue.meaning import Meanings
@@ -32,7 +33,8 @@ class Examination:
     """The tests of a ``request``; ``study`` asks what abstract ones mean.
 
     ``concrete``: what concrete ones show; ``beside``: that in further spec sets, as ``study.beside``.
-    ``drivers``: the models that are asked what becomes of them.
+    ``drivers``: the models that are asked what becomes of them. ``known``: how many concrete ones were judged
+    in earlier runs.
     """
 
     request: Request
@@ -41,6 +43,7 @@ class Examination:
     concrete: tuple[ConcreteAnswer, ...]
     beside: tuple[tuple[ConcreteAnswer, ...], ...]
     drivers: Drivers | None = None
+    known: int = 0
 
 
 def examine(
@@ -51,11 +54,13 @@ def examine(
     drivers: Drivers | None = None,
     jobs: Jobs = None,
     progress: Progress | None = None,
+    fresh: bool = False,
 ) -> Examination:
     """Read the tests and judge the concrete ones, of the scenarios of these ``numbers``.
 
     ``plain``: the definitions in which formulas of tests are read, whatever ``basis`` says of how scenarios
-    begin; ``drivers``: those that are asked. Raises ``InputError``, ``TextError``, ``UsageError``.
+    begin; ``drivers``: those that are asked. Tests that earlier runs have judged are judged again where
+    ``fresh``. Raises ``InputError``, ``TextError``, ``UsageError``.
     """
     home = basis.specification
     tests = _read(request.paths, unrestricted(plain), home)
@@ -63,21 +68,22 @@ def examine(
 
     def ask(set_name: str) -> Questions:
         here = replace(basis, specification=home.in_set(set_name), sets=())
-        made = _divided(here, numbers, jobs, progress) if request.classes else None
+        made = _divided(here, numbers, jobs, progress, fresh) if request.classes else None
         return Questions(here.specification, numbers, made, basis.all_values())
 
     asked, *others = (ask(name) for name in request.sets)
     concrete = tuple(x for x in tests.entries if isinstance(x, Concrete))
-    answers = _shown(concrete, partial(_batch, asked, request.freedom, drivers), jobs, progress)
-    beside = tuple(
-        _shown(concrete, partial(_batch, other, request.freedom, None), jobs, progress) for other in others
-    )
+    earlier = [EarlierAnswers(asked, request.freedom, drivers)]
+    earlier += [EarlierAnswers(other, request.freedom, None) for other in others]
+    known = [{} if fresh else x.of(concrete) for x in earlier]
+    judged = zip(earlier, known, strict=True)
+    answers, *beside = (_shown(concrete, x, found, jobs, progress) for x, found in judged)
     abstract = tuple(x for x in tests.entries if isinstance(x, Abstract))
     shown = frozenset(x for answer in answers for x in answer.names if x.startswith(PREFIX))
     reaches = tuple(_reaches(asked, answers)) if request.explore else ()
     both_sides = drivers if restriction_of(home.options) is None else None
     study = Meanings(basis, abstract, asked, tuple(others), kinds, shown, reaches, both_sides)
-    return Examination(request, tests, study, answers, beside, drivers)
+    return Examination(request, tests, study, answers, tuple(beside), drivers, len(known[0]))
 
 
 def _read(paths: Sequence[str | Path], plain: Specification, asked: Specification) -> Catalogue:
@@ -99,13 +105,15 @@ def _reaches(asked: Questions, concrete: Sequence[ConcreteAnswer]) -> Iterator[R
     return reaches_of(asked, {x.name: x.covered for x in found if kind_of(x.name) == kind}, concrete)
 
 
-def _divided(basis: Basis, numbers: tuple[int, ...], jobs: Jobs, progress: Progress | None) -> Classes | None:
+def _divided(
+    basis: Basis, numbers: tuple[int, ...], jobs: Jobs, progress: Progress | None, fresh: bool
+) -> Classes | None:
     """The classes of scenarios. Raises ``UsageError`` where it is in doubt which there are."""
     try:
         plan = plan_of(basis.specification, numbers)
     except RoadproofError as error:
         raise UsageError(f"{error}; or leave out classes with --no-classes") from None
-    division = divide(basis, plan, jobs, progress, in_few_words=False)
+    division = divide(basis, plan, jobs, progress, in_few_words=False, fresh=fresh)
     if division.cut_off:
         told = "; ".join(x.reason for x in division.doubts)
         raise UsageError(f"the classes are in doubt ({told}): give more work, or use --no-classes")
@@ -114,13 +122,20 @@ def _divided(basis: Basis, numbers: tuple[int, ...], jobs: Jobs, progress: Progr
 
 def _shown(
     entries: Sequence[Concrete],
-    judge_batch: Callable[[Sequence[Concrete]], list[ConcreteAnswer]],
+    earlier: EarlierAnswers,
+    known: Mapping[str, ConcreteAnswer],
     jobs: Jobs,
     progress: Progress | None,
 ) -> tuple[ConcreteAnswer, ...]:
-    batches = [entries[k : k + BATCH] for k in range(0, len(entries), BATCH)]
+    """The answers to all tests in order: ``known`` ones by the id of the test, the others judged and kept."""
+    left = [x for x in entries if x.id not in known]
+    batches = [left[k : k + BATCH] for k in range(0, len(left), BATCH)]
+    judge_batch = partial(_batch, earlier.asked, earlier.freedom, earlier.drivers)
     done = pool.work(judge_batch, batches, jobs, None, progress, "batches of tests")
-    return tuple(answer for answers in pool.in_order(done) for answer in answers)
+    made = [answer for answers in pool.in_order(done) for answer in answers]
+    earlier.keep(made)
+    every = {**known, **{x.entry.id: x for x in made}}
+    return tuple(every[x.id] for x in entries)
 
 
 def _batch(

@@ -7,14 +7,14 @@ not excluded, a drive of the test is looked for that shows it.
 
 import hashlib
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar, TypeAlias
+from typing import ClassVar, TypeAlias, TypeVar
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Questions
-from roadproof.analysis.catalogue.decisions import Drivers
+from roadproof.analysis.catalogue.decisions import Drivers, said_of
 from roadproof.analysis.catalogue.entries import Abstract, Freedom
 from roadproof.analysis.catalogue.fact import Fact, read_fact, record_of
 from roadproof.analysis.catalogue.gaps import GapKinds
@@ -35,7 +35,7 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.bind import bind
 from roadproof.library.compose import both
-from roadproof.library.scenarios import Scenario, applied, name_of, number_in
+from roadproof.library.scenarios import Scenario, applied, definition_of, name_of, number_in
 from roadproof.library.specification import Query
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.exact import judge
@@ -73,6 +73,7 @@ Kept: TypeAlias = Facts | AboutGaps
 GAPS = "gaps-"
 """How the names of answers to the survey of gaps begin."""
 Names: TypeAlias = tuple[str, ...]
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -98,12 +99,11 @@ class Meanings(Unprepared):
     def question(self) -> Question:
         """What is asked about gaps is kept by itself, and whether it is asked changes nothing else."""
         said: JsonObject = {"set": self.basis.specification.set_name, "scenarios": list(self.asked.numbers)}
-        more = {x.id: repr((x.query.text, x.road, sorted(x.vehicles.items()))) for x in self.entries}
-        more |= {f"set {x.specification.set_name}": "" for x in self.beside} | self.basis.models
+        more = {f"set {x.specification.set_name}": "" for x in self.beside} | self.basis.models
+        of_some = {x.id: _said(x) for x in self.entries}
         if self.entries and self.drivers is not None:
-            values = sorted(self.drivers.values.items())
-            more |= {"drivers": repr((self.drivers.models, self.drivers.specification.options, values))}
-        return Question(kept.SCHEMA, said | self.basis.said(), more, self.basis.library)
+            of_some |= {"drivers": said_of(self.drivers)}
+        return Question(kept.SCHEMA, said | self.basis.said(), more, self.basis.library, of_some=of_some)
 
     @cached_property
     def survey(self) -> Coverage | None:
@@ -116,21 +116,64 @@ class Meanings(Unprepared):
         left: list[Piece] = [entry for entry in self.entries if _name(entry.id) not in known]
         left += [reach for reach in self.reaches if _name(reach.target, reach.term) not in known]
         left += self._about_gaps(known)
-        if left:
-            return left
+        return left or [x for name, x in self._later(known).items() if name not in known]
+
+    def _later(self, known: Mapping[str, Kept]) -> dict[str, Pair | Sides]:
+        """What is asked when all is known of each test by itself, by the names of the answers."""
         facts = {entry.id: facts_in(known[_name(entry.id)]) for entry in self.entries}
         drives = {name: _drive(those) for name, those in facts.items()}
-        pairs = [
-            Pair(one, other, drive)
+        pairs = {
+            _name(one.id, other.id): Pair(one, other, drive)
             for one in self.entries
             for other in self.entries
             if one is not other
             and set(other.query.vehicles) <= set(one.query.vehicles)
             and (drive := drives[one.id]) is not None
-            and _name(one.id, other.id) not in known
-        ]
-        sides = [x for entry in self.entries for x in self._sides(entry, facts[entry.id])]
-        return [*pairs, *(x for x in sides if _name(x.entry.id, x.scenario) not in known)]
+        }
+        sides = (x for entry in self.entries for x in self._sides(entry, facts[entry.id]))
+        return {**pairs, **{_name(x.entry.id, x.scenario): x for x in sides}}
+
+    def wanted(self, known: Mapping[str, Kept]) -> Collection[str]:
+        names = [_name(entry.id) for entry in self.entries]
+        return names if any(x not in known for x in names) else [*names, *self._later(known)]
+
+    def key(self, name: str) -> str | None:
+        """What an answer about tests depends on: their formulas, all scenarios, and models of its sides."""
+        about = self._subjects.get(name)
+        if about is None or self.basis.effort.timeout is not None:  # a clock may cut off proofs
+            return None
+        tests, is_of_drivers = about
+        said = [self._said_of_all, *map(_said, tests)]
+        if is_of_drivers and self.drivers is not None:
+            said += [said_of(self.drivers), repr(self.drivers.specification.library.files)]
+        return f"{self.basis.key(*(x.query.text for x in tests))} {_digest(*said)}"
+
+    @cached_property
+    def _subjects(self) -> Mapping[str, tuple[tuple[Abstract, ...], bool]]:
+        """By the name of an answer the tests that it is about, and whether it is about driver models too."""
+        found: dict[str, tuple[tuple[Abstract, ...], bool]] = {
+            _name(x.id): ((x,), False) for x in self.entries
+        }
+        for one in self.entries:
+            found |= {_name(one.id, x.id): ((one, x), False) for x in self.entries if x is not one}
+        for one in self.entries:
+            found |= {_name(one.id, name_of(x)): ((one,), True) for x in self.asked.numbers}
+        return found
+
+    def in_order(self, answers: Mapping[str, T]) -> dict[str, T]:
+        """Answers by name as one process gives them, whichever came first; those about gaps as they came."""
+        alone = [*(_name(x.id) for x in self.entries), *(_name(x.target, x.term) for x in self.reaches)]
+        places = {name: k for k, name in enumerate(dict.fromkeys([*alone, GAPS, *self._subjects]))}
+        names = sorted(answers, key=lambda x: places[GAPS if x.startswith(GAPS) else x])
+        return {name: answers[name] for name in names}
+
+    @cached_property
+    def _said_of_all(self) -> str:
+        """All that tests are asked, with the definitions that it uses."""
+        asked = (self.asked, *self.beside)
+        scenarios = [Scenario(n, x.specification.set_name) for x in asked for n in x.numbers]
+        classes = [sorted(x.named.items()) for x in asked]
+        return repr((self.basis.key(*map(definition_of, scenarios)), classes))
 
     def _sides(self, entry: Abstract, facts: Facts) -> Iterator[Sides]:
         """A piece for each scenario of a test of which a driver model speaks."""
@@ -296,8 +339,16 @@ def gap_answers(known: Mapping[str, Kept]) -> dict[str, survey.Kept]:
 
 def _name(one: str, other: str = "") -> str:
     """A name for the answers about a test, or two, fit for a file."""
-    digest = hashlib.sha256(json.dumps([one, other]).encode()).hexdigest()
-    return f"test-{digest[:12]}"
+    return f"test-{_digest(one, other)[:12]}"
+
+
+def _said(entry: Abstract) -> str:
+    """A test in a text that changes with all that its drives depend on."""
+    return repr((entry.query.text, entry.road, sorted(entry.vehicles.items())))
+
+
+def _digest(*parts: str) -> str:
+    return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
 
 
 def _drive(facts: Facts) -> JudgedDrive | None:

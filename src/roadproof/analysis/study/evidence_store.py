@@ -8,7 +8,7 @@ import hashlib
 import json
 import os
 from collections.abc import Callable, Container, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -34,6 +34,7 @@ class Question:
     """What is asked: ``schema`` is that of the index, ``said`` what the index says once for all answers.
 
     ``more`` is what else an answer depends on. ``find_label`` knows the names of claims, where they have any.
+    ``of_some``: what only some answers depend on, whose keys say it (``Study.key``).
     """
 
     schema: str
@@ -41,6 +42,7 @@ class Question:
     more: Mapping[str, str]
     library: Library
     find_label: FindLabel = without_labels
+    of_some: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def options(self) -> dict[str, str]:
@@ -61,7 +63,7 @@ class Question:
     @property
     def fingerprint(self) -> str:
         """A short text that changes with the question, with all that the library says, with the version."""
-        asked = json.dumps([dict(self.more), self.heading], sort_keys=True)
+        asked = json.dumps([{**self.more, **self.of_some}, self.heading], sort_keys=True)
         return hashlib.sha256(asked.encode()).hexdigest()[:16]
 
 

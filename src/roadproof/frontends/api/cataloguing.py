@@ -3,6 +3,7 @@
 import time
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import ClassVar, Unpack
 
@@ -44,9 +45,9 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record], Result):
     examination: Examination = field(kw_only=True)
     pieces: ClassVar[str] = "questions about abstract tests"
 
-    @property
+    @cached_property
     def known(self) -> Mapping[str, Kept]:
-        return self.found.answers
+        return self.study.in_order(self.found.answers)
 
     @property
     def tests(self) -> tuple[str, ...]:
@@ -69,8 +70,8 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record], Result):
 
     @property
     def evidence(self) -> tuple[Evidence, ...]:
-        found = [y for x in all_facts(self.found.answers) for y in (x.certificate, x.drive)]
-        claims = gap_answers(self.found.answers).values() if self.tested.gaps.asked else ()
+        found = [y for x in all_facts(self.known) for y in (x.certificate, x.drive)]
+        claims = gap_answers(self.known).values() if self.tested.gaps.asked else ()
         found += [x.certificate for x in claims if isinstance(x, ProofResult)]
         for answer in self.gap_answers.values():
             found += [] if answer is None else [answer.certificate, *(gap.drive for gap in answer.gaps)]
@@ -86,7 +87,7 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record], Result):
         return ExitCode.UNEXPECTED if found.missing or found.faults else ExitCode.AS_EXPECTED
 
     def _index(self, records: Mapping[str, kept.Record]) -> kept.Index:
-        return self.index(records, self.seconds)
+        return self.index(self.study.in_order(records), self.seconds)
 
     @property
     def _sheet(self) -> Sheet[kept.Target]:
@@ -108,7 +109,7 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record], Result):
             for x in reversed(targets)
             for test in (*x.possible, *x.tested)
         }
-        runs = {x.test: x.drive for x in all_facts(self.found.answers) if x.relation == "runs"}
+        runs = {x.test: x.drive for x in all_facts(self.known) if x.relation == "runs"}
         courses: dict[str, Courses | None] = {}
         for entry in self.catalogue.entries:
             if isinstance(entry, Concrete):
@@ -218,5 +219,10 @@ def catalogue(
     basis = basis_of(replace(wanted, sets=wanted.sets[:1]), given, given.vehicles)
     numbers = wanted.among(given.among) or numbers_of(wanted.specification)
     asked = drivers_of(wanted, models)
-    made = examine(request, basis, numbers, plain.specification, asked, given.jobs, given.progress)
+    made = examine(
+        request, basis, numbers, plain.specification, asked, given.jobs, given.progress, given.fresh
+    )
+    if made.known and given.say is not None:
+        told = f"{made.known} of {len(made.concrete)} tests were judged in earlier runs"
+        given.say(f"{told}; --fresh judges them again")
     return CatalogueAnswer.asked(made.study, given, more=lambda: {"examination": made}, begun=begun)

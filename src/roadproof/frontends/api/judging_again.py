@@ -70,7 +70,7 @@ def compare(told: FolderStatements, jobs: Jobs = None, progress: Progress | None
         numbers = tuple(Fields({"n": x}, f"{where}, scenarios").whole("n") for x in index.items("scenarios"))
         basis = basis_of(replace(home, sets=home.sets[:1]), Catalogue())
         drivers = drivers_of(home, request.drivers)
-        made = examine(request, basis, numbers, home.specification, drivers, jobs, progress)
+        made = examine(request, basis, numbers, home.specification, drivers, jobs, progress, fresh=True)
         facts = tuple(_facts(index, told.folder, made.study))
         gaps = dict(_gaps(index, made.study))
     except RoadproofError as error:
