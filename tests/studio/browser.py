@@ -13,7 +13,7 @@ _FLAGS = (
     *("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking"),
     *("--disable-component-update", "--disable-sync"),
 )
-SEEN = "localStorage.setItem('roadproof-tour', '\"seen\"')"
+SEEN = "if (location.protocol === 'http:') localStorage.setItem('roadproof-tour', 'true')"
 DROP = """(files) => {
   const carried = new DataTransfer();
   for (const x of files) carried.items.add(new File([x.content], x.name));

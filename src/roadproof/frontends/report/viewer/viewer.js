@@ -30,7 +30,7 @@ export function Viewer({ doc, look, titles = {}, theme = null, beside = null }) 
   const place = useRef(null);
   const gutter = useGutter(place);
   useEffect(() => play(look, drive), [drive]);
-  return html`<div class=${gutter < GUTTER.most ? "viewer narrow" : "viewer"} ref=${place} style=${{ "--gutter": `${gutter}px` }}>
+  return html`<div class="viewer" data-narrow=${gutter < GUTTER.most} ref=${place} style=${{ "--gutter": `${gutter}px` }}>
     <${Scene} ...${{ drive, time: look.time, toScale: look.toScale, theme }} />
     <p class="terms">${["envelope", "gap", "danger"].map((name) => html`<${Term} key=${name} name=${name} />`)}</p>
     <${Clock} ...${{ drive, look }} />
