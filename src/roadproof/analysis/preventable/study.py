@@ -5,7 +5,7 @@ formula is the boundary.
 """
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from itertools import product
@@ -26,7 +26,7 @@ from roadproof.engines.prove.prover import prove
 from roadproof.errors import InputError
 from roadproof.evidence.answers import plates as kept
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.evidence.kernel.accept import find_tableau
+from roadproof.evidence.kernel.accept import with_tableau
 from roadproof.evidence.settled import Settled
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.elaborate import read_tree
@@ -247,7 +247,7 @@ class Preventable(Unprepared):
             return LemmaResult(lemma, said, verdict=Verdict.UNKNOWN, reason=str(late))
         certificate = result.certificate
         if certificate is not None:
-            certificate = replace(certificate, tableau=find_tableau(certificate, home.library, query))
+            certificate = with_tableau(certificate, home.library, query)
         return LemmaResult(lemma, said, verdict=result.verdict, certificate=certificate, reason=result.reason)
 
     def wanted(self, known: Mapping[str, Answer]) -> Collection[str]:

@@ -6,7 +6,7 @@ without it; what is accepted has been in a file that Coq accepted whole, and tha
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 from roadproof.errors import RoadproofError
@@ -79,13 +79,20 @@ class KernelRulings:
     megabytes: float = 0.0
 
 
+def with_tableau(certificate: Certificate, library: Library, query: Query | None = None) -> Certificate:
+    """A certificate with its tableau, searched where it has none, if one is found. Coq is not asked.
+
+    ``query``: what its claim says, where that is known.
+    """
+    if certificate.tableau is not None:
+        return certificate
+    return replace(certificate, tableau=find_tableau(certificate, library, query))
+
+
 def find_tableau(
     certificate: Certificate, library: Library, query: Query | None = None
 ) -> tuple[str, ...] | None:
-    """The lines of a tableau for a certificate, None where none is found. Coq is not asked.
-
-    ``query``: its claim, where that is known.
-    """
+    """The lines of a tableau, None where none is found; ``query`` as for ``with_tableau``."""
     try:
         return lines(find(state(certificate, library, query).goal))
     except (NotFoundError, RoadproofError):
