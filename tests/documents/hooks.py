@@ -15,6 +15,7 @@ for folder in (ROOT / "tests", ROOT / "src"):
         sys.path.insert(0, str(folder))
 
 from documents.reference import PAGES  # noqa: E402
+from roadproof.frontends.report.viewer_page import design  # noqa: E402
 
 _LINK = re.compile(r"(?<!!)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s#]+)(#[^)]*)?\)")
 _FOR_DEVELOPERS = ("tests", "map")
@@ -35,9 +36,10 @@ def on_config(config: MkDocsConfig) -> MkDocsConfig:
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
-    """Add the pages that are generated from the program."""
+    """Add the pages that are generated from the program, and its design."""
     for name, write in PAGES.items():
         files.append(File.generated(config, name, content=write()))
+    files.append(File.generated(config, "assets/design.css", content=design()))
     return files
 
 

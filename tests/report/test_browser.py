@@ -128,4 +128,5 @@ def test_paper_is_light_and_has_the_grid_and_no_folded_part(browser, made):
     assert page.locator("summary", has_text="control: the converse of P1").is_visible()
     assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)"
     page.evaluate("dispatchEvent(new Event('afterprint'))")
-    assert page.evaluate("document.documentElement.dataset.theme") == "dark"
+    page.emulate_media(media="screen", color_scheme="dark")
+    assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(23, 27, 34)"

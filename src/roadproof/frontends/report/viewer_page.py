@@ -25,17 +25,15 @@ def viewer_modules() -> dict[str, str]:
 
 
 @cache
-def viewer_style() -> str:
-    """All styles of the viewer; a script says on the root element whether its colours are dark."""
-    colours = f'{_text("tokens.css")}\n:root[data-theme="dark"] {{\n{_text("dark.css")}}}'
-    return "\n".join((_text("vendor/uPlot.css"), colours, _text("viewer.css")))
+def design() -> str:
+    """Fonts, colours and badges of every page, light or dark as the system or ``data-theme`` says."""
+    return _text("design.css")
 
 
 @cache
-def plain_style() -> str:
-    """Colours and fonts for pages without scripts: dark on screens where the system's choice is dark."""
-    dark = f"@media screen and (prefers-color-scheme: dark) {{\n:root {{\n{_text('dark.css')}}}\n}}"
-    return f"{_text('tokens.css')}\n{dark}\n"
+def viewer_style() -> str:
+    """All styles of the viewer."""
+    return "\n".join((_text("vendor/uPlot.css"), design(), _text("viewer.css")))
 
 
 def _text(path: str) -> str:
@@ -53,7 +51,7 @@ style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'">
 <title>{title}</title>
 <style>{style}
 body {{ margin: 0 auto; max-width: 1500px; padding: 12px 16px; background: var(--paper); color: var(--ink);
-  font: 14px/1.4 system-ui, sans-serif; }}
+  font: 14px/1.4 var(--text); }}
 h1 {{ font-size: 18px; }}
 article {{ margin: 0 0 28px; }}
 </style>
@@ -69,8 +67,6 @@ article {{ margin: 0 0 28px; }}
 """
 _SCRIPT = """
 import {{ mount }} from "viewer/viewer";
-const dark = matchMedia("(prefers-color-scheme: dark)").matches;
-document.documentElement.dataset.theme = dark ? "dark" : "light";
 const documents = JSON.parse(document.getElementById("documents").textContent);
 documents.forEach((x, k) => mount(document.getElementById("document-" + k), x));
 """.replace("{{", "{").replace("}}", "}")

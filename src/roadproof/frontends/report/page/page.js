@@ -44,19 +44,14 @@ document.getElementById("unfold").addEventListener("click", () => {
   for (const part of document.querySelectorAll("details")) part.open = true;
 });
 
-// Paper is light, and parts of class "printed" are unfolded on it.
-const root = document.documentElement;
-let theme = "light";
+// Parts of class "printed" are unfolded on paper.
 let folded = [];
 addEventListener("beforeprint", () => {
-  theme = root.dataset.theme;
-  root.dataset.theme = "light";
   folded = [...document.querySelectorAll("details.printed:not([open])")];
   for (const part of folded) part.open = true;
 });
 addEventListener("afterprint", () => {
-  root.dataset.theme = theme;
   for (const part of folded) part.open = false;
 });
 
-root.dataset.ready = String(Math.round(performance.now()));
+document.documentElement.dataset.ready = String(Math.round(performance.now()));

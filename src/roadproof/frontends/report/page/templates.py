@@ -23,8 +23,8 @@ from roadproof.frontends.report.sheet import excerpt
 from roadproof.frontends.report.viewer_document import Document
 from roadproof.frontends.report.viewer_page import (
     as_url,
+    design,
     hash_of,
-    plain_style,
     viewer_modules,
     viewer_style,
 )
@@ -104,7 +104,7 @@ def _environment() -> "Environment":
 
 def style_without_scripts() -> str:
     """Colours, fonts and verdicts for pages without scripts."""
-    return plain_style() + _resource("pieces.css")
+    return design() + _resource("pieces.css")
 
 
 def render(template: str, **values: object) -> str:
@@ -117,7 +117,7 @@ def page(title: str, summary: str, sections: Sequence[str], documents: Sequence[
     texts = {**viewer_modules(), "page/tables": _resource("tables.js")}
     modules = {name: as_url(text) for name, text in texts.items()}
     imports = json.dumps({"imports": modules})
-    theme, script = _resource("theme.js"), _resource("page.js")
+    script = _resource("page.js")
     return render(
         "page.html",
         title=title,
@@ -125,10 +125,9 @@ def page(title: str, summary: str, sections: Sequence[str], documents: Sequence[
         sections=sections,
         documents=[_packed(x) for x in documents],
         style="\n".join((viewer_style(), _resource("page.css"), _resource("pieces.css"))),
-        theme=theme,
         imports=imports,
         script=script,
-        hashes=" ".join(map(hash_of, (theme, imports, script))),
+        hashes=" ".join(map(hash_of, (imports, script))),
     )
 
 

@@ -1,7 +1,7 @@
 // Curves over the clock of the strips: the margin of the selected part, speeds, gaps against RSS distances.
 
 import { html, UPlot, useEffect, useRef } from "vendor/view";
-import { colour, coloursOf } from "viewer/palette";
+import { colour, coloursOf, font } from "viewer/palette";
 import { stateAt } from "viewer/drive";
 import { Term, TERMS } from "viewer/terms";
 
@@ -106,7 +106,7 @@ function Plot({ plot, drive, look, gutter, theme }) {
 
 function draw(place, plot, drive, look, gutter) {
   const grid = { stroke: colour("--rule"), width: 1 };
-  const axis = { stroke: colour("--faint"), grid, ticks: grid, font: "11px system-ui, sans-serif" };
+  const axis = { stroke: colour("--faint"), grid, ticks: grid, font: font(11) };
   const options = {
     width: place.clientWidth || 600,
     height: HEIGHT,

@@ -1,10 +1,21 @@
-// Colours that colour-blind people tell apart (Okabe and Ito), from the style sheet of the page.
+// Colours and fonts of the design (design.css), for what is drawn on a canvas.
 
 const ORDER = ["--one", "--two", "--three", "--four"];
 
-/** The value of a custom property of the page. */
+const probe = document.createElement("i");
+probe.hidden = true;
+document.documentElement.append(probe);
+
+/** The value of a colour of the page, light or dark as the page is. */
 export function colour(name) {
-  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  probe.style.color = `var(${name})`;
+  return getComputedStyle(probe).color;
+}
+
+/** The font of texts in a size (px). */
+export function font(size, weight = 400) {
+  const family = getComputedStyle(document.documentElement).getPropertyValue("--text");
+  return `${weight} ${size}px ${family}`;
 }
 
 /** A colour for each vehicle, SV's first. */

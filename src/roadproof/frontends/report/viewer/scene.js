@@ -1,7 +1,7 @@
 // The road from above, driving direction to the right, the first vehicle always at the same place.
 
 import { html, useEffect, useRef } from "vendor/view";
-import { colour, coloursOf } from "viewer/palette";
+import { colour, coloursOf, font } from "viewer/palette";
 import { acrossOf, keptAt, shown, stateAt, windowOf } from "viewer/drive";
 
 const ZONES = { main: "main road", merge: "merge zone", depart: "departure zone" };
@@ -107,7 +107,7 @@ function paintRoad(brush, drive, place) {
     brush.setLineDash([]);
     if (s[0] !== null && s[0] > seen[0]) line(brush, box[0], box[1], box[0], box[1] + box[3]);
     brush.fillStyle = colour("--faint");
-    brush.font = "11px system-ui, sans-serif";
+    brush.font = font(11);
     brush.textAlign = "left";
     const words = zone === "main" ? lane : `${lane} · ${ZONES[zone]}`;
     brush.fillText(words, Math.max(4, box[0] + 4), place.y(d[1]) + 12);
@@ -118,7 +118,7 @@ function paintScale(brush, place) {
   const step = [5, 10, 20, 50, 100].find((x) => x * place.along > 56) ?? 200;
   brush.fillStyle = colour("--faint");
   brush.strokeStyle = colour("--rule");
-  brush.font = "11px system-ui, sans-serif";
+  brush.font = font(11);
   brush.textAlign = "center";
   for (let at = Math.ceil(place.low / step) * step; at <= place.high; at += step) {
     const x = (at - place.low) * place.along;
@@ -155,7 +155,7 @@ function paintNeeded(brush, drive, distance, time, place, colours) {
   if (distance.direction === "along") {
     line(brush, box[0] + box[2], box[1] - 3, box[0] + box[2], box[1] + box[3] + 3);
     brush.fillStyle = colour("--ink");
-    brush.font = "11px system-ui, sans-serif";
+    brush.font = font(11);
     brush.textAlign = "left";
     const words = `RSS to ${other} ${shown(needed)} m`;
     if (box[2] > 110) brush.fillText(words, box[0] + 8, box[1] + box[3] / 2 + 4);
@@ -182,7 +182,7 @@ function paintVehicle(brush, drive, name, time, place, colours) {
   brush.lineWidth = 1;
   brush.stroke();
   brush.fillStyle = colour("--ink");
-  brush.font = "600 12px system-ui, sans-serif";
+  brush.font = font(12, 600);
   brush.textAlign = "right";
   const words = `${name} ${shown(vLon * 3.6)} km/h`;
   const fits = box[0] > brush.measureText(words).width + 8;
