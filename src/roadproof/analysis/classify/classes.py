@@ -249,6 +249,6 @@ def _row(plan: Plan, group: Group, specification: Specification, number: int) ->
     return applied(specification, Scenario(number, specification.set_name), group.vehicles)
 
 
-def where_axis(plan: Plan, specification: Specification, vehicles: Sequence[str] = ANYBODY) -> Axis:
+def where_axis(plan: Plan, specification: Specification) -> Axis:
     """Which road sectors the vehicles are in at the start."""
-    return Axis((), {number: sector(specification, number, vehicles) for number in plan.sectors}, {})
+    return Axis((), {number: sector(specification, number, ANYBODY) for number in plan.sectors}, {})

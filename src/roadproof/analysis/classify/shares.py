@@ -6,7 +6,7 @@ and no further (``clip``): what does not happen on them does not happen.
 """
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TypeAlias
@@ -77,13 +77,12 @@ def count_shares(
     specification: Specification,
     values: Mapping[str, Fraction],
     recordings: Iterable[Recording],
-    kinds: Sequence[str] = ("Car",),
     source: str = "",
 ) -> Shares:
     """Count the classes in ``recordings``; ``specification`` is the set of the classes.
 
-    ``values``: parameters in SI units; ``kinds``: the vehicles that are looked at. What an earlier recording
-    has shown is left out. Raises ``InputError``.
+    ``values``: parameters in SI units. Cars are looked at; what an earlier recording has shown is left out.
+    Raises ``InputError``.
     """
     shares, counted = Shares(source=source), Counts()
     settings = Settings(
@@ -93,7 +92,7 @@ def count_shares(
         sets=(specification.set_name,),
         min_danger=(values[MIN_DANGER],),
         scenarios=(4,),
-        classes=tuple(kinds),
+        classes=("Car",),
         convention="clip",
     )
     known: dict[int, Questions] = {}

@@ -33,13 +33,14 @@ from roadproof.analysis.explore.search import (
     Stock,
     claim_of,
     dt_of,
+    look,
     made_for,
     missed,
     never,
     stages_for,
     values_of,
 )
-from roadproof.analysis.explore.values import PROOF, QUICK_PROOF, LookAll, look_one_by_one
+from roadproof.analysis.explore.values import PROOF, QUICK_PROOF
 from roadproof.analysis.study.pool import Say
 from roadproof.engines.encode.along import names_places
 from roadproof.engines.search.ask import Search
@@ -93,14 +94,12 @@ def soughts_of(asked: Explorable, explored: ExplorationResult, measure: Measure)
     return [ExtremeQuestion(asked.search, measure, asked.precision or PRECISION)]
 
 
-def find_extreme(
-    sought: ExtremeQuestion, look_all: LookAll = look_one_by_one, say: Say = say_nothing
-) -> Extreme:
+def find_extreme(sought: ExtremeQuestion, say: Say = say_nothing) -> Extreme:
     """Leap from drive to drive, then halve, until the bracket is as narrow as the precision.
 
     Raises ``InputError``, ``UsageError``, ``MissingSolverError``.
     """
-    return _ExtremeSearch(sought, look_all, say).run()
+    return _ExtremeSearch(sought, say).run()
 
 
 def unsought(sought: ExtremeQuestion, reason: str) -> Extreme:
@@ -110,10 +109,9 @@ def unsought(sought: ExtremeQuestion, reason: str) -> Extreme:
 
 
 class _ExtremeSearch:
-    def __init__(self, sought: ExtremeQuestion, look_all: LookAll, say: Say) -> None:
+    def __init__(self, sought: ExtremeQuestion, say: Say) -> None:
         self.sought = sought
         self.measure = sought.measure
-        self.look_all = look_all
         self.say = say
         self.search = with_point(sought.search, sought.knobs, sought.point)
         self.library = self.search.specification.library
@@ -191,9 +189,7 @@ class _ExtremeSearch:
     def look(self, value: Fraction | None, stages: tuple[Stage, ...] = PLAIN_FIRST) -> Reply:
         self.searches += 1
         query = with_parts(self.search.query, self.measure.bound(self.search, value))
-        [reply] = self.look_all(
-            [SearchTask(replace(self.search, query=query), stages_for(self.search, stages))]
-        )
+        reply = look(SearchTask(replace(self.search, query=query), stages_for(self.search, stages)))
         self.late |= reply.late
         return reply
 
@@ -300,7 +296,7 @@ def find_extremes(soughts: Sequence[ExtremeQuestion], find_all: FindAll) -> list
     for k, (sought, extreme) in enumerate(zip(soughts, found, strict=True)):
         if extreme.best is None or extreme.endless:
             continue
-        others = _ExtremeSearch(sought, look_one_by_one, say_nothing).best_of(drives)
+        others = _ExtremeSearch(sought, say_nothing).best_of(drives)
         further = others is not None and (others.at[0] - extreme.best.at[0]) * sought.measure.sign < 0
         if further and others is not None and others.drive is not None:
             again[k] = replace(sought, seeds=(others.drive,))

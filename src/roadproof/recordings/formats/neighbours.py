@@ -166,6 +166,6 @@ def told_overlap(overlap: Overlap) -> str:
     return f"vehicles {one} and {other} overlap in {frames} frames, by up to {depth:.2f} m"
 
 
-def describe_overlaps(recording: Recording, among: Pairs | None = None) -> Iterator[str]:
+def describe_overlaps(recording: Recording) -> Iterator[str]:
     """One line for each pair that overlaps."""
-    return map(told_overlap, find_overlaps(recording, among))
+    return map(told_overlap, find_overlaps(recording))
