@@ -13,6 +13,8 @@ drive``), ``export`` for other tools, and the errors that they raise. Each is im
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from roadproof.version import VERSION as __version__
+
 if TYPE_CHECKING:
     from roadproof.errors import InputError as InputError
     from roadproof.errors import MissingSolverError as MissingSolverError
@@ -74,7 +76,6 @@ if TYPE_CHECKING:
     from roadproof.runtime.progress import Stage as Stage
     from roadproof.verdict import Verdict as Verdict
 
-    __version__: str
 
 _PHRASES = (
     *("SV", "POV", "POV1", "POV2", "L", "F", "G", "U", "lanes", "lanelets", "zone", "adjacent_lanes"),
@@ -124,10 +125,6 @@ __all__ = [*_HOMES, "__version__"]
 
 
 def __getattr__(name: str) -> Any:
-    if name == "__version__":
-        from importlib.metadata import version
-
-        return version("roadproof")
     if name not in _HOMES:
         raise AttributeError(f"module 'roadproof' has no attribute '{name}'; there are {', '.join(_HOMES)}")
     return getattr(import_module(f"roadproof.{_HOMES[name]}"), name)

@@ -437,7 +437,7 @@ def test_answers_to_another_question_are_not_taken_over(folder: Path, other: Que
 
 
 def test_answers_of_another_version_are_not_taken_over(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("roadproof.evidence.heading.version", lambda name: "0.0.0")
+    monkeypatch.setattr("roadproof.evidence.heading.VERSION", "0.0.0")
     with pytest.raises(UsageError, match="the answers to another question"):
         kept(folder)
 

@@ -219,7 +219,7 @@ def test_results_of_another_version_are_not_kept(
 ) -> None:
     told: list[str] = []
     run_experiment(Experiment(folder, tmp_path, default_settings()))
-    monkeypatch.setattr(results, "version", lambda name: "0.0.0")
+    monkeypatch.setattr(results, "VERSION", "0.0.0")
     run_experiment(Experiment(folder, tmp_path, default_settings()), told.append)
     assert sum(line.startswith("[") for line in told) == 2
 

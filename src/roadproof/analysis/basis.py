@@ -3,13 +3,11 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from roadproof.analysis.study.evidence_store import readings
 from roadproof.engines.prove.induction import prove_of_scenarios
 from roadproof.engines.prove.prover import Result
-from roadproof.engines.search.ask import Search
-from roadproof.engines.search.question import Objective, SearchOptions, Setting
 from roadproof.evidence.settled import Settled
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.bind import values_with
@@ -19,6 +17,10 @@ from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.verdict import ProofVerdict, Verdict
 from roadproof.world.road import Road
 from roadproof.world.vehicle import Vehicle
+
+if TYPE_CHECKING:
+    from roadproof.engines.search.ask import Search
+    from roadproof.engines.search.question import Objective
 
 Claim = TypeVar("Claim")
 
@@ -46,7 +48,7 @@ class Basis:
     horizon: Fraction = Fraction(6)
     effort: Effort = field(default_factory=Effort)
     proof: float = 3.0
-    objective: Objective = "smooth"
+    objective: "Objective" = "smooth"
     vehicles: Mapping[str, Vehicle] = field(default_factory=dict)
 
     @property
@@ -80,8 +82,11 @@ class Basis:
 
     def search(
         self, query: Query, road: Road | None = None, effort: Effort | None = None, explain: bool = False
-    ) -> Search:
+    ) -> "Search":
         """A search for a drive on which ``query`` holds."""
+        from roadproof.engines.search.ask import Search  # here: proofs need not wait for numpy
+        from roadproof.engines.search.question import SearchOptions, Setting
+
         vehicles = {name: x for name, x in self.vehicles.items() if not name or name in query.vehicles}
         setting = Setting(road=road, vehicles=vehicles, values=self.values, horizon=self.horizon)
         search_options = SearchOptions(self.objective, effort=effort or self.effort, explain=explain)

@@ -6,16 +6,10 @@ from typing import Any
 from roadproof.errors import InputError
 from roadproof.evidence.strict import Fields
 from roadproof.library.specification import Library
+from roadproof.version import VERSION
 
 HEADING = ("schema", "roadproof", "library", "signals", "prevention")
 _FINGERPRINT = re.compile("[0-9a-f]{16}")
-
-
-def version(name: str) -> str:
-    """The version of an installed package; what tells it is imported when it is asked."""
-    from importlib import metadata
-
-    return metadata.version(name)
 
 
 def heading(schema: str, library: Library) -> dict[str, Any]:
@@ -24,7 +18,7 @@ def heading(schema: str, library: Library) -> dict[str, Any]:
     ``signals`` tells what is supposed of own signals, where there are some that are not derived.
     """
     free = {"signals": library.freedom} if library.freedom else {}
-    return {"schema": schema, "roadproof": version("roadproof"), "library": library.fingerprint, **free}
+    return {"schema": schema, "roadproof": VERSION, "library": library.fingerprint, **free}
 
 
 def library_of(data: Fields) -> str | None:

@@ -16,12 +16,17 @@ from typing import Any
 from roadproof.drivers.restriction import told
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.answers.reader import FindLabel, without_labels
-from roadproof.evidence.certificate import Certificate, certificate_data, read_certificate_data, to_json
+from roadproof.evidence.certificate import (
+    SCHEMAS_READ,
+    Certificate,
+    certificate_data,
+    read_certificate_data,
+    to_json,
+)
 from roadproof.evidence.drive_file import natural_of, read_drive
 from roadproof.evidence.heading import heading
 from roadproof.evidence.journal import ANSWERS, HEAD, answers_of, head_of, read_kept, seal_of
 from roadproof.evidence.judged import JudgedDrive, KnownDrive
-from roadproof.evidence.kernel.accept import find_tableau
 from roadproof.evidence.strict import LARGEST_EVIDENCE, Json, JsonObject, read_json
 from roadproof.library.specification import Library, Specification
 from roadproof.runtime.files import json_bytes, make_folder, write_json, write_whole
@@ -97,8 +102,13 @@ class EvidenceStore:
         if self.folder is None:
             return certificate_data(replace(certificate, tableau=None))
         if certificate.tableau is None:
-            certificate = replace(certificate, tableau=find_tableau(certificate, self.library))
+            certificate = self._with_tableau(certificate)
         return self._put(self.folder, name, to_json(certificate).encode())
+
+    def _with_tableau(self, certificate: Certificate) -> Certificate:
+        from roadproof.evidence.kernel.accept import find_tableau  # here: most answers write no file
+
+        return replace(certificate, tableau=find_tableau(certificate, self.library))
 
     def drive(self, name: str, drive: JudgedDrive | None) -> str | JsonObject | None:
         """The name of a drive file, or its data."""
@@ -117,10 +127,18 @@ class EvidenceStore:
         content, where = self._get(kept), str(kept)[:60]
         return JudgedDrive(read_drive(content, where), self.library, natural_of(content, where))
 
-    def adopt(self, files: Mapping[str, str]) -> None:
-        """Take over the texts of evidence files by name, which were checked when they were made."""
-        if self.folder is not None:
-            for name, text in files.items():
+    def adopt(self, files: Mapping[str, str], whole: bool) -> None:
+        """Take over the texts of evidence files by name, which were checked when they were made.
+
+        Unless they are ``whole``, a tableau is searched for each certificate.
+        """
+        if self.folder is None:
+            return
+        for name, text in files.items():
+            content = None if whole else json.loads(text)
+            if content is not None and content.get("schema") in SCHEMAS_READ:
+                self.certificate(name, read_certificate_data(content, name))
+            else:
                 self._put(self.folder, name, text.encode())
 
     def _put(self, folder: Path, name: str, content: bytes) -> str:
@@ -182,17 +200,24 @@ class EvidenceStore:
 
 
 class EvidenceTexts(EvidenceStore):
-    """Evidence held as the texts of its files; drives among them were judged when they were made."""
+    """Evidence held as the texts of its files; drives among them were judged when they were made.
 
-    def __init__(self, question: Question, files: Mapping[str, str] | None = None) -> None:
+    Unless it is ``whole``, certificates have no tableau, whose search can take longer than the proof.
+    """
+
+    def __init__(
+        self, question: Question, files: Mapping[str, str] | None = None, whole: bool = True
+    ) -> None:
         super().__init__(None, question)
-        self.files = dict(files or {})
+        self.files, self.whole = dict(files or {}), whole
 
     def certificate(self, name: str, certificate: Certificate | None) -> str | None:
         if certificate is None:
             return None
-        if certificate.tableau is None:
-            certificate = replace(certificate, tableau=find_tableau(certificate, self.library))
+        if not self.whole:
+            certificate = replace(certificate, tableau=None)
+        elif certificate.tableau is None:
+            certificate = self._with_tableau(certificate)
         return self._hold(name, to_json(certificate))
 
     def drive(self, name: str, drive: JudgedDrive | None) -> str | None:

@@ -12,7 +12,7 @@ from typing import Any, Generic, Protocol, TypeVar
 
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.evidence_store import EvidenceStore, EvidenceTexts, Question
-from roadproof.analysis.study.known import KnownAnswer, KnownAnswers, Origin
+from roadproof.analysis.study.known import KnownAnswer, KnownAnswers, Origin, is_off
 from roadproof.analysis.study.known import told as told_known
 from roadproof.analysis.study.pool import Progress
 from roadproof.errors import InputError, SharedError, UsageError
@@ -227,10 +227,10 @@ class _Run(Generic[Piece, Answer, Record]):
     def keep(self, name: str, answer: Answer) -> None:
         """Keep an answer that was computed, for this run and, where it stands, for later ones."""
         self.add(name, _keep(self.study, name, answer, self.shelf), answer)
-        key = self.study.key(name) if self.study.is_sure(answer) else None
+        key = None if is_off() or not self.study.is_sure(answer) else self.study.key(name)
         if key is not None:
             self.has_remembered = True
-            self.known_before.remember(name, key, known_answer(self.study, name, answer))
+            self.known_before.remember(name, key, known_answer(self.study, name, answer, whole=False))
 
 
 def _known(
@@ -250,14 +250,16 @@ def _known(
         return None
     if said != name:
         return None
-    shelf.adopt(found.files)
+    shelf.adopt(found.files, whole=found.origin == "shipped")
     shelf.keep(name, dict(found.record), study.is_sure(answer))
     return found.origin, record, answer
 
 
-def known_answer(study: Study[Piece, Answer, Record], name: str, answer: Answer) -> KnownAnswer:
-    """An answer with the texts of its evidence."""
-    texts = EvidenceTexts(study.question)
+def known_answer(
+    study: Study[Piece, Answer, Record], name: str, answer: Answer, whole: bool = True
+) -> KnownAnswer:
+    """An answer with the texts of its evidence, as ``EvidenceTexts`` has them."""
+    texts = EvidenceTexts(study.question, whole=whole)
     record = write(study.record(name, answer, texts))
     return KnownAnswer(record, texts.files)
 

@@ -16,11 +16,11 @@ from pathlib import Path
 from typing import Literal
 
 from roadproof.errors import InputError
-from roadproof.evidence.heading import version
 from roadproof.evidence.strict import Fields, JsonObject
 from roadproof.runtime.cache import keep_bytes, kept_bytes, make_room
 from roadproof.runtime.files import write_whole
 from roadproof.runtime.package_data import shipped
+from roadproof.version import VERSION
 
 SCHEMA = "roadproof/known/1"
 SWITCH = "ROADPROOF_KNOWN"
@@ -60,11 +60,11 @@ class KnownAnswers:
         """Those to a question with answers of ``schema``; parameters and files count where they are used."""
         rest = {name: value for name, value in said.items() if name not in ("parameters", "specs")}
         kind = schema.removeprefix("roadproof/").partition("/")[0]
-        return cls(kind, _digest(version("roadproof"), schema, rest, dict(more)))
+        return cls(kind, _digest(VERSION, schema, rest, dict(more)))
 
     def find(self, name: str, key: str) -> KnownAnswer | None:
         """The answer of this name, where all that it depends on has the digest ``key``."""
-        if os.environ.get(SWITCH) == "off":
+        if is_off():
             return None
         found = self.read(shipped("proofs") / "known").get(self.entry(name, key))
         if found is not None:
@@ -74,9 +74,8 @@ class KnownAnswers:
 
     def remember(self, name: str, key: str, answer: KnownAnswer) -> None:
         """Keep an answer in the cache of this user."""
-        if os.environ.get(SWITCH) != "off":
-            data = lzma.compress(json.dumps(answer.content).encode(), preset=0)
-            keep_bytes(CACHE, self._cached(name, key), data)
+        data = lzma.compress(json.dumps(answer.content).encode(), preset=0)
+        keep_bytes(CACHE, self._cached(name, key), data)
 
     def make_room(self) -> None:
         """Keep the cache within its bounds."""
@@ -104,6 +103,11 @@ class KnownAnswers:
 
     def _cached(self, name: str, key: str) -> str:
         return _digest(self.asked, self.entry(name, key), _sources())
+
+
+def is_off() -> bool:
+    """Whether no answer is known and none is kept."""
+    return os.environ.get(SWITCH) == "off"
 
 
 def _digest(*parts: object) -> str:
@@ -138,6 +142,6 @@ def told(origins: Sequence[Origin], total: int) -> Iterator[str]:
     if origins:
         shipped_here = origins.count("shipped")
         kept = len(origins) - shipped_here
-        parts = [f"{shipped_here} shipped with roadproof {version('roadproof')}"] if shipped_here else []
+        parts = [f"{shipped_here} shipped with roadproof {VERSION}"] if shipped_here else []
         parts += [f"{kept} of earlier runs"] if kept else []
         yield f"{len(origins)} of {total} answers were known: {', '.join(parts)}; --fresh computes them again"

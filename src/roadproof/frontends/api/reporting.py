@@ -8,7 +8,6 @@ from typing import Unpack
 from roadproof.errors import RoadproofError, UsageError
 from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.evidence.folder import INDEX
-from roadproof.evidence.heading import version
 from roadproof.frontends.api.checking import CheckReport, check
 from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.results import Given, Result, read_results
@@ -24,6 +23,7 @@ from roadproof.library.specification import Library
 from roadproof.library.words import words_of
 from roadproof.runtime.files import whole_file
 from roadproof.verdict import ExitCode
+from roadproof.version import VERSION
 
 
 @dataclass(frozen=True, repr=False)
@@ -101,7 +101,7 @@ def page(*results: str | Path, out: str | Path, **options: Unpack[PageKeywords])
 
 def _made(checked: CheckReport | None, library: Library) -> Iterator[tuple[str, str]]:
     """What made the page, and what nothing was compared with."""
-    yield "page made by", f"roadproof {version('roadproof')} with definitions {library.fingerprint}"
+    yield "page made by", f"roadproof {VERSION} with definitions {library.fingerprint}"
     if checked is not None:
         for folder, fields in checked.not_checked.items():
             yield f"not checked in {folder}", ", ".join(fields)

@@ -6,7 +6,6 @@ from importlib import resources
 from pathlib import Path
 from typing import Unpack
 
-from roadproof.evidence.heading import version
 from roadproof.frontends.api.definitions import Definitions, load
 from roadproof.frontends.atlas import overview_pages as overviews
 from roadproof.frontends.atlas.answers import EVIDENCE, Answers, ask
@@ -18,6 +17,7 @@ from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.studies import Atlas as Settings
 from roadproof.runtime.files import make_folder, write_whole
 from roadproof.verdict import ExitCode
+from roadproof.version import VERSION
 
 STYLE = "atlas.css"
 
@@ -70,7 +70,7 @@ def _write(answers: Answers, drawn: dict[str, DrivePicture]) -> Iterator[str]:
     shared = {
         "answers": answers,
         "page_of": overviews.page_of,
-        "version": version("roadproof"),
+        "version": VERSION,
         "set": answers.home.alone.set_name,
         "check": f"roadproof check {EVIDENCE}",
     }

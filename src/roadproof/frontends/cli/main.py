@@ -19,6 +19,7 @@ from roadproof.frontends.cli.streams import FULL, forget_output, make_streams_le
 from roadproof.frontends.cli.supervising import supervise
 from roadproof.frontends.cli.terminal import dress_output
 from roadproof.verdict import ExitCode
+from roadproof.version import VERSION
 
 TRACEBACK = "ROADPROOF_TRACEBACK"
 
@@ -113,9 +114,7 @@ def _try_paths(target: str | None, out: Path | None) -> None:
 
 
 def _print_version() -> int:
-    from importlib.metadata import version
-
-    print(f"roadproof {version('roadproof')}")
+    print(f"roadproof {VERSION}")
     return ExitCode.AS_EXPECTED
 
 

@@ -10,7 +10,6 @@ import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from fractions import Fraction
-from importlib.metadata import version
 from io import TextIOWrapper
 from itertools import product
 from pathlib import Path
@@ -40,6 +39,7 @@ from roadproof.recordings.evaluate.totals import (
 )
 from roadproof.recordings.formats.repeats import FramePair
 from roadproof.runtime.files import make_folder, whole_file
+from roadproof.version import VERSION
 
 RECORDING_SCHEMA = "roadproof/recording-findings/4"
 MATCH_COLUMNS = tuple(
@@ -54,7 +54,7 @@ def question_mark(settings: Settings) -> str:
     """Changes whenever the settings, the specification or the version of this program do."""
     told = {
         "schema": RECORDING_SCHEMA,
-        "version": version("roadproof"),
+        "version": VERSION,
         "settings": write(_kept_settings(settings)),
         "specification": {name: source.text for name, source in sorted(settings.library.sources.items())},
     }

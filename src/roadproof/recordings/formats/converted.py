@@ -13,7 +13,6 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import fields
 from fractions import Fraction
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -38,6 +37,7 @@ from roadproof.recordings.formats.source import Files, Format, RecordingSource, 
 from roadproof.recordings.formats.table import Column, Frame, polars_module
 from roadproof.recordings.formats.windows import Window, WindowedRecording, divide
 from roadproof.runtime.files import read_limited, write_json, write_whole
+from roadproof.version import VERSION
 from roadproof.world.road import Lanelet
 from roadproof.world.signals import RECORDED
 
@@ -94,7 +94,7 @@ def head_of(recording: Recording, form: str, digests: Mapping[str, str], rows: i
     """
     said = {
         "schema": SCHEMA,
-        "roadproof": version("roadproof"),
+        "roadproof": VERSION,
         "made_of": {"format": form, "sha256": dict(digests)},
         "samples": {"rows": rows, "sha256": digest},
         **_said(recording),
@@ -232,10 +232,10 @@ def _read_head(head: Path) -> Head:
     said: Head = json.loads(read_limited(head, _LARGEST_HEAD, "it is none of ours"))
     if said["schema"] != SCHEMA:
         raise InputError(f"{head}: schema={said['schema']!r}, but must be {SCHEMA!r}")
-    if said["roadproof"] != version("roadproof"):
+    if said["roadproof"] != VERSION:
         raise InputError(
             f"{head}: it was converted by version {str(said['roadproof'])[:40]}, and this is "
-            f"{version('roadproof')}, which may read recordings otherwise; convert them again"
+            f"{VERSION}, which may read recordings otherwise; convert them again"
         )
     if said["sha256"] != digest_of(said):
         raise InputError(f"{head}: its content is not what convert wrote (sha256 differs); convert again")

@@ -1,0 +1,3 @@
+"""The version of roadproof, which pyproject.toml reads from here."""
+
+VERSION = "0.1.0"
