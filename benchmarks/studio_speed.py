@@ -97,31 +97,50 @@ def stopping(tab: Tab, process: int) -> float:
     return time.perf_counter() - begun
 
 
+def begin(tab: Tab) -> None:
+    """Scenario 1 where danger begins."""
+    tab.page.locator(".clock .danger").click()
+    tab.leave()
+
+
+def explain(tab: Tab) -> None:
+    """Why scenario 1 is false where danger begins, beside its answer."""
+    tab.press("f")
+    tab.answered("WITNESSED")
+    begin(tab)
+    tab.press("e")
+    tab.see(".row.because")
+
+
+def compare(tab: Tab) -> None:
+    """Scenario 1 with a looser danger, before against after the edit."""
+    tab.write("definitions", LOOSE)
+    tab.press("c")
+    tab.answered("REFUTED", 2)
+    tab.see(".strips.before")
+
+
+PICTURES = {
+    "studio": ("light", begin),
+    "studio-explain": ("dark", explain),
+    "studio-compare": ("light", compare),
+}
+
+
 def draw(folder: Path) -> None:
     """The pictures of docs/how-to/studio.md."""
     folder.mkdir(parents=True, exist_ok=True)
-    with running() as (address, _), browsing() as browser:
-        tab = Tab(browser, address)
-        tab.page.set_viewport_size({"width": 1400, "height": 860})
-        tab.write("asked", "scenario_1(SV,POV,L)")
-        tab.press("f")
-        tab.answered("WITNESSED")
-        tab.page.locator(".clock .danger").click()
-        tab.page.wait_for_timeout(1500)
-        tab.page.screenshot(path=folder / "studio.png")
-        tab.press("e")
-        tab.see(".row.because")
-        tab.press("t")
-        tab.page.wait_for_timeout(1000)
-        tab.page.screenshot(path=folder / "studio-explain.png")
-        tab.press("t", "e")
-        tab.write("definitions", LOOSE)
-        tab.page.wait_for_timeout(500)
-        tab.press("c")
-        tab.answered("REFUTED", 1)
-        tab.page.wait_for_timeout(1500)
-        tab.page.screenshot(path=folder / "studio-compare.png")
-        tab.close()
+    with running(known=True) as (address, _), browsing() as browser:
+        for name, (scheme, act) in PICTURES.items():
+            tab = Tab(browser, address, color_scheme=scheme, reduced_motion="reduce")
+            tab.page.set_viewport_size({"width": 1400, "height": 860})
+            tab.until("() => document.querySelectorAll('.gallery .picture').length === 24")
+            tab.holds("true")
+            act(tab)
+            tab.page.mouse.move(1, 90)
+            tab.page.wait_for_timeout(500)
+            tab.page.screenshot(path=folder / f"{name}.png")
+            tab.close()
 
 
 def main() -> None:

@@ -295,6 +295,7 @@ def test_the_form_of_the_page_follows_the_options_of_questions() -> None:
         ({"count": 13}, "count=13: ask for 1 to 12"),
         ({"formula": "x" * 200_001}, "formula has 200001 characters"),
         ({"more": 1}, "unknown field 'more'"),
+        ({"scenarios": [*range(25)]}, "scenarios=25: at most 24 are shown at once"),
         ({"explain": {"part": 0, "at": 3601}}, "explain an instant from 0 to 3600 s"),
         ({"watches": ["true"] * 13}, "at most 12 formulas are watched"),
     ],

@@ -158,7 +158,8 @@ function paintNeeded(brush, drive, distance, time, place, colours) {
     brush.font = font(11);
     brush.textAlign = "left";
     const words = `RSS to ${other} ${shown(needed)} m`;
-    if (box[2] > 110) brush.fillText(words, box[0] + 8, box[1] + box[3] / 2 + 4);
+    const below = box[3] > 34 ? box[3] - 5 : box[3] / 2 + 4; // below the names of vehicles
+    if (box[2] > 110) brush.fillText(words, box[0] + 8, box[1] + below);
   } else {
     line(brush, box[0] - 3, box[1], box[0] + box[2] + 3, box[1]);
   }

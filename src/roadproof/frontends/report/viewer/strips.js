@@ -134,7 +134,7 @@ export function Strips({ formula, index, drive, look, title, beside = null }) {
     }
   };
   return html`<section class=${`strips ${formula.role}`} aria-label=${title}>
-    <h3>${title} ${html`<span class=${formula.undecided ? "" : formula.holds ? "holds" : "fails"}>${formula.undecided ? "undecided" : formula.holds ? "true" : "false"} at 0 s</span>`} <${Term} name="strip" label="strips?" /></h3>
+    <h3>${title} ${html`<span class=${formula.undecided ? "" : formula.holds ? "holds" : "fails"}>${formula.undecided ? "undecided" : formula.holds ? "true" : "false"} at 0 s</span>`} ${index === 0 ? html`<${Term} name="strip" label="strips?" />` : null}</h3>
     ${beside?.parts
       ? html`<p class="legend"><span><i style=${{ background: "var(--true)" }}></i>after the edit</span><span><i style=${{ background: "var(--four)" }}></i>before the edit</span></p>`
       : null}

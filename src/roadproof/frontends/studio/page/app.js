@@ -146,7 +146,7 @@ async function begin() {
   keepAddress();
   followChanges();
   followEdits();
-  followSets(!said && !begun.shows);
+  followSets(!begun.shows);
   if (!said) welcome();
   document.documentElement.dataset.ready = "yes";
 }

@@ -9,7 +9,7 @@ import * as state from "studio/state";
 import { recall, remember } from "studio/store";
 
 const WIDE = 1180; // pixels from which there is room for it beside the other panes
-const SHARE = 8; // scenarios that are asked for at once
+const SHARE = 4; // scenarios that are asked for at once
 const FIRST = 1;
 
 const cards = signal(new Map()); // of the chosen set, by number
@@ -66,7 +66,9 @@ export function followSets(play) {
 }
 
 function isUntouched() {
-  return state.view.peek() === null && state.kept.text.peek() === "" && !state.job.peek();
+  const { drive, text, formula } = state.kept;
+  const isBlank = drive.peek() === null && text.peek() === "" && formula.peek() === state.FIRST_QUESTION;
+  return isBlank && state.view.peek() === null && !state.job.peek();
 }
 
 const numbersOf = (names) => names.scenarios.map((x) => x.number);
@@ -95,7 +97,7 @@ export function Gallery() {
   return html`<div class="drawer" onKeyDown=${onKey}>
     <div class="behind" onClick=${close}></div>
     <nav class="gallery" id="gallery" aria-label="Gallery">
-      <h2>Scenarios <small>click one: its drive plays</small>
+      <h2>Scenarios <small>click to play</small>
         <span class="right"><button class="icon" aria-label="Hide the gallery" title="Hide the gallery" onClick=${toggleGallery}>×</button></span>
       </h2>
       ${scenarios.length ? html`<${Cards} ...${{ scenarios }} />` : html`<p class="faint">The scenarios are being read …</p>`}

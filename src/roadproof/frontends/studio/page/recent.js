@@ -10,14 +10,14 @@ import { recall, remember } from "studio/store";
 const MOST = 12;
 const LONGEST = 20_000; // characters of definitions that are kept with a question
 const FIELDS = ["formula", "base", "text", "options", "params"];
-const WORDS = { find: "find", without: "without", prove: "prove", compare: "compare" };
+const JOBS = ["find", "without", "prove"];
 
 export const examples = signal([]);
 const recent = signal(readable(recall("recent", [])));
 
 /** What was kept, as far as it is ours: anything may be in the storage of a browser. */
 function readable(list) {
-  const isOurs = (x) => typeof x?.formula === "string" && typeof x.verdict === "string" && x.job in WORDS;
+  const isOurs = (x) => typeof x?.formula === "string" && typeof x.verdict === "string" && JOBS.includes(x.job);
   return (Array.isArray(list) ? list : []).filter(isOurs).slice(0, MOST);
 }
 
@@ -59,7 +59,7 @@ export function Try() {
       ? html`<h2>Recent questions <span class="right"><button onClick=${forget}>Forget</button></span></h2>
           <ul class="recent">${recent.value.map(
             (x) => html`<li><button title="Put this question back" onClick=${() => restore(x)}>
-              <${Word} verdict=${x.verdict} /><span class="what">${WORDS[x.job]}</span><code>${x.formula}</code>${x.text?.trim() ? html`<small>with definitions</small>` : null}
+              <${Word} verdict=${x.verdict} /><span class="what">${x.job}</span><code>${x.formula}</code>${x.text?.trim() ? html`<small>with definitions</small>` : null}
             </button></li>`,
           )}</ul>`
       : null}

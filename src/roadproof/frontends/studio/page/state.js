@@ -3,13 +3,14 @@
 import { computed, effect, signal } from "vendor/view";
 import { makeLook } from "viewer/viewer";
 
+export const FIRST_QUESTION = "scenario_1(SV,POV,L)";
 export const kept = {
   base: signal("base"),
   text: signal(""),
   before: signal(null),
   options: signal({}),
   params: signal({}),
-  formula: signal("scenario_1(SV,POV,L)"),
+  formula: signal(FIRST_QUESTION),
   watches: signal([]),
   settings: signal({}), // options of jobs that differ from their defaults, by name
   drive: signal(null),
