@@ -245,6 +245,26 @@ def test_the_tour_goes_back_and_escape_ends_it_and_gives_back_the_focus(tab: Tab
     assert tab.page.locator(".tour").count() == 0
 
 
+def test_there_is_one_plot_of_each_kind_whatever_widths_the_page_had(tab: Tab) -> None:
+    tab.holds("true")
+    for width in (390, 1440, 700, 820, 1100):
+        tab.page.set_viewport_size({"width": width, "height": 900})
+    tab.page.wait_for_timeout(300)
+    counts = "[...document.querySelectorAll('.plot .canvas')].map((x) => x.children.length)"
+    assert tab.page.evaluate(counts) == [1, 1, 1, 1]
+    box = "(name) => document.querySelector(name).getBoundingClientRect().left"
+    assert abs(tab.page.evaluate(box, ".track") - tab.page.evaluate(box, ".u-over")) < 3
+
+
+def test_the_keys_are_a_dialog_that_takes_the_focus_and_gives_it_back(tab: Tab) -> None:
+    tab.holds("true")
+    tab.page.get_by_role("button", name="Copy link").focus()
+    tab.press("?")
+    assert focused(tab) == "Close"
+    tab.press("Escape")
+    assert focused(tab) == "Copy link"
+
+
 def test_words_of_the_viewer_are_explained_on_focus_and_on_hover(tab: Tab) -> None:
     tab.holds("true")
     for word in ("RSS envelope", "gap", "danger", "strips?", "margin?", "gap?"):

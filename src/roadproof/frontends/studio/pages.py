@@ -22,7 +22,7 @@ _OWN = (
     *("store", "server", "address", "state", "history", "recent", "editor", "actions", "live"),
     *("picture", "gallery", "tour", "bar", "side", "app"),
 )
-MOST_FILES, LARGEST_FILE = 60, 1_000_000  # of a folder that is looked through; bytes
+MOST_FILES, LARGEST_FILE = 200, 1_000_000  # of a folder that is looked through; bytes
 
 
 @dataclass(frozen=True)

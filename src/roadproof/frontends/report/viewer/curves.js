@@ -69,7 +69,9 @@ function Plot({ plot, drive, look, gutter, theme }) {
   const place = useRef(null);
   useEffect(() => {
     let made = null;
+    let isGone = false;
     const make = () => {
+      if (isGone) return;
       made?.destroy();
       made = draw(place.current, plot, drive, look, gutter);
     };
@@ -82,6 +84,7 @@ function Plot({ plot, drive, look, gutter, theme }) {
     });
     watching.observe(place.current);
     return () => {
+      isGone = true;
       stop();
       stopTheme();
       watching.disconnect();

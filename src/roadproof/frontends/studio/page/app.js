@@ -1,6 +1,6 @@
 // The page: panes side by side, keys, and the address.
 
-import { effect, html, render } from "vendor/view";
+import { effect, html, render, useLayoutEffect, useRef } from "vendor/view";
 import { toggle, Viewer } from "viewer/viewer";
 import * as actions from "studio/actions";
 import { fromAddress, toAddress } from "studio/address";
@@ -50,13 +50,23 @@ const MORE = [
 ];
 
 function Help() {
-  if (!state.help.value) return null;
+  return state.help.value ? html`<${Keys} />` : null;
+}
+
+/** The keys; the dialog takes the focus and gives it back. */
+function Keys() {
+  const main = useRef(null);
+  useLayoutEffect(() => {
+    const before = document.activeElement;
+    main.current.focus();
+    return () => before?.isConnected && before.focus();
+  }, []);
   const close = () => (state.help.value = false);
-  return html`<div class="help" role="dialog" aria-label="Keys" onClick=${close}>
+  return html`<div class="help" role="dialog" aria-modal="true" aria-label="Keys" onClick=${close}>
     <div class="card">
       <h2>Keys</h2>
       <dl>${[...KEYS.map(([key, text]) => [key === " " ? "Space" : key, text]), ...MORE].map(([key, text]) => html`<dt><kbd>${key}</kbd></dt><dd>${text}</dd>`)}</dl>
-      <button onClick=${close}>Close</button> <button onClick=${startTour}>Take the tour</button>
+      <button ref=${main} onClick=${close}>Close</button> <button onClick=${startTour}>Take the tour</button>
     </div>
   </div>`;
 }
