@@ -1,5 +1,6 @@
 """The page of a report in a real browser: it fits, plays, sorts, filters, and can be used by keyboard."""
 
+import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -8,7 +9,7 @@ import pytest
 
 import roadproof as rp
 from report.reading import PALE, opened
-from report.test_page import hostile_overlap
+from report.test_page import hostile_answers, hostile_overlap
 from report.test_summary import claims_of, written
 from studio.browser import browsing, why_none
 
@@ -32,9 +33,24 @@ def made(tmp_path_factory) -> Path:
     return rp.page(*written(folder, **answers), *drives, out=folder / "page.html", jobs=1).path
 
 
+@pytest.fixture(scope="module")
+def kinds(tmp_path_factory) -> Path:
+    """A page with a section of each kind of result."""
+    folder = tmp_path_factory.mktemp("kinds")
+    drive = json.loads(min(DRIVES.glob("*.json")).read_text("utf-8"))
+    versions = {"compare": 2, "monitor": 2, "traffic-results": 3}
+    answers = {
+        kind: {"schema": f"roadproof/{kind}/{versions.get(kind, 1)}", **data}
+        for kind, data in hostile_answers(drive).items()
+    }
+    return rp.page(*written(folder, **answers), out=folder / "page.html", jobs=1).path
+
+
 @pytest.mark.parametrize("width", [390, 1280])
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_the_page_fits_and_can_be_read(browser, made, width, scheme):
+@pytest.mark.parametrize("which", ["made", "kinds"])
+def test_the_page_fits_and_can_be_read(browser, request, which, width, scheme):
+    made = request.getfixturevalue(which)
     page, faults = opened(browser, made, viewport={"width": width, "height": 900}, color_scheme=scheme)
     page.evaluate("document.querySelectorAll('details').forEach((x) => { x.open = true; })")
     assert page.evaluate("document.documentElement.scrollWidth") <= width

@@ -14,6 +14,7 @@ from roadproof.frontends.report.page.results import Given, Result, read_results
 from roadproof.frontends.report.page.sections import drive_section, evidence_section, section
 from roadproof.frontends.report.page.summary import summary_section
 from roadproof.frontends.report.page.templates import page as page_of
+from roadproof.frontends.report.sheet import excerpt
 from roadproof.frontends.settings import questions as settings
 from roadproof.frontends.settings.keywords import CheckKeywords, PageKeywords
 from roadproof.frontends.settings.option import takes
@@ -88,7 +89,7 @@ def page(*results: str | Path, out: str | Path, **options: Unpack[PageKeywords])
         key=lambda x: x.overview.rank,
     )
     sections += [evidence_section(alone, book, asked.solver)] if alone else []
-    said = asked.title or f"roadproof: {', '.join(x.name or str(x) for x in paths)[:120]}"
+    said = asked.title or excerpt(f"roadproof: {', '.join(x.stem or str(x) for x in paths)}", 120)
     findings = () if checked is None else checked.findings
     summary = summary_section(
         [x.overview for x in sections], findings, asked.solver, given.results, _made(checked, library)

@@ -29,6 +29,8 @@ COLOURS: Mapping[str, str] = {
     "rss": "#7d3c98",
     "fsm": "#8a6d1b",
 }
+_TOKENS = {"careful": "one", "r157": "two", "eu1426": "three", "rss": "four", "fsm": "open"}
+"""The colours of models on pages, as names of the design."""
 _STEPPED = "Single lines: places looked at, stepped at 10 Hz; nothing is claimed between them"
 _LEGEND = 1.9, 0.2  # inches for the name of a model
 _LETTERS = 21  # of a line below the plates, an inch
@@ -286,7 +288,7 @@ def plane_of(index: kept.Index) -> "_Plane":
 
 
 def _colour(model: str) -> str:
-    return COLOURS.get(model, "#555555")
+    return f"var(--{_TOKENS.get(model, 'faint')})"
 
 
 class _Span(NamedTuple):

@@ -24,6 +24,9 @@ _ANCHORS = {
 }
 """What the ids of entries begin with, by kind of result and field; other entries have no id of their own."""
 
+_REMARKS = {"faults": "fault", "doubts": "doubt", "contradictions": "contradiction"}
+"""Remarks of a catalogue about its tests, which are to be read soon."""
+
 
 @dataclass(frozen=True)
 class Statement:
@@ -40,7 +43,11 @@ class Statement:
 
 @dataclass(frozen=True)
 class Overview:
-    """A section of the page in a line; ``told``: its answer in words, where it has no verdicts."""
+    """A section of the page in a line.
+
+    ``told``: counts in words; ``rejected``: how many reasons there are to reject its evidence; ``remarked``:
+    whether tests have faults.
+    """
 
     title: str
     question: str
@@ -50,6 +57,7 @@ class Overview:
     told: str = ""
     statements: Sequence[Statement] = ()
     rejected: int = 0
+    remarked: bool = False
 
     @property
     def verdicts(self) -> list[str]:
@@ -62,7 +70,7 @@ class Overview:
         if self.rejected:
             return 0
         surprising = any(x.verdict == "REFUTED" and x.expected is False for x in self.statements)
-        return 1 if surprising or any(x.verdict in OPEN for x in self.statements) else 2
+        return 1 if surprising or self.remarked or any(x.verdict in OPEN for x in self.statements) else 2
 
 
 def overview(result: Result, title: str, question: str, rejected: int = 0) -> Overview:
@@ -71,7 +79,9 @@ def overview(result: Result, title: str, question: str, rejected: int = 0) -> Ov
     target = f"result-{result.id}"
     statements = [Statement(str(x["verdict"]), _told(x), at, _is_expected(x, result)) for x, at in found]
     subject = _subject(result, [x for x, _ in found])
-    return Overview(title, question, target, result.name, subject, _counts_of(result), statements, rejected)
+    remarked = result.kind == "catalogue" and any(result.data.get(key) for key in _REMARKS)
+    told = _counts_of(result)
+    return Overview(title, question, target, result.name, subject, told, statements, rejected, remarked)
 
 
 def _statements(result: Result) -> Iterator[tuple[Mapping[str, Json], str]]:
@@ -164,20 +174,29 @@ def _texts(value: Json) -> list[str]:
 
 
 def _counts_of(result: Result) -> str:
-    """Of recordings how many were read, and how many critical traces match with the first ``minDanger``."""
+    """Of recordings and catalogues, what was counted."""
+    data = result.data
+    if result.kind == "catalogue":
+        counts = (("tests", "test"), *((key, words) for key, words in _REMARKS.items()))
+        found = [(len(x) if isinstance(x := data.get(key), list) else 0, words) for key, words in counts]
+        return ", ".join(f"{n} {_plural(words, n)}" for n, words in found if n)
     if result.kind != "traffic-results":
         return ""
-    table = result.data.get("table")
+    table = data.get("table")
     rows = [x for x in table if isinstance(x, dict)] if isinstance(table, list) else []
     sums: dict[str, Counter[str]] = {}
     for x in rows:
         if x.get("min_danger") == rows[0].get("min_danger"):
-            counts = {key: x[key] for key in ("matching", "traces") if isinstance(x.get(key), int)}
-            sums.setdefault(str(x.get("set")), Counter()).update(counts)
-    many = result.data.get("recordings")
-    read = f"{many} recording{'s' if many != 1 else ''}, {result.data.get('vehicles')} vehicles"
+            numbers = {key: x[key] for key in ("matching", "traces") if isinstance(x.get(key), int)}
+            sums.setdefault(str(x.get("set")), Counter()).update(numbers)
+    many = data.get("recordings")
+    read = f"{many} {_plural('recording', many)}, {data.get('vehicles')} vehicles"
     matches = [f"{n['matching']} of {n['traces']} critical traces match in {of}" for of, n in sums.items()]
     return excerpt("; ".join([read, *matches]), 300)
+
+
+def _plural(word: str, count: object) -> str:
+    return word if count == 1 else f"{word}s"
 
 
 def summary_section(
@@ -196,6 +215,7 @@ def summary_section(
         "summary.html",
         overviews=overviews,
         checked=summary(findings, solver) if any(x.kind != NO_EVIDENCE for x in findings) else "",
+        remarked=[x for x in overviews if x.remarked],
         wrong=[x for x in findings if x.outcome is not Acceptance.ACCEPTED and x.kind != NO_EVIDENCE],
         open=[x for x in said if x.verdict in OPEN],
         refuted=[x for x in said if x.verdict == "REFUTED" and x.expected is False],

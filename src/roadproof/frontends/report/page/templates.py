@@ -49,6 +49,8 @@ SIGNS: Mapping[str, Sign] = {
     "COVERED": Sign("✓", "proof"),
     "GAPS": Sign("■", "drive"),
     "UNKNOWN": _UNKNOWN,
+    "true": Sign("✓", "proof"),
+    "false": Sign("✗", "against"),
 }
 
 

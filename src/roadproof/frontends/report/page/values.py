@@ -96,7 +96,7 @@ def coverage(result: Result, context: PageContext, words: Words) -> dict[str, ob
 
 
 def order(result: Result, context: PageContext, words: Words) -> dict[str, object]:
-    """Implications, and a matrix of them; ``numbers`` of scenarios by name."""
+    """Implications, and a matrix of them."""
     index = read(implications.Index, result.data, result.name)
     numbers = {kind[0]: int(kind[0].partition("@")[0]) for kind in index.kinds}
     cells: dict[tuple[object, object], Linked] = {
@@ -116,7 +116,6 @@ def order(result: Result, context: PageContext, words: Words) -> dict[str, objec
     heads = [Heading(name, name, words.get(number)) for name, number in numbers.items()]
     return {
         "answer": index,
-        "numbers": numbers,
         "matrix": Matrix(heads, heads, cells),
         "same": [kind for kind in index.kinds if len(kind) > 1],
         "edges": {x.pair for x in index.edges},
