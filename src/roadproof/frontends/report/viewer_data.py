@@ -91,20 +91,24 @@ def _title(home: Specification, file: DriveFile) -> str:
 # --- the drive ----------------------------------------------------------------------------------
 
 
-def shown_drive(file: DriveFile, library: Library) -> DriveView:
-    """Road, vehicles by name (SV first) with their states at the knots, and distances every ``GRAIN`` s."""
-    directions: tuple[Direction, ...] = ("along", "across")
+def shown_drive(
+    file: DriveFile,
+    library: Library,
+    directions: Sequence[Direction] = ("along", "across"),
+    grain: Fraction = GRAIN,
+) -> DriveView:
+    """Road, vehicles by name (SV first) with their states at the knots, and distances every ``grain`` s."""
     return DriveView(
         file.set_name,
         float(file.horizon),
-        float(GRAIN),
+        float(grain),
         file.lanes,
         shown_road(file.road),
         {name: _shown_motion(file, name) for name in vehicles_of(file)},
         [
             DistanceView(direction, x.one, x.other, _short(x.gap), _short(x.needed), x.one_behind)
             for direction in directions
-            for x in distances_of(file, library, direction)
+            for x in distances_of(file, library, direction, grain)
         ],
         dangers_of(file, library),
     )

@@ -1,6 +1,7 @@
 """The gallery: scenarios of the chosen spec set, each with a drive that is known without a search."""
 
 from dataclasses import asdict
+from fractions import Fraction
 from functools import lru_cache
 
 from roadproof.evidence.judged import JudgedDrive
@@ -9,7 +10,8 @@ from roadproof.frontends.api.drives import known_drives
 from roadproof.frontends.report.viewer_data import shown_drive
 from roadproof.frontends.studio.requests import Answer, Ask
 from roadproof.library.scenarios import numbers_of
-from roadproof.library.words import words_of
+
+GRAIN = Fraction(1, 2)  # s between distances of a small picture
 
 
 def cards(ask: Ask, say: object) -> Answer:
@@ -29,9 +31,9 @@ def _cards(set_name: str, numbers: tuple[int, ...]) -> tuple[Answer, ...]:
 
 
 def _card(home: Definitions, number: int, drive: JudgedDrive | None) -> Answer:
-    words = words_of(home.specification, number)
-    formula = home.read(str(number)).text
-    told: Answer = {"number": number, "formula": formula, "sentence": words.sentence}
+    formula = home.read(str(number)).text if drive is None else drive.file.formula
+    told: Answer = {"number": number, "formula": formula}
     if drive is None:
         return told
-    return {**told, "drive": drive.as_data(), "picture": asdict(shown_drive(drive.file, home.library))}
+    picture = shown_drive(drive.file, home.library, ("along",), GRAIN)
+    return {**told, "drive": drive.as_data(), "picture": asdict(picture)}
