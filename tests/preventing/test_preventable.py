@@ -18,6 +18,7 @@ from roadproof.drivers.lemmas import lemmas_for
 from roadproof.drivers.lines import SIDES
 from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES, Plane, line
 from roadproof.drivers.models import MODELS, manoeuvre_of, models_for
+from roadproof.evidence.certificate import read_certificate
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.report import preventable as report
 from roadproof.logic import parse
@@ -158,8 +159,10 @@ def test_a_lemma_is_proved_and_kept_without_reading_its_text(monkeypatch, tmp_pa
     ((name, answer),) = study.settle(lemma).items()
     study.record(name, answer, shelf)
     assert read == ["r157_braking = 6 m/s^2"]
-    assert (tmp_path / "kept" / f"{name}.json").exists()
-    assert answer.certificate.tableau
+    kept = read_certificate(tmp_path / "kept" / f"{name}.json")
+    assert kept == answer.certificate
+    assert kept.tableau is not None
+    assert kept.query is None  # which is read of the text again, by whoever rests on it
 
 
 def test_a_false_lemma_is_refuted():

@@ -47,7 +47,8 @@ class Certificate:
     ``pinned``: values of parameters that the claim's own premise demands, as words (``minDanger = 0.6 s``);
     they are put in before anything is asked (``logic.pins``).
     ``tableau``: the same proof for Coq (``kernel.tableau``), as lines; None where there is none. Certificates
-    that differ in it alone are equal: it can be found again.
+    that differ in it alone are equal: it can be found again. ``query``: the claim as it was proved, for the
+    search of a tableau, on which nobody rests; None where a file was read, which has the text alone.
     """
 
     property: str
@@ -63,6 +64,7 @@ class Certificate:
     assumed: Assumption = NOTHING
     pinned: tuple[str, ...] = ()
     tableau: tuple[str, ...] | None = field(default=None, compare=False)
+    query: Query | None = field(default=None, compare=False, repr=False)
 
 
 def certify(
@@ -104,6 +106,7 @@ def certify(
         tuple(queries),
         assumed,
         pinned,
+        query=query,
     )
 
 

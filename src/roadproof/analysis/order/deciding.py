@@ -19,7 +19,6 @@ from roadproof.engines.search.question import usual_road
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.evidence.kernel.accept import with_tableau
 from roadproof.library.bind import bind
 from roadproof.library.compose import both, implication, negation
 from roadproof.library.scenarios import Scenario, applied, numbers_of, vehicles_of, without_sectors
@@ -307,8 +306,7 @@ class _DecisionJobs:
             claim = implication(self._query(mine), self._query(theirs))
             result = self.basis.proof_of(claim)
             if result.verdict is Verdict.PROVED and result.certificate is not None:
-                certificate = with_tableau(result.certificate, self.basis.library, claim)
-                self.edges.append(Edge(one, other, claim, certificate))
+                self.edges.append(Edge(one, other, claim, result.certificate))
                 return
         for reading in self._still_open(kind, target):
             if reading not in self.open[one, other]:

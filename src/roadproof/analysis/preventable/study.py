@@ -26,7 +26,6 @@ from roadproof.engines.prove.prover import prove
 from roadproof.errors import InputError
 from roadproof.evidence.answers import plates as kept
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.evidence.kernel.accept import with_tableau
 from roadproof.evidence.settled import Settled
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.elaborate import read_tree
@@ -245,10 +244,9 @@ class Preventable(Unprepared):
             result = prove(home, query, effort, assumed=Assumption(said))
         except BudgetExceeded as late:
             return LemmaResult(lemma, said, verdict=Verdict.UNKNOWN, reason=str(late))
-        certificate = result.certificate
-        if certificate is not None:
-            certificate = with_tableau(certificate, home.library, query)
-        return LemmaResult(lemma, said, verdict=result.verdict, certificate=certificate, reason=result.reason)
+        return LemmaResult(
+            lemma, said, verdict=result.verdict, certificate=result.certificate, reason=result.reason
+        )
 
     def wanted(self, known: Mapping[str, Answer]) -> Collection[str]:
         return [*self.plates, *self.lemmas]

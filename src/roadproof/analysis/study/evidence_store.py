@@ -100,7 +100,7 @@ class EvidenceStore:
         if certificate is None:
             return None
         if self.folder is None:
-            return certificate_data(replace(certificate, tableau=None))
+            return certificate_data(certificate)
         if certificate.tableau is None:
             certificate = self._with_tableau(certificate)
         return self._put(self.folder, name, to_json(certificate).encode())

@@ -6,7 +6,7 @@ without it; what is accepted has been in a file that Coq accepted whole, and tha
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 from roadproof.errors import RoadproofError
@@ -17,7 +17,7 @@ from roadproof.evidence.kernel.search import find
 from roadproof.evidence.kernel.source import Module, UnreasonedError, file, module
 from roadproof.evidence.kernel.statement import NO_PREMISES, Premises, Statement, state
 from roadproof.evidence.kernel.tableau import Tableau, lines, read_lines
-from roadproof.library.specification import Library, Query
+from roadproof.library.specification import Library
 
 # Those of Coq's real numbers and of classical logic; nothing else may be relied on.
 AXIOMS = frozenset(
@@ -79,22 +79,10 @@ class KernelRulings:
     megabytes: float = 0.0
 
 
-def with_tableau(certificate: Certificate, library: Library, query: Query | None = None) -> Certificate:
-    """A certificate with its tableau, searched where it has none, if one is found. Coq is not asked.
-
-    ``query``: what its claim says, where that is known.
-    """
-    if certificate.tableau is not None:
-        return certificate
-    return replace(certificate, tableau=find_tableau(certificate, library, query))
-
-
-def find_tableau(
-    certificate: Certificate, library: Library, query: Query | None = None
-) -> tuple[str, ...] | None:
-    """The lines of a tableau, None where none is found; ``query`` as for ``with_tableau``."""
+def find_tableau(certificate: Certificate, library: Library) -> tuple[str, ...] | None:
+    """The lines of a tableau for a certificate, None where none is found. Coq is not asked."""
     try:
-        return lines(find(state(certificate, library, query).goal))
+        return lines(find(state(certificate, library, certificate.query).goal))
     except (NotFoundError, RoadproofError):
         return None
 
