@@ -15,7 +15,6 @@ from roadproof.frontends.report.traffic import (
     RECALL_WITHOUT_FILTER,
     VIOLATING_PAIRS,
     Share,
-    decimal,
     missing,
     paper_row,
     percent,
@@ -23,7 +22,7 @@ from roadproof.frontends.report.traffic import (
     traces_of,
 )
 from roadproof.library.scenarios import DETECTORS
-from roadproof.recordings.evaluate.results import words_in
+from roadproof.recordings.evaluate.results import decimal, words_in
 from roadproof.recordings.evaluate.totals import Row, Totals
 
 

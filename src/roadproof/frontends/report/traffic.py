@@ -16,7 +16,7 @@ from roadproof.frontends.report.tables import Table
 from roadproof.library.scenarios import DETECTORS, Metric
 from roadproof.library.words import Called
 from roadproof.recordings.evaluate.foretelling import LABELS
-from roadproof.recordings.evaluate.results import foretold_rows, words_in
+from roadproof.recordings.evaluate.results import decimal, foretold_rows, words_in
 from roadproof.recordings.evaluate.sectors import ANYWHERE
 from roadproof.recordings.evaluate.totals import Row, Totals
 
@@ -319,9 +319,3 @@ def percent(part: int, whole: int) -> str:
     ('33.3%', '-')
     """
     return f"{100 * part / whole:.1f}%" if whole else "-"
-
-
-def decimal(value: Fraction) -> str:
-    """0.6 for 3/5; a fraction that is no short decimal stays one."""
-    text = f"{float(value):g}"
-    return text if Fraction(text) == value else str(value)

@@ -12,14 +12,13 @@ from roadproof.frontends.report.tables import LOOKS
 from roadproof.frontends.report.traffic import (
     MARK,
     comparison_table,
-    decimal,
     drivers_table,
     ending_of,
     paper_row,
     results_tables,
 )
 from roadproof.library.words import Called
-from roadproof.recordings.evaluate.results import words_in
+from roadproof.recordings.evaluate.results import decimal, words_in
 from roadproof.recordings.evaluate.totals import Row, Totals
 from roadproof.runtime.files import cannot_write, write_whole
 

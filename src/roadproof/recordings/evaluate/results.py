@@ -269,7 +269,7 @@ def words_in(settings: Settings) -> Called:
 
 
 def _match_rows(settings: Settings, words: Called, found: Findings) -> Iterator[list[object]]:
-    dangers = [_decimal(x) for x in settings.min_danger]
+    dangers = [decimal(x) for x in settings.min_danger]
     for m in found.matches:
         pov2 = "" if m.pov2 is None else m.pov2
         frames = (m.start_frame, m.end_frame, dangers[m.min_danger])
@@ -280,7 +280,7 @@ def _match_rows(settings: Settings, words: Called, found: Findings) -> Iterator[
 
 def _pair_rows(settings: Settings, found: Findings) -> Iterator[list[object]]:
     """A row for each trace, and one without a trace for each other pair that violates or is detected."""
-    dangers = [_decimal(x) for x in settings.min_danger]
+    dangers = [decimal(x) for x in settings.min_danger]
     matched = {(m.pair, m.min_danger, m.set_name) for m in found.matches}
     violating = {*found.violating}
     detected = {(x.detector, x.pair) for x in found.detections}
@@ -303,7 +303,7 @@ def _pair_rows(settings: Settings, found: Findings) -> Iterator[list[object]]:
         yield from each
 
 
-def _decimal(value: Fraction) -> str:
+def decimal(value: Fraction) -> str:
     """0.6 for 3/5; a fraction that is no short decimal stays one."""
     text = f"{float(value):g}"
     return text if Fraction(text) == value else str(value)
