@@ -1,6 +1,8 @@
 """The page of a report in a real browser: it fits, plays, sorts, filters, and can be used by keyboard."""
 
 import json
+import re
+import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -11,7 +13,8 @@ import roadproof as rp
 from report.reading import PALE, opened
 from report.test_page import hostile_answers, hostile_overlap
 from report.test_summary import claims_of, written
-from studio.browser import browsing, why_none
+from roadproof.engines.prove.properties import template_properties
+from studio.browser import CHROMIUM, browsing, why_none
 
 pytestmark = pytest.mark.skipif(bool(why_none()), reason=why_none() or "there is a browser")
 DRIVES = Path(__file__).parents[2] / "examples" / "traffic" / "drives"
@@ -146,3 +149,18 @@ def test_paper_is_light_and_has_the_grid_and_no_folded_part(browser, made):
     page.evaluate("dispatchEvent(new Event('afterprint'))")
     page.emulate_media(media="screen", color_scheme="dark")
     assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(23, 27, 34)"
+
+
+def test_the_demo_prints_on_ten_pages_or_fewer(tmp_path):
+    """As `make demo` has them: all claims, 24 drives and a matrix."""
+    names = {x.id for x in template_properties()}
+    answers = {"claims": claims_of(*names), "overlap": hostile_overlap() | {"set": "base"}}
+    drives = sorted(DRIVES.glob("*.json"))
+    many = [tmp_path / f"drive-{k:02}.json" for k in range(24)]
+    for k, path in enumerate(many):
+        path.write_bytes(drives[k % len(drives)].read_bytes())
+    page = rp.page(*written(tmp_path, **answers), *many, out=tmp_path / "page.html", jobs=1).path
+    paper = tmp_path / "page.pdf"
+    options = ["--headless", "--no-sandbox", "--disable-gpu", f"--print-to-pdf={paper}"]
+    subprocess.run([str(CHROMIUM), *options, page.as_uri()], capture_output=True, timeout=120, check=True)
+    assert 2 <= len(re.findall(rb"/Type\s*/Page\b", paper.read_bytes())) <= 10
