@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
+from evidence.folders import some_proofs
 from report.test_page import body_of, drive_in, hostile_overlap, made
 from roadproof.engines.prove.properties import template_properties
 from roadproof.frontends.report.page.results import Result
@@ -118,3 +119,24 @@ def test_drives_are_a_gallery_of_moving_pictures(tmp_path):
     assert '<button type="button" class="open" aria-expanded="false"><svg' in card
     assert "@keyframes m0" in text
     assert "■ WITNESSED" in card
+
+
+def test_an_open_part_leads_to_its_place_though_needed_parts_are_shown_last():
+    entries = [{"verdict": "REFUTED", "redundant": False}, {"verdict": "UNKNOWN", "redundant": None}]
+    found = overview(Result("x", "roadproof/redundancy/1", {"verdicts": entries}), "", "")
+    assert [(x.verdict, x.target) for x in found.statements] == [
+        ("UNKNOWN", "change-0-0"),
+        ("REFUTED", "change-0-1"),
+    ]
+
+
+def test_a_section_with_a_rejected_certificate_comes_first(tmp_path):
+    folder = some_proofs(tmp_path / "proofs")
+    path = folder / "P2-base.json"
+    path.write_text(path.read_text("utf-8").replace("danger(POV,SV)", "danger(SV,SV)"), "utf-8")
+    open_pairs = hostile_overlap() | {"set": "base"}
+    found, text = made(*written(tmp_path, overlap=open_pairs), folder, out=tmp_path / "page.html")
+    seen = body_of(text)
+    assert found.exit_code != 0
+    assert seen.index('<section id="result-1">') < seen.index('<section id="result-0">')
+    assert "evidence rejected" in seen.partition("</table>")[0]

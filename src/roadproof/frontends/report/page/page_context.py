@@ -6,7 +6,7 @@ from pathlib import Path
 
 from roadproof.errors import RoadproofError
 from roadproof.evidence.drive_file import DriveFile, read_drive
-from roadproof.evidence.finding import Finding
+from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.evidence.strict import read_json
 from roadproof.frontends.report.miniature import miniature, small_scene
 from roadproof.frontends.report.viewer_data import ShownFormula, viewer_data
@@ -100,6 +100,14 @@ class PageContext:
         self.documents.append(document)
         wrong = [_wrong(x, at) for x, at in zip(document.formulas, since, strict=False)]
         return ShownDrive(len(self.documents) - 1, document, [x for x in wrong if x], svg)
+
+    def rejected_in(self, folder: Path | None) -> int:
+        """How much of the evidence in a folder is not accepted."""
+        if folder is None:
+            return 0
+        here = folder.resolve()
+        wrong = (path for path, x in self.findings.items() if x.outcome is not Acceptance.ACCEPTED)
+        return sum(path.parent == here for path in wrong)
 
     def finding(self, folder: Path | None, name: object) -> Finding | None:
         """What was found of a file of evidence that an answer names."""

@@ -51,7 +51,8 @@ def section(result: Result, context: PageContext, words: Words) -> Section:
             f"{result.name}: it is no result that can be shown: what it says is not of the form of "
             f"{result.schema} ({reason}); make it again"
         ) from None
-    return Section(overview(result, kind.title, kind.question, len(rejected)), html)
+    wrong = len(rejected) + context.rejected_in(result.folder)
+    return Section(overview(result, kind.title, kind.question, wrong), html)
 
 
 def drive_section(findings: Sequence[Finding], context: PageContext) -> Section:

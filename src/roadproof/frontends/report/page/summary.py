@@ -21,6 +21,11 @@ _ANCHORS = {
     ("verdicts", "verdicts"): "claim",
     ("overlap", "verdicts"): "pair",
     ("witness", "verdicts"): "sought",
+    ("redundancy", "verdicts"): "change",
+    ("classify", "classes"): "kind",
+    ("coverage", "classes"): "class",
+    ("preventable", "plates"): "plate",
+    ("preventable", "lemmas"): "lemma",
 }
 """What the ids of entries begin with, by kind of result and field; other entries have no id of their own."""
 
@@ -92,7 +97,10 @@ def _statements(result: Result) -> Iterator[tuple[Mapping[str, Json], str]]:
     count = 0
     for key, value in result.data.items():
         prefix = _ANCHORS.get((result.kind, key))
-        for k, entry in enumerate(value if isinstance(value, list) else [value]):
+        entries = value if isinstance(value, list) else [value]
+        if result.kind == "redundancy":  # its section has those that are needed last
+            entries = sorted(entries, key=lambda x: isinstance(x, dict) and x.get("redundant") is False)
+        for k, entry in enumerate(entries):
             target = f"{prefix}-{result.id}-{k}" if prefix else f"result-{result.id}"
             for x in () if key in _SKIPPED else _with_verdict(entry):
                 count += 1
