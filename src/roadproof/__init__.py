@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from roadproof.frontends.api.definitions import Definitions as Definitions
     from roadproof.frontends.api.definitions import diagnose as diagnose
     from roadproof.frontends.api.definitions import load as load
+    from roadproof.frontends.api.drives import known_drives as known_drives
     from roadproof.frontends.api.drives import witness as witness
     from roadproof.frontends.api.driving import drive as drive
     from roadproof.frontends.api.driving import motion as motion
@@ -90,6 +91,7 @@ _HOMES = {
     "Definitions": "frontends.api.definitions",
     "prove": "frontends.api.proofs",
     "witness": "frontends.api.drives",
+    "known_drives": "frontends.api.drives",
     "motion": "frontends.api.driving",
     "drive": "frontends.api.driving",
     "diagnose": "frontends.api.definitions",

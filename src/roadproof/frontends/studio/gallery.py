@@ -4,9 +4,9 @@ from dataclasses import asdict
 from fractions import Fraction
 from functools import lru_cache
 
+import roadproof as rp
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.api.definitions import Definitions, load
-from roadproof.frontends.api.drives import known_drives
 from roadproof.frontends.report.viewer_data import shown_drive
 from roadproof.frontends.studio.requests import Answer, Ask
 from roadproof.library.scenarios import numbers_of
@@ -26,7 +26,7 @@ def cards(ask: Ask, say: object) -> Answer:
 def _cards(set_name: str, numbers: tuple[int, ...]) -> tuple[Answer, ...]:
     home = load(set_name)
     there = [x for x in numbers_of(home.specification) if x in numbers]
-    drives = known_drives(there, home)
+    drives = rp.known_drives(there, home)
     return tuple(_card(home, number, drives.get(number)) for number in there)
 
 
