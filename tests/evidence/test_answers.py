@@ -4,6 +4,7 @@ The files that they name are not looked at here.
 """
 
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from roadproof.analysis.coverage.classes import claims_of
 from roadproof.engines.prove.properties import find_label
 from roadproof.errors import InputError
 from roadproof.evidence.answers.coverage import Entries, KeptClass
-from roadproof.evidence.answers.entry import Common, Entry, is_same, mismatch
+from roadproof.evidence.answers.entry import Common, Conjunctions, Entry, is_same, mismatch
 from roadproof.evidence.answers.order import Refutation
 from roadproof.evidence.answers.read import (
     faults_of,
@@ -27,9 +28,11 @@ from roadproof.evidence.answers.reader import Background, first_set
 from roadproof.evidence.codec import read as read_as
 from roadproof.evidence.journal import head_of
 from roadproof.evidence.strict import Fields
+from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library, load_library
 from roadproof.library.scenarios import Scenario
 from roadproof.library.specification import Library
+from roadproof.logic import formula as f
 
 LIBRARY = bundled_library()
 SAID: dict[str, Any] = {"options": {}, "parameters": {}, "specs": []}
@@ -546,3 +549,41 @@ def test_a_drive_of_order_may_name_scenarios_in_any_order():
     assert is_same(common.formula(f"{one} and not {third} and not {other}"), wanted)
     assert not is_same(common.formula(f"{one} and not {third}"), wanted)
     assert not is_same(common.formula(f"{other} and not {third} and not {one}"), wanted)
+
+
+BOTH_WAYS = "scenario_2(SV,POV1,POV2,L) and not scenario_1(SV,POV1,L) and not scenario_1(SV,POV2,L)"
+
+
+@pytest.mark.parametrize(
+    ("formula", "is_shown"),
+    [
+        (f"{BOTH_WAYS} and not scenario_3(SV,POV2,L)", True),
+        (f"{BOTH_WAYS} and not scenario_3(SV,POV1,L) and not scenario_3(SV,POV2,L)", True),
+        (BOTH_WAYS, False),  # nothing about 3
+        (f"{BOTH_WAYS} and scenario_3(SV,POV2,L)", False),
+        (f"{BOTH_WAYS} and not scenario_3(SV,POV2,L) and not scenario_4(SV,POV2,L)", False),
+        (f"not {BOTH_WAYS} and not scenario_3(SV,POV2,L)", False),
+    ],
+)
+def test_a_drive_of_order_shows_one_way_or_more_in_which_vehicles_are_shared(formula: str, is_shown: bool):
+    common = Common("here", bundled_library(), "base", {}, None)
+    drive = Refutation(holds="2@base", fails=("1@base", "3@base"), drive="drive.json")
+    assert any(is_same(common.formula(formula), x) for x in drive.expected(common)) == is_shown
+
+
+def test_a_drive_of_order_may_refute_many_scenarios():
+    """Their ways of sharing vehicles make 2 ** 18 formulas, which are not written out."""
+    common = Common("here", bundled_library(), "base", {}, None)
+    fails = [n for n in range(1, 25) if n not in (2, 10, 18)]
+    drive = Refutation(holds="2@base", fails=tuple(f"{n}@base" for n in fails), drive="drive.json")
+    said = " and not ".join(["scenario_2(SV,POV1,POV2,L)", *(f"scenario_{n}(SV,POV1,L)" for n in fails)])
+    assert any(is_same(common.formula(said), x) for x in drive.expected(common))
+
+
+def test_conjunctions_are_those_of_one_formula_or_more_from_each_choice():
+    a, b, c, d = (read_claim(LIBRARY.select("base"), f"v_lon(SV) > {n} m/s").formula for n in range(4))
+    every = Conjunctions(((a,), (b, c)))
+    found = [x for n in (2, 3, 4) for x in combinations((a, b, c, d), n) if f.conjunction(*x) in every]
+    assert found == [(a, b), (a, c), (a, b, c)]
+    assert a in Conjunctions(((a, b),))
+    assert a not in every

@@ -4,18 +4,19 @@ import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import permutations, product
+from itertools import permutations
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.errors import InputError, TextError
 from roadproof.evidence.answers import shared
-from roadproof.evidence.answers.entry import Common, Entry, file_of
+from roadproof.evidence.answers.entry import Common, Conjunctions, Entry, file_of
 from roadproof.evidence.answers.reader import Background, Reader, read_kept
 from roadproof.evidence.codec import Doc, Key, Rule, read
 from roadproof.evidence.strict import Fields
-from roadproof.library.compose import both, implication, negation
+from roadproof.library.compose import implication
 from roadproof.library.scenario_references import Application, application_in
 from roadproof.library.scenarios import LANE, SUBJECT, Scenario, applied, vehicles_of
+from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic.formula import Formula
 from roadproof.logic.parse import parse_claim
@@ -66,20 +67,13 @@ class Refutation:
     ]
     drive: shared.KeptDrive = None
 
-    def expected(self, common: Common) -> list[Formula]:
+    def expected(self, common: Common) -> list[Conjunctions]:
         """That the one holds and no other does, for each choice of the vehicles that they share."""
         holds = _node(self.holds)
-        choices = [_readings(common, holds, _node(name)) for name in self.fails]
+        ways = [(node, _readings(common, holds, node)) for node in map(_node, self.fails)]
         return [
-            both(
-                applied(common.specification, holds, chosen[0][0]),
-                *(
-                    negation(applied(common.specification, _node(name), below))
-                    for name, (_, below) in zip(self.fails, chosen, strict=True)
-                ),
-            ).formula
-            for chosen in product(*choices)
-            if len({above for above, _ in chosen}) == 1
+            Conjunctions(((_formula(common, holds, mine),), *(_failures(common, mine, *x) for x in ways)))
+            for mine in dict.fromkeys(above for _, pairs in ways for above, _ in pairs)
         ]
 
 
@@ -316,9 +310,10 @@ def _reached(above: str, steps: Collection[tuple[str, str]]) -> set[str]:
     return reached
 
 
-def _readings(
-    common: Common, one: Scenario, other: Scenario
-) -> list[tuple[tuple[str, ...], tuple[str, ...]]]:
+Ways: TypeAlias = list[tuple[tuple[str, ...], tuple[str, ...]]]
+
+
+def _readings(common: Common, one: Scenario, other: Scenario) -> Ways:
     """The ways in which two scenarios share vehicles: the fewer POVs are any of the others."""
     mine, theirs = (vehicles_of(common.specification, x) for x in (one, other))
     if len(mine) == len(theirs):
@@ -326,6 +321,15 @@ def _readings(
     most, fewer = max(mine, theirs, key=len), min(mine, theirs, key=len)
     found = [(most[0], *rest) for rest in permutations(most[1:], len(fewer) - 1)]
     return [(x, most) if len(mine) < len(theirs) else (most, x) for x in found]
+
+
+def _formula(common: Common, node: Scenario, vehicles: tuple[str, ...]) -> Formula:
+    return applied(common.specification, node, vehicles).formula
+
+
+def _failures(common: Common, mine: tuple[str, ...], node: Scenario, ways: Ways) -> tuple[Formula, ...]:
+    """That a scenario is false, for each way in which it shares vehicles with one that has ``mine``."""
+    return tuple(f.negation(_formula(common, node, below)) for above, below in ways if above == mine)
 
 
 def _node(name: str) -> Scenario:
