@@ -23,7 +23,7 @@ from roadproof.evidence.refutation import Countermodel, read_trace, trace_data
 from roadproof.evidence.settled import Settled
 from roadproof.library.bind import bind
 from roadproof.library.compose import both, equivalence, implication, negation
-from roadproof.library.elaborate import StatedQuery, elaborate
+from roadproof.library.elaborate import StatedQuery, read_tree
 from roadproof.library.scenarios import (
     Scenario,
     applied,
@@ -110,7 +110,7 @@ def changes_of(specification: Specification, query: Query, whole: bool = False) 
             shown = text(as_syntax(current))
             for value in (True, False):
                 changed = Claim(query.claim.given, as_syntax(rebuild(f.Truth(value))))
-                yield Change(where, shown, value, elaborate(specification, changed), value == positive)
+                yield Change(where, shown, value, read_tree(specification, changed, ""), value == positive)
         parts = () if isinstance(current, f.Application) else f.children(current)
         for place, part in enumerate(parts):
             inside = _inside(current, parts, place, rebuild)

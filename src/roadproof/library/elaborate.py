@@ -38,14 +38,14 @@ def read_claim(specification: Specification, text: str, source: str = "claim") -
 
 def read_tree(specification: Specification, claim: syntax.Claim, written: str) -> Query:
     """As ``read_claim``, for a claim whose tree is known; ``written`` is its text. Raises ``TextError``."""
-    return replace(elaborate(specification, claim, _walk(specification)), written=written)
+    return replace(elaborate(specification, claim, walk_of(specification)), written=written)
 
 
-def _walk(specification: Specification) -> Elaborator:
+def walk_of(specification: Specification) -> Elaborator:
     """A walk that remembers the definitions it has read, one for each specification."""
-    walk: Elaborator | None = specification.worked_out.get((_walk,))
+    walk: Elaborator | None = specification.worked_out.get((walk_of,))
     if walk is None or len(walk.sizes.known) > MOST_REMEMBERED:
-        walk = specification.worked_out[(_walk,)] = Elaborator(specification)
+        walk = specification.worked_out[(walk_of,)] = Elaborator(specification)
     return walk
 
 

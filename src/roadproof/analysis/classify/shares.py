@@ -14,7 +14,7 @@ from typing import TypeAlias
 from roadproof.analysis.classify.classes import Class, Classes
 from roadproof.engines.search.impossible import parts
 from roadproof.evidence.answers import classify
-from roadproof.library.elaborate import apply_definition
+from roadproof.library.elaborate import apply_definition, walk_of
 from roadproof.library.scenarios import LANE, MIN_DANGER, PAIR, TRIPLE, disturbance, name_of, number_in
 from roadproof.library.specification import Specification
 from roadproof.logic import formula as f
@@ -112,7 +112,7 @@ def questions_of(classes: Classes, specification: Specification, settings: Setti
     starts: list[Formula] = []
 
     def applied(name: str, vehicles: tuple[str, ...], lane: str = LANE) -> Formula:
-        query = apply_definition(specification, name, (*vehicles, lane))
+        query = apply_definition(specification, name, (*vehicles, lane), walk_of(specification))
         return with_values(query.formula, settings.values)
 
     for group in classes.plan.groups:
