@@ -183,7 +183,9 @@ def scenarios_in_other_lanes(asked: Questions, monkeypatch: pytest.MonkeyPatch) 
 
 def all_instants(asked: Questions, monkeypatch: pytest.MonkeyPatch) -> None:
     instants = showing._instants
-    monkeypatch.setattr(showing, "_instants", lambda truths, file, free: instants(truths, file, True))
+    monkeypatch.setattr(
+        showing, "_instants", lambda judge, asked, file, free: instants(judge, asked, file, True)
+    )
 
 
 @pytest.mark.parametrize("plant", [a_row_is_lost, scenarios_in_other_lanes, all_instants])

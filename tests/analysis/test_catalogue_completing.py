@@ -44,7 +44,7 @@ from roadproof.library.bind import bind, values_with
 from roadproof.library.scenarios import Scenario, applied, name_of, vehicles_of
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.exact import DriveJudge, judge
 from roadproof.semantics.exact.signals import DriveSignals
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive, Piece
@@ -455,7 +455,7 @@ def test_the_change_makes_the_part_true_and_less_does_not(seed: int) -> None:
         if isinstance(key, ScenarioQuestion)
     ]
     for formula in formulas:
-        part = first_false_part(formula, course.signals, course.horizon)
+        part = first_false_part(formula, DriveJudge.on(course.signals), course.horizon)
         if judge(formula, course.signals).holds:
             assert part is None
         if part is None:
@@ -485,7 +485,7 @@ def test_the_false_part_is_within_its_window_and_needed_as_it_stands(
     """POV brakes after the window; SV goes on at 20 m/s."""
     course = pair(*map(Fraction, (20, 20, 60, 6, 2)))
     formula = bind(HOME.read(text).formula, course.road, FILE.lanes, ASKED.values)
-    found = first_false_part(formula, course.signals, course.horizon)
+    found = first_false_part(formula, DriveJudge.on(course.signals), course.horizon)
     assert found is not None
     assert 0 <= found.at <= at_most
     assert found.lack == lack

@@ -6,7 +6,7 @@ import sys
 from fractions import Fraction
 
 import pytest
-from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import HealthCheck, Phase, assume, find, given, settings
 from hypothesis import strategies as st
 
 from judge.cases import (
@@ -30,7 +30,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.semantics.exact import exact
 from roadproof.semantics.exact.algebraic import real_roots
-from roadproof.semantics.exact.exact import judge, truth_within
+from roadproof.semantics.exact.exact import DriveJudge, LazyJudge, judge, truth_within
 from roadproof.semantics.exact.signals import AbstractSignals, DriveSignals
 from roadproof.semantics.exact.truth import ALWAYS, NEVER, intersection, interval, union
 from roadproof.world.drive import Drive, Motion, Piece
@@ -364,6 +364,44 @@ def test_formulas_on_drives_with_jerk(formula, drive):
 def test_scenarios_on_drives(seed, scenario):
     drive = random_drive(seed, ("SV", "POV"), count=3)
     assert disagreement_on_drive(bound(f"scenario_{scenario}(SV, POV, L)"), drive, epsilon=1e-7) is None
+
+
+# --- Judges of several formulas on one drive, against the judge of each alone ---------------------
+
+search = settings(quiet, max_examples=2000, database=None, phases=[Phase.generate])
+several = st.lists(formulas(jerk_comparisons, leaves=6), min_size=2, max_size=4)
+
+
+def shared_disagreement(wanted, drive):
+    """The first formula that a judge of several says something else of than the judge of it alone."""
+    whole, lazy, fresh = DriveJudge.on(drive), LazyJudge.on(drive), LazyJudge.on(drive)
+    for formula in wanted:
+        alone = judge(formula, drive)
+        found = whole.judgement(formula)
+        if any(found.truth(part) != alone.truth(part) for part in f.subformulas(formula)):
+            return formula
+        if {lazy.holds(formula), whole.holds(formula)} != {alone.holds}:
+            return formula
+        truths = lazy.visit(formula), fresh.visit(formula), LazyJudge(whole.courses, {}).visit(formula)
+        if any(truth != alone.truth(formula) for truth in truths):
+            return formula
+    return None
+
+
+@settings(quiet, max_examples=150)
+@given(several, jerk_drives)
+def test_parts_that_are_shared_or_left_out_change_no_verdict(wanted, drive):
+    assert shared_disagreement(wanted, drive) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "right", "wrong"), read_table(__file__, "faults_of_shared_judging_are_noticed")
+)
+def test_faults_of_shared_judging_are_noticed(monkeypatch, name, right, wrong):
+    owner, _, method = name.partition(".")
+    plant(monkeypatch, getattr(exact, owner), method, right, wrong)
+    cases = st.tuples(several, jerk_drives)
+    assert find(cases, lambda case: shared_disagreement(*case) is not None, settings=search)
 
 
 # --- The judge of formulas without temporal operators within an interval, against the judge of all formulas

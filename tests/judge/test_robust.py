@@ -336,7 +336,7 @@ def test_a_square_of_a_cubic_is_a_sextic():
             "Root(polynomial, *ends), multiplicity",
             "Root(polynomial, *ends), 2",
         ),
-        (piecewise, "_steady_sign", "if is_rootless(numerators, low, high) else 0", ""),
+        (piecewise, "_steady_sign", "if is_rootless(numerators, low, high, halvings) else 0", ""),
         (piecewise, "_steady_sign", "sign_at(numerators, low)", "-1"),
     ],
 )

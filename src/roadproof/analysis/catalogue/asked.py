@@ -6,6 +6,7 @@ judged together with them, once for all.
 """
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
@@ -14,7 +15,7 @@ from typing import TypeAlias
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.gaps import GapKinds, gap_kinds
 from roadproof.analysis.classify.classes import Class, Classes, Group, Plan
-from roadproof.errors import UsageError
+from roadproof.errors import RoadproofError, UsageError
 from roadproof.library.bind import bind
 from roadproof.library.compose import both, negation
 from roadproof.library.scenarios import (
@@ -75,7 +76,8 @@ Key: TypeAlias = ScenarioQuestion | Row | In | DangerQuestion
 class Questions:
     """The questions to tests about scenarios ``numbers``; ``classes`` None where they are not divided.
 
-    Formulas are kept by roles and vehicles; bound ones also by road and lane.
+    Formulas are kept by roles and vehicles; bound ones also by road and lane. ``parts``: one object for all
+    their parts that are equal, in all spec sets.
     """
 
     specification: Specification
@@ -88,6 +90,23 @@ class Questions:
     bound: dict[tuple[Road, tuple[str, ...], tuple[str, ...], str], dict[Key, Formula]] = field(
         default_factory=dict
     )
+    parts: dict[Formula, Formula] = field(default_factory=dict)
+
+    @property
+    def is_always_judged(self) -> bool:
+        """Whether no part can fail to be judged: definitions of users may speak of what a drive lacks."""
+        return not self.specification.library.files
+
+    @cached_property
+    def in_other_sets(self) -> "Mapping[str, Questions]":
+        """The same scenarios without classes in each other spec set that can be asked about."""
+        home, found = self.specification, {}
+        for name in (x for x in home.library.sets if x != home.set_name):
+            with suppress(RoadproofError):
+                there = home.in_set(name)
+                numbers = tuple(x for x in self.numbers if x in numbers_of(there))
+                found[name] = Questions(there, numbers, None, self.values, parts=self.parts)
+        return found
 
     @cached_property
     def gaps(self) -> GapKinds | None:
@@ -133,16 +152,20 @@ class Questions:
         if place not in self.bound:
             keys, whole = self._whole(roles, vehicles)
             bound = bind(whole, road, {LANE: lane}, self.values)
-            self.bound[place] = dict(zip(keys, f.children(_with_shared_parts(bound)), strict=True))
+            self.bound[place] = dict(zip(keys, f.children(self._shared(bound)), strict=True))
         return self.bound[place]
 
     def _whole(self, roles: tuple[str, ...], vehicles: tuple[str, ...]) -> tuple[tuple[Key, ...], Formula]:
         """All questions, and their formulas as one conjunction, for any road."""
         if (roles, vehicles) not in self.wholes:
             asked = self._queries(roles, vehicles)
-            whole = _with_shared_parts(f.And(tuple(x.formula for x in asked.values())))
+            whole = self._shared(f.And(tuple(x.formula for x in asked.values())))
             self.wholes[roles, vehicles] = (tuple(asked), whole)
         return self.wholes[roles, vehicles]
+
+    def _shared(self, formula: Formula) -> Formula:
+        """Equal parts as one object: readers look up what they know, and comparing trees takes long."""
+        return f.transform(formula, lambda part: self.parts.setdefault(part, part))
 
     def _queries(self, roles: tuple[str, ...], vehicles: tuple[str, ...]) -> dict[Key, Query]:
         home = self.specification
@@ -205,11 +228,6 @@ class Questions:
         if self.classes is not None and rows and (sectors or not self.classes.plan.has_places):
             names.append(self.named.get((roles, rows, sectors), NOWHERE))
         return names
-
-
-def _with_shared_parts(formula: Formula) -> Formula:
-    """Equal parts as one object: readers look up what they know, and comparing trees takes long."""
-    return f.transform(formula, lambda part: part)
 
 
 def _cell(one: Class) -> tuple[tuple[int, ...], tuple[int, ...]]:

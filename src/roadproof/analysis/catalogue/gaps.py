@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.coverage.classes import GapClasses, GapSurvey, Part
+from roadproof.analysis.coverage.classes import GapClasses, GapSurvey, Part, sectors_of
 from roadproof.analysis.coverage.study import Coverage
 from roadproof.drivers.restriction import restriction_of
 from roadproof.errors import UsageError
@@ -54,12 +54,10 @@ class GapKinds:
     @cached_property
     def _basis(self) -> Basis:
         """About these scenarios alone."""
-        home = self.basis.specification
-        kept = {name: x for name, x in home.definitions.items() if number_in(name) in {None, *self.numbers}}
         effort = self.basis.effort
         return replace(
             self.basis,
-            specification=Specification(home.library, home.set_name, home.options, kept),
+            specification=_with_only(self.basis.specification, self.numbers),
             sets=(),
             effort=effort.of(min(effort.units, EFFORT)),
         )
@@ -121,6 +119,12 @@ def gap_kinds(basis: Basis, numbers: Sequence[int]) -> GapKinds:
     return GapKinds(basis, tuple(numbers))
 
 
+def _with_only(home: Specification, numbers: Sequence[int]) -> Specification:
+    """The same definitions, of scenarios only those with these numbers."""
+    kept = {name: x for name, x in home.definitions.items() if number_in(name) in {None, *numbers}}
+    return Specification(home.library, home.set_name, home.options, kept)
+
+
 def _faults(home: Specification, numbers: Sequence[int]) -> Iterator[str]:
     if restriction_of(home.options) is not None:
         yield "a driver model says how scenarios begin; coverage asks which drives that begin so are in none"
@@ -132,9 +136,9 @@ def _faults(home: Specification, numbers: Sequence[int]) -> Iterator[str]:
         if not follows_template(home, number):
             yield f"{name_of(number)} does not follow the template {TEMPLATE}; leave it out with --among"
             return
-    kinds = GapKinds(Basis(home), tuple(numbers))
     likes = likes_of(home)
-    rows = {tuple(sorted({likes[n] for n in sector})) for sector in kinds.classes.sectors}
+    sectors = sectors_of(_with_only(home, numbers))
+    rows = {tuple(sorted({likes[n] for n in sector})) for sector in sectors}
     if len(rows) > 1:
         listed = ", ".join(map(str, two))
         yield (

@@ -17,8 +17,8 @@ from roadproof.logic.show import text
 from roadproof.logic.syntax import Definition
 from roadproof.logic.terms import Term
 from roadproof.semantics.exact.algebraic import Root, approximate
-from roadproof.semantics.exact.exact import Judgement, judge, seconds
-from roadproof.semantics.exact.signals import Courses, Signals
+from roadproof.semantics.exact.exact import DriveJudge, Judgement, seconds
+from roadproof.semantics.exact.signals import Courses
 from roadproof.semantics.exact.truth import Span, TruthSet, complement, intersection, interval
 from roadproof.world.units import SI, Dimension
 
@@ -54,15 +54,15 @@ class FalsePart:
         return abs(self.left - self.right)
 
 
-def first_false_part(formula: Formula, signals: Signals, horizon: Fraction) -> FalsePart | None:
+def first_false_part(formula: Formula, judge: DriveJudge, horizon: Fraction) -> FalsePart | None:
     """The first part for want of which a bound formula is false at time 0, looked for up to ``horizon`` (s).
 
-    None where the formula holds, or where no single comparison at one instant is to blame.
+    ``judge``: that of the vehicles. None where the formula holds, or where no single comparison at one
+    instant is to blame.
     """
-    judgement = judge(formula, signals)
+    judgement, courses = judge.judgement(formula), judge.courses
     if judgement.holds:
         return None
-    courses = Courses(signals)
     looking = _NearestSearch(judgement, courses, horizon)
     found = looking.leaf(formula, Fraction(0), True, (None, True))
     if found is None:

@@ -3,7 +3,7 @@
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 
 import numpy as np
@@ -28,14 +28,14 @@ from roadproof.evidence.judged import JudgedDrive, judge_file
 from roadproof.library.scenarios import LANE, PAIR, SUBJECT, endangered, name_of, number_in
 from roadproof.library.scenarios import roles as scenario_roles
 from roadproof.library.specification import Specification
-from roadproof.logic import formula as f
 from roadproof.logic import syntax
+from roadproof.logic.formula import Formula
 from roadproof.logic.parse import parse_claim
 from roadproof.recordings.evaluate.one_trace import OneTrace, is_pair
 from roadproof.semantics.exact.algebraic import approximate
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.exact import DriveJudge, LazyJudge
 from roadproof.semantics.exact.signals import DriveSignals
-from roadproof.semantics.exact.truth import START, Cut, TruthSet
+from roadproof.semantics.exact.truth import START, Cut
 from roadproof.semantics.sampled.compiled import compile
 from roadproof.world.signals import SignalName
 
@@ -74,7 +74,7 @@ class ConcreteAnswer:
     decisions: tuple[Decision, ...] = ()
     roles: Mapping[str, str] = field(default_factory=dict)
 
-    @property
+    @cached_property
     def names(self) -> frozenset[str]:
         """All that it shows."""
         return frozenset(x.what for x in self.shown)
@@ -210,15 +210,14 @@ def _gap(file: DriveFile, asked: Questions, shown: tuple[Shown, ...]) -> Iterato
 
 
 def shown_by(file: DriveFile, asked: Questions, freedom: Freedom) -> tuple[Shown, ...]:
-    """What a drive shows, judged in dense time: all formulas at once, since they share their parts."""
+    """What a drive shows, judged in dense time: parts that formulas share are judged once."""
     shown: dict[tuple[str, tuple[str, ...], str], Shown] = {}
+    kind = LazyJudge if asked.is_always_judged else DriveJudge
     for roles, vehicles in choices(asked.roles, asked.all_roles, tuple(file.drive.vehicles), freedom.roles):
-        drive = file.drive.cast(dict(zip(roles, vehicles, strict=True)))
+        judge = kind.on(file.drive.cast(dict(zip(roles, vehicles, strict=True))))
         for lane in _lanes(file, freedom.lanes):
             formulas = asked.on(file.road, roles, roles, lane)
-            judgement = judge(f.And(tuple(formulas.values())), drive)
-            truths = {key: judgement.truth(formula) for key, formula in formulas.items()}
-            for cut, true in _instants(truths, file, freedom.start):
+            for cut, true in _instants(judge, formulas, file, freedom.start):
                 for what in _what(asked, roles, true):
                     at = approximate(cut.point)
                     shown.setdefault((what, vehicles, lane), Shown(what, vehicles, lane, at))
@@ -230,12 +229,14 @@ def _lanes(file: DriveFile, free: bool) -> tuple[str, ...]:
 
 
 def _instants(
-    truths: Mapping[Key, TruthSet], file: DriveFile, free: bool
+    judge: DriveJudge | LazyJudge, formulas: Mapping[Key, Formula], file: DriveFile, free: bool
 ) -> Iterator[tuple[Cut, frozenset[Key]]]:
     """The start, or all instants within the horizon at which something changes, with what is true."""
-    cuts = {START}
-    if free:
-        cuts |= {cut for truth in truths.values() for cut in truth.cuts if cut.point <= file.horizon}
+    if not free:
+        yield START, frozenset(key for key, formula in formulas.items() if judge.holds(formula))
+        return
+    truths = {key: judge.visit(formula) for key, formula in formulas.items()}
+    cuts = {START, *(cut for truth in truths.values() for cut in truth.cuts if cut.point <= file.horizon)}
     for cut in sorted(cuts):
         yield cut, frozenset(key for key, truth in truths.items() if bisect_right(truth.cuts, cut) % 2)
 

@@ -1,6 +1,6 @@
 """Why a test shows no scenario: the nearest one and what it lacks, and the spec sets in which one holds."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -8,10 +8,10 @@ from roadproof.analysis.catalogue.asked import Questions, ScenarioQuestion
 from roadproof.analysis.catalogue.nearest import FalsePart, first_false_part, told
 from roadproof.errors import RoadproofError
 from roadproof.evidence.answers.catalogue_index import Why
-from roadproof.library.scenarios import name_of, numbers_of
+from roadproof.library.scenarios import name_of
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.exact import DriveJudge, LazyJudge
 from roadproof.semantics.exact.signals import AbstractSignals, Signals
 from roadproof.semantics.sampled.batch import Batch
 from roadproof.world.road import Road
@@ -33,17 +33,24 @@ class Course:
 
 def why_none(course: Course, asked: Questions) -> Why | None:
     """Why no scenario holds from time 0 on; None where one does, or where no comparison is to blame."""
-    if any(judge(formula, course.signals).holds for *_, formula in _applied(course, asked)):
+    judge = DriveJudge.on(course.signals)
+    if any(judge.judgement(formula).holds for *_, formula in _applied(course, asked)):
         return None
     found = [
         (part, name_of(key.number), vehicles, lane)
         for key, vehicles, lane, formula in _applied(course, asked)
-        if (part := first_false_part(formula, course.signals, course.horizon)) is not None
+        if (part := first_false_part(formula, judge, course.horizon)) is not None
     ]
     if not found:
         return None
     part, nearest, vehicles, lane = max(found, key=lambda x: x[0].score)
-    sets = {name: held for name in _others(asked) if (held := _held_in(course, asked, name))}
+    others = asked.in_other_sets.items()
+    lazy = LazyJudge(judge.courses, judge.truths)
+    sets = {
+        name: held
+        for name, other in others
+        if (held := _held_in(course, other, lazy if asked.is_always_judged else judge))
+    }
     return Why(
         nearest,
         vehicles,
@@ -71,24 +78,13 @@ def _applied(
                     yield key, vehicles, lane, formula
 
 
-def _others(asked: Questions) -> Iterable[str]:
-    return (x for x in asked.specification.library.sets if x != asked.specification.set_name)
-
-
-def _held_in(course: Course, asked: Questions, set_name: str) -> tuple[str, ...]:
+def _held_in(course: Course, asked: Questions, judge: DriveJudge | LazyJudge) -> tuple[str, ...]:
     """The scenarios of another spec set that hold; none of a set that cannot be asked about."""
     try:
-        there = asked.specification.in_set(set_name)
-        numbers = tuple(x for x in asked.numbers if x in numbers_of(there))
-        other = Questions(there, numbers, None, asked.values)
-        names = {
-            name_of(key.number)
-            for key, *_, formula in _applied(course, other)
-            if judge(formula, course.signals).holds
-        }
+        names = {name_of(key.number) for key, *_, formula in _applied(course, asked) if judge.holds(formula)}
     except RoadproofError:
         return ()
-    return tuple(x for x in map(name_of, numbers) if x in names)
+    return tuple(x for x in map(name_of, asked.numbers) if x in names)
 
 
 def signals_of(batch: Batch) -> AbstractSignals:

@@ -13,7 +13,6 @@ out means putting true in its place, so that what is left holds wherever the sce
 
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 
 from roadproof.analysis.basis import Basis
 from roadproof.engines.search.question import zones_of
@@ -53,7 +52,7 @@ from roadproof.logic.restore import as_syntax
 from roadproof.logic.rewrite import without_names
 from roadproof.logic.show import text
 from roadproof.logic.syntax import Claim
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.exact import DriveJudge, LazyJudge
 from roadproof.world.road import Road
 
 Rebuild = Callable[[Formula], Formula]
@@ -308,8 +307,9 @@ class GapClasses:
         self.by_number = {number: parts_of(self.specification, number) for number in self.numbers}
         self.parts = [part for number in self.sectors[0] for part in self.by_number[number]]
         self.finest = frozenset(part.key for part in self.parts if part.finest)
-        self.bound: dict[Road, Formula] = {}
+        self.bound: dict[Road, dict[str, Formula]] = {}
         self.gaps: dict[tuple[int, ...], Query] = {}
+        self.near_misses: dict[str, Query] = {}
 
     def groups(self) -> list[GapGroup]:
         """All classes, for the scenarios of the first road sector: the others repeat their disturbances."""
@@ -341,28 +341,38 @@ class GapClasses:
 
     def near(self, part: Part, numbers: Collection[int]) -> Query:
         """That a drive is a near miss of the part, or of a counterpart among these scenarios."""
-        return either(*(near_miss(p) for p, _ in self.counterparts(part) if p.scenario in numbers))
+        return either(*(self._near_miss(p) for p, _ in self.counterparts(part) if p.scenario in numbers))
+
+    def _near_miss(self, part: Part) -> Query:
+        """As ``near_miss``, put together once."""
+        if part.key not in self.near_misses:
+            self.near_misses[part.key] = near_miss(part)
+        return self.near_misses[part.key]
 
     def of(self, file: DriveFile) -> tuple[str, ...]:
         """The keys of the parts without which their scenario would hold for some lane and either role."""
         if file.road not in self.bound:
-            self.bound[file.road] = f.Or(tuple(self.bind(file.road).values()))
-        whole = self.bound[file.road]
-        judgement = judge(whole, file.drive)
-        truths = zip(self.parts, f.children(whole), strict=True)
-        return tuple(part.key for part, formula in truths if judgement.truth(formula).at(Fraction(0)))
+            self.bound[file.road] = self.bind(file.road)
+        # Definitions of users may speak of what a drive lacks, which is an error.
+        judge = (DriveJudge if self.specification.library.files else LazyJudge).on(file.drive)
+        held = {key: judge.holds(formula) for key, formula in self.bound[file.road].items()}
+        return tuple(key for key, holds in held.items() if holds)
 
     def bind(self, road: Road) -> dict[str, Formula]:
         """By key, that a drive on the road is a near miss of the part."""
         numbers = self.numbers_on(road)
-        bound = tuple(bind(self.near(part, numbers).formula, road, {}, self.values) for part in self.parts)
-        # Equal parts as one object: the judge looks up what it knows, and comparing trees takes long.
-        shared = f.children(f.transform(f.Or(bound), lambda part: part))
-        return {part.key: formula for part, formula in zip(self.parts, shared, strict=True)}
+        every = f.Or(tuple(self.near(part, numbers).formula for part in self.parts))
+        # Equal parts as one object: all look up what they know, and comparing trees takes long.
+        [whole] = f.share([bind(f.share([every], _same)[0], road, {}, self.values)], _same)
+        return {part.key: formula for part, formula in zip(self.parts, f.children(whole), strict=True)}
 
     def has(self, part: Part | None, keys: Collection[str]) -> bool:
         """Whether a gap with these keys is in the class of ``part``."""
         return part.key in keys if part is not None else self.finest.isdisjoint(keys)
+
+
+def _same(part: Formula) -> Formula:
+    return part
 
 
 def near_miss(part: Part) -> Query:

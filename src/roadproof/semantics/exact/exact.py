@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from types import MappingProxyType
-from typing import assert_never
+from typing import Self, assert_never
 
 from roadproof.errors import InputError, UsageError
 from roadproof.logic import formula as f
@@ -73,19 +73,28 @@ def judge(
     any depth; then ``drive`` may be None where nothing else is compared. Raises ``InputError`` for a
     formula that is not bound, ``UsageError`` for a vehicle that the drive does not have.
     """
-    signals = DriveSignals(drive) if isinstance(drive, Drive) else drive
-    judging = _Judge(Courses(signals or AbstractSignals({}, {})), given)
-    judging.visit(formula)
-    return Judgement(formula, judging.truths)
+    return DriveJudge.on(drive, given).judgement(formula)
 
 
 @dataclass(frozen=True)
 class _Judge:
+    """Judges bound formulas on the same vehicles: each part that they share is judged once.
+
+    ``truths``: when each part is true that was judged; ``given``: as of ``judge``.
+    """
+
     courses: Courses
     given: Mapping[Formula, TruthSet]
     truths: dict[Formula, TruthSet] = field(default_factory=dict)
 
+    @classmethod
+    def on(cls, drive: Drive | Signals | None, given: Mapping[Formula, TruthSet] = NOTHING_GIVEN) -> Self:
+        """The judge of a drive."""
+        signals = DriveSignals(drive) if isinstance(drive, Drive) else drive
+        return cls(Courses(signals or AbstractSignals({}, {})), given)
+
     def visit(self, formula: Formula) -> TruthSet:
+        """When a formula is true. Raises as ``judge``, where a part is judged that cannot be."""
         if formula not in self.truths:
             known = self.given.get(formula)
             self.truths[formula] = self._visit(formula) if known is None else known
@@ -115,6 +124,64 @@ class _Judge:
                 raise InputError("a formula over a road's lanes is judged after it is bound to a road")
             case _:
                 assert_never(formula)
+
+
+class DriveJudge(_Judge):
+    """A judge who judges all parts of each formula."""
+
+    def judgement(self, formula: Formula) -> Judgement:
+        """When a formula and each of its parts is true. Raises as ``judge``."""
+        self.visit(formula)
+        return Judgement(formula, self.truths)
+
+    def holds(self, formula: Formula) -> bool:
+        """Whether a formula is true at time 0."""
+        return self.visit(formula).at(Fraction(0))
+
+
+class LazyJudge(_Judge):
+    """A judge who comes to the same truth, and judges no part that decides nothing.
+
+    So a part that cannot be judged may raise no error.
+    """
+
+    def holds(self, formula: Formula) -> bool:
+        """Whether a formula is true at time 0."""
+        if formula in self.truths or formula in self.given:
+            return self.visit(formula).at(Fraction(0))
+        match formula:
+            case f.Not(body):
+                return not self.holds(body)
+            case f.And(parts):
+                return all(map(self.holds, parts))
+            case f.Or(parts):
+                return any(map(self.holds, parts))
+            case f.Application(_, _, body):
+                return self.holds(body)
+            case _:
+                return self.visit(formula).at(Fraction(0))
+
+    def _visit(self, formula: Formula) -> TruthSet:
+        match formula:
+            case f.And(parts):
+                found = ALWAYS
+                for part in parts:
+                    if found == NEVER:
+                        break
+                    found = intersection([found, self.visit(part)])
+                return found
+            case f.Or(parts):
+                found = NEVER
+                for part in parts:
+                    if found == ALWAYS:
+                        break
+                    found = union([found, self.visit(part)])
+                return found
+            case f.Until(left, interval, right):
+                end = self.visit(right)
+                return until(self.visit(left), *seconds(interval), end) if end != NEVER else NEVER
+            case _:
+                return _Judge._visit(self, formula)
 
 
 def seconds(interval: Interval) -> tuple[Fraction, Fraction | None]:

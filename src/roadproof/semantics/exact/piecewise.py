@@ -5,13 +5,21 @@ at a knot the value is that of the piece which begins there, and sums, products,
 of such functions are such functions again.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from itertools import pairwise
 from typing import TypeAlias
 
 from roadproof.semantics.exact.algebraic import CLOSED_FORM, Point, Root, real_roots
-from roadproof.semantics.exact.polynomial import Polynomial, add, is_rootless, negate, sign_at
+from roadproof.semantics.exact.polynomial import (
+    HALVINGS,
+    Polynomial,
+    add,
+    is_rootless,
+    negate,
+    sign_at,
+    sum_of,
+)
 from roadproof.semantics.exact.truth import START, Cut, TruthSet, from_values
 
 # Ascending (start, polynomial); the first start is 0.
@@ -30,7 +38,7 @@ def apply(change: Callable[[Polynomial], Polynomial], pieces: Pieces) -> Pieces:
 
 def combine(join: Callable[[Polynomial, Polynomial], Polynomial], left: Pieces, right: Pieces) -> Pieces:
     """``join`` on every common piece."""
-    return _merged([(start, join(p, q)) for start, p, q in _aligned(left, right)])
+    return _merged([(start, join(*parts)) for start, parts in _aligned((left, right))])
 
 
 def greatest(left: Pieces, right: Pieces) -> Pieces:
@@ -41,6 +49,11 @@ def greatest(left: Pieces, right: Pieces) -> Pieces:
 def least(left: Pieces, right: Pieces) -> Pieces:
     """The smaller of two functions at every time."""
     return _chosen(left, right, -1)
+
+
+def total(functions: Sequence[Pieces]) -> Pieces:
+    """The sum of functions, of which there is at least one."""
+    return _merged([(start, sum_of(parts)) for start, parts in _aligned(functions)])
 
 
 def subtract(left: Pieces, right: Pieces) -> Pieces:
@@ -60,9 +73,10 @@ def where_sign(pieces: Pieces, signs: frozenset[int]) -> TruthSet:
 
 def _chosen(left: Pieces, right: Pieces, sign: int) -> Pieces:
     """``left`` where ``left - right`` has the given sign, else ``right``."""
-    common = _aligned(left, right)
+    common = _aligned((left, right))
     chosen: list[tuple[Point, Polynomial]] = []
-    for (start, p, q), end in zip(common, _ends(tuple((s, p) for s, p, _ in common)), strict=True):
+    ends = [*(start for start, _ in common[1:]), None]
+    for (start, (p, q)), end in zip(common, ends, strict=True):
         # Where the two meet they are equal, so the choice after a point is right at it, too.
         for point, _, after in _signs(add(p, negate(q)), start, end):
             chosen.append((point, p if after == sign else q))
@@ -92,11 +106,13 @@ def _steady_sign(numerators: tuple[int, ...], start: Point, end: Point | None) -
 
     Most pieces have no root; to factor their polynomials would cost a hundred times as much.
     """
-    if len(numerators) - 1 <= CLOSED_FORM:
+    degree = len(numerators) - 1
+    if degree < CLOSED_FORM:
         return 0
     low = start.low if isinstance(start, Root) else start
     high = end.high if isinstance(end, Root) else end
-    return sign_at(numerators, low) if is_rootless(numerators, low, high) else 0
+    halvings = HALVINGS if degree > CLOSED_FORM else 0
+    return sign_at(numerators, low) if is_rootless(numerators, low, high, halvings) else 0
 
 
 @lru_cache(maxsize=8192)
@@ -112,21 +128,35 @@ def _sign_changes(numerators: tuple[int, ...]) -> tuple[int, tuple[tuple[Point, 
     return first, tuple(changes)
 
 
-def _aligned(left: Pieces, right: Pieces) -> list[tuple[Point, Polynomial, Polynomial]]:
-    """Both functions on their common pieces."""
-    found: list[tuple[Point, Polynomial, Polynomial]] = []
-    i = j = 0
+def _aligned(functions: Sequence[Pieces]) -> list[tuple[Point, list[Polynomial]]]:
+    """All functions on their common pieces."""
+    longest = max(functions, key=len)
+    if all(len(x) == 1 or _starts_alike(x, longest) for x in functions):
+        return [
+            (start, [x[k if len(x) > 1 else 0][1] for x in functions]) for k, (start, _) in enumerate(longest)
+        ]
+    found: list[tuple[Point, list[Polynomial]]] = []
+    start, places = functions[0][0][0], [0] * len(functions)
     while True:
-        start = max(left[i][0], right[j][0])
-        found.append((start, left[i][1], right[j][1]))
-        ahead = [pieces[k + 1][0] for pieces, k in ((left, i), (right, j)) if k + 1 < len(pieces)]
+        found.append((start, [pieces[k][1] for pieces, k in zip(functions, places, strict=True)]))
+        ahead = [
+            (j, pieces[k + 1][0])
+            for j, (pieces, k) in enumerate(zip(functions, places, strict=True))
+            if k + 1 < len(pieces)
+        ]
         if not ahead:
             return found
-        following = min(ahead)
-        if i + 1 < len(left) and left[i + 1][0] == following:
-            i += 1
-        if j + 1 < len(right) and right[j + 1][0] == following:
-            j += 1
+        start = min(point for _, point in ahead)
+        for j, point in ahead:
+            if point is start or point == start:
+                places[j] += 1
+
+
+def _starts_alike(one: Pieces, other: Pieces) -> bool:
+    """Whether two functions have the same pieces, as those of one drive often have."""
+    return one is other or (
+        len(one) == len(other) and all(p is q or p == q for (p, _), (q, _) in zip(one, other, strict=True))
+    )
 
 
 def _ends(pieces: Pieces) -> list[Point | None]:

@@ -38,14 +38,17 @@ ONE = Polynomial((1,), 1)
 
 def add(left: Polynomial, right: Polynomial) -> Polynomial:
     """``left + right``."""
-    denominator = lcm(left.denominator, right.denominator)
-    x, y = denominator // left.denominator, denominator // right.denominator
-    longer, shorter = left.numerators, right.numerators
-    if len(longer) < len(shorter):
-        longer, shorter, x, y = shorter, longer, y, x
-    total = [n * x for n in longer]
-    for i, n in enumerate(shorter):
-        total[i] += n * y
+    return sum_of((left, right))
+
+
+def sum_of(parts: Sequence[Polynomial]) -> Polynomial:
+    """The sum of polynomials, of which there is at least one."""
+    denominator = lcm(*[p.denominator for p in parts])
+    total = [0] * max([len(p.numerators) for p in parts])
+    for p in parts:
+        factor = denominator // p.denominator
+        for i, n in enumerate(p.numerators):
+            total[i] += n * factor
     return _reduced(total, denominator)
 
 

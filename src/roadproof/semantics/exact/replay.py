@@ -21,7 +21,7 @@ from roadproof.logic.terms import (
     subtract,
 )
 from roadproof.semantics.exact.algebraic import Point, decimal
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.exact import LazyJudge, judge
 from roadproof.semantics.exact.truth import Cut, TruthSet, complement
 from roadproof.world.drive import Drive
 from roadproof.world.units import unit_text
@@ -60,9 +60,9 @@ def first_overlap(drive: Drive, horizon: Fraction | None) -> Overlap | None:
     Touching is no overlap. ``horizon`` in s; None is for ever. Raises ``UsageError`` where negative.
     """
     found: list[tuple[Cut, str, str]] = []
+    judge = LazyJudge.on(drive)
     for a, b in combinations(sorted(drive.vehicles), 2):
-        overlapping = boxes_overlap(a, b)
-        begin = _first(judge(overlapping, drive).truth(overlapping), horizon)
+        begin = _first(judge.visit(boxes_overlap(a, b)), horizon)
         if begin is not None:
             found.append((begin, a, b))
     if not found:

@@ -16,7 +16,7 @@ from roadproof.logic.formula import MIRRORED, Comparison
 from roadproof.logic.terms import Inverse, Own, Signal, Size, Term
 from roadproof.semantics.exact import piecewise
 from roadproof.semantics.exact.piecewise import Pieces, where_sign
-from roadproof.semantics.exact.polynomial import ONE, Polynomial, add, multiply, polynomial
+from roadproof.semantics.exact.polynomial import ONE, Polynomial, multiply, polynomial
 from roadproof.semantics.exact.truth import TruthSet, intersection, union
 from roadproof.world.drive import Drive, Motion
 from roadproof.world.motion import State, starts_of
@@ -157,7 +157,7 @@ class Courses:
             case t.Size():
                 return piecewise.constant(polynomial(self.signals.size(term)))
             case t.Sum(terms):
-                return reduce(lambda x, y: piecewise.combine(add, x, y), map(self.of, terms))
+                return piecewise.total([*map(self.of, terms)])
             case t.Product(factors):
                 return reduce(lambda x, y: piecewise.combine(_product, x, y), map(self.of, factors))
             case t.Power(base, exponent):
