@@ -8,11 +8,13 @@ const LANE = 3; // pixels a metre across
 const EDGE = 2;
 const LINE = 0.8; // pixels between lanes
 const SHORTEST = 7; // pixels of a vehicle
+const INTO = 0.4; // seconds after the begin of danger
 const REST = 0.8; // seconds between two plays
 
-/** The picture of `drive`; it stands where danger begins, and plays again and again while `playing`. */
+/** The picture of `drive`; it stands where danger has begun, and plays again and again while `playing`. */
 export function Picture({ drive, playing }) {
-  const still = drive.dangers[0]?.begins ?? drive.horizon / 2;
+  const danger = drive.dangers[0];
+  const still = danger ? Math.min(drive.horizon, danger.begins + INTO) : drive.horizon / 2;
   const time = useSignal(still);
   useEffect(() => {
     if (!playing) {
