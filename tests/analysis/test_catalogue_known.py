@@ -11,10 +11,12 @@ import pytest
 import roadproof as rp
 from roadproof.analysis.catalogue import examination, meaning
 from roadproof.analysis.catalogue.entries import Abstract, Concrete
+from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.meaning import Meanings, Piece
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
 from roadproof.analysis.study import known, pool
 from roadproof.analysis.study.known import SWITCH
+from roadproof.engines.search.search import NONE_FOUND
 from roadproof.evidence.codec import read, write
 from roadproof.frontends.api.cataloguing import CatalogueAnswer
 
@@ -147,6 +149,27 @@ def test_what_a_clock_may_cut_off_is_not_kept(tests: Path, work: Work) -> None:
     work.taken()
     asked(tests, timeout=500)
     assert work.taken() == ["AHEAD", "AHEAD NEVER", "NEVER"]
+
+
+@pytest.mark.parametrize(
+    ("other", "reason", "is_kept"),
+    [
+        ("scenario_8", NONE_FOUND, True),
+        ("scenario_8", "cut off by the clock", False),
+        ("", NONE_FOUND, False),
+    ],
+)
+def test_doubts_that_the_same_work_leaves_are_kept(
+    tests: Path, work: Work, monkeypatch: pytest.MonkeyPatch, other: str, reason: str, is_kept: bool
+) -> None:
+    def left_open(study: Meanings, entry: Abstract) -> tuple[Fact, ...]:
+        return (Fact(entry.id, other, "open", entry.query, entry.query if other else None, reason),)
+
+    monkeypatch.setattr(Meanings, "_of_test", left_open)
+    first = asked(tests)
+    work.taken()
+    assert timeless(asked(tests)) == timeless(first)
+    assert work.taken() == ([] if is_kept else ["AHEAD", "NEVER"])
 
 
 def test_check_takes_no_answer_from_earlier_runs(tests: Path, work: Work, tmp_path: Path) -> None:

@@ -28,6 +28,7 @@ from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.analysis.study.frame import Unprepared
 from roadproof.engines.search.ask import Outcome, Search, answer
 from roadproof.engines.search.question import SearchOptions, Setting
+from roadproof.engines.search.search import NONE_FOUND
 from roadproof.errors import InputError
 from roadproof.evidence.answers import catalogue_index as kept
 from roadproof.evidence.answers.catalogue_index import Relation
@@ -299,6 +300,12 @@ class Meanings(Unprepared):
         if isinstance(answer, AboutGaps):
             return self.survey is not None and self.survey.is_sure(answer.answer)
         return all(fact.relation != "open" for fact in answer)
+
+    def is_lasting(self, answer: Kept) -> bool:
+        """Sure ones, and those with scenarios of which all work that counts found neither drive nor proof."""
+        if isinstance(answer, AboutGaps):
+            return self.is_sure(answer)
+        return all(x.relation != "open" or (x.other and x.reason == NONE_FOUND) for x in answer)
 
     def record(self, name: str, answer: Kept, shelf: EvidenceStore) -> kept.Record:
         if isinstance(answer, AboutGaps):

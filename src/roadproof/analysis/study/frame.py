@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection, Container, Iterator, Mapping, 
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, Protocol, TypeVar, runtime_checkable
 
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.evidence_store import EvidenceStore, EvidenceTexts, Question
@@ -23,6 +23,7 @@ from roadproof.runtime.executors import Jobs, Shard, hands_of
 Piece = TypeVar("Piece")
 Answer = TypeVar("Answer")
 Record = TypeVar("Record")
+Given = TypeVar("Given", contravariant=True)
 
 
 class Study(Protocol[Piece, Answer, Record]):
@@ -74,6 +75,14 @@ class Study(Protocol[Piece, Answer, Record]):
 
         Raises ``InputError`` where it is no whole answer.
         """
+
+
+@runtime_checkable
+class DoubtKeeper(Protocol[Given]):
+    """A study some of whose doubts are the same whenever they are asked again: later runs get them."""
+
+    def is_lasting(self, answer: Given) -> bool:
+        """Whether an answer is kept for later runs."""
 
 
 class Unprepared:
@@ -227,7 +236,9 @@ class _Run(Generic[Piece, Answer, Record]):
     def keep(self, name: str, answer: Answer) -> None:
         """Keep an answer that was computed, for this run and, where it stands, for later ones."""
         self.add(name, _keep(self.study, name, answer, self.shelf), answer)
-        key = None if is_off() or not self.study.is_sure(answer) else self.study.key(name)
+        study = self.study
+        lasts = study.is_lasting(answer) if isinstance(study, DoubtKeeper) else study.is_sure(answer)
+        key = None if is_off() or not lasts else study.key(name)
         if key is not None:
             self.has_remembered = True
             self.known_before.remember(name, key, known_answer(self.study, name, answer, whole=False))

@@ -30,6 +30,8 @@ from roadproof.world.drive import Drive
 # Units of work: the least for one exact search, and the most for one way to show that there is no drive.
 LEAST_EXACT = 2.0
 REFUTING = 20.0
+NONE_FOUND = "none was found"
+"""The reason of an UNKNOWN where all work was done that counts, so that the same work finds the same."""
 STARTS = 12  # for each assignment of lanes
 
 
@@ -160,7 +162,7 @@ class _Search:
             return self._answer(Verdict.UNKNOWN, None, self.meter.reason())
         doubt = self.doubts[-1] if self.doubts else ""
         if not self.search_options.explain or self.question.start is not None:
-            return self._answer(Verdict.UNKNOWN, None, doubt or "none was found")
+            return self._answer(Verdict.UNKNOWN, None, doubt or NONE_FOUND)
         answer = self.none()
         return replace(answer, reason=doubt) if doubt and answer.verdict is Verdict.UNKNOWN else answer
 
