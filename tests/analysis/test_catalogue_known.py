@@ -1,9 +1,12 @@
 """A catalogue asked again: only tests that are new or have changed are judged and searched again."""
 
 import json
+import multiprocessing
 import shutil
+import sys
 from collections.abc import Iterator
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -194,3 +197,18 @@ def test_answers_are_kept_as_they_are(tests: Path) -> None:
     folders = EXAMPLE / "drives", EXAMPLE / "samples"
     for answer in rp.catalogue(*folders, among="1-4", classes=False, jobs=1).examination.concrete:
         assert read(ConcreteAnswer, json.loads(json.dumps(write(answer))), "") == answer
+
+
+@pytest.mark.parametrize(("modules", "method"), [({"polars": ModuleType("polars")}, "spawn"), ({}, "fork")])
+def test_workers_start_afresh_where_polars_has_threads(
+    monkeypatch: pytest.MonkeyPatch, modules: dict[str, ModuleType], method: str
+) -> None:
+    """A copy of a process whose threads hold locks waits for ever."""
+    real, asked_for = multiprocessing.get_context, []
+    monkeypatch.delitem(sys.modules, "polars", raising=False)
+    for name, module in modules.items():
+        monkeypatch.setitem(sys.modules, name, module)
+    monkeypatch.setattr(multiprocessing, "get_context", lambda x: asked_for.append(x) or real(x))
+    monkeypatch.setattr(examination, "BATCH", 16)
+    rp.catalogue(EXAMPLE / "drives", among="1", classes=False, drivers=(), jobs=2)
+    assert {*asked_for} == {method}

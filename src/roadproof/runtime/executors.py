@@ -5,6 +5,7 @@ A job whose process ends before it is done is tried once more, alone.
 
 import re
 import signal
+import sys
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field
@@ -143,6 +144,11 @@ def ended_by(code: int) -> str:
 
 
 Job = TypeVar("Job")
+
+
+def is_fork_unsafe() -> bool:
+    """Whether polars is imported here, whose threads may hold locks while a process forks."""
+    return "polars" in sys.modules
 
 
 def answers_of(

@@ -23,7 +23,7 @@ from roadproof.analysis.study.pool import Progress
 from roadproof.drivers.restriction import restriction_of, said_in, unrestricted
 from roadproof.errors import RoadproofError, UsageError
 from roadproof.library.specification import Specification
-from roadproof.runtime.executors import Jobs
+from roadproof.runtime.executors import Jobs, is_fork_unsafe
 
 BATCH = 20
 
@@ -131,7 +131,8 @@ def _shown(
     left = [x for x in entries if x.id not in known]
     batches = [left[k : k + BATCH] for k in range(0, len(left), BATCH)]
     judge_batch = partial(_batch, earlier.asked, earlier.freedom, earlier.drivers)
-    done = pool.work(judge_batch, batches, jobs, None, progress, "batches of tests")
+    fresh = is_fork_unsafe()  # tests can be tables
+    done = pool.work(judge_batch, batches, jobs, None, progress, "batches of tests", fresh=fresh)
     made = [answer for answers in pool.in_order(done) for answer in answers]
     earlier.keep(made)
     every = {**known, **{x.entry.id: x for x in made}}

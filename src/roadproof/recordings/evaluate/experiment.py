@@ -1,7 +1,6 @@
 """The highD experiment over many recordings: resumable, and in memory one recording a process."""
 
 import os
-import sys
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
@@ -23,7 +22,7 @@ from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.source import RecordingSource
 from roadproof.recordings.formats.sources import copies_among, find_sources
 from roadproof.recordings.formats.windows import WindowedRecording
-from roadproof.runtime.executors import Executor, LostJob, answers_of
+from roadproof.runtime.executors import Executor, LostJob, answers_of, is_fork_unsafe
 from roadproof.runtime.memory import keep_freed_memory
 from roadproof.runtime.process_pool import is_worker
 
@@ -140,8 +139,7 @@ def _evaluate_all(
         for job in jobs:
             yield job.source, _evaluate(job)
         return
-    # The threads of polars may hold locks while a process forks: where it has run, workers start afresh.
-    with closing(answers_of(_evaluate, jobs, hands, fresh="polars" in sys.modules)) as answers:
+    with closing(answers_of(_evaluate, jobs, hands, fresh=is_fork_unsafe())) as answers:
         for place, error in answers:
             yield sources[place], error
 
