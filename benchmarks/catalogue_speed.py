@@ -1,4 +1,4 @@
-"""Processor time of large catalogues: 20 drives with 20 formulas, 3 of these with unfit roles, and 1,000 drives.
+"""Processor time of catalogues: 20 drives with 20 formulas, 3 of them with unfit roles, and 1,000 drives.
 
 ``python benchmarks/catalogue_speed.py [FOLDER] [--drives 1000] [--no-formulas]`` makes the catalogues in
 FOLDER (``catalogues``) unless they are there, and asks each twice: first with an empty cache, then with what
