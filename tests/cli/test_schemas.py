@@ -47,6 +47,7 @@ INTERNAL = {
     "roadproof/viewer/1",
     "roadproof/known/1",
     "roadproof/division/1",
+    "roadproof/shown/1",
 }
 NOT_HEADED = {"drive.json", "certificate.json", "question.json", "answer.json", "common.json"}
 
