@@ -82,7 +82,7 @@ def overview(result: Result, title: str, question: str, rejected: int = 0) -> Ov
     """A result in a line."""
     found = [*_statements(result)]
     target = f"result-{result.id}"
-    statements = [Statement(str(x["verdict"]), _told(x), at, _is_expected(x, result)) for x, at in found]
+    statements = [Statement(_text(x, "verdict"), _told(x), at, _is_expected(x, result)) for x, at in found]
     subject = _subject(result, [x for x, _ in found])
     remarked = result.kind == "catalogue" and any(result.data.get(key) for key in _REMARKS)
     told = _counts_of(result)
@@ -131,22 +131,27 @@ def _with_verdict(value: Json) -> Iterator[Mapping[str, Json]]:
                 yield from _with_verdict(x)
 
 
+def _text(x: Mapping[str, Json], key: str) -> str:
+    """A field as text, empty where it is missing."""
+    found = x.get(key)
+    return "" if found is None else str(found)
+
+
 def _told(x: Mapping[str, Json]) -> str:
     """An entry in words: of a claim its property, of a pair its scenarios, else a name or a formula."""
-    scenario = x.get("scenario")
-    numbered = "" if scenario is None else f"scenario {scenario}"
-    if x.get("property") not in (None, "claim"):
-        name = "-".join(str(x[key]) for key in ("property", "part") if x.get(key))
-        task = find_task(str(x.get("claim", "")), str(x.get("set", "")))
+    scenario, reason, inside = _text(x, "scenario"), _text(x, "reason"), _text(x, "set")
+    numbered = f"scenario {scenario}" if scenario else ""
+    if _text(x, "property") not in ("", "claim"):
+        name = "-".join(filter(None, (_text(x, "property"), _text(x, "part"))))
+        task = find_task(_text(x, "claim"), inside)
         head = " ".join(filter(None, (name, numbered, "" if task is None else task.title)))
     elif "a" in x and "b" in x:
-        head = f"scenarios {x['a']} and {x['b']}"
+        head = f"scenarios {_text(x, 'a')} and {_text(x, 'b')}"
     else:
-        named = next((str(x[key]) for key in ("name", "claim", "formula", "description") if x.get(key)), "")
+        named = next(filter(None, (_text(x, key) for key in ("name", "claim", "formula", "description"))), "")
         head = ": ".join(filter(None, (numbered, named)))
-    of = f" in {x['set']}" if x.get("set") else ""
-    reason = f": {x['reason']}" if x.get("reason") else ""
-    return excerpt(f"{head}{of}{reason}", 240)
+    of = f" in {inside}" if inside else ""
+    return excerpt(f"{head}{of}{f': {reason}' if reason else ''}", 240)
 
 
 def _is_expected(x: Mapping[str, Json], result: Result) -> bool | None:
@@ -154,9 +159,9 @@ def _is_expected(x: Mapping[str, Json], result: Result) -> bool | None:
     if result.kind not in ("index", "verdicts"):
         return None
     if isinstance(x.get("expected"), str):
-        return x["expected"] == x["verdict"]
-    task = find_task(str(x.get("claim", "")), str(x.get("set", "")))
-    return task is not None and not x.get("assuming") and task.expected == x["verdict"]
+        return x.get("expected") == x.get("verdict")
+    task = find_task(_text(x, "claim"), _text(x, "set"))
+    return task is not None and not x.get("assuming") and task.expected == x.get("verdict")
 
 
 def _subject(result: Result, statements: Iterable[Mapping[str, Json]]) -> str:
