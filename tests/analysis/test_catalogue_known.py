@@ -70,7 +70,7 @@ def work(monkeypatch: pytest.MonkeyPatch) -> Work:
 
     monkeypatch.setattr(examination, "show", watched_show)
     monkeypatch.setattr(Meanings, "settle", watched_settle)
-    monkeypatch.setattr(pool, "work", lambda f, jobs, *rest: (x for x in enumerate(map(f, jobs))))
+    monkeypatch.setattr(pool, "work", lambda f, jobs, *_, **__: (x for x in enumerate(map(f, jobs))))
     return watched
 
 
