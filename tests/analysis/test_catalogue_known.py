@@ -193,6 +193,17 @@ def test_an_answer_that_was_changed_on_disk_is_computed_again(
     assert work.taken() == ALL
 
 
+def test_nothing_is_kept_where_known_answers_are_off(
+    tests: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(SWITCH, "off")
+    asked(tests)
+    assert not [*tmp_path.joinpath("cache").rglob("answers/*")]
+    monkeypatch.setenv(SWITCH, "on")  # the control
+    asked(tests)
+    assert [*tmp_path.joinpath("cache").rglob("answers/*")]
+
+
 def test_answers_are_kept_as_they_are(tests: Path) -> None:
     folders = EXAMPLE / "drives", EXAMPLE / "samples"
     for answer in rp.catalogue(*folders, among="1-4", classes=False, jobs=1).examination.concrete:

@@ -73,9 +73,10 @@ class KnownAnswers:
         return None if data is None else KnownAnswer.of(json.loads(lzma.decompress(data)), "cache")
 
     def remember(self, name: str, key: str, answer: KnownAnswer) -> None:
-        """Keep an answer in the cache of this user."""
-        data = lzma.compress(json.dumps(answer.content).encode(), preset=0)
-        keep_bytes(CACHE, self._cached(name, key), data)
+        """Keep an answer in the cache of this user, unless known answers are off."""
+        if not is_off():
+            data = lzma.compress(json.dumps(answer.content).encode(), preset=0)
+            keep_bytes(CACHE, self._cached(name, key), data)
 
     def make_room(self) -> None:
         """Keep the cache within its bounds."""
