@@ -8,13 +8,16 @@ random cases are for ``make fuzz``. Answers are computed, not taken from those t
 
 import os
 import pkgutil
+from collections.abc import Iterator
 from importlib import import_module
+from typing import Any
 
 import pytest
 from hypothesis import settings
 
 import roadproof
 from lengthy import COLLECTED, LENGTHY
+from studio.browser import browsing
 
 os.environ["ROADPROOF_KNOWN"] = "off"
 settings.register_profile("same", derandomize=True, deadline=None)
@@ -31,3 +34,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for item in items:
         if item.nodeid.startswith(LENGTHY):
             item.add_marker("long")
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """A real browser, for tests that are skipped where there is none."""
+    with browsing() as made:
+        yield made

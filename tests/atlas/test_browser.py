@@ -1,20 +1,13 @@
 """The atlas in a real browser: it fits, plays, can be used by keyboard, and is readable in light and dark."""
 
-from collections.abc import Iterator
 from typing import Any
 
 import pytest
 
 from report.reading import PALE, opened
-from studio.browser import browsing, why_none
+from studio.browser import why_none
 
 pytestmark = pytest.mark.skipif(bool(why_none()), reason=why_none() or "there is a browser")
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    with browsing() as made:
-        yield made
 
 
 @pytest.mark.parametrize("width", [390, 1280])

@@ -3,9 +3,7 @@
 import json
 import re
 import subprocess
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -14,17 +12,11 @@ from report.reading import PALE, opened
 from report.test_page import hostile_answers, hostile_overlap
 from report.test_summary import claims_of, written
 from roadproof.engines.prove.properties import template_properties
-from studio.browser import CHROMIUM, browsing, why_none
+from studio.browser import CHROMIUM, why_none
 
 pytestmark = pytest.mark.skipif(bool(why_none()), reason=why_none() or "there is a browser")
 DRIVES = Path(__file__).parents[2] / "examples" / "traffic" / "drives"
 READY = "document.documentElement.dataset.ready"
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    with browsing() as made:
-        yield made
 
 
 @pytest.fixture(scope="module")

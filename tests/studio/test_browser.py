@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from roadproof.frontends.cli.main import main
-from studio.browser import Tab, browsing, why_none
+from studio.browser import Tab, why_none
 from studio.serving import running, workers_of
 
 pytestmark = pytest.mark.skipif(bool(why_none()), reason=why_none() or "there is a browser")
@@ -27,26 +27,10 @@ LONG = "scenario_5(SV,POV,L) and not scenario_1(SV,POV,L)"
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    with browsing() as made:
-        yield made
-
-
-@pytest.fixture(scope="module")
 def address() -> Iterator[str]:
     files = [str(next(DRIVES.glob(f"*{number}-base.json"))) for number in ("04", "01")]
     with running(*files) as (found, _):
         yield found
-
-
-@pytest.fixture
-def tab(browser: Any, address: str) -> Iterator[Tab]:
-    made = Tab(browser, address)
-    try:
-        yield made
-        assert made.faults == []
-    finally:
-        made.close()
 
 
 def test_a_drive_of_the_command_line_is_shown_with_its_parts_and_the_token_leaves_the_address(

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from report.reading import PALE
-from studio.browser import Tab, browsing, why_none
+from studio.browser import Tab, why_none
 from studio.serving import running
 
 pytestmark = pytest.mark.skipif(bool(why_none()), reason=why_none() or "there is a browser")
@@ -19,27 +19,11 @@ QUESTION = "document.querySelector('.asked .cm-content').textContent"
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    with browsing() as made:
-        yield made
-
-
-@pytest.fixture(scope="module")
 def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     folder = tmp_path_factory.mktemp("files")
     (folder / "own.spec").write_text("def laneKeep(a: vehicle, L: lane) := true\n", "utf-8")
     with running(str(folder), known=True) as (found, _):
         yield found
-
-
-@pytest.fixture
-def tab(browser: Any, address: str) -> Iterator[Tab]:
-    made = Tab(browser, address)
-    try:
-        yield made
-        assert made.faults == []
-    finally:
-        made.close()
 
 
 def test_scenario_1_plays_and_every_card_has_a_picture(tab: Tab) -> None:
