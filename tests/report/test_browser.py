@@ -106,6 +106,7 @@ def test_a_cell_of_the_grid_opens_its_claim(browser, made):
     cell.focus()
     page.keyboard.press("Enter")
     row = page.locator(":target")
+    row.wait_for()
     assert "scenario_8(SV,POV,L) -> dangerArises(SV,POV)" in row.inner_text()
     assert row.is_visible()
 
@@ -113,7 +114,7 @@ def test_a_cell_of_the_grid_opens_its_claim(browser, made):
 def test_open_points_lead_to_their_place(browser, made):
     page, _ = opened(browser, made)
     page.locator(".finding a", has_text="scenarios 1 and 5").click()
-    assert page.locator("#pair-1-0").get_attribute("open") is not None
+    page.wait_for_function("document.querySelector('#pair-1-0').open")
 
 
 def test_a_page_of_72_drives_is_ready_within_a_second(browser, tmp_path):

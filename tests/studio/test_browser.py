@@ -113,6 +113,8 @@ def test_next_is_another_drive_and_without_it_is_one_where_it_does_not_hold(tab:
     tab.write("asked", "scenario_4(SV,POV,L)")
     tab.press("f")
     tab.answered("WITNESSED")
+    tab.holds("true")
+    tab.until(f"() => {at_the_start}.includes('at 0.00 s')")
     first = tab.page.evaluate(at_the_start)
     tab.press("n")
     tab.answered("WITNESSED", 2)
