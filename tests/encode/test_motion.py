@@ -11,11 +11,12 @@ from hypothesis import strategies as st
 from roadproof.engines.encode.build import Assumptions, inequality_at, inequality_for_ever
 from roadproof.engines.encode.motion import Layout, encode_motions
 from roadproof.engines.encode.place import move_one_way, rectangles, stay_apart, stay_on_road
-from roadproof.engines.encode.problem import AnyOf, Inequality, affine, evaluate, variable
+from roadproof.engines.encode.problem import AnyOf, Inequality, evaluate
 from roadproof.engines.encode.unroll import Grid
 from roadproof.engines.search.shape import round_drive
 from roadproof.world.models import load_road, load_vehicle
 from roadproof.world.motion import state_at
+from roadproof.world.polynomial import affine, variable
 
 quiet = settings(deadline=None, derandomize=True)
 GRID = Grid(Fraction(1, 2), 4)

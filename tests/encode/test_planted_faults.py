@@ -23,17 +23,16 @@ from roadproof.engines.encode.problem import (
     Problem,
     Row,
     Unknown,
-    affine,
     any_of,
     evaluate,
     implicant,
-    variable,
 )
 from roadproof.engines.encode.unroll import Grid
 from roadproof.engines.solve import bounds, milp
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.world.models import load_vehicle
+from roadproof.world.polynomial import affine, variable
 from solve.small import exactly, inner_is_safe, outer_is_safe, problems
 
 search = settings(deadline=None, derandomize=True, max_examples=1000, database=None, phases=[Phase.generate])

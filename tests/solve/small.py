@@ -10,15 +10,14 @@ from roadproof.engines.encode.problem import (
     Problem,
     Row,
     Unknown,
-    affine,
     all_of,
     any_of,
     evaluate,
-    variable,
 )
 from roadproof.engines.solve.bounds import approximate, value_of
 from roadproof.engines.solve.exact import solve_exactly
 from roadproof.runtime.budget import Effort
+from roadproof.world.polynomial import affine, variable
 
 COLUMNS = 3
 

@@ -14,7 +14,6 @@ from roadproof.engines.encode.problem import (
     Row,
     Solution,
     Unknown,
-    affine,
     all_of,
     any_of,
 )
@@ -24,6 +23,7 @@ from roadproof.engines.solve.milp import box_of, solve_mixed
 from roadproof.engines.solve.smt import Session, ask, solve
 from roadproof.runtime import budget
 from roadproof.runtime.budget import BudgetExceeded, Effort
+from roadproof.world.polynomial import affine
 
 COLUMNS, ROWS = 40, 4
 LITTLE = Effort(0.001)

@@ -23,13 +23,10 @@ from roadproof.engines.encode.problem import (
     Problem,
     Row,
     Unknown,
-    affine,
     all_of,
     any_of,
-    constant,
     evaluate,
     nodes,
-    variable,
 )
 from roadproof.engines.encode.unroll import unroll
 from roadproof.engines.solve import milp, smooth
@@ -53,6 +50,7 @@ from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact import judge
 from roadproof.world.models import load_vehicle
 from roadproof.world.motion import state_at
+from roadproof.world.polynomial import affine, constant, variable
 from solve import small
 from tables import read_table
 

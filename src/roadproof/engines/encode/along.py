@@ -10,9 +10,10 @@ from fractions import Fraction
 from typing import Literal, TypeAlias, assert_never
 
 from roadproof.engines.encode.inequalities import Quantity, inequalities_of, sizes_of
-from roadproof.engines.encode.problem import Leaf, Polynomial, nodes
+from roadproof.engines.encode.problem import Leaf, nodes
 from roadproof.engines.encode.unroll import Grid
 from roadproof.logic.formula import Compare, Formula, subformulas
+from roadproof.world.polynomial import Polynomial
 from roadproof.world.road import Road
 from roadproof.world.signals import OwnName, SignalName
 from roadproof.world.vehicle import Range, Vehicle

@@ -15,17 +15,15 @@ from roadproof.engines.encode.problem import (
     ColumnInequality,
     Inequality,
     Leaf,
-    Polynomial,
     Problem,
     Row,
-    affine,
     all_of,
     replace_leaves,
     row_of,
-    variable,
 )
 from roadproof.engines.encode.unroll import At, unroll
 from roadproof.logic.formula import Compare, Formula
+from roadproof.world.polynomial import Polynomial, affine, variable
 from roadproof.world.road import Road
 from roadproof.world.signals import OwnName
 from roadproof.world.vehicle import Range, Vehicle

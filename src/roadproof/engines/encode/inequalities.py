@@ -9,22 +9,12 @@ from fractions import Fraction
 from itertools import product
 from typing import TypeAlias, assert_never
 
-from roadproof.engines.encode.problem import (
-    All,
-    AnyOf,
-    Circuit,
-    Inequality,
-    Leaf,
-    Polynomial,
-    all_of,
-    any_of,
-    constant,
-    variable,
-)
+from roadproof.engines.encode.problem import All, AnyOf, Circuit, Inequality, Leaf, all_of, any_of
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import code_of
 from roadproof.logic.formula import Compare
 from roadproof.logic.terms import Term
+from roadproof.world.polynomial import Polynomial, constant, variable
 from roadproof.world.signals import SIZES, OwnName
 from roadproof.world.vehicle import Vehicle
 

@@ -11,21 +11,13 @@ from fractions import Fraction
 from itertools import chain
 from typing import assert_never
 
-from roadproof.engines.encode.problem import (
-    Column,
-    Polynomial,
-    Row,
-    Unknown,
-    affine,
-    constant,
-    row_of,
-    variable,
-)
+from roadproof.engines.encode.problem import Column, Row, Unknown, row_of
 from roadproof.engines.encode.unroll import Grid
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import own_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import terms_of
+from roadproof.world.polynomial import Polynomial, affine, constant, variable
 from roadproof.world.signals import STARTING, OwnName, SignalName
 from roadproof.world.vehicle import Range, Vehicle
 

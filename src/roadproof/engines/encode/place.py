@@ -5,17 +5,8 @@ from fractions import Fraction
 from itertools import pairwise
 
 from roadproof.engines.encode.motion import Layout
-from roadproof.engines.encode.problem import (
-    Circuit,
-    ColumnInequality,
-    Inequality,
-    Leaf,
-    Polynomial,
-    affine,
-    all_of,
-    any_of,
-    constant,
-)
+from roadproof.engines.encode.problem import Circuit, ColumnInequality, Inequality, Leaf, all_of, any_of
+from roadproof.world.polynomial import Polynomial, affine, constant
 from roadproof.world.road import Lanelet, Road
 from roadproof.world.signals import SignalName, SizeName
 from roadproof.world.vehicle import Range, Vehicle

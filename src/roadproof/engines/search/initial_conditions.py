@@ -5,22 +5,14 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from roadproof.engines.encode.motion import Layout
-from roadproof.engines.encode.problem import (
-    Circuit,
-    ColumnInequality,
-    Inequality,
-    Leaf,
-    Polynomial,
-    all_of,
-    any_of,
-    constant,
-)
+from roadproof.engines.encode.problem import Circuit, ColumnInequality, Inequality, Leaf, all_of, any_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.initial_conditions import conjuncts, narrowed
 from roadproof.logic.terms import Signal
 from roadproof.world.drive import Drive
 from roadproof.world.motion import state_at
+from roadproof.world.polynomial import Polynomial, constant
 from roadproof.world.signals import SignalName
 
 

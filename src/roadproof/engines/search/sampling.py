@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadproof.engines.encode.inequalities import Quantity, polynomial_of
-from roadproof.engines.encode.problem import Polynomial, constant, variable
 from roadproof.engines.search.patterns import spread
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
@@ -26,6 +25,7 @@ from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.signals import AbstractSignals
 from roadproof.semantics.sampled.batch import Batch
 from roadproof.semantics.sampled.compiled import Monitor, compile
+from roadproof.world.polynomial import Polynomial, constant, variable
 from roadproof.world.vehicle import Range
 
 State: TypeAlias = Mapping[Signal, Fraction]

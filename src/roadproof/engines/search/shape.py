@@ -9,14 +9,7 @@ from fractions import Fraction
 
 from roadproof.engines.encode.build import NONE, ground
 from roadproof.engines.encode.motion import Layout
-from roadproof.engines.encode.problem import (
-    Column,
-    ColumnInequality,
-    Polynomial,
-    Problem,
-    evaluate,
-    implicant,
-)
+from roadproof.engines.encode.problem import Column, ColumnInequality, Problem, evaluate, implicant
 from roadproof.engines.encode.unroll import unroll_at
 from roadproof.engines.search.initial_conditions import Start
 from roadproof.engines.search.question import Objective
@@ -28,6 +21,7 @@ from roadproof.logic.custom_names import HALF
 from roadproof.logic.formula import Application, Formula, subformulas
 from roadproof.logic.terms import Signal
 from roadproof.world.drive import Course, Drive, Motion, Piece
+from roadproof.world.polynomial import Polynomial
 from roadproof.world.road import Road
 from roadproof.world.signals import OwnName, SignalName
 from roadproof.world.vehicle import Vehicle

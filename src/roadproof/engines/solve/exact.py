@@ -4,19 +4,10 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import assert_never
 
-from roadproof.engines.encode.problem import (
-    All,
-    AnyOf,
-    ColumnInequality,
-    Leaf,
-    Polynomial,
-    Problem,
-    Row,
-    Solution,
-    nodes,
-)
+from roadproof.engines.encode.problem import All, AnyOf, ColumnInequality, Leaf, Problem, Row, Solution, nodes
 from roadproof.engines.solve.smt import Satisfiability, Session
 from roadproof.runtime.budget import Budget, Effort
+from roadproof.world.polynomial import Polynomial
 
 UNIT = 600_000  # of what z3 counts: from 0.05 s in preprocessing to 1.5 s on polynomial arithmetic
 FIRST_TURN = 1.0

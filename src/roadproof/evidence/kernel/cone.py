@@ -5,8 +5,9 @@ Products of a few constraints, squares, and equations times monomials are the co
 there, and their multipliers are computed exactly. Not trusted: Coq adds the products up again.
 """
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
 from itertools import combinations, combinations_with_replacement, islice
@@ -14,64 +15,20 @@ from math import gcd, lcm, prod
 from typing import Literal, TypeAlias
 
 from roadproof.evidence.kernel.linear import add_to
+from roadproof.world.polynomial import Polynomial, constant
 
-# Variables with their exponents, in order; the empty one is 1.
-Monomial: TypeAlias = tuple[tuple[int, int], ...]
+# Variables by number, in order and repeated for powers; the empty one is 1.
+Monomial: TypeAlias = tuple[int, ...]
 Kind: TypeAlias = Literal["above", "at least", "zero"]
 MOST_COLUMNS = 4000
 FEW_VARIABLES = 6  # with so many, squares of sums of products are tried too
 _SMALL = 1e-7
 
 
-def times(one: Monomial, other: Monomial) -> Monomial:
-    """The product of two monomials."""
-    found = dict(one)
-    for variable, exponent in other:
-        found[variable] = found.get(variable, 0) + exponent
-    return tuple(sorted(found.items()))
-
-
-@dataclass(frozen=True)
-class Polynomial:
-    """Coefficients by monomial, none of them 0."""
-
-    parts: Mapping[Monomial, Fraction] = field(default_factory=dict)
-
-    def __add__(self, other: "Polynomial") -> "Polynomial":
-        found = dict(self.parts)
-        for monomial, factor in other.parts.items():
-            found[monomial] = found.get(monomial, Fraction(0)) + factor
-        return Polynomial({m: q for m, q in found.items() if q})
-
-    def __sub__(self, other: "Polynomial") -> "Polynomial":
-        return self + other * constant(Fraction(-1))
-
-    def __mul__(self, other: "Polynomial") -> "Polynomial":
-        found: dict[Monomial, Fraction] = {}
-        for m, p in self.parts.items():
-            for n, q in other.parts.items():
-                monomial = times(m, n)
-                found[monomial] = found.get(monomial, Fraction(0)) + p * q
-        return Polynomial({m: q for m, q in found.items() if q})
-
-    @property
-    def variables(self) -> set[int]:
-        return {variable for m in self.parts for variable, _ in m}
-
-
-def constant(value: Fraction) -> Polynomial:
-    """A number."""
-    return Polynomial({(): value} if value else {})
-
-
-def variable(number: int) -> Polynomial:
-    """The variable of that number, from 1."""
-    return Polynomial({((number, 1),): Fraction(1)})
-
-
-def coq(polynomial: Polynomial) -> str:
+def coq(polynomial: Polynomial[int]) -> str:
     """As a term of Products.v."""
-    shown = [_joined("mul_", _factors(m, q)) for m, q in sorted(polynomial.parts.items())]
+    terms = sorted(polynomial.terms.items(), key=lambda x: sorted(Counter(x[0]).items()))
+    shown = [_joined("mul_", _factors(m, q)) for m, q in terms]
     return _joined("add_", shown or ["(c_ 0 1)"])
 
 
@@ -84,8 +41,7 @@ def _factors(monomial: Monomial, factor: Fraction) -> Iterator[str]:
     if factor != 1 or not monomial:
         top = str(factor.numerator) if factor >= 0 else f"({factor.numerator})"
         yield f"(c_ {top} {factor.denominator})"
-    for variable, exponent in monomial:
-        yield from [f"(x_ {variable})"] * exponent
+    yield from (f"(x_ {variable})" for variable in monomial)
 
 
 @dataclass(frozen=True)
@@ -93,7 +49,7 @@ class Constraint:
     """``polynomial`` is above 0, at least 0, or 0."""
 
     kind: Kind
-    polynomial: Polynomial
+    polynomial: Polynomial[int]
 
 
 @dataclass(frozen=True)
@@ -103,7 +59,7 @@ class _Column:
     ``places``: of which constraints. ``written``: with a multiplier, for Coq; constraints as they are told.
     """
 
-    polynomial: Polynomial
+    polynomial: Polynomial[int]
     strict: bool
     free: bool
     places: tuple[int, ...]
@@ -111,7 +67,7 @@ class _Column:
 
 
 # Constraints by their places, their product, and whether it is above 0.
-_Product: TypeAlias = tuple[tuple[int, ...], Polynomial, bool]
+_Product: TypeAlias = tuple[tuple[int, ...], Polynomial[int], bool]
 _Parts: TypeAlias = tuple[tuple[_Column, Fraction], ...]
 
 
@@ -161,7 +117,7 @@ def contradiction(constraints: Sequence[Constraint], level: int) -> tuple[Sum | 
         parts = _solved(columns)
     except OverflowError:  # a number that no float has
         return None, len(columns)
-    scales = tuple(_whole(x.polynomial.parts.values()) for x in constraints)
+    scales = tuple(_whole(x.polynomial.terms.values()) for x in constraints)
     return Sum(parts, scales) if parts is not None else None, len(columns)
 
 
@@ -181,11 +137,7 @@ def _columns(constraints: Sequence[Constraint], level: int) -> Iterator[_Column]
     for place, x in enumerate(constraints):
         if x.kind == "zero":
             for monomial in _monomials(variables, level if level > 1 else 0):
-                yield _equation(
-                    place,
-                    Polynomial({times(m, monomial): q for m, q in x.polynomial.parts.items()}),
-                    monomial,
-                )
+                yield _equation(place, x.polynomial * Polynomial({monomial: Fraction(1)}), monomial)
     if level > 1:
         degree = 2 if level > 2 and len(variables) <= FEW_VARIABLES else 1
         roots = [Polynomial({m: Fraction(1)}) for m in _monomials(variables, degree)]
@@ -204,14 +156,14 @@ def _product(made: _Product) -> _Column:
     return _Column(polynomial, strict, False, places, written)
 
 
-def _equation(place: int, product: Polynomial, factor: Monomial) -> _Column:
+def _equation(place: int, product: Polynomial[int], factor: Monomial) -> _Column:
     def written(q: Fraction, given: Callable[[int], str]) -> str:
         return f"(times_ {coq(Polynomial({factor: q}))} {given(place)})"
 
     return _Column(product, False, True, (place,), written)
 
 
-def _square(root: Polynomial) -> _Column:
+def _square(root: Polynomial[int]) -> _Column:
     def written(q: Fraction, given: Callable[[int], str]) -> str:
         return f"(product_ {_number(q)} (square_ {coq(root)}))"
 
@@ -221,8 +173,7 @@ def _square(root: Polynomial) -> _Column:
 def _monomials(variables: Sequence[int], degree: int) -> Iterator[Monomial]:
     """Those of at most that degree."""
     for size in range(degree + 1):
-        for chosen in combinations_with_replacement(variables, size):
-            yield tuple((x, chosen.count(x)) for x in sorted(set(chosen)))
+        yield from combinations_with_replacement(variables, size)
 
 
 # --- multipliers ---------------------------------------------------------------------------------
@@ -236,7 +187,7 @@ def _solved(columns: Sequence[_Column]) -> _Parts | None:
     rows: dict[Monomial, int] = {}
     entries: list[tuple[int, int, float]] = []
     for place, x in enumerate(columns):
-        for monomial, factor in x.polynomial.parts.items():
+        for monomial, factor in x.polynomial.terms.items():
             entries.append((rows.setdefault(monomial, len(rows) + 1), place, float(factor)))
         if x.strict:
             entries.append((0, place, 1.0))
@@ -259,7 +210,7 @@ def _exactly(used: Sequence[_Column]) -> _Parts | None:
     """The multipliers of these columns in rationals; None where they are not what floats said."""
     rows: dict[Monomial | None, dict[int, Fraction]] = {None: {}}
     for place, x in enumerate(used):
-        for monomial, factor in x.polynomial.parts.items():
+        for monomial, factor in x.polynomial.terms.items():
             rows.setdefault(monomial, {})[place] = factor
         if x.strict:
             rows[None][place] = Fraction(1)

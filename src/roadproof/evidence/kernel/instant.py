@@ -16,6 +16,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.terms import Term
+from roadproof.world.polynomial import Polynomial, constant, variable
 
 MOST_CASES = 400
 MOST_WORK = 100_000  # products that are looked at
@@ -42,7 +43,7 @@ class _State:
 
     facts: tuple[tuple[bool, Formula], ...]
     constraints: tuple[cone.Constraint, ...]
-    table: Mapping[Term, cone.Polynomial]
+    table: Mapping[Term, Polynomial[int]]
     waiting: tuple[int, ...]  # facts that are to be read
     choices: tuple[int, ...] = ()  # disjunctions
     divided: frozenset[Term] = frozenset()
@@ -85,7 +86,7 @@ class _Search:
             for side in (x.left, x.right):
                 for atom in atoms_of(side):
                     self.atoms.setdefault(atom, len(self.atoms) + 1)
-        table = {x: cone.variable(number) for x, number in self.atoms.items()}
+        table = {x: variable(number) for x, number in self.atoms.items()}
         bounds = [
             cone.Constraint("above" if strict else "at least", table[p])
             for name, strict in self.strict.items()
@@ -179,16 +180,16 @@ class _Search:
 
     # --- terms -------------------------------------------------------------------------------------
 
-    def _polynomial(self, state: _State, term: Term) -> cone.Polynomial | None:
+    def _polynomial(self, state: _State, term: Term) -> Polynomial[int] | None:
         """As ``polynomial`` of Products.v; None for a maximum or minimum that is not resolved."""
         if term in state.table:
             return state.table[term]
         match term:
             case t.Number(value, _):
-                return cone.constant(value)
+                return constant(value)
             case t.Sum() | t.Product():
                 parts = [self._polynomial(state, x) for x in t.children(term)]
-                found = cone.constant(Fraction(int(isinstance(term, t.Product))))
+                found: Polynomial[int] = constant(Fraction(int(isinstance(term, t.Product))))
                 for x in parts:
                     if x is None:
                         return None
@@ -198,13 +199,13 @@ class _Search:
                 inner = self._polynomial(state, base)
                 if inner is None:
                     return None
-                found = cone.constant(Fraction(1))
+                found = constant(Fraction(1))
                 for _ in range(exponent):
                     found = _small(found * inner)
                 return found
             case t.Quotient(above, t.Number(value, _)) if value:
                 inner = self._polynomial(state, above)
-                return None if inner is None else inner * cone.constant(1 / value)
+                return None if inner is None else inner.scaled(1 / value)
             case _:
                 return None
 
@@ -217,7 +218,7 @@ class _Search:
             if above is None or below is None:
                 continue
             for up in (True, False):
-                other = cone.constant(Fraction(0)) - below if up else below
+                other = below.scaled(Fraction(-1)) if up else below
                 asked = (*state.constraints, cone.Constraint("at least", other))
                 shown = next((y for level in LEVELS[:2] if (y := self._contradiction(asked, level))), None)
                 if shown is not None:
@@ -253,10 +254,10 @@ class _Search:
         """A quotient of which no sign is known, at least 0 or below; else no reason is found."""
         if state.cuts >= MOST_CUTS:
             raise NoReasonError
-        signs = {v for x in state.constraints for v in x.polynomial.variables if len(x.polynomial.parts) == 1}
+        signs = {v for x in state.constraints for v in x.polynomial.variables if len(x.polynomial.terms) == 1}
         for x, polynomial in state.table.items():
             if isinstance(x, t.Quotient) and not polynomial.variables & signs:
-                below = cone.constant(Fraction(0)) - polynomial
+                below = polynomial.scaled(Fraction(-1))
                 cut = replace(state, cuts=state.cuts + 1)
                 first = self._prove(cut.constrained(cone.Constraint("at least", polynomial)))
                 other = self._prove(cut.constrained(cone.Constraint("above", below)))
@@ -271,8 +272,8 @@ class _Search:
         return "Length" + shown[len("length") :] if size.name == "length" else "Width" + shown[len("width") :]
 
 
-def _small(polynomial: cone.Polynomial) -> cone.Polynomial:
+def _small(polynomial: Polynomial[int]) -> Polynomial[int]:
     """Raises ``NoReasonError`` for what is too large to be looked at."""
-    if len(polynomial.parts) > MOST_PARTS:
+    if len(polynomial.terms) > MOST_PARTS:
         raise NoReasonError
     return polynomial
