@@ -165,6 +165,21 @@ def test_a_name_in_the_words_of_iso_34502_stands_for_scenarios() -> None:
     assert references.claimed(BASE, "deceleration ahead, lane keep, main road", "here") == "scenario_4"
 
 
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("cut-in, merge", "'merge' is no part of a name; did you mean 'merge zone'?"),
+        ("Cut-in, 3", "'3' is no part of a name"),
+        ("cut-in, cut-out", "no scenario has all these parts"),
+    ],
+)
+def test_half_a_name_is_refused_with_the_parts_of_names(text: str, reason: str) -> None:
+    with pytest.raises(UsageError) as error:
+        references.read_query(BASE, text)
+    told = f"'{text}' names no scenario: {reason}\nparts of names: cut-in, lane keep, main road, cut-out, "
+    assert str(error.value).startswith(told)
+
+
 def test_every_scenario_is_found_by_its_own_name() -> None:
     for number, words in called(BASE).items():
         assert references.read_numbers(BASE, words.name) == (number,)

@@ -7,6 +7,7 @@ left out.
 
 import re
 from dataclasses import dataclass
+from difflib import get_close_matches
 
 from roadproof.errors import InputError, UsageError
 from roadproof.library.elaborate import apply_definition, read_claim
@@ -16,6 +17,7 @@ from roadproof.library.words import called
 from roadproof.logic import syntax
 
 _RANGE = re.compile(r"\s*(\d{1,4})\s*(?:-\s*(\d{1,4})\s*)?")
+_WORDS = re.compile(r"\w[\w -]*(?:\([\w -]*\))?")
 _BRACKETS = re.compile(r"\s*\([^()]*\)")
 
 
@@ -68,6 +70,25 @@ def numbers_called(specification: Specification, text: str) -> tuple[int, ...]:
     return tuple(number for number, name in names.items() if asked <= _parts(name))
 
 
+def refuse_half_name(specification: Specification, text: str) -> None:
+    """Raises ``UsageError`` for a text like ``cut-in, merge``: one part is of a scenario's name, another is not.
+
+    Also where each part is of a name, but no scenario has them all. ``text``: one for which ``numbers_called``
+    finds no scenario.
+    """
+    if text.strip().isidentifier():
+        return
+    asked = [_plain(part) for part in text.split(",")]
+    known = {part: None for x in called(specification).values() for part in map(str.strip, x.name.split(","))}
+    strange = [part for part in asked if part not in {y for x in known for y in _parts(x)}]
+    if len(strange) == len(asked) or not all(map(_WORDS.fullmatch, asked)):
+        return
+    near = get_close_matches(strange[0], known, 1, 0.5) if strange else []
+    hint = f"; did you mean '{near[0]}'?" if near else ""
+    reason = f"'{strange[0][:40]}' is no part of a name" if strange else "no scenario has all these parts"
+    raise UsageError(f"'{text}' names no scenario: {reason}{hint}\nparts of names: {', '.join(known)}")
+
+
 def names_scenarios(specification: Specification, text: str) -> bool:
     """Whether ``read_numbers`` reads a text: as numbers, or as a name that scenarios have."""
     return are_numbers(text) or bool(numbers_called(specification, text))
@@ -76,13 +97,15 @@ def names_scenarios(specification: Specification, text: str) -> bool:
 def one_called(specification: Specification, text: str) -> int | None:
     """The scenario of that name; None where no scenario has it.
 
-    Raises ``UsageError``, which lists the scenarios, where several have it.
+    Raises ``UsageError``, which lists the scenarios, where several have it, and as ``refuse_half_name`` does.
     """
     numbers = numbers_called(specification, text)
     if len(numbers) > 1:
         words = called(specification, numbers)
         choices = "".join(f"\n  {number}: {x.name}" for number, x in words.items())
         raise UsageError(f"'{text}' names {len(numbers)} scenarios; write one of their numbers:{choices}")
+    if not numbers:
+        refuse_half_name(specification, text)
     return numbers[0] if numbers else None
 
 

@@ -77,11 +77,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     specification, what = read_definitions(args, Show).specification, args.what.strip()
-    if args.format == "json":
-        one_called(specification, what)  # refuses a name of several: JSON shows one thing
-    exhibits = [
-        _find(specification, x, args.expand) for x in map(str, numbers_called(specification, what) or (what,))
-    ]
+    numbers = numbers_called(specification, what)
+    if args.format == "json" or not numbers:
+        one_called(specification, what)  # refuses a name of several, as JSON shows one thing, and half a name
+    exhibits = [_find(specification, x, args.expand) for x in map(str, numbers or (what,))]
     if args.format == "json":
         write_json(_as_json(exhibits[0], specification), "-")
     else:
