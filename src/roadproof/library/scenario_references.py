@@ -71,10 +71,10 @@ def numbers_called(specification: Specification, text: str) -> tuple[int, ...]:
 
 
 def refuse_half_name(specification: Specification, text: str) -> None:
-    """Raises ``UsageError`` for a text like ``cut-in, merge``: one part is of a scenario's name, another is not.
+    """Raises ``UsageError`` for text like ``cut-in, merge``: only one part is of a scenario's name.
 
-    Also where each part is of a name, but no scenario has them all. ``text``: one for which ``numbers_called``
-    finds no scenario.
+    Also where each part is of a name, but no scenario has them all. ``text``: one for which
+    ``numbers_called`` finds no scenario.
     """
     if text.strip().isidentifier():
         return
