@@ -5,6 +5,7 @@ import multiprocessing
 import shutil
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -19,7 +20,6 @@ from roadproof.analysis.catalogue.meaning import Meanings, Piece
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
 from roadproof.analysis.study import known, pool
 from roadproof.analysis.study.known import SWITCH
-from roadproof.engines.search.search import NONE_FOUND
 from roadproof.evidence.codec import read, write
 from roadproof.frontends.api.cataloguing import CatalogueAnswer
 
@@ -155,18 +155,17 @@ def test_what_a_clock_may_cut_off_is_not_kept(tests: Path, work: Work) -> None:
 
 
 @pytest.mark.parametrize(
-    ("other", "reason", "is_kept"),
-    [
-        ("scenario_8", NONE_FOUND, True),
-        ("scenario_8", "cut off by the clock", False),
-        ("", NONE_FOUND, False),
-    ],
+    ("other", "exhausted", "is_kept"),
+    [("scenario_8", True, True), ("scenario_8", False, False), ("", True, False)],
 )
 def test_doubts_that_the_same_work_leaves_are_kept(
-    tests: Path, work: Work, monkeypatch: pytest.MonkeyPatch, other: str, reason: str, is_kept: bool
+    tests: Path, work: Work, monkeypatch: pytest.MonkeyPatch, other: str, exhausted: bool, is_kept: bool
 ) -> None:
     def left_open(study: Meanings, entry: Abstract) -> tuple[Fact, ...]:
-        return (Fact(entry.id, other, "open", entry.query, entry.query if other else None, reason),)
+        conclusion = entry.query if other else None
+        return (
+            Fact(entry.id, other, "open", entry.query, conclusion, "none was found", exhausted=exhausted),
+        )
 
     monkeypatch.setattr(Meanings, "_of_test", left_open)
     first = asked(tests)

@@ -34,7 +34,8 @@ class Fact:
     alone has a drive (runs) or a proof that there is none (empty); of a scenario or class there is a drive at
     the end of a range (reaches); open: none of these was found. ``premise`` is the formula of the test,
     ``conclusion`` that of the other. ``also``: of a drive, all names that it shows. ``term``, ``sense`` and
-    ``at`` (SI): which number of its start is least or greatest there.
+    ``at`` (SI): which number of its start is least or greatest there. ``exhausted``: left open by a search
+    that finds no more with the same work; not kept.
     """
 
     test: str
@@ -49,6 +50,7 @@ class Fact:
     term: str = ""
     sense: Literal["", "least", "greatest"] = ""
     at: Fraction | None = None
+    exhausted: bool = False
 
     @property
     def verdict(self) -> FactVerdict:

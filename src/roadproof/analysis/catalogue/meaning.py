@@ -28,7 +28,6 @@ from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.analysis.study.frame import Unprepared
 from roadproof.engines.search.ask import Outcome, Search, answer
 from roadproof.engines.search.question import SearchOptions, Setting
-from roadproof.engines.search.search import NONE_FOUND
 from roadproof.errors import InputError
 from roadproof.evidence.answers import catalogue_index as kept
 from roadproof.evidence.answers.catalogue_index import Relation
@@ -255,7 +254,7 @@ class Meanings(Unprepared):
         outcome = self._search(entry, both(entry.query, query), explain=False)
         if not outcome.drives:
             reason = outcome.told(()) or "no drive was found"
-            return Fact(entry.id, name, "open", entry.query, query, reason)
+            return Fact(entry.id, name, "open", entry.query, query, reason, exhausted=outcome.exhausted)
         drive = outcome.drives[0]
         return Fact(
             entry.id, name, "shows", entry.query, query, drive=drive, also=names_shown(drive, self.asked)
@@ -305,7 +304,7 @@ class Meanings(Unprepared):
         """Sure ones, and those with scenarios of which all work that counts found neither drive nor proof."""
         if isinstance(answer, AboutGaps):
             return self.is_sure(answer)
-        return all(x.relation != "open" or (x.other and x.reason == NONE_FOUND) for x in answer)
+        return all(x.relation != "open" or (x.other and x.exhausted) for x in answer)
 
     def record(self, name: str, answer: Kept, shelf: EvidenceStore) -> kept.Record:
         if isinstance(answer, AboutGaps):

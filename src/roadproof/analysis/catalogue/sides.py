@@ -129,7 +129,8 @@ def _fact(basis: Basis, asked: Questions, drivers: Drivers, piece: Sides, wanted
         ):
             also = names_shown(judged, asked)
             return Fact(entry.id, other, "shows", entry.query, plain, drive=judged, also=also)
-    return replace(left_open, reason=outcome.told(()) or "a search found none")
+    reason = outcome.told(()) or "a search found none"
+    return replace(left_open, reason=reason, exhausted=outcome.exhausted)
 
 
 @cache

@@ -49,7 +49,8 @@ class Search:
 class Outcome:
     """The verdict on a search, with judged drives, a proof that there is none, or the limits it was for.
 
-    ``seconds`` by stage; ``sizes`` of the last problem that was solved.
+    ``seconds`` by stage; ``sizes`` of the last problem that was solved. ``exhausted``: the same work finds no
+    more.
     """
 
     scenario: int | None
@@ -64,6 +65,7 @@ class Outcome:
     sizes: Mapping[str, int] = field(default_factory=dict)
     impossibility: Impossibility | None = None
     limits: Limits | None = None
+    exhausted: bool = False
 
     def told(self, options: Sequence[str]) -> str:
         """The reason, with those ``options`` that a command has to widen the limits of a NONE-WITHIN."""
@@ -151,6 +153,7 @@ def _ask(search: Search) -> Outcome:
         first.sizes,
         impossibility,
         None if impossibility else first.limits,
+        first.exhausted and impossibility is None,
     )
 
 

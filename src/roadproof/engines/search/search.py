@@ -30,8 +30,6 @@ from roadproof.world.drive import Drive
 # Units of work: the least for one exact search, and the most for one way to show that there is no drive.
 LEAST_EXACT = 2.0
 REFUTING = 20.0
-NONE_FOUND = "none was found"
-"""The reason of an UNKNOWN where all work was done that counts, so that the same work finds the same."""
 STARTS = 12  # for each assignment of lanes
 
 
@@ -39,7 +37,8 @@ STARTS = 12  # for each assignment of lanes
 class Attempt:
     """WITNESSED with a drive, NONE-WITHIN with limits, or UNKNOWN; the last two with a reason.
 
-    ``seconds`` by stage.
+    ``seconds`` by stage. ``exhausted``: of an UNKNOWN, all work that counts was done, so the same work finds
+    the same.
     """
 
     verdict: DriveVerdict
@@ -48,6 +47,7 @@ class Attempt:
     seconds: Mapping[str, float] = field(default_factory=dict)
     sizes: Mapping[str, int] = field(default_factory=dict)
     limits: Limits | None = None
+    exhausted: bool = False
 
 
 def find_witness(
@@ -162,7 +162,8 @@ class _Search:
             return self._answer(Verdict.UNKNOWN, None, self.meter.reason())
         doubt = self.doubts[-1] if self.doubts else ""
         if not self.search_options.explain or self.question.start is not None:
-            return self._answer(Verdict.UNKNOWN, None, doubt or NONE_FOUND)
+            answer = self._answer(Verdict.UNKNOWN, None, doubt or "none was found")
+            return replace(answer, exhausted=not doubt)
         answer = self.none()
         return replace(answer, reason=doubt) if doubt and answer.verdict is Verdict.UNKNOWN else answer
 
