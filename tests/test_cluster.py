@@ -12,7 +12,7 @@ from roadproof.analysis.study.pool import work
 from roadproof.errors import InputError, LostError, UsageError
 from roadproof.runtime import dask_executor
 from roadproof.runtime.executors import Cluster, Executor
-from roadproof.runtime.process_pool import is_worker
+from roadproof.runtime.worker import is_worker
 
 pytest.importorskip("distributed", reason="dask is not installed: pip install 'roadproof[cluster]'")
 

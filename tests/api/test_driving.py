@@ -164,7 +164,7 @@ def test_what_looks_for_drives_among_files_finds_it(tmp_path: Path) -> None:
     assert (made.results, made.drives) == (1, 1)
     files = [{"name": "smooth.json", "content": path.read_text("utf-8")}]
     draft = {"base": "ext", "text": "", "before": None, "options": {}, "params": {}}
-    dropped = drop(read_ask({"files": files, "draft": draft, "set": "ext"}), lambda _: None)
+    dropped = drop(read_ask({"files": files, "draft": draft, "set": "ext"}))
     assert dropped["drive"]["schema"] == "roadproof/drive/2"
     assert dropped["view"]["formulas"][0]["holds"] is True
     [finding] = rp.check(path, kernel="coq").findings if shutil.which("coqc") else [None]

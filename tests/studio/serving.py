@@ -124,8 +124,4 @@ def workers_of(process: int) -> set[int]:
             pid = children[pid][0]
         return pid == process
 
-    return {
-        pid
-        for pid, (_, words) in children.items()
-        if "roadproof.frontends.studio.worker" in words and is_below(pid)
-    }
+    return {pid for pid, (_, words) in children.items() if "multiprocessing.spawn" in words and is_below(pid)}

@@ -86,7 +86,7 @@ async def test_an_idle_worker_that_died_is_not_asked() -> None:
     async with crew(Limits(workers=1)) as made:
         assert "answer" in await answer(made, SHORT)
         os.kill(made.every[0].process.pid, signal.SIGKILL)
-        await made.every[0].process.wait()
+        made.every[0].process.join()
         assert "answer" in await answer(made, SHORT)
 
 

@@ -9,7 +9,7 @@ from roadproof.frontends.studio.examples import EXAMPLES, Example
 
 
 def asked(job: str, formula: str, **other: Any) -> dict[str, Any]:
-    told: Any = jobs.answer(job, {"draft": {}, "formula": formula, **other}, lambda stage: None)
+    told: Any = jobs.answer(job, {"draft": {}, "formula": formula, **other})
     return dict(told)
 
 

@@ -16,7 +16,7 @@ DRIVES = EXAMPLES / "traffic" / "drives"
 
 def cards(numbers: list[int], base: str = "base") -> dict[int, dict[str, Any]]:
     gallery._cards.cache_clear()
-    told: Any = jobs.answer("gallery", {"draft": {"base": base}, "scenarios": numbers}, lambda stage: None)
+    told: Any = jobs.answer("gallery", {"draft": {"base": base}, "scenarios": numbers})
     return {x["number"]: x for x in told["cards"]}
 
 

@@ -266,7 +266,7 @@ def dropped(*paths: Path) -> dict[str, Any]:
     files = [{"name": x.name, "content": x.read_text("utf-8")} for x in paths]
     draft = {"base": "base", "text": "", "options": {}, "params": {}}
     asked = {"draft": draft, "set": "base", "formula": "scenario_4(SV,POV,L)", "files": files}
-    return drop(read_ask(asked), lambda stage: None)
+    return drop(read_ask(asked))
 
 
 def test_a_drive_is_shown_and_samples_are_monitored() -> None:
@@ -302,7 +302,7 @@ def test_the_form_of_the_page_follows_the_options_of_questions() -> None:
 )
 def test_questions_of_a_page_are_read_strictly(asked: dict[str, Any], told: str) -> None:
     with pytest.raises(RoadproofError, match=re.escape(told)):
-        jobs.answer("find", {"draft": {}, "formula": "true", **asked}, lambda stage: None)
+        jobs.answer("find", {"draft": {}, "formula": "true", **asked})
 
 
 def test_marks_are_of_places_in_the_texts_of_the_editors_alone() -> None:

@@ -8,9 +8,9 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from roadproof.errors import InputError, MissingSolverError, UsageError
-from roadproof.runtime import process_pool
 from roadproof.runtime.executors import Cluster, LostJob, try_twice
 from roadproof.runtime.memory import keep_freed_memory
+from roadproof.runtime.worker import end_here
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -83,7 +83,7 @@ def _same(function: Answer) -> Answer:
 def _serve(version: str, function: Callable[[Job], Answer], job: Job) -> Answer:
     """A job on a worker, which may have come after the versions were checked."""
     _check_version(version, {_our_version()})
-    process_pool.end_here()
+    end_here()
     keep_freed_memory()
     answer = function(job)
     _freeze()

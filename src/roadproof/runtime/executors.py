@@ -4,7 +4,6 @@ A job whose process ends before it is done is tried once more, alone.
 """
 
 import re
-import signal
 import sys
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
@@ -110,8 +109,6 @@ Answer = TypeVar("Answer")
 # The answers of jobs at some places; where a process ended instead, the mapping gets the reason.
 Attempt: TypeAlias = Callable[[Sequence[int], dict[int, str]], Generator[tuple[int, Answer], None, None]]
 
-OUTSIDE = "from outside or for want of memory"
-
 
 @dataclass(frozen=True)
 class LostJob:
@@ -136,11 +133,6 @@ def try_twice(
         with closing(attempt([place], again)) as found:
             yield from found
         yield from ((place, LostJob(lost + reason)) for reason in again.values())
-
-
-def ended_by(code: int) -> str:
-    """What ended a process, from its exit code: ``SIGKILL``, or ``exited with 3``."""
-    return signal.Signals(-code).name if code < 0 else f"exited with {code}"
 
 
 Job = TypeVar("Job")

@@ -21,8 +21,9 @@ from roadproof.logic.formula import is_state
 from roadproof.logic.rewrite import is_cubic_state, parameters_of
 from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.runtime.executors import LostJob
-from roadproof.runtime.process_pool import answers_of, is_worker
+from roadproof.runtime.process_pool import answers_of
 from roadproof.runtime.progress import about
+from roadproof.runtime.worker import is_worker
 from roadproof.verdict import ClaimVerdict, Verdict
 
 DIRECTIONS = ("first implies second", "second implies first")

@@ -12,8 +12,7 @@ import time
 from collections.abc import Callable
 
 from roadproof.frontends.cli import progress
-from roadproof.runtime.executors import OUTSIDE, ended_by
-from roadproof.runtime.parent_watchdog import die_with
+from roadproof.runtime.worker import OUTSIDE, Fork, dismiss, ended_by, work_for
 from roadproof.verdict import ExitCode
 
 GRACE = 2.0  # seconds that the command has to remove half-written files when it is to end
@@ -37,14 +36,11 @@ def supervise(command: Callable[[], int]) -> int:
     signal.pthread_sigmask(signal.SIG_BLOCK, signals)
     told, telling = os.pipe()
     parent = os.getpid()
-    child = os.fork()
-    if child == 0:
+    child = Fork(os.fork())
+    if child.pid == 0:
         os.close(told)
         progress.report_to(telling)
-        die_with(parent)
-        signal.signal(signal.SIGTERM, _interrupt)
-        # SIGINT stays blocked, as z3 would answer it; the parent sends SIGTERM instead.
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGTERM})
+        work_for(parent, _interrupt)
         return command()
     os.close(telling)
     try:
@@ -52,12 +48,12 @@ def supervise(command: Callable[[], int]) -> int:
             signal.signal(number, _raise_ended)
         signal.pthread_sigmask(signal.SIG_UNBLOCK, signals)
         _listen(told)
-        _, status = os.waitpid(child, 0)
+        child.join()
     except _EndedError as ended:
         for number in signals:
             signal.signal(number, signal.SIG_IGN)
         return _end(child, ended.signal_number)
-    return _code_of(status)
+    return _code_of(child)
 
 
 def _interrupt(number: int, frame: object) -> None:
@@ -70,25 +66,18 @@ def _raise_ended(number: int, frame: object) -> None:
     raise _EndedError(number)
 
 
-def _end(child: int, number: int) -> int:
-    """Ask the child to end, and make it end; 128 and the signal's number, as shells count."""
+def _end(child: Fork, number: int) -> int:
+    """End the child; 128 and the signal's number, as shells count."""
     with contextlib.suppress(ProcessLookupError, ChildProcessError):
-        os.kill(child, signal.SIGTERM)
-        latest = time.monotonic() + GRACE
-        gone, status = os.waitpid(child, os.WNOHANG)
-        while not gone and time.monotonic() < latest:
-            time.sleep(0.01)
-            gone, status = os.waitpid(child, os.WNOHANG)
-        if not gone:
-            os.kill(child, signal.SIGKILL)
-            os.waitpid(child, 0)
-        if not gone or os.waitstatus_to_exitcode(status) != ExitCode.INTERRUPTED:
+        dismiss([child], GRACE)
+        if child.exitcode != ExitCode.INTERRUPTED:
             _say("interrupted")
     return 128 + number
 
 
-def _code_of(status: int) -> int:
-    code = os.waitstatus_to_exitcode(status)
+def _code_of(child: Fork) -> int:
+    code = child.exitcode
+    assert code is not None
     if code >= 0:
         return code
     if code == -signal.SIGKILL:

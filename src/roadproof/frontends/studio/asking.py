@@ -14,27 +14,18 @@ from roadproof.frontends.settings import groups
 from roadproof.frontends.settings.flags import command_line
 from roadproof.frontends.settings.option import Settings
 from roadproof.frontends.settings.questions import Compare, Prove, Witness
-from roadproof.frontends.studio.requests import Answer, Ask, Say
+from roadproof.frontends.studio.requests import Answer, Ask
 from roadproof.frontends.studio.showing import marks_of, view
 from roadproof.library.compose import negation
 from roadproof.library.scenarios import scenario_number
 from roadproof.library.specification import Query
 from roadproof.library.uses import nearest, places_of
 from roadproof.logic.formula import Formula
-from roadproof.runtime.progress import Listener
+from roadproof.runtime.progress import begin
 from roadproof.verdict import Verdict
 
 FILE = "edit.spec"
 Origin: TypeAlias = Literal["shipped", "cache"]
-_STAGES = {
-    "prove": "looking for a proof",
-    "encode": "encoding the formula",
-    "solve": "looking for a drive",
-    "shape": "shaping the drive",
-    "judge": "judging the drive",
-    "refute": "proving that no drive exists on the grid",
-    "explain": "looking for a proof that no drive exists",
-}
 
 
 @dataclass(frozen=True)
@@ -77,18 +68,18 @@ class _Settled:
         }
 
 
-def find(ask: Ask, say: Say) -> Answer:
+def find(ask: Ask) -> Answer:
     """A drive with the question, or without it: the ``count``-th that differs clearly."""
     home, how = ask.home, {**ask.options("find"), "count": ask.count}
     query = home.read(ask.formula)
     query = negation(query) if ask.negated else query
     what = _shortly(home, query)
-    say("looking for a drive")
-    answers = rp.witness(what, using=home, jobs=1, stage=_telling(say), fresh=ask.fresh, **how)
+    begin("looking for a drive")
+    answers = rp.witness(what, using=home, jobs=1, fresh=ask.fresh, **how)
     outcome = answers.outcomes[0]
     drive = outcome.drives[-1] if len(outcome.drives) == ask.count else None
     if drive is not None:
-        say("judging the drive")
+        begin("judging the drive")
     words = [query.text if what is query else str(what)]
     proof, command = outcome.impossibility, _command("witness", words, ask, home, Witness.of(how))
     certificate = None if proof is None else proof.certificate
@@ -113,7 +104,7 @@ class _AnsweredError(Exception):
     """The direction that was asked for has its answer."""
 
 
-def _first_direction(text: str, home: Definitions, say: Say) -> Any:
+def _first_direction(text: str, home: Definitions) -> Any:
     """Whether the formula in the first set implies it in the second; the other direction is another job's."""
     found: list[object] = []
 
@@ -122,13 +113,8 @@ def _first_direction(text: str, home: Definitions, say: Say) -> Any:
         raise _AnsweredError
 
     with contextlib.suppress(_AnsweredError):
-        rp.compare(text, text, home, jobs=1, each=each, stage=_telling(say))
+        rp.compare(text, text, home, jobs=1, each=each)
     return found[0]
-
-
-def _telling(say: Say) -> Listener:
-    """A listener to stages that says them in words."""
-    return lambda stage: say(", ".join(filter(None, (_STAGES.get(stage.name, stage.name), stage.told))))
 
 
 def _clash(home: Definitions, query: Query, core: Iterable[Formula]) -> list[Answer]:
@@ -138,15 +124,15 @@ def _clash(home: Definitions, query: Query, core: Iterable[Formula]) -> list[Ans
     return marks_of((x for part in core for x in nearest(seen, part)), "clash")
 
 
-def prove(ask: Ask, say: Say) -> Answer:
+def prove(ask: Ask) -> Answer:
     """The question as a claim: proved with a certificate, or refuted with a drive.
 
     It is about all values of parameters but those that the page has set; ``declared``: at one value of each.
     """
     home, how = ask.home, ask.options("prove")
-    say("looking for a proof")
+    begin("looking for a proof")
     claim = home.read(ask.formula)
-    answers = rp.prove(claim, using=home, jobs=1, stage=_telling(say), fresh=ask.fresh, **how)
+    answers = rp.prove(claim, using=home, jobs=1, fresh=ask.fresh, **how)
     [found] = answers.answers
     task, settled, result = found.task, found.settled, found.settled.result
     cost = Cost(next(iter(answers.found.known), None), result.seconds, result.work or None)
@@ -155,7 +141,7 @@ def prove(ask: Ask, say: Say) -> Answer:
     return one.shown(ask) | {"assuming": list(task.assuming), "refuted_by": settled.refuted_by}
 
 
-def compare(ask: Ask, say: Say) -> Answer:
+def compare(ask: Ask) -> Answer:
     """One direction of before against after the edit: does the one imply the other?
 
     ``forward``: whether before implies after.
@@ -163,7 +149,7 @@ def compare(ask: Ask, say: Say) -> Answer:
     below = BEFORE if ask.draft.before is not None else ask.draft.base
     pair = (below, EDIT) if ask.forward else (EDIT, below)
     home = ask.draft.definitions(*pair)
-    found = _first_direction(ask.formula, home, say)
+    found = _first_direction(ask.formula, home)
     command = _command("compare", [ask.formula, ask.formula], ask, home, Compare())
     one = _Settled(found.verdict, found.reason, found.claim.text, command, found.certificate, found.drive)
     return one.shown(replace(ask, compare=True)) | {"sets": list(pair)}

@@ -19,36 +19,37 @@ from roadproof.evidence.drive_file import read_drive
 from roadproof.evidence.strict import parse_json
 from roadproof.frontends.report.viewer_document import FormulaView
 from roadproof.frontends.report.viewer_recorded import recorded_data
-from roadproof.frontends.studio.requests import MOST_FILES, Answer, Ask, Say
+from roadproof.frontends.studio.requests import MOST_FILES, Answer, Ask
 from roadproof.frontends.studio.showing import view
 from roadproof.recordings.evaluate.one_trace import OneTrace, read_pair, read_samples
+from roadproof.runtime.progress import begin
 
 MOST_PAIRS = 2000
 _NAME = re.compile(r"\w[\w .()+-]{0,80}\.(json|csv|xosc|xodr|xml|toml)")
 
 
-def drop(ask: Ask, say: Say) -> Answer:
+def drop(ask: Ask) -> Answer:
     """What was dropped: a drive, a certificate, or a recording with a list of its pairs and matches."""
     names = _names(ask)
     if len(names) == 1 and names[0].endswith(".json"):
-        return _evidence(ask, say)
-    say("reading the recording")
+        return _evidence(ask)
+    begin("reading the recording")
     with _laid_out(ask) as folder:
         if len(names) == 1 and names[0].endswith((".csv", ".xosc")) and "_tracks" not in names[0]:
             return {"view": _monitored(ask, read_samples(folder / names[0]))}
-        say("searching for danger")
+        begin("searching for danger")
         found = rp.evaluate(folder, using=ask.home, detectors=False, jobs=1)
         pairs, matches = found.pairs().to_dicts(), found.matches().to_dicts()
         told = {"pairs": _plain(pairs[:MOST_PAIRS]), "matches": _plain(matches), "files": names}
         return {"recording": told}
 
 
-def pair(ask: Ask, say: Say) -> Answer:
+def pair(ask: Ask) -> Answer:
     """Vehicles of a recording that was dropped, with the question and what is watched monitored on them."""
     if ask.pair is None:
         raise InputError("question: 'pair' is missing")
     wanted, ids = ask.pair, ",".join(map(str, ask.pair.vehicles))
-    say(f"reading vehicles {ids}")
+    begin(f"reading vehicles {ids}")
     with _laid_out(ask) as folder:
         tracks = f"{wanted.recording}_tracks.csv"
         if tracks not in _names(ask):
@@ -56,13 +57,13 @@ def pair(ask: Ask, say: Say) -> Answer:
         return {"view": _monitored(ask, read_pair(f"{folder / tracks}:{ids}", (wanted.first, wanted.last)))}
 
 
-def _evidence(ask: Ask, say: Say) -> Answer:
+def _evidence(ask: Ask) -> Answer:
     [name], [file] = _names(ask), ask.files
     data = parse_json(file.content, name)
     if isinstance(data, dict) and data.get("schema") in DRIVES:
         drive = read_drive(data, name)
         return {"drive": data, "view": view(replace(ask, formula=drive.formula), drive)}
-    say("checking the file")
+    begin("checking the file")
     with _laid_out(ask) as folder:
         specs, draft = [], ask.draft
         if draft.text.strip() or draft.before is not None:

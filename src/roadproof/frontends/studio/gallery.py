@@ -14,7 +14,7 @@ from roadproof.library.scenarios import numbers_of
 GRAIN = Fraction(1, 2)  # s between distances of a small picture
 
 
-def cards(ask: Ask, say: object) -> Answer:
+def cards(ask: Ask) -> Answer:
     """Drives of ``scenarios`` in the set below the draft: the drive file, and what a small picture shows.
 
     A scenario without a known drive has none; numbers that the set does not have are left out.

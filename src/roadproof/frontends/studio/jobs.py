@@ -5,9 +5,9 @@ from typing import TypeAlias
 
 from roadproof.frontends.api.drafting import Draft
 from roadproof.frontends.studio import asking, dropping, gallery, naming, showing
-from roadproof.frontends.studio.requests import Answer, Ask, Say, read_ask
+from roadproof.frontends.studio.requests import Answer, Ask, read_ask
 
-Job: TypeAlias = Callable[[Ask, Say], Answer]
+Job: TypeAlias = Callable[[Ask], Answer]
 
 # Jobs that take a moment, and those that may take long and can be stopped.
 LIVE: Mapping[str, Job] = {
@@ -27,14 +27,14 @@ LONG: Mapping[str, Job] = {
 }
 
 
-def answer(kind: str, ask: object, say: Say) -> Answer:
+def answer(kind: str, ask: object) -> Answer:
     """The answer to one job. Raises ``RoadproofError``."""
-    return {**LIVE, **LONG}[kind](read_ask(ask), say)
+    return {**LIVE, **LONG}[kind](read_ask(ask))
 
 
 def warm_up(long: bool) -> None:
     """Read a formula, for ``long`` jobs find a drive: so the first of a user is as quick as the next."""
     first = Ask(Draft(), formula="v_lon(SV) > 1 m/s", formulas={"formula": "1"})
-    naming.read(first, None)
+    naming.read(first)
     if long:
-        asking.find(first, lambda stage: None)
+        asking.find(first)

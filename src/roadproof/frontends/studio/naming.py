@@ -17,7 +17,7 @@ WIDTH = 84
 LONGEST_EXPANSION = 4000  # characters of a definition that is written out
 
 
-def names(ask: Ask, say: object) -> Answer:
+def names(ask: Ask) -> Answer:
     """Everything that can be named, for completion: definitions, parameters, signals, sets."""
     home = ask.home.specification
     library = home.library
@@ -50,7 +50,7 @@ def _described(home: Specification, definition: Definition) -> Answer:
     return {"name": definition.name, "parameters": parameters, "doc": home.describe(definition)}
 
 
-def definition(ask: Ask, say: object) -> Answer:
+def definition(ask: Ask) -> Answer:
     """One definition: where it is from, its text, and written out."""
     home, name = ask.home.specification, ask.name
     known = home.library.parameters.get(name)
@@ -88,7 +88,7 @@ def _expansion(home: Specification, name: str) -> str:
     return written if len(written) <= LONGEST_EXPANSION else f"{written[:LONGEST_EXPANSION]} …"
 
 
-def read(ask: Ask, say: object) -> Answer:
+def read(ask: Ask) -> Answer:
     """What is wrong with a draft and with the formulas that are asked of it, and what they are called."""
     told = [
         {"where": x.where, "message": x.message, "hint": x.hint, "at": x.position and _ends(x.position)}

@@ -1,6 +1,6 @@
 """What a page asks, as values: every field is read strictly, since anything may be sent."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, TypeAlias
@@ -23,7 +23,6 @@ FORM: Mapping[str, tuple[type[Settings], tuple[str, ...]]] = {
     "prove": (Prove, ("declared",)),
 }
 """The options that the page offers for a job, of the question that it asks."""
-Say: TypeAlias = Callable[[str], None]
 Answer: TypeAlias = dict[str, object]
 
 

@@ -13,7 +13,7 @@ from roadproof.library.specification import Library, Specification
 from roadproof.library.uses import Place
 
 
-def show(ask: Ask, say: object) -> Answer:
+def show(ask: Ask) -> Answer:
     """A drive, and on it the question and the formulas that are watched.
 
     ``drive``: the plain data of a drive file; ``compare``: whether the question is shown in both sets;
@@ -65,7 +65,7 @@ def _readable(file: DriveFile, home: Specification) -> tuple[DriveFile, Library]
     return replace(file, set_name=home.set_name, options=dict(home.options), values=values), library
 
 
-def page(ask: Ask, say: object) -> Answer:
+def page(ask: Ask) -> Answer:
     """The drive that is shown as a page of its own."""
     document = _document(ask, read_drive(ask.drive, "the drive"))
     return {"page": viewer_page([_with_marks(document)], document.title)}

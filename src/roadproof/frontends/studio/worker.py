@@ -1,47 +1,70 @@
-"""A worker of the studio: one process, one pipe, one job at a time. Run as ``python -m`` this module.
+"""What a worker of the studio does: one job at a time, each a question of the page.
 
-Jobs come as JSON lines on stdin and are answered on what was stdout; solvers that print reach nobody. The
-server ends a worker that is to stop, since solvers do not answer politely.
+The server ends a worker that is to stop, since solvers do not answer politely.
 """
 
-import json
 import os
 import resource
 import sys
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TextIO, TypeAlias
 
 from roadproof.errors import RoadproofError
-from roadproof.runtime.parent_watchdog import die_with
+from roadproof.runtime.progress import Stage
 
-Say: TypeAlias = Callable[[str], None]
+_STAGES = {
+    "prove": "looking for a proof",
+    "encode": "encoding the formula",
+    "solve": "looking for a drive",
+    "shape": "shaping the drive",
+    "judge": "judging the drive",
+    "refute": "proving that no drive exists on the grid",
+    "explain": "looking for a proof that no drive exists",
+}
 
 
-def main(memory: int, long: bool) -> int:
-    """Answer jobs until stdin ends; ``memory``: MiB that jobs may take above what a warm worker has.
+@dataclass(frozen=True)
+class WarmUp:
+    """The first job of a worker; ``memory``: MiB that jobs may take above what a warm worker has.
 
-    ``long``: whether it is warm for jobs that may take long, too.
+    ``long``: whether it is to be warm for jobs that may take long, too.
     """
-    die_with(os.getppid())
-    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+
+    memory: int
+    long: bool
+
+
+@dataclass(frozen=True)
+class Job:
+    """What is asked, by the kind of the job."""
+
+    kind: str
+    ask: object
+
+
+def serve(job: Job | WarmUp) -> dict[str, object]:
+    """What the page is told of a job: ``answer`` or ``error``, and the seconds of processors as ``cpu``."""
+    if isinstance(job, WarmUp):
+        _warm_up(job)
+        return {}
+    before = _processor_time()
+    told = _answered(job)
+    return {**told, "cpu": round(_processor_time() - before, 3)}
+
+
+def words_of(stage: Stage) -> str:
+    """A stage of a job in words for the page."""
+    return ", ".join(filter(None, (_STAGES.get(stage.name, stage.name), stage.told)))
+
+
+def _warm_up(job: WarmUp) -> None:
+    """Get ready for jobs; solvers that print reach nobody."""
+    os.environ["ROADPROOF_QUIET"] = "1"
     with open(os.devnull, "wb") as nowhere:
         os.dup2(nowhere.fileno(), 1)
-    from roadproof.frontends.studio.jobs import answer, warm_up
+    from roadproof.frontends.studio.jobs import warm_up
 
-    warm_up(long)
-    _limit_memory(memory)
-    _tell(answers, {"ready": True})
-    for line in sys.stdin:
-        job = Job(**json.loads(line))
-
-        def say(stage: str) -> None:
-            _tell(answers, {"stage": stage})
-
-        before = _processor_time()
-        told = _answered(answer, job, say)
-        _tell(answers, {**told, "cpu": round(_processor_time() - before, 3)})
-    return 0
+    warm_up(job.long)
+    _limit_memory(job.memory)
 
 
 def _processor_time() -> float:
@@ -50,17 +73,11 @@ def _processor_time() -> float:
     return sum(x.ru_utime + x.ru_stime for x in used)
 
 
-@dataclass(frozen=True)
-class Job:
-    """A line on stdin: what is asked, by the kind of the job."""
+def _answered(job: Job) -> dict[str, object]:
+    from roadproof.frontends.studio.jobs import answer
 
-    kind: str
-    ask: object
-
-
-def _answered(answer: Callable[[str, object, Say], object], job: Job, say: Say) -> dict[str, object]:
     try:
-        return {"answer": answer(job.kind, job.ask, say)}
+        return {"answer": answer(job.kind, job.ask)}
     except RoadproofError as error:
         return {"error": str(error), "exit_code": error.exit_code}
     except MemoryError:
@@ -79,12 +96,3 @@ def _limit_memory(memory: int) -> None:
         used = int(file.read().split()[0]) * resource.getpagesize()
     most = used + memory * 2**20
     resource.setrlimit(resource.RLIMIT_AS, (most, most))
-
-
-def _tell(answers: TextIO, message: Mapping[str, object]) -> None:
-    answers.write(json.dumps(message) + "\n")
-    answers.flush()
-
-
-if __name__ == "__main__":
-    sys.exit(main(int(sys.argv[1]), sys.argv[2] == "long"))

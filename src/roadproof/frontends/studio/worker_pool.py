@@ -2,19 +2,17 @@
 
 import asyncio
 import contextlib
-import json
-import os
-import signal
-import sys
 import time
 from collections.abc import AsyncGenerator, Mapping
 from dataclasses import dataclass, field
 
 from roadproof.errors import RoadproofError
-from roadproof.runtime.executors import OUTSIDE, ended_by
+from roadproof.frontends.studio.worker import Job, WarmUp, serve, words_of
+from roadproof.runtime.progress import Stage
+from roadproof.runtime.worker import DeadWorkerError, Reply, Worker
+from roadproof.verdict import ExitCode
 
 BEAT = 0.25  # seconds between two words about a job that runs
-LONGEST_LINE = 256 * 2**20
 Message = dict[str, object]
 
 
@@ -37,37 +35,40 @@ class FullError(RoadproofError):
     exit_code = 20
 
 
-@dataclass
-class Worker:
-    """A process with its pipe; ``warm`` is done once it takes jobs."""
+class StudioWorker(Worker):
+    """A worker that is heard without blocking; ``warm`` is done once it takes jobs."""
 
-    process: asyncio.subprocess.Process
-    warm: "asyncio.Task[None]"
+    def __init__(self, limits: Limits) -> None:
+        super().__init__(serve, fresh=True)
+        self.ask(WarmUp(limits.memory, limits.long))
+        self.warm = asyncio.create_task(self._until_warm())
 
-    @classmethod
-    async def start(cls, limits: Limits) -> "Worker":
-        process = await asyncio.create_subprocess_exec(
-            *(sys.executable, "-m", "roadproof.frontends.studio.worker"),
-            *(str(limits.memory), "long" if limits.long else "live"),
-            stdin=asyncio.subprocess.PIPE,
-            stdout=asyncio.subprocess.PIPE,
-            limit=LONGEST_LINE,
-            start_new_session=True,
-            env={**os.environ, "ROADPROOF_QUIET": "1"},
-        )
-        return cls(process, asyncio.create_task(_until_ready(process)))
+    async def _until_warm(self) -> None:
+        said: Stage | Reply | None = None
+        with contextlib.suppress(DeadWorkerError):
+            while not isinstance(said, Reply):
+                said = await self.hear_within(None)
+            if said.error is not None:
+                self.process.kill()
+
+    async def hear_within(self, seconds: float | None) -> Stage | Reply | None:
+        """Its next word; None where it says none for so long. Raises ``DeadWorkerError``."""
+        said = asyncio.Event()
+        loop = asyncio.get_running_loop()
+        loop.add_reader(self.connection.fileno(), said.set)
+        try:
+            await asyncio.wait_for(said.wait(), seconds)
+        except TimeoutError:
+            return None
+        finally:
+            loop.remove_reader(self.connection.fileno())
+        return self.hear()
 
     async def end(self) -> None:
-        """Kill it, and what it has started."""
+        """Kill it."""
         self.warm.cancel()
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(self.process.pid, signal.SIGKILL)
-        await self.process.wait()
-
-
-async def _until_ready(process: asyncio.subprocess.Process) -> None:
-    assert process.stdout is not None
-    await process.stdout.readline()
+        self.process.kill()
+        await asyncio.to_thread(self.process.join)
 
 
 @dataclass
@@ -75,8 +76,8 @@ class WorkerPool:
     """Workers; to be started and ended in one event loop."""
 
     limits: Limits = field(default_factory=Limits)
-    idle: "asyncio.Queue[Worker]" = field(default_factory=asyncio.Queue)
-    every: list[Worker] = field(default_factory=list)
+    idle: "asyncio.Queue[StudioWorker]" = field(default_factory=asyncio.Queue)
+    every: list[StudioWorker] = field(default_factory=list)
     waiting: int = 0
     closed: bool = False
 
@@ -90,7 +91,7 @@ class WorkerPool:
     async def _add(self) -> None:
         if self.closed:
             return
-        worker = await Worker.start(self.limits)
+        worker = StudioWorker(self.limits)
         self.every.append(worker)
         self.idle.put_nowait(worker)
 
@@ -125,7 +126,7 @@ class WorkerPool:
             async for message in told:
                 yield message
 
-    async def _take(self) -> Worker:
+    async def _take(self) -> StudioWorker:
         """A warm worker that lives."""
         while True:
             worker = await self.idle.get()
@@ -135,63 +136,54 @@ class WorkerPool:
                 if not worker.warm.cancelled():
                     self.idle.put_nowait(worker)
                     raise
-            if worker.process.returncode is None:
+            if worker.process.is_alive():
                 return worker
             await self._replace(worker)
 
-    async def _give_back(self, getting: "asyncio.Future[Worker]") -> None:
+    async def _give_back(self, getting: "asyncio.Future[StudioWorker]") -> None:
         getting.cancel()
         with contextlib.suppress(asyncio.CancelledError):
             self.idle.put_nowait(await getting)
 
-    async def _replace(self, worker: Worker) -> None:
+    async def _replace(self, worker: StudioWorker) -> None:
         await worker.end()
         if worker in self.every:
             self.every.remove(worker)
         await self._add()
 
     async def _run(
-        self, worker: Worker, kind: str, ask: Mapping[str, object], seconds: float | None
+        self, worker: StudioWorker, kind: str, ask: Mapping[str, object], seconds: float | None
     ) -> AsyncGenerator[Message, None]:
         """One job of a worker. Whatever ends it before it is answered ends the worker too."""
         most = self.limits.seconds if seconds is None else seconds
         begun = time.monotonic()
         stage, done = "", False
-        assert worker.process.stdin is not None
-        assert worker.process.stdout is not None
-        reading: asyncio.Task[bytes] | None = None
         try:
-            with contextlib.suppress(ConnectionError):
-                worker.process.stdin.write((json.dumps({"kind": kind, "ask": ask}) + "\n").encode())
-                await worker.process.stdin.drain()
+            worker.ask(Job(kind, ask))
             while not done:
-                if reading is None:
-                    reading = asyncio.create_task(worker.process.stdout.readline())
-                ready, _ = await asyncio.wait({reading}, timeout=BEAT)
+                said = await worker.hear_within(BEAT)
                 spent = time.monotonic() - begun
-                if not ready:
-                    if spent > most:
-                        yield {"error": f"ended after {most:g} s, which is the most that a job may take"}
-                        return
-                    yield {"stage": stage, "seconds": round(spent, 1)}
-                    continue
-                line, reading = reading.result(), None
-                if not line:
-                    yield {"error": await _cause_of_death(worker)}
+                if isinstance(said, Reply):
+                    done = True
+                    yield {**_told(said), "seconds": round(spent, 3)}
+                elif spent > most:
+                    yield {"error": f"ended after {most:g} s, which is the most that a job may take"}
                     return
-                message = json.loads(line)
-                stage = message.get("stage", stage)
-                done = "stage" not in message
-                yield {**message, "seconds": round(spent, 3)}
+                else:
+                    stage = stage if said is None else words_of(said)
+                    yield {"stage": stage, "seconds": round(spent, 1)}
+        except DeadWorkerError as death:
+            yield {"error": f"its process ended: {death}; it may have run out of memory; ask again"}
         finally:
-            if reading is not None:
-                reading.cancel()
-            if done and worker.process.returncode is None:
+            if done and worker.process.is_alive():
                 self.idle.put_nowait(worker)
             else:
                 await asyncio.shield(asyncio.ensure_future(self._replace(worker)))
 
 
-async def _cause_of_death(worker: Worker) -> str:
-    by = ended_by(await worker.process.wait())
-    return f"its process ended ({by}), {OUTSIDE}; ask again"
+def _told(reply: Reply) -> Message:
+    """What is told of a job that is done; an error is one that ``serve`` could not tell."""
+    if reply.error is not None:
+        return {"error": f"this is our fault: {reply.error}", "exit_code": ExitCode.OUR_FAULT}
+    answer: Message = reply.answer
+    return answer

@@ -24,7 +24,7 @@ from roadproof.recordings.formats.sources import copies_among, find_sources
 from roadproof.recordings.formats.windows import WindowedRecording
 from roadproof.runtime.executors import Executor, LostJob, answers_of, is_fork_unsafe
 from roadproof.runtime.memory import keep_freed_memory
-from roadproof.runtime.process_pool import is_worker
+from roadproof.runtime.worker import is_worker
 
 
 @dataclass(frozen=True)
