@@ -14,7 +14,6 @@ import sys
 import tempfile
 import traceback
 from collections.abc import Iterator, Sequence
-from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -23,6 +22,7 @@ from roadproof.analysis.study import pool
 from roadproof.engines.search import ask
 from roadproof.engines.search.compare import compare
 from roadproof.errors import RoadproofError
+from roadproof.frontends.cli.help import command_parser
 from roadproof.frontends.cli.main import COMMANDS, answer
 from roadproof.frontends.studio.server import serve
 from roadproof.runtime.package_data import shipped
@@ -53,12 +53,6 @@ class BegunError(RoadproofError):
 def begin(*_: object, **__: object) -> Iterator[tuple[int, object]]:
     raise BegunError("the work begins here")
     yield
-
-
-def options_of(name: str) -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog=name)
-    import_module(f"roadproof.frontends.cli.{name}").add_arguments(parser)
-    return parser
 
 
 def make_files(folder: Path) -> tuple[str, ...]:
@@ -108,8 +102,8 @@ def command_line(name: str, files: Sequence[str], chance: random.Random) -> list
     """A sub-command with some of its options and arguments."""
     line: list[str] = []
     positional: list[str] = []
-    for option in options_of(name)._actions:
-        if isinstance(option, argparse._HelpAction):
+    for option in command_parser(name)._actions:
+        if {"--help", "--help-all"} & {*option.option_strings}:
             continue
         if not option.option_strings:
             few = 1 if option.nargs is None else chance.choice((0, 1, 1, 1, 2))
@@ -138,7 +132,7 @@ def try_one(line: list[str]) -> str:
         return f"exit code {code}: {said}"
     if code in (2, 4) and not said.startswith("roadproof: "):
         return f"exit code {code} without a word: {said}"
-    known = {text for option in options_of(line[0])._actions for text in option.option_strings}
+    known = {text for option in command_parser(line[0])._actions for text in option.option_strings}
     hints = set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", said)) if code in (2, 3, 4) else set()
     return f"hints at what is not there: {hints - known}: {said}" if hints - known else ""
 

@@ -3,6 +3,7 @@
 import argparse
 import ast
 import inspect
+import json
 import os
 import re
 import shutil
@@ -11,7 +12,6 @@ import sys
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from functools import cache
-from importlib import import_module
 from pathlib import Path
 from typing import get_args
 
@@ -109,11 +109,11 @@ def test_specification_is_selected(tmp_path: Path) -> None:
 
 def test_a_file_is_written_whole_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     target = tmp_path / "answer.json"
-    options.write_text(target, "before")
+    options.write_json({"when": "before"}, str(target))
     monkeypatch.setattr(os, "replace", _interrupted)
     with pytest.raises(KeyboardInterrupt):
-        options.write_text(target, "after")
-    assert target.read_text("utf-8") == "before"
+        options.write_json({"when": "after"}, str(target))
+    assert json.loads(target.read_text("utf-8")) == {"when": "before"}
     assert list(tmp_path.iterdir()) == [target]
 
 
@@ -165,9 +165,7 @@ def test_prove_takes_scenarios_as_other_commands_do(words: list[str], scenarios:
 
 
 def asked_of_prove(words: list[str]) -> Claims:
-    parser = argparse.ArgumentParser()
-    prove.add_arguments(parser)
-    args = parser.parse_args(words)
+    args = command_parser("prove").parse_args(words)
     return prove._asked(args, Prove.of(read_keywords(args, Prove)))
 
 
@@ -356,8 +354,7 @@ def hints_in(module: str) -> frozenset[str]:
 
 
 def options_of(command: str) -> set[str]:
-    parser = argparse.ArgumentParser()
-    import_module(f"roadproof.frontends.cli.{command}").add_arguments(parser)
+    parser = command_parser(command)
     return {text for option in parser._actions for text in option.option_strings}
 
 

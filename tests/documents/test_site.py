@@ -1,12 +1,10 @@
 """The documentation site builds without a warning, and all its links resolve."""
 
-import argparse
 import os
 import re
 import subprocess
 import sys
 from html.parser import HTMLParser
-from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
@@ -14,6 +12,7 @@ from urllib.parse import unquote, urlsplit
 import pytest
 
 from documents.reference import EXIT_CODES, PAGES
+from roadproof.frontends.cli.help import command_parser
 from roadproof.frontends.cli.main import COMMANDS
 from roadproof.library.loading import bundled_library
 from roadproof.verdict import ExitCode
@@ -128,8 +127,7 @@ def test_examples_in_docstrings_become_blocks() -> None:
 def test_every_option_is_in_the_reference() -> None:
     page = PAGES["reference/commands.md"]()
     for name in COMMANDS:
-        parser = argparse.ArgumentParser()
-        import_module(f"roadproof.frontends.cli.{name}").add_arguments(parser)
+        parser = command_parser(name)
         section = page.partition(f"\n## {name}\n")[2].partition("\n## ")[0]
         for action in parser._actions:
             assert all(f"`{option}" in section for option in action.option_strings), (name, action)

@@ -201,7 +201,7 @@ def test_what_names_no_scenario_is_left_to_formulas(text: str) -> None:
 # --- Names of the library's definitions stand in ``library/scenarios.py`` and nowhere else in Python
 # A string that has such a name followed by ``(``, is one, or has the part of one before its number
 # (``scenario_``), is read, matched or put together somewhere; so is one that is the name of a role. Words
-# for people are left out: docstrings, ``_EXAMPLES`` and the ``help`` of options.
+# for people are left out: docstrings, ``EXAMPLES`` and the ``help`` of options.
 
 SOURCE = Path(__file__).parents[2] / "src" / "roadproof"
 HOME = "library/scenarios.py"
@@ -221,7 +221,7 @@ def said_to_people(tree: ast.Module) -> set[int]:
         match node:
             case ast.Expr(ast.Constant(str()) as text):
                 found.append(text)
-            case ast.Assign([ast.Name("_EXAMPLES")], value):
+            case ast.Assign([ast.Name("EXAMPLES")], value):
                 found.append(value)
             case ast.keyword("help", value):
                 found.append(value)

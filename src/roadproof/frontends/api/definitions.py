@@ -134,10 +134,19 @@ def load(
     if len(set(chosen)) < len(chosen):
         raise UsageError(f"load({', '.join(map(repr, chosen))}): name different spec sets")
     library = checked_library(_source(k, spec) for k, spec in enumerate(specs, 1))
-    for name in chosen:
-        library.select(name, options)
-    given = values_of(library, params or {})
-    return Definitions(library.select(chosen[0], options), tuple(chosen), given)
+    return chosen_in(library, chosen, options, params)
+
+
+def chosen_in(
+    library: Library,
+    sets: tuple[str, ...],
+    readings: Mapping[str, str] | None,
+    params: Mapping[str, Number] | None,
+    before: str = "",
+) -> Definitions:
+    """Spec sets of a library. ``before`` as for ``values_of``. Raises ``InputError``."""
+    first, *_ = (library.select(name, readings) for name in sets)
+    return Definitions(first, sets, values_of(library, params or {}, before))
 
 
 def _source(number: int, spec: str | Path) -> Path | Source:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 from roadproof.errors import Position, RoadproofError, TextError, UsageError, raise_all
-from roadproof.frontends.api.definitions import Definitions, values_of
+from roadproof.frontends.api.definitions import Definitions, chosen_in, values_of
 from roadproof.library.diagnose import Lost, Proofreader, as_diagnostic, claim_errors
 from roadproof.library.loading import load_library
 from roadproof.library.scenario_references import read_query
@@ -56,10 +56,7 @@ class Draft:
                 "the two cannot be compared; keep the present text as before, or give it another name"
             )
         chosen = tuple(self.edited if name == EDIT else name for name in sets or (EDIT,))
-        for name in chosen:
-            library.select(name, self.options)
-        values = values_of(library, self.params)
-        return Definitions(library.select(chosen[0], self.options), chosen, values)
+        return chosen_in(library, chosen, self.options, self.params)
 
     def file(self) -> str:
         """The draft as one specification file, which declares its sets. Raises ``TextError``."""

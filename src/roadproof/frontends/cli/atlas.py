@@ -5,12 +5,12 @@ import argparse
 from roadproof.frontends.cli.basis import read_definitions
 from roadproof.frontends.cli.options import read_hands
 from roadproof.frontends.cli.progress import Counter, clear
-from roadproof.frontends.settings.flags import add_flags, read_keywords
+from roadproof.frontends.settings.flags import read_keywords
 from roadproof.frontends.settings.studies import Atlas
 
 SUMMARY = "write pages about all scenarios, with drives and proofs"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 examples:
   roadproof atlas --out atlas                             all scenarios of set base: open atlas/index.html
   roadproof atlas --out atlas --set ext                   those of set ext
@@ -19,11 +19,7 @@ examples:
 The pages need no network and no scripts. Known answers take seconds; others are computed, often for long.
 `roadproof check atlas/evidence` checks the evidence again.
 """
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
-    add_flags(parser, Atlas)
+OPTIONS = Atlas
 
 
 def run(args: argparse.Namespace) -> int:

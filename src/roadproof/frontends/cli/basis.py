@@ -22,7 +22,7 @@ A = TypeVar("A")
 
 def read_definitions(args: argparse.Namespace, settings: type[Readings]) -> "Definitions":
     """The definitions that the flags of a question choose. Raises ``InputError``, ``UsageError``."""
-    from roadproof.frontends.api.definitions import Definitions, values_of
+    from roadproof.frontends.api.definitions import chosen_in
     from roadproof.library.diagnose import checked_library
 
     if vars(args).get("preventable") or vars(args).get("unpreventable"):
@@ -33,11 +33,8 @@ def read_definitions(args: argparse.Namespace, settings: type[Readings]) -> "Def
     library, readings = checked_library(args.specs or ()), read_flag(args, settings, "readings")
     if len({*sets}) < len(sets):
         raise UsageError(f"--set {','.join(sets)}: a spec set is repeated; name each once")
-    for name in sets:
-        library.select(name, readings)
     params = read_flag(args, settings, "params") if "params" in args else None
-    values = values_of(library, params or {}, "--param ")
-    return Definitions(library.select(sets[0], readings), sets, values)
+    return chosen_in(library, sets, readings, params, "--param ")
 
 
 def add_drivers(args: argparse.Namespace) -> None:
@@ -48,8 +45,15 @@ def add_drivers(args: argparse.Namespace) -> None:
     args.specs = specs if Path(DRIVERS) in specs else [Path(DRIVERS), *specs]
 
 
-def study_keywords(args: argparse.Namespace, settings: type[Settings], folder: Path | None) -> Any:
-    """The keyword arguments of a long question; its evidence goes to ``folder``."""
+def study_keywords(args: argparse.Namespace, settings: type[Settings], beside_json: bool = False) -> Any:
+    """The keyword arguments of a long question; its evidence goes to the folder of ``--out``.
+
+    ``beside_json``: without that flag, it goes to FILE-evidence beside the file of ``--json``.
+    """
+    folder: Path | None = args.out
+    if beside_json and folder is None and args.json not in (None, "-"):
+        file = Path(args.json)
+        folder = file.with_name(f"{file.stem}-evidence")
     told = {"out": folder, "jobs": read_hands(args), "progress": Counter(), "say": warn}
     return read_keywords(args, settings) | told
 
@@ -80,11 +84,3 @@ def hand_over(args: argparse.Namespace, found: "StudyAnswers[Any, Any, Any]", pi
         for name, said in found.study.question.library.freedom.items():
             print(f"{name} is {said}")
     return found.exit_code
-
-
-def evidence_folder(out: Path | None, target: str | None) -> Path | None:
-    """DIR of --out, or FILE-evidence beside the file of --json, or none."""
-    if out is None and target not in (None, "-"):
-        path = Path(str(target))
-        return path.with_name(f"{path.stem}-evidence")
-    return out

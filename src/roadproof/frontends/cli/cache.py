@@ -7,7 +7,7 @@ from roadproof.verdict import ExitCode
 
 SUMMARY = "show or remove the answers that are kept for later runs"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 examples:
   roadproof cache                      the folder, and how many answers it keeps
   roadproof cache --clear              remove them; they are computed again when they are asked for
@@ -22,7 +22,6 @@ _FOLDERS = {"answers": "answers", "made": "texts that were read"}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
     parser.add_argument("--clear", action="store_true", help="remove what is kept")
 
 

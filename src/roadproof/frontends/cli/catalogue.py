@@ -3,14 +3,13 @@
 import argparse
 
 from roadproof.errors import UsageError
-from roadproof.frontends.cli.basis import evidence_folder, hand_over, read_definitions, study_keywords
+from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
 from roadproof.frontends.cli.progress import Counter
-from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.studies import Catalogue
 
 SUMMARY = "list which scenarios a catalogue of tests covers, and complete it"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 tests:
   drive files (.json), samples (.csv, .parquet), scenarios of CommonRoad (.xml) and OpenSCENARIO (.xosc),
   vehicles of a recording (01_tracks.csv:12,15), and what a catalogue.toml names, in a folder or by
@@ -48,12 +47,11 @@ for a test of each class that is not proved empty, which takes as long as roadpr
 Exit code 0 where all is tested and each test is what it claims, 10 where not, 20 where something is in doubt,
 with --gaps also whether a class of gaps is empty, with --explore how far drives of a class go.
 """
+OPTIONS = Catalogue
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
     parser.add_argument("paths", metavar="DIR|FILE", nargs="+", help="folders of tests, or tests")
-    add_flags(parser, Catalogue)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -64,8 +62,8 @@ def run(args: argparse.Namespace) -> int:
         if getattr(args, name) and args.complete is None:
             raise UsageError(f"--{name.removesuffix('s')} requires --complete DIR")
     formats_in(args.formats or "csv")
-    home = read_definitions(args, Catalogue)
-    given = study_keywords(args, Catalogue, evidence_folder(args.out, args.json))
+    home = read_definitions(args, OPTIONS)
+    given = study_keywords(args, OPTIONS, beside_json=True)
     found = catalogue(*args.paths, using=home, **given)
     code = hand_over(args, found, args.pictures)
     if args.complete is not None:

@@ -4,15 +4,15 @@ import argparse
 from pathlib import Path
 
 from roadproof.errors import UsageError
-from roadproof.frontends.cli.options import write_json
+from roadproof.frontends.cli.options import print_answer
 from roadproof.frontends.cli.progress import Counter
-from roadproof.frontends.settings.flags import add_flags, read_keywords
+from roadproof.frontends.settings.flags import read_keywords
 from roadproof.frontends.settings.questions import Check
 from roadproof.verdict import ExitCode
 
 SUMMARY = "check certificates and drive files again, independently"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 examples:
   roadproof check proofs/                          every claim of a folder, with its index
   roadproof check proofs/ --solver cvc5            ask another solver
@@ -34,12 +34,11 @@ compared with are listed below. Exit code 10 where something is rejected, 20 whe
 or no evidence was accepted at all, 3 where a file is damaged or speaks of definitions that are not at hand.
 For pipelines: with --strict also 20 where an answer has no evidence, such as UNKNOWN or NONE-WITHIN.
 """
+OPTIONS = Check
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
     parser.add_argument("paths", metavar="FILE|DIR", nargs="+", type=Path)
-    add_flags(parser, Check)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -50,10 +49,7 @@ def run(args: argparse.Namespace) -> int:
     if args.write is not None:
         return _write(args)
     checked = check(*args.paths, **read_keywords(args, Check) | {"progress": Counter()})
-    if args.json != "-":
-        print(checked)
-    if args.json:
-        write_json(checked.as_data(), args.json)
+    print_answer(checked, args.json)
     return checked.exit_code
 
 

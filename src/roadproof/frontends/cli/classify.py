@@ -3,13 +3,12 @@
 import argparse
 
 from roadproof.errors import UsageError
-from roadproof.frontends.cli.basis import evidence_folder, hand_over, read_definitions, study_keywords
-from roadproof.frontends.settings.flags import add_flags
+from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
 from roadproof.frontends.settings.studies import Classify
 
 SUMMARY = "partition scenarios into exclusive classes, and count them"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 examples:
   roadproof classify --out classes                    scenarios 1-24 of base: what happens, and where
   roadproof classify --among 1-8 --out classes        those of the main road
@@ -24,11 +23,7 @@ are kept apart. Evidence goes to DIR, or with --json FILE alone to FILE-evidence
 checks it. A run that was broken off goes on where it was. Exit code 20 where a claim is not proved or a
 class has no drive.
 """
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
-    add_flags(parser, Classify)
+OPTIONS = Classify
 
 
 def run(args: argparse.Namespace) -> int:
@@ -36,7 +31,6 @@ def run(args: argparse.Namespace) -> int:
 
     if args.on is not None and not args.shares:
         raise UsageError("--on and --no-shares contradict each other: omit one of them")
-    folder = evidence_folder(args.out, args.json)
-    home = read_definitions(args, Classify)
-    found = classify(args.among, home, **study_keywords(args, Classify, folder))
+    home = read_definitions(args, OPTIONS)
+    found = classify(args.among, home, **study_keywords(args, OPTIONS, beside_json=True))
     return hand_over(args, found, args.pictures)

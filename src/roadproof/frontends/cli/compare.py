@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import read_definitions
-from roadproof.frontends.cli.options import write_json
+from roadproof.frontends.cli.options import print_answer
 from roadproof.frontends.cli.progress import clear, note, tell_stage
-from roadproof.frontends.settings.flags import add_flags, read_flag, read_keywords
+from roadproof.frontends.settings.flags import read_flag, read_keywords
 from roadproof.frontends.settings.questions import Compare
 from roadproof.runtime.progress import listening
 
@@ -17,19 +17,18 @@ if TYPE_CHECKING:
 
 SUMMARY = "compare two formulas: equivalent, stronger, weaker, incomparable"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 examples:
   roadproof compare 'scenario_3(SV,POV,L)' 'scenario_4(POV,SV,L)'
   roadproof compare 4 4 --set base --set ext          the same scenario in two spec sets
   roadproof compare 1 4 --out differences             drives that tell the two apart
 """
+OPTIONS = Compare
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
     parser.add_argument("first", metavar="F1", help="a scenario's number, or a formula")
     parser.add_argument("second", metavar="F2", help="another; in the second --set where two are given")
-    add_flags(parser, Compare)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -45,18 +44,9 @@ def run(args: argparse.Namespace) -> int:
         note(f"{name}: {direction.verdict} (after {time.monotonic() - begun:.1f} s)")
 
     with listening(tell_stage):
-        found = compare(
-            args.first,
-            args.second,
-            home,
-            each=show,
-            **read_keywords(args, Compare),
-        )
+        found = compare(args.first, args.second, home, each=show, **read_keywords(args, Compare))
     clear()
     if args.out is not None:
         found.save(args.out)
-    if args.json:
-        write_json(found.as_data(), args.json)
-    if args.json != "-":
-        print(found)
+    print_answer(found, args.json)
     return found.exit_code

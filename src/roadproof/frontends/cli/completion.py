@@ -11,7 +11,7 @@ from roadproof.verdict import ExitCode
 
 SUMMARY = "print the script with which a shell completes roadproof on Tab"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 examples:
   eval "$(roadproof completion bash)"      in ~/.bashrc
   eval "$(roadproof completion zsh)"       in ~/.zshrc, after compinit
@@ -23,7 +23,6 @@ Values: TypeAlias = Mapping[str, str]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
     parser.add_argument("shell", metavar="SHELL", choices=("bash", "zsh", "fish"), help="bash, zsh or fish")
 
 

@@ -5,12 +5,11 @@ from pathlib import Path
 
 from roadproof.frontends.cli.progress import Counter
 from roadproof.frontends.settings.commands import Convert
-from roadproof.frontends.settings.flags import add_flags
 from roadproof.verdict import ExitCode
 
 SUMMARY = "convert recordings to Parquet, checked, for quicker reading"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 PATH is a folder of recordings in one format, or the file of one. Each is read with all checks, written as
 NAME.recording.json and NAME.samples.parquet, read again and compared. Everything that reads recordings reads
 DIR with the same answers. Another version of roadproof asks for converting again.
@@ -20,12 +19,11 @@ examples:
   roadproof evaluate highd-parquet --out results
   roadproof monitor 4 highd-parquet/01.recording.json:12,15
 """
+OPTIONS = Convert
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
     parser.add_argument("path", metavar="PATH", type=Path, help="the recordings")
-    add_flags(parser, Convert)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -4,12 +4,11 @@ import argparse
 
 from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
 from roadproof.frontends.cli.progress import Counter, tell
-from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.studies import Coverage
 
 SUMMARY = "find disturbances that a spec set misses, or prove it has no gap"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 examples:
   roadproof coverage --set complete --out complete    proved to have no gap between two vehicles
   roadproof coverage --set complete --needed          and which of its definitions it needs for that
@@ -26,18 +25,14 @@ number: the first wider set that catches it, and the smallest choice of its defi
 Evidence goes to DIR, `roadproof check DIR` checks it; a run that was broken off goes on where it was.
 Exit code 0 where coverage is proved, 10 where there are gaps, 20 where neither was found.
 """
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
-    add_flags(parser, Coverage)
+OPTIONS = Coverage
 
 
 def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.covering import coverage
 
-    home = read_definitions(args, Coverage)
-    found = coverage(home, tell=tell, **study_keywords(args, Coverage, args.out))
+    home = read_definitions(args, OPTIONS)
+    found = coverage(home, tell=tell, **study_keywords(args, OPTIONS))
     if args.out is not None and args.pictures:
         found.draw_beside(args.jobs, Counter())
     return hand_over(args, found, args.pictures)

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import add_drivers, read_definitions
-from roadproof.frontends.cli.options import read_hands, write_json
+from roadproof.frontends.cli.options import print_answer, read_hands
 from roadproof.frontends.cli.progress import note
-from roadproof.frontends.settings.flags import add_flags, read_keywords
+from roadproof.frontends.settings.flags import read_keywords
 from roadproof.frontends.settings.recordings import Evaluate
 from roadproof.verdict import ExitCode
 
@@ -22,7 +22,7 @@ SUMMARY = "find disturbances in recordings and match them with scenarios"
 
 MOST_NOTES = 12
 
-_EXAMPLES = """\
+EXAMPLES = """\
 PATH is a folder of recordings, or the file of one: highD (XX_recordingMeta.csv, XX_tracksMeta.csv,
 XX_tracks.csv), exiD (the same, and maps in .osm), CommonRoad 2020a (NAME.xml), or samples (NAME.csv or
 NAME.parquet, with NAME_road.toml).
@@ -36,12 +36,11 @@ examples:
   roadproof evaluate highd/data --out out --drivers careful,r157 --option cc_gate=before_delay
   roadproof evaluate us101/window.xml --list      lanes and zones, and which of them were inferred
 """
+OPTIONS = Evaluate
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
     parser.add_argument("path", metavar="PATH", type=Path, help="the recordings")
-    add_flags(parser, Evaluate)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -56,10 +55,7 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError("--out is missing: name the folder for the results, or use --list")
     asked = read_keywords(args, Evaluate) | {"jobs": read_hands(args), "tell": note}
     found = evaluate(args.path, args.out, _definitions(args), **asked)
-    if args.json:
-        write_json(found.as_data(), args.json)
-    if args.json != "-":
-        print(found)
+    print_answer(found, args.json)
     _tell_notes(args.out, found.totals)
     for name, reason in found.failed.items():
         print(f"skipped recording {name}: {reason}", file=sys.stderr)

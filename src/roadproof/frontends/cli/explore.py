@@ -3,15 +3,14 @@
 import argparse
 
 from roadproof.errors import UsageError
-from roadproof.frontends.cli.basis import evidence_folder, hand_over, read_definitions, study_keywords
+from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
 from roadproof.frontends.cli.options import add_what_arguments, some_or_all
 from roadproof.frontends.cli.progress import tell
-from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.questions import Explore
 
 SUMMARY = "find the parameter values for which a scenario has a drive"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 examples:
   roadproof explore 4 --vary minSafe=0:6                     a parameter: 11 values, then the boundary
   roadproof explore 4 --vary minDanger=0:3 --vary rho=0:2    two: a map
@@ -34,12 +33,11 @@ A formula about one instant that no engine reads (a driver model) is proved impo
 Exit code 20 where anything is not decided.
 A run with --out that was broken off goes on where it was, formula by formula.
 """
+OPTIONS = Explore
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
     add_what_arguments(parser, "all scenarios of each --set")
-    add_flags(parser, Explore)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -47,7 +45,7 @@ def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.restricting import restricted
 
     named, ranges = some_or_all(args), [_varied(text) for text in args.vary or ()]
-    given = Explore.of(study_keywords(args, Explore, evidence_folder(args.out, args.json)))
+    given = Explore.of(study_keywords(args, Explore, beside_json=True))
     home = read_definitions(args, Explore)
     what = home.each(named)
     home = restricted(home, given, what=what)

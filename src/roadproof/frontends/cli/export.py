@@ -3,13 +3,13 @@
 import argparse
 from pathlib import Path
 
-from roadproof.frontends.settings.flags import add_flags, read_keywords
+from roadproof.frontends.settings.flags import read_keywords
 from roadproof.frontends.settings.recordings import Export
 from roadproof.verdict import ExitCode
 
 SUMMARY = "write drives for other tools, or as moving pictures"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 formats:
   openscenario   NAME.xosc (XML 1.2: polylines in time, within 1 cm) and NAME.xodr, the road
   opendrive      NAME.xodr (1.7), the road alone
@@ -27,14 +27,13 @@ examples:
   roadproof export drives/scenario-01-base.json --to animation --out pictures
   roadproof export drives --to commonroad,highd,csv --out exported
 """
+OPTIONS = Export
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
     parser.add_argument(
         "drives", metavar="DRIVE", nargs="+", type=Path, help="a drive file, or a folder of drive files"
     )
-    add_flags(parser, Export)
 
 
 def run(args: argparse.Namespace) -> int:

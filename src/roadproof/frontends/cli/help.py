@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from roadproof.errors import UsageError
-from roadproof.frontends.settings.flags import is_rare, section
+from roadproof.frontends.settings.flags import add_flags, is_rare, section
 
 PACKAGE = "roadproof.frontends.cli"
 _JOBS: Mapping[str, Sequence[str]] = {
@@ -86,8 +86,13 @@ def command_parser(name: str) -> "CommandParser":
 
 
 def fill(parser: argparse.ArgumentParser, name: str) -> None:
-    """Add the arguments and options of a sub-command, whose module is imported."""
-    import_module(f"{PACKAGE}.{name}").add_arguments(parser)
+    """Add the examples, arguments and options of a sub-command, whose module is imported."""
+    command = import_module(f"{PACKAGE}.{name}")
+    parser.epilog = command.EXAMPLES
+    if hasattr(command, "add_arguments"):
+        command.add_arguments(parser)
+    if hasattr(command, "OPTIONS"):
+        add_flags(parser, command.OPTIONS)
     output = section(parser, "output")
     output.add_argument("-h", "--help", action="help", help="print this text and exit")
     output.add_argument("--help-all", action=_HelpAll, nargs=0, help="print this text with all options")

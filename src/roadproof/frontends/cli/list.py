@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from roadproof.frontends.cli.basis import read_definitions
 from roadproof.frontends.cli.options import write_json
 from roadproof.frontends.settings.commands import List
-from roadproof.frontends.settings.flags import add_flags
 from roadproof.library.elaborate import signatures
 from roadproof.library.scenarios import number_in
 from roadproof.library.specification import Specification
@@ -22,17 +21,13 @@ if TYPE_CHECKING:
 
 SUMMARY = "list scenarios, definitions, spec sets, options and parameters"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 examples:
   roadproof list
   roadproof list --set ext --json -
   roadproof list --spec mine.spec
 """
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
-    add_flags(parser, List)
+OPTIONS = List
 
 
 def run(args: argparse.Namespace) -> int:

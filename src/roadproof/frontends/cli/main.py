@@ -1,7 +1,8 @@
 """``roadproof SUBCOMMAND …``: finds the module of the sub-command, and turns errors into exit codes.
 
-A sub-command is a module in this folder with ``SUMMARY: str`` (a plain literal), ``add_arguments(parser)``
-and ``run(args) -> int``, where the integer is the exit code. Only the one that is asked for is imported.
+A sub-command is a module in this folder with ``SUMMARY`` (a plain literal), ``EXAMPLES`` for its help, and
+``run(args) -> int``, where the integer is the exit code. It may have ``OPTIONS``, the settings class that its
+flags are made of, and ``add_arguments(parser)`` for others. Only the one that is asked for is imported.
 """
 
 import contextlib
@@ -76,7 +77,8 @@ def _run(arguments: list[str]) -> int:
         print(overview(), end="")
         parser.exit()
     if first.version:
-        return _print_version()
+        print(f"roadproof {VERSION}")
+        return ExitCode.AS_EXPECTED
     if at == len(arguments):
         raise UsageError("name a sub-command; see roadproof --help")
     name = arguments[at]
@@ -111,11 +113,6 @@ def _try_paths(target: str | None, out: Path | None) -> None:
         from roadproof.runtime.files import cannot_write
 
         raise cannot_write(path, OSError(error, os.strerror(error)))
-
-
-def _print_version() -> int:
-    print(f"roadproof {VERSION}")
-    return ExitCode.AS_EXPECTED
 
 
 def _of_system(error: OSError) -> str:

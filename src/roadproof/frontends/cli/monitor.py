@@ -6,13 +6,13 @@ from pathlib import Path
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import read_definitions
-from roadproof.frontends.cli.options import write_json
-from roadproof.frontends.settings.flags import add_flags, read_keywords
+from roadproof.frontends.cli.options import print_answer
+from roadproof.frontends.settings.flags import read_keywords
 from roadproof.frontends.settings.recordings import Monitor
 
 SUMMARY = "evaluate a formula on one trace: a drive, samples, a recording"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 FORMULA is a formula or a scenario's number. TRACE is one of
   drive.json               a drive file of roadproof witness; judged exactly, in dense time, unless
                            --view recorded asks for samples of it; what the file says of parameters,
@@ -31,13 +31,12 @@ examples:
   roadproof monitor 1 highd/01_tracks.csv:12,15 --set ext --picture pair.png
   roadproof monitor 'F danger(SV,POV)' highd/01_tracks.csv:12,15 --frames 100-400 --end clip
 """
+OPTIONS = Monitor
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
     parser.add_argument("formula", metavar="FORMULA", help="a formula, or a scenario's number")
     parser.add_argument("trace", metavar="TRACE", help="a drive, samples, or vehicles of a recording")
-    add_flags(parser, Monitor)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -54,10 +53,7 @@ def run(args: argparse.Namespace) -> int:
     found = monitor(args.formula, args.trace, home, **read_keywords(args, Monitor))
     for line in found.notes:
         print(f"note: {line}", file=sys.stderr)
-    if args.json:
-        write_json(found.as_data(), args.json)
-    if args.json != "-":
-        print(found)
+    print_answer(found, args.json)
     if args.picture is not None:
         found.plot().save(args.picture)
     return found.exit_code

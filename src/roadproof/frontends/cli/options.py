@@ -5,7 +5,7 @@ import json
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.streams import takes_everything
@@ -13,37 +13,41 @@ from roadproof.frontends.settings.flags import section
 from roadproof.runtime.files import whole_file
 
 if TYPE_CHECKING:
+    from roadproof.evidence.strict import JsonObject
     from roadproof.runtime.executors import Executor
+
+
+class _Answer(Protocol):
+    def as_data(self) -> "JsonObject": ...
+
+
+def print_answer(found: _Answer, target: str | None) -> None:
+    """An answer as text, or as JSON where ``--json`` names stdout; also as JSON to the file that it names.
+
+    Raises ``InputError``.
+    """
+    if target:
+        write_json(found.as_data(), target)
+    if target != "-":
+        print(found)
 
 
 def write_json(data: Mapping[str, object], target: str) -> None:
     """``data`` as JSON to the file ``target``, or to stdout where it is ``-``. Raises ``InputError``."""
+    plain = target == "-" and not takes_everything(sys.stdout)
+    text = json.dumps(data, indent=2, ensure_ascii=plain) + "\n"
     if target == "-":
-        print(json_text(data, plain=not takes_everything(sys.stdout)), end="")
-    else:
-        write_text(Path(target), json_text(data))
-
-
-def json_text(data: Mapping[str, object], plain: bool = False) -> str:
-    """``data`` as the text of a JSON file; with ``plain``, in ASCII."""
-    return json.dumps(data, indent=2, ensure_ascii=plain) + "\n"
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a file whole or not at all, into a folder that exists. Raises ``InputError``."""
-    with whole_file(path) as file:
+        print(text, end="")
+        return
+    with whole_file(Path(target)) as file:
         file.write(text.encode("utf-8"))
 
 
 def add_what_arguments(parser: argparse.ArgumentParser, every: str) -> None:
     """Scenarios and formulas by position, and ``--all``, of which ``every`` is the help."""
     question = section(parser, "question")
-    question.add_argument(
-        "what",
-        metavar="N|FORMULA",
-        nargs="*",
-        help="scenarios (4, 1,3-8 or a name) or formulas",
-    )
+    told = "scenarios (4, 1,3-8 or a name) or formulas"
+    question.add_argument("what", metavar="N|FORMULA", nargs="*", help=told)
     question.add_argument("--all", action="store_true", help=every)
 
 

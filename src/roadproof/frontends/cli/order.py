@@ -3,12 +3,11 @@
 import argparse
 
 from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
-from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.studies import Order
 
 SUMMARY = "decide which scenarios imply which"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 examples:
   roadproof order --out order                    all scenarios of base, extA and ext; DOT, SVG, evidence
   roadproof order --set base --set ext --among 1-8
@@ -17,15 +16,11 @@ a -> b: whenever a holds, so does b, with the same roles and the same L. Scenari
 vehicles if it does so for one of its POVs. `roadproof check DIR` checks the evidence again.
 A run with --out that was broken off goes on where it was.
 """
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
-    add_flags(parser, Order)
+OPTIONS = Order
 
 
 def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.studies import order
 
-    found = order(args.among, read_definitions(args, Order), **study_keywords(args, Order, args.out))
+    found = order(args.among, read_definitions(args, OPTIONS), **study_keywords(args, OPTIONS))
     return hand_over(args, found, args.pictures)

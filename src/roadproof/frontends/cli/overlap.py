@@ -2,13 +2,12 @@
 
 import argparse
 
-from roadproof.frontends.cli.basis import evidence_folder, hand_over, read_definitions, study_keywords
-from roadproof.frontends.settings.flags import add_flags
+from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
 from roadproof.frontends.settings.studies import Overlap
 
 SUMMARY = "decide for each pair of scenarios whether both can hold at once"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 examples:
   roadproof overlap --out overlap                     all 276 pairs of base: matrix, CSV, heat map, evidence
   roadproof overlap --among 1,3-8                     two-vehicle scenarios of the main road
@@ -21,17 +20,12 @@ examples:
 Evidence goes to DIR, or with --json FILE alone to FILE-evidence; `roadproof check DIR` checks it.
 A run that was broken off goes on where it was.
 """
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
-    add_flags(parser, Overlap)
+OPTIONS = Overlap
 
 
 def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.studies import overlap
 
-    folder = evidence_folder(args.out, args.json)
-    home = read_definitions(args, Overlap)
-    found = overlap(args.among, home, **study_keywords(args, Overlap, folder))
+    home = read_definitions(args, OPTIONS)
+    found = overlap(args.among, home, **study_keywords(args, OPTIONS, beside_json=True))
     return hand_over(args, found, args.pictures)

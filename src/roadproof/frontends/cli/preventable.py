@@ -4,13 +4,12 @@ import argparse
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import add_drivers, hand_over, read_definitions, study_keywords
-from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.readers import flat
 from roadproof.frontends.settings.studies import Preventable
 
 SUMMARY = "map the initial values from which a driver prevents a collision"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 examples:
   roadproof preventable cut-in                            sheets for all models
   roadproof preventable 1 --at dy0=2.2 --at Vy=0.5        drives of the scenario: they begin safe
@@ -27,14 +26,13 @@ lemmas say why the formula (--spec driver) is the boundary. The fuzzy safety mod
 looks ten times a second: its lines are places decided one by one, and nothing is claimed between them.
 With --out: evidence, plates.csv, plates.png.
 """
+OPTIONS = Preventable
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
     parser.add_argument(
         "manoeuvre", metavar="MANOEUVRE", help="cut-in, cut-out, deceleration; or a scenario: 1, 2 or 4"
     )
-    add_flags(parser, Preventable)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -44,10 +42,10 @@ def run(args: argparse.Namespace) -> int:
 
     add_drivers(args)
     kind = MANOEUVRES[manoeuvre_of(args.manoeuvre)[0]]
-    given = study_keywords(args, Preventable, args.out)
+    given = study_keywords(args, OPTIONS)
     given |= {"along": _range("--along", args.along, kind.line)}
     given |= {"across": _range("--across", args.across, kind.across)}
-    home = read_definitions(args, Preventable)
+    home = read_definitions(args, OPTIONS)
     return hand_over(args, preventable(args.manoeuvre, flat(args.models or ()), home, **given), args.pictures)
 
 

@@ -8,7 +8,6 @@ from roadproof.frontends.cli.basis import in_order, read_definitions, study_keyw
 from roadproof.frontends.cli.options import write_json
 from roadproof.frontends.cli.progress import Counter, clear, tell_stage
 from roadproof.frontends.cli.streams import print_at_once
-from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.questions import Prove
 from roadproof.runtime.progress import listening
 
@@ -17,7 +16,7 @@ if TYPE_CHECKING:
 
 SUMMARY = "prove claims for all time, or refute them"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 examples:
   roadproof prove                                     all template properties and negative controls
   roadproof prove P1 P4 --set base                    some of them
@@ -41,14 +40,13 @@ parameters alone, as in 'at minDanger = 0.6 s: CLAIM'; its verdict and its certi
 With --engine smt or milp a claim is about drives on one road, up to a horizon: PROVED-BOUNDED says which.
 A folder of --out grows: what it has evidence for is not asked again, also where a run was broken off.
 """
+OPTIONS = Prove
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
     parser.add_argument(
         "claims", metavar="CLAIM", nargs="*", help="a formula, a property such as P1, or a scenario such as 4"
     )
-    add_flags(parser, Prove)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -56,7 +54,7 @@ def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.proofs import Proofs
     from roadproof.frontends.report.claims import details, line
 
-    given = Prove.of(study_keywords(args, Prove, args.out))
+    given = Prove.of(study_keywords(args, Prove))
     asked = _asked(args, given)
 
     def show(name: str, answer: "ClaimResult") -> None:

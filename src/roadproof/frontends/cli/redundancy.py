@@ -3,12 +3,11 @@
 import argparse
 
 from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
-from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.studies import Redundancy
 
 SUMMARY = "find the parts of scenarios that can be left out"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 examples:
   roadproof redundancy --among 3                one scenario
   roadproof redundancy --set ext --out red      all of ext, evidence in files
@@ -20,15 +19,11 @@ tells the two apart. Redundant for motion: equivalent on all traces on which a v
 first moment outside it, as every motion without jumps does.
 A run with --out that was broken off goes on where it was.
 """
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
-    add_flags(parser, Redundancy)
+OPTIONS = Redundancy
 
 
 def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.studies import redundancy
 
-    home = read_definitions(args, Redundancy)
-    return hand_over(args, redundancy(args.among, home, **study_keywords(args, Redundancy, args.out)))
+    home = read_definitions(args, OPTIONS)
+    return hand_over(args, redundancy(args.among, home, **study_keywords(args, OPTIONS)))

@@ -4,12 +4,12 @@ import argparse
 from pathlib import Path
 
 from roadproof.frontends.cli.progress import Counter, clear
-from roadproof.frontends.settings.flags import add_flags, read_keywords
+from roadproof.frontends.settings.flags import read_keywords
 from roadproof.frontends.settings.questions import Page
 
 SUMMARY = "make one HTML page from results, to be read without a network"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 examples:
   roadproof report drives -o drives.html                 a folder of witness --out, each drive with its viewer
   roadproof report proofs overlap results -o all.html    folders of prove, overlap and evaluate on one page
@@ -18,10 +18,10 @@ examples:
 Evidence is checked again while the page is made, as by `roadproof check`, and each claim says what was found.
 The page is one file: it opens without a server, prints, and follows the system's choice of light or dark.
 """
+OPTIONS = Page
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
     parser.add_argument(
         "results",
         metavar="RESULT",
@@ -30,7 +30,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="a folder of --out, a file of evidence or of --json",
     )
     parser.add_argument("-o", "--out", metavar="FILE", type=Path, required=True, help="the page, NAME.html")
-    add_flags(parser, Page)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -16,7 +16,6 @@ from roadproof.frontends.cli.basis import read_definitions
 from roadproof.frontends.cli.options import write_json
 from roadproof.frontends.cli.terminal import width_of_terminal
 from roadproof.frontends.settings.commands import Show
-from roadproof.frontends.settings.flags import add_flags
 from roadproof.library.elaborate import read_claim, signature
 from roadproof.library.scenario_references import numbers_called, one_called, refuse_unknown
 from roadproof.library.scenarios import name_of, number_in
@@ -36,7 +35,7 @@ SUMMARY = "show a scenario, a definition or a formula"
 
 _WIDTH = 100  # of a line, or less on a narrow terminal
 _NAME = re.compile(r"([A-Za-z_]\w*)(?:@([A-Za-z_]\w*))?")
-_EXAMPLES = """\
+EXAMPLES = """\
 examples:
   roadproof show 4                                scenario 4, deceleration ahead, and its definitions
   roadproof show cut-in                           the six scenarios with a cut-in, by its ISO 34502 name
@@ -44,6 +43,7 @@ examples:
   roadproof show 4 --expand                       scenario_4 as one formula without definitions
   roadproof show 'scenario_8(SV,POV,L) -> F danger(SV,POV)' --format latex
 """
+OPTIONS = Show
 
 
 @dataclass(frozen=True)
@@ -68,11 +68,9 @@ class Exhibit:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
     parser.add_argument(
         "what", metavar="WHAT", help="a scenario's number or name, a definition's name, or a formula"
     )
-    add_flags(parser, Show)
 
 
 def run(args: argparse.Namespace) -> int:

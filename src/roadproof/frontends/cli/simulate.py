@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from roadproof.errors import InputError, UsageError
 from roadproof.frontends.cli.progress import note
-from roadproof.frontends.settings.flags import add_flags, read_keywords
+from roadproof.frontends.settings.flags import read_keywords
 from roadproof.frontends.settings.recordings import Simulate
 from roadproof.verdict import ExitCode
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 SUMMARY = "simulate traffic and write recordings in the highD format"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 Car following is IDM (Treiber et al. 2000), lane changes are MOBIL (Kesting et al. 2007). The same seed
 gives the same files. With --plant, planted.csv tells which pair does what, when; its columns are those
 of matches.csv.
@@ -33,11 +33,7 @@ examples:
   roadproof simulate --out traffic --seconds 120 --plant 1-8
   roadproof witness 1 2 --set ext --out drives; roadproof simulate --out traffic --plant drives
 """
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
-    add_flags(parser, Simulate)
+OPTIONS = Simulate
 
 
 def run(args: argparse.Namespace) -> int:

@@ -4,11 +4,10 @@ import argparse
 from pathlib import Path
 
 from roadproof.frontends.settings import commands as settings
-from roadproof.frontends.settings.flags import add_flags
 
 SUMMARY = "write and try formulas on a page in the browser"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 examples:
   roadproof studio                          opens the browser
   roadproof studio mine.spec drive.json     with definitions of yours, and a drive
@@ -18,14 +17,13 @@ examples:
 The page is served on this machine's loopback interface only, at the address that is printed; its token is
 made anew at each start. Nothing is sent anywhere else. Ctrl-C ends it. Needs the extra: 'roadproof[studio]'.
 """
+OPTIONS = settings.Studio
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
     parser.set_defaults(quiet=True)  # how far it is, the page says
     told = "a .spec file, a drive (.json), or a folder of such files (default: those of the working folder)"
     parser.add_argument("files", metavar="FILE", nargs="*", type=Path, help=told)
-    add_flags(parser, settings.Studio)
 
 
 def run(args: argparse.Namespace) -> int:

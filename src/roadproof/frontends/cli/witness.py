@@ -7,7 +7,6 @@ from roadproof.frontends.cli.basis import in_order, read_definitions, study_keyw
 from roadproof.frontends.cli.options import add_what_arguments, some_or_all, write_json
 from roadproof.frontends.cli.progress import clear, tell_stage
 from roadproof.frontends.cli.streams import print_at_once
-from roadproof.frontends.settings.flags import add_flags
 from roadproof.frontends.settings.questions import Witness
 from roadproof.runtime.progress import listening
 
@@ -16,7 +15,7 @@ if TYPE_CHECKING:
 
 SUMMARY = "find a drive on which a scenario or a formula holds"
 
-_EXAMPLES = """\
+EXAMPLES = """\
 examples:
   roadproof witness 4                                 scenario 4, deceleration ahead, on its reference road
   roadproof witness 12 --out drives --animate gif     drive file, CSV, picture and animation
@@ -28,12 +27,11 @@ examples:
 
 A run with --out that was broken off goes on where it was; what is there for the same search stands.
 """
+OPTIONS = Witness
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = _EXAMPLES
     add_what_arguments(parser, "all 24 scenarios, in each --set")
-    add_flags(parser, Witness)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -42,7 +40,7 @@ def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.report.witness import as_line
 
     what = some_or_all(args)
-    given = Witness.of(study_keywords(args, Witness, args.out))
+    given = Witness.of(study_keywords(args, Witness))
     views = views_of(given)
     searches = searches_for(what, read_definitions(args, Witness), given)
     named = WitnessStudy(tuple(searches)).named
