@@ -21,17 +21,9 @@ from roadproof.engines.solve.milp import prepare
 from roadproof.evidence.answers import overlap as kept_answers
 from roadproof.evidence.answers.overlap import SCHEMA
 from roadproof.evidence.settled import Settled
+from roadproof.library import scenarios as s
 from roadproof.library.compose import both, either, eventually, negation
 from roadproof.library.elaborate import StatedQuery, read_claim
-from roadproof.library.scenarios import (
-    LANE,
-    Scenario,
-    applied,
-    definition_of,
-    likes_of,
-    numbers_of,
-    vehicles_of,
-)
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
@@ -56,22 +48,22 @@ class Meeting:
 
 
 def conjunctions(
-    specification: Specification, one: Scenario, other: Scenario, meeting: Meeting
+    specification: Specification, one: s.Scenario, other: s.Scenario, meeting: Meeting
 ) -> tuple[Query, ...]:
     """The formulas of which one has to hold for ``one`` and ``other`` to hold together.
 
     Names are to be read with ``specification``. The vehicles are those of the scenario that has more of them;
     a two-vehicle scenario meets scenario 2 with SV and either of its POVs.
     """
-    mine, theirs = vehicles_of(specification, one), vehicles_of(specification, other)
+    mine, theirs = s.vehicles_of(specification, one), s.vehicles_of(specification, other)
     swapped = len(theirs) > len(mine)
     most, fewer = (theirs, mine) if swapped else (mine, theirs)
-    lane = OTHER_LANE if meeting.lanes == "any" else LANE
+    lane = OTHER_LANE if meeting.lanes == "any" else s.LANE
     found: list[Query] = []
     for roles in _assignments(most, len(fewer), meeting.roles):
         mine_now, theirs_now = (roles, most) if swapped else (most, roles)
-        first = applied(specification, one, mine_now)
-        second = applied(specification, other, theirs_now, lane)
+        first = s.applied(specification, one, mine_now)
+        second = s.applied(specification, other, theirs_now, lane)
         if meeting.start == "same":
             found.append(both(first, second))
         else:
@@ -106,13 +98,18 @@ class PairVerdict(Settled[DriveVerdict]):
     ``query`` is what the drive satisfies, or the claim that was proved, or what is in doubt.
     """
 
-    a: Scenario
-    b: Scenario
+    a: s.Scenario
+    b: s.Scenario
     query: Query | None = None
     cores: tuple[Core, ...] = ()
 
+    @property
+    def told(self) -> tuple[str, ...]:
+        """The parts of all cores as texts, each once."""
+        return tuple(dict.fromkeys(part for core in self.cores for part in core.told))
 
-Pair = tuple[Scenario, Scenario]
+
+Pair = tuple[s.Scenario, s.Scenario]
 
 
 @dataclass(frozen=True)
@@ -127,8 +124,8 @@ def pairs_of(basis: Basis, numbers: Sequence[int] | None = None) -> tuple[Pair, 
     """The pairs of different scenarios of one set, or all pairs across two; ``numbers``: only these."""
     scenarios = [
         [
-            Scenario(number, name)
-            for number in numbers_of(basis.specification.in_set(name))
+            s.Scenario(number, name)
+            for number in s.numbers_of(basis.specification.in_set(name))
             if numbers is None or number in numbers
         ]
         for name in basis.set_names
@@ -161,13 +158,13 @@ class Overlap:
                 continue
             first, second = self._likes[a.set_name][a.number], self._likes[b.set_name][b.number]
             turned = a.set_name == b.set_name and second < first
-            seed = (Scenario(first, a.set_name), Scenario(second, b.set_name))
+            seed = (s.Scenario(first, a.set_name), s.Scenario(second, b.set_name))
             groups.setdefault(seed[::-1] if turned else seed, []).append((b, a) if turned else (a, b))
         return [Group(seed, tuple(pairs)) for seed, pairs in groups.items()]
 
     @cached_property
     def _likes(self) -> dict[str, dict[int, int]]:
-        return {name: likes_of(self.basis.specification.in_set(name)) for name in self.basis.set_names}
+        return {name: s.likes_of(self.basis.specification.in_set(name)) for name in self.basis.set_names}
 
     def settle(self, piece: Group) -> dict[str, PairVerdict]:
         """The seed is solved, and the others are answered with its help."""
@@ -201,7 +198,7 @@ class Overlap:
         return {name_of(a, b): (a, b) for a, b in self.pairs}
 
     def key(self, name: str) -> str:
-        return self.basis.key(*map(definition_of, self._named[name]))
+        return self.basis.key(*map(s.definition_of, self._named[name]))
 
     def prepare(self) -> None:
         prepare()
@@ -214,7 +211,7 @@ class Overlap:
             set_b=answer.b.set_name,
             verdict=answer.verdict,
             formula="" if answer.query is None else answer.query.text,
-            core=tuple(dict.fromkeys(part for core in answer.cores for part in core.told)),
+            core=answer.told,
             cores=tuple(kept_answers.Clash(formula=x.whole.text, parts=x.told) for x in answer.cores),
             certificate=shelf.certificate(f"impossible-{name}.json", answer.certificate),
             drive=shelf.drive(f"drive-{name}.json", answer.drive),
@@ -262,7 +259,7 @@ class Overlap:
         return kept_answers.Index(**self.question.heading, seconds=round(seconds, 2), verdicts=verdicts)
 
 
-def name_of(a: Scenario, b: Scenario) -> str:
+def name_of(a: s.Scenario, b: s.Scenario) -> str:
     """Under which name the answer for a pair is kept."""
     return f"{a.set_name}-{a.number:02}-{b.set_name}-{b.number:02}"
 

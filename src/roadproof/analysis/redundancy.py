@@ -21,19 +21,10 @@ from roadproof.evidence.answers.redundancy import SCHEMA, Finding, Index, Record
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.refutation import Countermodel, read_trace, trace_data
 from roadproof.evidence.settled import Settled
+from roadproof.library import scenarios as s
 from roadproof.library.bind import bind
 from roadproof.library.compose import both, equivalence, implication, negation
 from roadproof.library.elaborate import StatedQuery, read_tree
-from roadproof.library.scenarios import (
-    Scenario,
-    applied,
-    definition_of,
-    is_sector,
-    leaves_at_once,
-    likes_of,
-    vehicles_of,
-    without_sectors,
-)
 from roadproof.library.specification import Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, is_state, subformulas
@@ -144,6 +135,9 @@ class SharedFindings:
     vain: frozenset[Formula] = frozenset()
 
 
+_NONE = SharedFindings()
+
+
 def learn(findings: ChangeFindings) -> SharedFindings:
     """What the findings on one scenario teach about its likes."""
     vain = (x for x in findings if x.drive is None and not x.redundant and not x.late)
@@ -154,19 +148,19 @@ def learn(findings: ChangeFindings) -> SharedFindings:
 
 
 def _key(change: Change) -> Formula:
-    return without_sectors(change.changed.formula)
+    return s.without_sectors(change.changed.formula)
 
 
 def _in_sector(change: Change) -> bool:
-    return any(is_sector(name) for name in (*change.where, change.part))
+    return any(s.is_sector(name) for name in (*change.where, change.part))
 
 
 @dataclass(frozen=True)
 class ScenarioTask:
     """A scenario whose changes are to be decided, with what its likes have taught."""
 
-    scenario: Scenario
-    learned: SharedFindings = SharedFindings()
+    scenario: s.Scenario
+    learned: SharedFindings = _NONE
 
 
 @dataclass(frozen=True)
@@ -199,12 +193,12 @@ class Redundancy(Unprepared):
         taught = {kind: learn(known[name_of(leader)]) for kind, leader in first.items()} if left else {}
         return [ScenarioTask(self._scenario(n), taught[self._likes[n]]) for n in left]
 
-    def _scenario(self, number: int) -> Scenario:
-        return Scenario(number, self.basis.specification.set_name)
+    def _scenario(self, number: int) -> s.Scenario:
+        return s.Scenario(number, self.basis.specification.set_name)
 
     @cached_property
     def _likes(self) -> dict[int, int]:
-        return likes_of(self.basis.specification)
+        return s.likes_of(self.basis.specification)
 
     def settle(self, piece: ScenarioTask) -> dict[str, ChangeFindings]:
         examining = _ExaminationJobs(self.basis, piece.scenario, piece.learned)
@@ -226,7 +220,7 @@ class Redundancy(Unprepared):
         return {name_of(number): number for number in self.numbers}
 
     def key(self, name: str) -> str:
-        return self.basis.key(definition_of(self._scenario(self._named[name])))
+        return self.basis.key(s.definition_of(self._scenario(self._named[name])))
 
     def record(self, name: str, answer: ChangeFindings, shelf: EvidenceStore) -> Record:
         number = int(name.rpartition("-")[2])
@@ -289,11 +283,11 @@ def name_of(number: int) -> str:
 
 
 class _ExaminationJobs:
-    def __init__(self, basis: Basis, scenario: Scenario, learned: SharedFindings = SharedFindings()) -> None:
+    def __init__(self, basis: Basis, scenario: s.Scenario, learned: SharedFindings = _NONE) -> None:
         self.basis = basis
         self.values = basis.all_values()
         self.scenario = scenario
-        self.query = applied(basis.specification, scenario)
+        self.query = s.applied(basis.specification, scenario)
         self.learned = learned
         self.mine: list[JudgedDrive] = []
 
@@ -375,8 +369,8 @@ class _ExaminationJobs:
 
         Every drive is one: it does not jump, and a lane is an open set, since touching is not occupying.
         """
-        vehicles = vehicles_of(self.basis.specification, self.scenario)
-        moving = [leaves_at_once(self.basis.specification, vehicle) for vehicle in vehicles]
+        vehicles = s.vehicles_of(self.basis.specification, self.scenario)
+        moving = [s.leaves_at_once(self.basis.specification, vehicle) for vehicle in vehicles]
         there = implication(both(*moving, self.query), change.changed)
         back = implication(both(*moving, change.changed), self.query)
         claim, label = both(there, back), f"redundancy-{self.scenario}"

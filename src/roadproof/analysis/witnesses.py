@@ -36,7 +36,7 @@ class WitnessStudy:
     @cached_property
     def names(self) -> tuple[str, ...]:
         """The names under which outcomes are kept, and which files begin with, in order."""
-        return tuple(_name(number, search) for number, search in enumerate(self.searches, 1))
+        return tuple(name_of(number, search) for number, search in enumerate(self.searches, 1))
 
     @cached_property
     def named(self) -> dict[str, Search]:
@@ -144,7 +144,8 @@ def _proof(name: str) -> str:
     return f"impossible-{name}.json"
 
 
-def _name(number: int, search: Search) -> str:
+def name_of(number: int, search: Search) -> str:
+    """Under which name what was found is kept, and how its files begin."""
     scenario = search.scenario
     what = f"formula-{number:02d}" if scenario is None else f"scenario-{scenario:02d}"
     return f"{what}-{search.specification.set_name}"

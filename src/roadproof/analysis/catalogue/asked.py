@@ -16,24 +16,9 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.gaps import GapKinds, gap_kinds
 from roadproof.analysis.classify.classes import Class, Classes, Group, Plan
 from roadproof.errors import RoadproofError, UsageError
+from roadproof.library import scenarios as s
 from roadproof.library.bind import bind
 from roadproof.library.compose import both, negation
-from roadproof.library.scenarios import (
-    LANE,
-    PAIR,
-    TRIPLE,
-    Scenario,
-    applied,
-    danger_comes,
-    disturbance,
-    endangered,
-    name_of,
-    number_in,
-    numbers_of,
-    safe,
-    sector,
-    vehicles_of,
-)
 from roadproof.library.specification import Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
@@ -104,7 +89,7 @@ class Questions:
         for name in (x for x in home.library.sets if x != home.set_name):
             with suppress(RoadproofError):
                 there = home.in_set(name)
-                numbers = tuple(x for x in self.numbers if x in numbers_of(there))
+                numbers = tuple(x for x in self.numbers if x in s.numbers_of(there))
                 found[name] = Questions(there, numbers, None, self.values, parts=self.parts)
         return found
 
@@ -125,8 +110,8 @@ class Questions:
     def all_roles(self) -> tuple[tuple[str, ...], ...]:
         """What the vehicles of all scenarios of the specification are called, each choice once."""
         home = self.specification
-        own = (vehicles_of(home, Scenario(number, home.set_name)) for number in numbers_of(home))
-        return tuple(dict.fromkeys((PAIR, TRIPLE, *own)))
+        own = (s.vehicles_of(home, s.Scenario(number, home.set_name)) for number in s.numbers_of(home))
+        return tuple(dict.fromkeys((s.PAIR, s.TRIPLE, *own)))
 
     @cached_property
     def role_names(self) -> frozenset[str]:
@@ -136,7 +121,7 @@ class Questions:
     @cached_property
     def _vehicles(self) -> Mapping[int, tuple[str, ...]]:
         home = self.specification
-        return {number: vehicles_of(home, Scenario(number, home.set_name)) for number in self.numbers}
+        return {number: s.vehicles_of(home, s.Scenario(number, home.set_name)) for number in self.numbers}
 
     @cached_property
     def named(self) -> Mapping[tuple[tuple[str, ...], tuple[int, ...], tuple[int, ...]], str]:
@@ -151,7 +136,7 @@ class Questions:
         place = (road, roles, vehicles, lane)
         if place not in self.bound:
             keys, whole = self._whole(roles, vehicles)
-            bound = bind(whole, road, {LANE: lane}, self.values)
+            bound = bind(whole, road, {s.LANE: lane}, self.values)
             self.bound[place] = dict(zip(keys, f.children(self._shared(bound)), strict=True))
         return self.bound[place]
 
@@ -169,10 +154,10 @@ class Questions:
 
     def _queries(self, roles: tuple[str, ...], vehicles: tuple[str, ...]) -> dict[Key, Query]:
         home = self.specification
-        asked: dict[Key, Query] = {DangerQuestion(): danger_comes(home, *endangered(vehicles))}
+        asked: dict[Key, Query] = {DangerQuestion(): s.danger_comes(home, *s.endangered(vehicles))}
         for number in self.numbers:
             if self._vehicles[number] == roles:
-                asked[ScenarioQuestion(number)] = applied(home, Scenario(number, home.set_name), vehicles)
+                asked[ScenarioQuestion(number)] = s.applied(home, s.Scenario(number, home.set_name), vehicles)
         if self.classes is not None:
             for group in self.classes.plan.groups:
                 if group.vehicles == roles:
@@ -181,31 +166,31 @@ class Questions:
 
     def _rows(self, plan: Plan, group: Group, vehicles: tuple[str, ...]) -> dict[Key, Query]:
         home, (first, *others) = self.specification, vehicles
-        start = [safe(home, first, other) for other in others]
+        start = [s.safe(home, first, other) for other in others]
         asked: dict[Key, Query] = {}
         for number in group.disturbances:
             if plan.has_places:
-                asked[Row(number)] = both(*start, disturbance(home, number, vehicles))
+                asked[Row(number)] = both(*start, s.disturbance(home, number, vehicles))
             else:
-                asked[Row(number)] = applied(home, Scenario(number, home.set_name), vehicles)
+                asked[Row(number)] = s.applied(home, s.Scenario(number, home.set_name), vehicles)
         if plan.has_places:
-            asked |= {In(number): sector(home, number, vehicles) for number in plan.sectors}
+            asked |= {In(number): s.sector(home, number, vehicles) for number in plan.sectors}
         return asked
 
     def scenarios_of(self, vehicles: Sequence[str]) -> dict[str, Query]:
         """The scenarios between some of ``vehicles``, applied to these and L, by name."""
         return {
-            name_of(number): applied(self.specification, Scenario(number, self.specification.set_name))
+            s.name_of(number): s.applied(self.specification, s.Scenario(number, self.specification.set_name))
             for number in self.numbers
             if set(self._vehicles[number]) <= {*vehicles}
         }
 
     def query_of(self, name: str) -> Query:
         """A scenario or a class by name, as a formula."""
-        number = number_in(name)
+        number = s.number_in(name)
         if number is None:
             return self.class_query(name)
-        return applied(self.specification, Scenario(number, self.specification.set_name))
+        return s.applied(self.specification, s.Scenario(number, self.specification.set_name))
 
     def class_query(self, name: str) -> Query:
         """The class of that name: which rows hold and which do not, and in which sectors."""
@@ -222,7 +207,7 @@ class Questions:
 
         A class that is proved to be empty is shown as ``NOWHERE``: the readers contradict each other.
         """
-        names = [name_of(key.number) for key in true if isinstance(key, ScenarioQuestion)]
+        names = [s.name_of(key.number) for key in true if isinstance(key, ScenarioQuestion)]
         rows = tuple(sorted(key.number for key in true if isinstance(key, Row)))
         sectors = tuple(sorted(key.number for key in true if isinstance(key, In)))
         if self.classes is not None and rows and (sectors or not self.classes.plan.has_places):

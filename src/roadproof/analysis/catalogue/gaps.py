@@ -14,17 +14,8 @@ from roadproof.analysis.coverage.study import Coverage
 from roadproof.drivers.restriction import restriction_of
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
+from roadproof.library import scenarios as s
 from roadproof.library.bind import bind
-from roadproof.library.scenarios import (
-    PAIR,
-    TEMPLATE,
-    Scenario,
-    follows_template,
-    likes_of,
-    name_of,
-    number_in,
-    vehicles_of,
-)
 from roadproof.library.specification import Specification
 from roadproof.library.words import called
 from roadproof.recordings.evaluate.one_trace import OneTrace
@@ -90,7 +81,7 @@ class GapKinds:
 
     def of_drive(self, file: DriveFile, pair: Sequence[str]) -> tuple[str, ...]:
         """The classes of a gap between the two vehicles ``pair`` of a drive."""
-        motions = {role: file.drive.vehicles[name] for role, name in zip(PAIR, pair, strict=True)}
+        motions = {role: file.drive.vehicles[name] for role, name in zip(s.PAIR, pair, strict=True)}
         keys = {*self.classes.of(replace(file, drive=Drive(motions)))}
         return tuple(name for name, part in self.parts.items() if self.classes.has(part, keys))
 
@@ -121,7 +112,7 @@ def gap_kinds(basis: Basis, numbers: Sequence[int]) -> GapKinds:
 
 def _with_only(home: Specification, numbers: Sequence[int]) -> Specification:
     """The same definitions, of scenarios only those with these numbers."""
-    kept = {name: x for name, x in home.definitions.items() if number_in(name) in {None, *numbers}}
+    kept = {name: x for name, x in home.definitions.items() if s.number_in(name) in {None, *numbers}}
     return Specification(home.library, home.set_name, home.options, kept)
 
 
@@ -129,14 +120,14 @@ def _faults(home: Specification, numbers: Sequence[int]) -> Iterator[str]:
     if restriction_of(home.options) is not None:
         yield "a driver model says how scenarios begin; coverage asks which drives that begin so are in none"
         return
-    two = [n for n in numbers if len(vehicles_of(home, Scenario(n, home.set_name))) == len(PAIR)]
+    two = [n for n in numbers if len(s.vehicles_of(home, s.Scenario(n, home.set_name))) == len(s.PAIR)]
     if not two:
         yield "none of the scenarios is between two vehicles"
     for number in two:
-        if not follows_template(home, number):
-            yield f"{name_of(number)} does not follow the template {TEMPLATE}; leave it out with --among"
+        if not s.follows_template(home, number):
+            yield f"{s.name_of(number)} does not follow the template {s.TEMPLATE}; leave it out with --among"
             return
-    likes = likes_of(home)
+    likes = s.likes_of(home)
     sectors = sectors_of(_with_only(home, numbers))
     rows = {tuple(sorted({likes[n] for n in sector})) for sector in sectors}
     if len(rows) > 1:

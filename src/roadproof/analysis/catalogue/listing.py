@@ -141,11 +141,6 @@ def listed(path: Path, specification: Specification) -> Iterator[Entry]:
             yield _unreadable(path, fragment, own_id or where, fault)
 
 
-def unreadable_file(path: Path, fault: str) -> Concrete:
-    """A test that stands for a whole file of tests which cannot be read."""
-    return Concrete(str(path), str(path), fault=fault)
-
-
 def _unreadable(path: Path, fragment: Fragment, own_id: str, fault: str) -> Concrete:
     """A test that cannot be read; it keeps its file, which is no test by itself."""
     file = _said(fragment.fields, "file")
@@ -163,7 +158,8 @@ def _entry(path: Path, test: Mapping[str, object], where: str, specification: Sp
     for name in test:
         if name not in _FIELDS:
             near = unknown("key", name, _FIELDS).partition("; ")[2]
-            raise InputError(f"{where}: '{name}' is not known; {_remedy(near)}")
+            remedy = near if near.startswith("did you mean") else f"a test has {', '.join(_FIELDS)}"
+            raise InputError(f"{where}: '{name}' is not known; {remedy}")
     own_id = _text(test, "id", where)
     if ("file" in test) == ("formula" in test):
         raise InputError(f"{where}: a test has either a file or a formula")
@@ -184,10 +180,6 @@ def _entry(path: Path, test: Mapping[str, object], where: str, specification: Sp
     models = _table(test, "vehicles", where)
     vehicles = {name: load_vehicle(_beside(path, model)) for name, model in models.items()}
     return Abstract(own_id, query, title, claims, road, vehicles)
-
-
-def _remedy(near: str) -> str:
-    return near if near.startswith("did you mean") else f"a test has {', '.join(_FIELDS)}"
 
 
 def _roles(test: Mapping[str, object], where: str) -> dict[str, str]:

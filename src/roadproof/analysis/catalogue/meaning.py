@@ -121,7 +121,10 @@ class Meanings(Unprepared):
     def _later(self, known: Mapping[str, Kept]) -> dict[str, Pair | Sides]:
         """What is asked when all is known of each test by itself, by the names of the answers."""
         facts = {entry.id: facts_in(known[_name(entry.id)]) for entry in self.entries}
-        drives = {name: _drive(those) for name, those in facts.items()}
+        drives = {
+            name: next((x.drive for x in those if x.relation == "runs"), None)
+            for name, those in facts.items()
+        }
         pairs = {
             _name(one.id, other.id): Pair(one, other, drive)
             for one in self.entries
@@ -355,7 +358,3 @@ def _said(entry: Abstract) -> str:
 
 def _digest(*parts: str) -> str:
     return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
-
-
-def _drive(facts: Facts) -> JudgedDrive | None:
-    return next((fact.drive for fact in facts if fact.relation == "runs"), None)

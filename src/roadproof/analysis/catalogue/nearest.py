@@ -69,16 +69,15 @@ def first_false_part(formula: Formula, judge: DriveJudge, horizon: Fraction) -> 
         return None
     (part, part_needed), comparison, needed, at = found
     leaves = dict.fromkeys(
-        x for side in (comparison.left, comparison.right) for x in t.leaves(side) if _is_known(x)
+        x
+        for side in (comparison.left, comparison.right)
+        for x in t.leaves(side)
+        if isinstance(x, t.Signal | t.Size)
     )
-    values = {x: _value(courses, x, at) for x in leaves if isinstance(x, t.Signal | t.Size)}
+    values = {x: _value(courses, x, at) for x in leaves}
     left, right = _value(courses, comparison.left, at), _value(courses, comparison.right, at)
     score = looking.score(formula, Fraction(0), True)
     return FalsePart(part, part_needed, comparison, needed, at, left, right, values, score)
-
-
-def _is_known(leaf: Term) -> bool:
-    return isinstance(leaf, t.Signal | t.Size)
 
 
 _Within: TypeAlias = tuple[f.Application | None, bool]

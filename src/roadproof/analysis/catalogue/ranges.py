@@ -108,15 +108,11 @@ def spans_of(
         if fact.relation == "reaches":
             ends.setdefault((fact.other, fact.term), {})[fact.sense] = fact
     return [
-        _span(name, term, _unit(specification, term), tested, ends[name, term])
+        _span(name, term, unit_text(read_term(specification, term)[1]), tested, ends[name, term])
         for name, covered in targets.items()
         for term, tested in covered.items()
         if len(ends.get((name, term), {})) == 2
     ]
-
-
-def _unit(specification: Specification, term: str) -> str:
-    return unit_text(read_term(specification, term)[1])
 
 
 def _span(target: str, term: str, unit: str, tested: tuple[float, float], ends: Mapping[str, Fact]) -> Span:

@@ -6,7 +6,7 @@ from itertools import count
 from pathlib import Path
 
 from roadproof.analysis.catalogue.entries import Catalogue, Concrete, Entry
-from roadproof.analysis.catalogue.listing import FILE_NAME, listed, unreadable_file
+from roadproof.analysis.catalogue.listing import FILE_NAME, listed
 from roadproof.errors import InputError
 from roadproof.evidence.answers.catalogue_index import SCHEMA
 from roadproof.evidence.drive_file import SCHEMAS_READ
@@ -89,7 +89,7 @@ def _listed(path: Path, specification: Specification) -> list[_Found]:
     try:
         return [_Found(entry, str(path)) for entry in listed(path, specification)]
     except InputError as error:
-        return [_Found(unreadable_file(path, str(error)), str(path), is_whole=True)]
+        return [_Found(Concrete(str(path), str(path), fault=str(error)), str(path), is_whole=True)]
 
 
 def _folder(

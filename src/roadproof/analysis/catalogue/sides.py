@@ -25,7 +25,7 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import both
 from roadproof.library.loading import load_library
 from roadproof.library.scenarios import Scenario, applied, number_in
-from roadproof.library.specification import Library, Source, Specification
+from roadproof.library.specification import Library, Source
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,10 @@ def _fact(basis: Basis, asked: Questions, drivers: Drivers, piece: Sides, wanted
     other = side_name(piece.scenario, wanted.side, wanted.model)
     left_open = Fact(entry.id, other, "open", entry.query, plain)
     try:
-        there = _restricted(drivers.specification, wanted)
+        known = drivers.specification
+        there = _library(tuple(known.library.files)).select(
+            known.set_name, {**known.options, **wanted.options}
+        )
         test = said_in(both(entry.query, plain), home, there)
     except InputError as error:
         return replace(left_open, reason=str(error))
@@ -135,11 +138,7 @@ def _fact(basis: Basis, asked: Questions, drivers: Drivers, piece: Sides, wanted
 
 @cache
 def _library(files: tuple[Source, ...]) -> Library:
+    """The definitions with ``prevention.spec``. Raises ``InputError``."""
     library = load_library(files_for(files))
     check_library(library)
     return library
-
-
-def _restricted(home: Specification, wanted: Restriction) -> Specification:
-    """The definitions under ``prevention.spec``. Raises ``InputError``."""
-    return _library(tuple(home.library.files)).select(home.set_name, {**home.options, **wanted.options})

@@ -85,11 +85,18 @@ def tested(
         if restricted
         else (*_of_concrete(concrete, known, gaps.asked), *_of_abstract(asked, abstract, facts))
     )
+    unreadable = (Remark((x.entry.id,), f"cannot be read: {x.fault}") for x in concrete if x.fault)
+    # Drive files that are not what they say, judged with their own values.
+    rejected = (Remark((x.entry.id,), f"its file is rejected: {x.rejected}") for x in concrete if x.rejected)
+    open_gaps = (
+        Remark((name,), f"whether there is such a gap is in doubt: {reason}")
+        for name, reason in gaps.open.items()
+    )
     return Targets(
         tuple(_target(name, told, sectors.get(name, ""), concrete, facts) for name, told in words.items()),
         gaps,
-        (*_unreadable(concrete), *_rejected(concrete), *claimed),
-        (*_doubts(abstract, facts), *_open_gaps(gaps)),
+        (*unreadable, *rejected, *claimed),
+        (*_doubts(abstract, facts), *open_gaps),
         (*_same(concrete, near), *_implied(abstract, facts)),
         (*_contradictions(concrete, facts), *_shown_though_empty(gaps)),
     )
@@ -120,11 +127,6 @@ def _gaps(
     }
     left = tuple(x for x in made.values() if x not in empty)
     return TestedGaps(True, left, empty, still_open, len(made))
-
-
-def _open_gaps(gaps: TestedGaps) -> Iterator[Remark]:
-    for name, reason in gaps.open.items():
-        yield Remark((name,), f"whether there is such a gap is in doubt: {reason}")
 
 
 def _shown_though_empty(gaps: TestedGaps) -> Iterator[Remark]:
@@ -177,17 +179,6 @@ def _target(
 # --- remarks -------------------------------------------------------------------------------------
 
 
-def _unreadable(concrete: Sequence[ConcreteAnswer]) -> Iterator[Remark]:
-    yield from (Remark((x.entry.id,), f"cannot be read: {x.fault}") for x in concrete if x.fault)
-
-
-def _rejected(concrete: Sequence[ConcreteAnswer]) -> Iterator[Remark]:
-    """Drive files that are not what they say, judged with their own values."""
-    for x in concrete:
-        if x.rejected:
-            yield Remark((x.entry.id,), f"its file is rejected: {x.rejected}")
-
-
 def _of_concrete(concrete: Sequence[ConcreteAnswer], known: Collection[str], gaps: bool) -> Iterator[Remark]:
     """Tests that do not show what they claim, or nothing at all; ``gaps``: whether a gap is something.
 
@@ -206,7 +197,8 @@ def _of_concrete(concrete: Sequence[ConcreteAnswer], known: Collection[str], gap
         if not any(gaps or not name.startswith(PREFIX) for name in shown) and not (
             x.claims or x.entry.copy_of
         ):
-            yield Remark((x.entry.id,), f"shows no scenario{_of_danger(x)}{_why(x)}")
+            why = "" if x.why is None else f"; {x.why}"
+            yield Remark((x.entry.id,), f"shows no scenario{_of_danger(x)}{why}")
 
 
 def _of_danger(answer: ConcreteAnswer) -> str:
@@ -215,10 +207,6 @@ def _of_danger(answer: ConcreteAnswer) -> str:
         told = ", though danger comes: a gap, which no scenario covers for any lane and in any roles"
         return f"{told} ({', '.join(kinds)})" if kinds else told
     return ", though danger comes" if ENDANGERED in answer.names else ""
-
-
-def _why(answer: ConcreteAnswer) -> str:
-    return "" if answer.why is None else f"; {answer.why}"
 
 
 def _with_other_values(answer: ConcreteAnswer) -> str:

@@ -14,24 +14,9 @@ from itertools import product
 from roadproof.analysis.classify.cells import Axis, Cell
 from roadproof.analysis.study.evidence_store import specification_names
 from roadproof.errors import InputError, TextError, UsageError
+from roadproof.library import scenarios as s
 from roadproof.library.elaborate import apply_definition
-from roadproof.library.scenarios import (
-    LANE,
-    PAIR,
-    TEMPLATE,
-    Scenario,
-    applied,
-    components,
-    disturbance,
-    happening_words,
-    likes_of,
-    missing_part,
-    safe,
-    sector,
-    sector_name,
-    sector_words,
-    vehicles_of,
-)
+from roadproof.library.scenarios import disturbance, sector
 from roadproof.library.scenarios import name_of as scenario_name
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import Formula
@@ -39,7 +24,7 @@ from roadproof.logic.rewrite import without_names
 
 SET_NAME = "classes"
 FILE_NAME = "classes.spec"
-ANYBODY = PAIR  # SV and any group of vehicles
+ANYBODY = s.PAIR  # SV and any group of vehicles
 _WORD = re.compile(r"[a-z][a-z0-9]*")
 
 
@@ -55,7 +40,7 @@ class Group:
     @property
     def arguments(self) -> str:
         """What its scenarios are applied to."""
-        return f"({', '.join(self.vehicles)}, {LANE})"
+        return f"({', '.join(self.vehicles)}, {s.LANE})"
 
     @property
     def disturbances(self) -> tuple[int, ...]:
@@ -118,11 +103,11 @@ class Class:
     @property
     def formula(self) -> str:
         """The class applied to its vehicles and L, as it is written."""
-        return f"{self.name}({', '.join(self.vehicles)}, {LANE})"
+        return f"{self.name}({', '.join(self.vehicles)}, {s.LANE})"
 
     def query(self, specification: Specification) -> Query:
         """The class applied to its vehicles and L, in the set of the classes."""
-        return apply_definition(specification, self.name, (*self.vehicles, LANE))
+        return apply_definition(specification, self.name, (*self.vehicles, s.LANE))
 
 
 @dataclass(frozen=True)
@@ -178,40 +163,36 @@ def plan_of(specification: Specification, numbers: Sequence[int]) -> Plan:
         raise UsageError(f"there is a set '{SET_NAME}' already: classify the set that it extends")
     if FILE_NAME in specification_names(specification.library):
         raise UsageError(f"--spec: the output file for classes is {FILE_NAME}: rename your file")
-    likes = likes_of(specification)
+    likes = s.likes_of(specification)
     disturbances: dict[int, int] = {}
     sectors: dict[Formula, int] = {}
     groups: dict[tuple[str, ...], dict[int, tuple[int, int]]] = {}
     for number in numbers:
-        vehicles = vehicles_of(specification, Scenario(number, specification.set_name))
+        vehicles = s.vehicles_of(specification, s.Scenario(number, specification.set_name))
         first = sectors.setdefault(_sector(specification, number), number)
         groups.setdefault(vehicles, {})[number] = (disturbances.setdefault(likes[number], number), first)
     for rows in groups.values():
         _check_rows(rows, tuple(sectors.values()))
     return Plan(
         specification.set_name,
-        tuple(Group(vehicles, rows) for vehicles, rows in sorted(groups.items(), key=_size)),
+        tuple(Group(vehicles, rows) for vehicles, rows in sorted(groups.items(), key=lambda x: len(x[0]))),
         _names(specification, tuple(sectors.values())),
-        {number: sector_words(specification, number) for number in sectors.values()},
-        {number: happening_words(specification, number) for number in disturbances.values()},
+        {number: s.sector_words(specification, number) for number in sectors.values()},
+        {number: s.happening_words(specification, number) for number in disturbances.values()},
     )
 
 
-def _size(item: tuple[tuple[str, ...], object]) -> int:
-    return len(item[0])
-
-
 def _sector(specification: Specification, number: int) -> Formula:
-    missing = missing_part(specification, number)
+    missing = s.missing_part(specification, number)
     if missing:
         raise InputError(
             f"{scenario_name(number)}: there is no definition {missing}; classify needs the template "
-            f"{TEMPLATE}, so leave the scenario out with --among"
+            f"{s.TEMPLATE}, so leave the scenario out with --among"
         )
     try:
         return without_names(sector(specification, number, ANYBODY).formula)
     except TextError as error:
-        told = f"{sector_name(number)} must take SV and any group of vehicles: {error}"
+        told = f"{s.sector_name(number)} must take SV and any group of vehicles: {error}"
         raise InputError(told) from None
 
 
@@ -227,7 +208,7 @@ def _check_rows(rows: Mapping[int, tuple[int, int]], sectors: Sequence[int]) -> 
 
 def _names(specification: Specification, sectors: Sequence[int]) -> dict[int, str]:
     """The first word of each sector's description, or its number where that is no name of its own."""
-    docs = {number: sector_words(specification, number) for number in sectors}
+    docs = {number: s.sector_words(specification, number) for number in sectors}
     first = {n: (_WORD.findall(doc.lower()) or [str(n)])[0] for n, doc in docs.items()}
     words = list(first.values())
     return {n: word if words.count(word) == 1 else str(n) for n, word in first.items()}
@@ -235,18 +216,18 @@ def _names(specification: Specification, sectors: Sequence[int]) -> dict[int, st
 
 def what_axis(plan: Plan, group: Group, specification: Specification) -> Axis:
     """What happens: disturbances after initSafe, or whole scenarios where there is one road sector only."""
-    context = [safe(specification, group.vehicles[0], other) for other in group.vehicles[1:]]
+    context = [s.safe(specification, group.vehicles[0], other) for other in group.vehicles[1:]]
     return Axis(
         tuple(context) if plan.has_places else (),
         {number: _row(plan, group, specification, number) for number in group.disturbances},
-        {n: tuple(components(specification, n, group.vehicles)) for n in group.disturbances},
+        {n: tuple(s.components(specification, n, group.vehicles)) for n in group.disturbances},
     )
 
 
 def _row(plan: Plan, group: Group, specification: Specification, number: int) -> Query:
     if plan.has_places:
         return disturbance(specification, number, group.vehicles)
-    return applied(specification, Scenario(number, specification.set_name), group.vehicles)
+    return s.applied(specification, s.Scenario(number, specification.set_name), group.vehicles)
 
 
 def where_axis(plan: Plan, specification: Specification) -> Axis:

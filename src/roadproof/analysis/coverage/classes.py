@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 from roadproof.analysis.basis import Basis
 from roadproof.engines.search.question import zones_of
 from roadproof.evidence.drive_file import DriveFile
+from roadproof.library import scenarios as s
 from roadproof.library.bind import bind
 from roadproof.library.compose import (
     both,
@@ -28,23 +29,7 @@ from roadproof.library.compose import (
     with_vehicles,
 )
 from roadproof.library.elaborate import elaborate
-from roadproof.library.scenarios import (
-    LANE,
-    PAIR,
-    SUBJECT,
-    Scenario,
-    applied,
-    asked_between,
-    danger,
-    disturbance_name,
-    in_lane,
-    in_some_zone,
-    likes_of,
-    numbers_of,
-    safe,
-    sector,
-    vehicles_of,
-)
+from roadproof.library.scenarios import sector
 from roadproof.library.specification import Library, Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, is_state, subformulas
@@ -86,7 +71,7 @@ def parts_of(specification: Specification, number: int) -> tuple[Part, ...]:
 
     A component with one condition only is a part, its condition is no second one.
     """
-    whole = applied(specification, Scenario(number, specification.set_name)).formula
+    whole = s.applied(specification, s.Scenario(number, specification.set_name)).formula
     found: list[Part] = []
     for component, rebuild in _components(whole, number):
         if _body(component) == f.TRUE:
@@ -110,7 +95,7 @@ def _components(whole: Formula, number: int) -> Iterator[tuple[f.Application, Re
     def walk(current: Formula, rebuild: Rebuild, inside: bool) -> Iterator[tuple[f.Application, Rebuild]]:
         match current:
             case f.Application(name, _, body) if not inside:
-                yield from walk(body, rebuild, name == disturbance_name(number))
+                yield from walk(body, rebuild, name == s.disturbance_name(number))
             case f.Application():
                 yield current, rebuild
             case f.And(parts):
@@ -179,15 +164,15 @@ PROOF = 60.0  # units of work for a claim of coverage
 def two_vehicle_numbers(specification: Specification) -> tuple[int, ...]:
     """The scenarios between SV and one POV."""
     name = specification.set_name
-    numbers = numbers_of(specification)
-    return tuple(n for n in numbers if len(vehicles_of(specification, Scenario(n, name))) == len(PAIR))
+    numbers = s.numbers_of(specification)
+    return tuple(n for n in numbers if len(s.vehicles_of(specification, s.Scenario(n, name))) == len(s.PAIR))
 
 
 def sectors_of(specification: Specification) -> tuple[tuple[int, ...], ...]:
     """The two-vehicle scenarios, those of one road sector together, in the order of their numbers."""
     sectors: dict[Formula, list[int]] = {}
     for number in two_vehicle_numbers(specification):
-        where = sector(specification, number, PAIR).formula
+        where = sector(specification, number, s.PAIR).formula
         sectors.setdefault(without_names(where), []).append(number)
     return tuple(map(tuple, sectors.values()))
 
@@ -199,7 +184,7 @@ def numbers_on(
     zones = {lanelet.zone for lanelet in road.lanelets}
     found: list[int] = []
     for numbers in sectors:
-        if zones_of(sector(specification, numbers[0], PAIR).formula) <= zones:
+        if zones_of(sector(specification, numbers[0], s.PAIR).formula) <= zones:
             found += numbers
     return tuple(found)
 
@@ -215,39 +200,39 @@ def claims_of(specification: Specification) -> tuple[Query, ...]:
         implication(starts_in(specification, numbers), either(*in_either_role(specification, numbers)))
         for numbers in sectors
     ]
-    somewhere = both(*(in_some_zone(specification, vehicle) for vehicle in PAIR))
-    some_sector = either(*(sector(specification, numbers[0], PAIR) for numbers in sectors))
+    somewhere = both(*(s.in_some_zone(specification, vehicle) for vehicle in s.PAIR))
+    some_sector = either(*(sector(specification, numbers[0], s.PAIR) for numbers in sectors))
     return (*claims, implication(somewhere, some_sector))
 
 
 def starts(specification: Specification) -> tuple[Query, ...]:
     """That the two vehicles are safe and in danger later, and what else drives are asked to begin with."""
-    later = eventually(danger(specification, *PAIR))
-    return safe(specification, *PAIR), later, *asked_between(specification, *PAIR)
+    later = eventually(s.danger(specification, *s.PAIR))
+    return s.safe(specification, *s.PAIR), later, *s.asked_between(specification, *s.PAIR)
 
 
 def starts_in(specification: Specification, numbers: Sequence[int]) -> Query:
     """Safety and later danger in the road sector of these scenarios, with SV in L."""
-    where = sector(specification, numbers[0], PAIR)
-    return both(where, in_lane(specification, SUBJECT), *starts(specification))
+    where = sector(specification, numbers[0], s.PAIR)
+    return both(where, s.in_lane(specification, s.SUBJECT), *starts(specification))
 
 
 def in_either_role(specification: Specification, numbers: Sequence[int], set_name: str = "") -> list[Query]:
     """The scenarios for L, each with the two vehicles in either role; ``set_name``: those of another set."""
     name = set_name or specification.set_name
-    roles = (PAIR, PAIR[::-1])
-    return [applied(specification, Scenario(n, name), pair) for pair in roles for n in numbers]
+    roles = (s.PAIR, s.PAIR[::-1])
+    return [s.applied(specification, s.Scenario(n, name), pair) for pair in roles for n in numbers]
 
 
 def missed(specification: Specification, numbers: Sequence[int]) -> Query:
     """Safety and later danger, and none of the scenarios for any lane and either role."""
-    none = (negation(in_some_lane(x, LANE)) for x in in_either_role(specification, numbers))
+    none = (negation(in_some_lane(x, s.LANE)) for x in in_either_role(specification, numbers))
     return both(*starts(specification), *none)
 
 
 def caught(specification: Specification, numbers: Sequence[int], set_name: str) -> Query:
     """That one of the scenarios of a set holds, for some lane and either role."""
-    return in_some_lane(either(*in_either_role(specification, numbers, set_name)), LANE)
+    return in_some_lane(either(*in_either_role(specification, numbers, set_name)), s.LANE)
 
 
 def replaced_in(narrow: Specification, wide: Specification) -> tuple[str, ...]:
@@ -303,7 +288,7 @@ class GapClasses:
         self.values = basis.all_values()
         self.sectors = sectors_of(self.specification)
         self.numbers = tuple(number for sector in self.sectors for number in sector)
-        self.likes = likes_of(self.specification)
+        self.likes = s.likes_of(self.specification)
         self.by_number = {number: parts_of(self.specification, number) for number in self.numbers}
         self.parts = [part for number in self.sectors[0] for part in self.by_number[number]]
         self.finest = frozenset(part.key for part in self.parts if part.finest)
@@ -377,9 +362,9 @@ def _same(part: Formula) -> Formula:
 
 def near_miss(part: Part) -> Query:
     """That the scenario holds without the part, for some lane and in either role."""
-    return in_some_lane(either(part.without, exchanged(part.without)), LANE)
+    return in_some_lane(either(part.without, exchanged(part.without)), s.LANE)
 
 
 def exchanged(query: Query) -> Query:
     """``query`` with SV and POV in each other's place."""
-    return with_vehicles(query, dict(zip(PAIR, PAIR[::-1], strict=True)))
+    return with_vehicles(query, dict(zip(s.PAIR, s.PAIR[::-1], strict=True)))

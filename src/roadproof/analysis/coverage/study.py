@@ -7,7 +7,7 @@ else the simple drives are looked through, and gaps among them are what the clas
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, TypeGuard
+from typing import ClassVar
 
 from roadproof.analysis.basis import ProofResult
 from roadproof.analysis.coverage.answers import (
@@ -237,7 +237,7 @@ class Coverage(Unprepared):
 
     def classes_in(self, answers: Mapping[str, Kept]) -> Callable[[Part | None], ClassAnswer | None]:
         """What is known of the class of a part; all are empty where it is proved that there is no gap."""
-        known = {x.part and x.part.key: x for a in answers.values() if _is_classes(a) for x in a}
+        known = {x.part and x.part.key: x for a in answers.values() if isinstance(a, tuple) for x in a}
         none = is_covered(self._proved(answers))
 
         def find(part: Part | None) -> ClassAnswer | None:
@@ -282,10 +282,6 @@ class Coverage(Unprepared):
             traffic=None if surveyed.traffic is None else surveyed.traffic.told,
             seconds=round(seconds, 1),
         )
-
-
-def _is_classes(answer: Kept) -> TypeGuard[tuple[ClassAnswer, ...]]:
-    return isinstance(answer, tuple)
 
 
 def _concerning(group: GapGroup, found: Sequence[FoundGap]) -> tuple[FoundGap, ...]:

@@ -25,6 +25,7 @@ from roadproof.analysis.explore.search import Reply, SearchTask, look, undecided
 from roadproof.analysis.explore.values import explore
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question, readings
 from roadproof.analysis.study.pool import Say, in_order, work
+from roadproof.analysis.witnesses import name_of
 from roadproof.engines.solve.milp import prepare
 from roadproof.errors import InputError
 from roadproof.evidence.answers import explore as kept
@@ -53,7 +54,7 @@ class Exploration:
     @cached_property
     def named(self) -> dict[str, Explorable]:
         """What is asked by the names under which the answers are kept; what is asked twice is there once."""
-        return {name_of(number, asked): asked for number, asked in enumerate(self.asked, 1)}
+        return {name_of(number, asked.search): asked for number, asked in enumerate(self.asked, 1)}
 
     @property
     def question(self) -> Question:
@@ -133,13 +134,6 @@ class Exploration:
         """The index, made of the answers as they are recorded."""
         explored = tuple(records[name].exploration for name in self.named)
         return kept.Index(**self.question.heading, seconds=round(seconds, 1), explored=explored)
-
-
-def name_of(number: int, asked: Explorable) -> str:
-    """Under which name the answer is kept, and how the names of its files begin; ``number`` is its place."""
-    search = asked.search
-    stem = f"formula-{number:02}" if search.scenario is None else f"scenario-{search.scenario:02}"
-    return f"{stem}-{search.specification.set_name}"
 
 
 def _asked_of(asked: Explorable) -> tuple[int | None, str, str]:

@@ -1,6 +1,6 @@
 """Results of any kind as one page that needs no network."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Unpack
@@ -10,7 +10,7 @@ from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.evidence.folder import INDEX
 from roadproof.frontends.api.checking import CheckReport, check
 from roadproof.frontends.report.page.page_context import PageContext
-from roadproof.frontends.report.page.results import Given, Result, read_results
+from roadproof.frontends.report.page.results import Result, read_results
 from roadproof.frontends.report.page.sections import drive_section, evidence_section, section
 from roadproof.frontends.report.page.summary import summary_section
 from roadproof.frontends.report.page.templates import page as page_of
@@ -40,8 +40,11 @@ class Page:
     @property
     def exit_code(self) -> ExitCode:
         """That of the evidence: a page shows what is not accepted, and says so."""
-        findings = () if self.checked is None else self.checked.findings
-        return max((x.outcome.exit_code for x in findings), default=ExitCode.AS_EXPECTED)
+        return max((x.outcome.exit_code for x in self._findings), default=ExitCode.AS_EXPECTED)
+
+    @property
+    def _findings(self) -> tuple[Finding, ...]:
+        return () if self.checked is None else self.checked.findings
 
     def __repr__(self) -> str:
         return f"<Page: {self.path}>"
@@ -49,9 +52,12 @@ class Page:
     def __str__(self) -> str:
         counts = [(self.results, "result"), (self.drives, "drive")]
         told = ", ".join(f"{n} {word}{'s' if n != 1 else ''}" for n, word in counts)
-        findings = () if self.checked is None else self.checked.findings
-        wrong = sum(x.outcome is not Acceptance.ACCEPTED for x in findings)
-        bad = f"; {wrong} of {len(findings)} claims are not accepted, and the page says why" if wrong else ""
+        wrong = sum(x.outcome is not Acceptance.ACCEPTED for x in self._findings)
+        bad = (
+            f"; {wrong} of {len(self._findings)} claims are not accepted, and the page says why"
+            if wrong
+            else ""
+        )
         size = f"{len(self.text.encode()) / 1e6:.1f} MB"
         return f"{self.path}: {told}, {size}, in one file that needs no network{bad}"
 
@@ -78,19 +84,24 @@ def page(*results: str | Path, out: str | Path, **options: Unpack[PageKeywords])
         told = CheckKeywords(solver=asked.solver, specs=named, jobs=asked.jobs, progress=asked.progress)
         checked = check(*given.checkable, **told)
     library = load_library((*named, *(checked.specs if checked else ())))
-    inside = {} if checked is None else {x.where: x for x in checked.findings if x.kind == "index"}
-    book = PageContext(library, _by_file(checked), inside, _rejected(checked))
-    alone = _alone(given, checked)
+    findings = () if checked is None else checked.findings
+    inside = {x.where: x for x in findings if x.kind == "index"}
+    book = PageContext(library, _by_file(findings), inside, _rejected(findings))
+    wanted = {path.resolve() for path in given.evidence}
+    alone = [x for x in findings if Path(x.where).is_file() and Path(x.where).resolve() in wanted]
     sections = sorted(
         [
-            *([drive_section(alone, book)] if any(_is_accepted_drive(x) for x in alone) else []),
+            *(
+                [drive_section(alone, book)]
+                if any(x.kind == "drive" and x.outcome is Acceptance.ACCEPTED for x in alone)
+                else []
+            ),
             *(section(x, book, _words(x, library)) for x in given.results),
         ],
         key=lambda x: x.overview.rank,
     )
     sections += [evidence_section(alone, book, asked.solver)] if alone else []
     said = asked.title or excerpt(f"roadproof: {', '.join(x.stem or str(x) for x in paths)}", 120)
-    findings = () if checked is None else checked.findings
     summary = summary_section(
         [x.overview for x in sections], findings, asked.solver, given.results, _made(checked, library)
     )
@@ -108,23 +119,19 @@ def _made(checked: CheckReport | None, library: Library) -> Iterator[tuple[str, 
             yield f"not checked in {folder}", ", ".join(fields)
 
 
-def _is_accepted_drive(finding: Finding) -> bool:
-    return finding.kind == "drive" and finding.outcome is Acceptance.ACCEPTED
-
-
-def _rejected(checked: CheckReport | None) -> dict[str, list[str]]:
+def _rejected(findings: Sequence[Finding]) -> dict[str, list[str]]:
     """What is not accepted of each index itself, or not decided, in words."""
     found: dict[str, list[str]] = {}
-    for x in () if checked is None else checked.findings:
+    for x in findings:
         if x.outcome is not Acceptance.ACCEPTED and Path(x.where).name == INDEX:
             found.setdefault(x.where, []).append(f"{x.label}: {x.reason}" if x.label else x.reason)
     return found
 
 
-def _by_file(checked: CheckReport | None) -> dict[Path, Finding]:
+def _by_file(findings: Sequence[Finding]) -> dict[Path, Finding]:
     """What was found of each file of evidence; of several claims of one file the first that is refused."""
     found: dict[Path, Finding] = {}
-    for finding in () if checked is None else checked.findings:
+    for finding in findings:
         path = Path(finding.where)
         if not path.is_file():
             continue
@@ -132,13 +139,6 @@ def _by_file(checked: CheckReport | None) -> dict[Path, Finding]:
         if known is None or known.outcome is Acceptance.ACCEPTED:
             found[path.resolve()] = finding
     return found
-
-
-def _alone(given: Given, checked: CheckReport | None) -> list[Finding]:
-    """The findings on files of evidence that no index names."""
-    wanted = {path.resolve() for path in given.evidence}
-    findings = () if checked is None else checked.findings
-    return [x for x in findings if Path(x.where).is_file() and Path(x.where).resolve() in wanted]
 
 
 def _words(result: Result, library: Library) -> Mapping[int, str]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from roadproof.drivers.models import course_in
 from roadproof.evidence.answers import overlap, plates
@@ -19,6 +20,8 @@ from roadproof.logic.show import decimal
 from roadproof.verdict import Verdict
 
 CAREFUL = "careful"
+_DECIDED = (Verdict.WITNESSED, Verdict.IMPOSSIBLE)
+_Pair: TypeAlias = tuple[Words, Source, overlap.Pair]
 
 
 @dataclass(frozen=True)
@@ -66,6 +69,7 @@ def scenario_values(answers: Answers, drawn: Mapping[str, DrivePicture], number:
     found = {x: answers.drives[x][number] for x in OBJECTIVES if number in answers.drives.get(x, {})}
     before = [n for n in answers.numbers if n < number]
     after = [n for n in answers.numbers if n > number]
+    pairs = [*_pairs(answers, number)]
     return {
         "words": words,
         "before": answers.home.words(before[-1]) if before else None,
@@ -74,13 +78,17 @@ def scenario_values(answers: Answers, drawn: Mapping[str, DrivePicture], number:
         "definitions": unfolded(home, number),
         "parameters": _parameters(home, number),
         "claims": claims(answers, number),
-        "partners": [*_partners(answers, drawn, number)],
-        "excluded": _excluded(answers, number),
-        "open_pairs": _open_pairs(answers, number),
+        "partners": [
+            Partner(with_, drawn[source.file], source)
+            for with_, source, x in pairs
+            if x.verdict is Verdict.WITNESSED
+        ],
+        "excluded": _excluded(pairs),
+        "open_pairs": [(with_, x.reason, source) for with_, source, x in pairs if x.verdict not in _DECIDED],
         "implications": _implications(answers, number),
         "parts": _parts(answers, number),
         "plates": _plates(answers, number),
-        "gaps": _gaps(answers, drawn, number),
+        "gaps": [x for x in all_gaps(answers, drawn) if x.scenario == number],
         "frequencies": frequencies(number, words.sector),
         "traffic_source": SOURCE,
     }
@@ -134,7 +142,7 @@ def claims(answers: Answers, number: int | None) -> list[Claim]:
     return [Claim(key[0], titles[key], shown(key[1]), found) for key, found in groups.items()]
 
 
-def _pairs(answers: Answers, number: int) -> Iterator[tuple[Words, Source, overlap.Pair]]:
+def _pairs(answers: Answers, number: int) -> Iterator[_Pair]:
     """The pairs of a scenario with others."""
     for x in () if answers.overlap is None else answers.overlap.verdicts:
         if number in (x.a, x.b):
@@ -143,24 +151,13 @@ def _pairs(answers: Answers, number: int) -> Iterator[tuple[Words, Source, overl
             yield answers.home.words(x.b if x.a == number else x.a), source, x
 
 
-def _partners(answers: Answers, drawn: Mapping[str, DrivePicture], number: int) -> Iterator[Partner]:
-    for words, source, pair in _pairs(answers, number):
-        if pair.verdict is Verdict.WITNESSED:
-            yield Partner(words, drawn[source.file], source)
-
-
-def _excluded(answers: Answers, number: int) -> list[Excluded]:
+def _excluded(pairs: Sequence[_Pair]) -> list[Excluded]:
     """The scenarios that exclude this one, those with the same conflicting parts together."""
     groups: dict[tuple[str, ...], list[tuple[Words, Source]]] = {}
-    for words, source, pair in _pairs(answers, number):
+    for words, source, pair in pairs:
         if pair.verdict is Verdict.IMPOSSIBLE:
             groups.setdefault(pair.core, []).append((words, source))
     return [Excluded([*map(shown, parts)], others) for parts, others in groups.items()]
-
-
-def _open_pairs(answers: Answers, number: int) -> list[tuple[Words, str, Source]]:
-    decided = (Verdict.WITNESSED, Verdict.IMPOSSIBLE)
-    return [(w, x.reason, s) for w, s, x in _pairs(answers, number) if x.verdict not in decided]
 
 
 def _implications(answers: Answers, number: int) -> list[Statement]:
@@ -241,10 +238,6 @@ class Gap:
     source: Source
     drawn: DrivePicture | None
     reason: str
-
-
-def _gaps(answers: Answers, drawn: Mapping[str, DrivePicture], number: int) -> list[Gap]:
-    return [x for x in all_gaps(answers, drawn) if x.scenario == number]
 
 
 def all_gaps(answers: Answers, drawn: Mapping[str, DrivePicture]) -> list[Gap]:

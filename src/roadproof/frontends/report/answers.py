@@ -29,7 +29,8 @@ from roadproof.recordings.evaluate.totals import Row, Totals
 def answer_questions(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) -> str:
     """Markdown: RQ1 to RQ5 of the paper, the paper's figures in brackets, and the facts of semantics §6."""
     parts = [
-        f"# What the numbers say\n\nFigures in brackets are {MARK}." + "".join(_left_out(failed)),
+        f"# What the numbers say\n\nFigures in brackets are {MARK}."
+        + (f"\n\n{missing(failed)}" if failed else ""),
         "## RQ1: are the descriptions adequate for detecting disturbances?\n\n" + _detecting(totals),
         "## RQ2: are they adequate for classifying?\n\n" + _classifying(totals),
         "## RQ3: precision and recall\n\n" + _precision(totals),
@@ -44,11 +45,6 @@ def answer_questions(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) ->
 
 def _listed(lines: Iterable[str]) -> str:
     return "\n".join(f"- {line}" for line in lines)
-
-
-def _left_out(failed: Mapping[str, str]) -> Iterator[str]:
-    if failed:
-        yield f"\n\n{missing(failed)}"
 
 
 def _shown(row: Row) -> str:
@@ -186,12 +182,7 @@ def facts(totals: Totals) -> list[str]:
         "base because the two vehicles start in different lanes, so that L differs between the roles"
         + (":" if totals.unequal_3_4 else "."),
         *(
-            f"recording {recording}, vehicles {one} and {other}, minDanger {decimal_of(danger)}"
+            f"recording {recording}, vehicles {one} and {other}, minDanger {decimal(Fraction(danger))}"
             for recording, one, other, danger in totals.unequal_3_4
         ),
     ]
-
-
-def decimal_of(text: str) -> str:
-    """A rational as text in the tables' way."""
-    return decimal(Fraction(text))

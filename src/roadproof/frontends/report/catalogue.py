@@ -102,7 +102,7 @@ def as_text(
     lines = [f"{tests} test{'s' * (tests != 1)}", *_figures(counted), *_gaps(found), *drivers]
     lines += _listed("not tested", [f"{x.name}: {x.words}" for x in found.missing])
     for heading, remarks in headings(found).items():
-        lines += _listed(heading, [remark_line(x) for x in remarks])
+        lines += _listed(heading, [f"{' and '.join(x.tests)}: {x.told}" for x in remarks])
     return "\n".join([*lines, *(f"note: {x}" for x in notes), _summary(found)])
 
 
@@ -214,10 +214,6 @@ def headings(found: Targets) -> dict[str, Sequence[Remark]]:
         "in doubt": found.doubts,
         "say the same": found.alike,
     }
-
-
-def remark_line(remark: Remark) -> str:
-    return f"{' and '.join(remark.tests)}: {remark.told}"
 
 
 def _listed(heading: str, lines: Sequence[str]) -> Iterator[str]:

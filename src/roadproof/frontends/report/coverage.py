@@ -61,10 +61,6 @@ def _component(said: kept.CountedClass) -> str:
     return "" if said.condition or said.scenario is None else f"{said.component}: {said.description}"
 
 
-def _what(said: kept.CountedClass) -> str:
-    return said.condition or ("" if said.scenario is None else "the component")
-
-
 def _evidence(said: kept.CountedClass, gaps: Mapping[int, kept.NumberedGap]) -> str:
     told = [f"drive {number} ({_catching(gaps[number])})" for number in said.gaps]
     told += [said.reason] if said.reason else []
@@ -99,7 +95,12 @@ def sheet_of(index: kept.Index, names: Mapping[int, str]) -> Sheet[kept.CountedC
         (
             Column("scenario", lambda x: _place(x, names), "outline", look="heading"),
             Column("component", _component, "outline", look="heading"),
-            Column("class", _what, "outline", width=70),
+            Column(
+                "class",
+                lambda x: x.condition or ("" if x.scenario is None else "the component"),
+                "outline",
+                width=70,
+            ),
             Column("verdict", lambda x: x.verdict, "outline", width=10),
             Column("evidence", lambda x: _evidence(x, gaps), "outline"),
             Column("scenario", lambda x: x.scenario),

@@ -7,24 +7,7 @@ from typing import Any
 
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import judge_file
-from roadproof.frontends.report.drive_data import (
-    ZONES,
-    Box,
-    Danger,
-    Direction,
-    ShownRoad,
-    Span,
-    Strip,
-    dangers_of,
-    distances_of,
-    heading_of,
-    place_names,
-    road_in,
-    strips_of,
-    times_of,
-    vehicles_of,
-    window_of,
-)
+from roadproof.frontends.report import drive_data as data
 from roadproof.frontends.report.figures import draw_box, hide_frame, legend_beside, make_figure, name_rows
 from roadproof.library.specification import Library
 from roadproof.world.motion import State, state_at
@@ -45,13 +28,13 @@ def draw_drive(file: DriveFile, library: Library, title: str = "") -> Any:
     The title is the formula where none is given. Raises ``MissingSolverError`` without matplotlib.
     """
     judgement = judge_file(file, library).judgement
-    strips = () if judgement is None else strips_of(judgement, file.horizon)
-    dangers = dangers_of(file, library)
+    strips = () if judgement is None else data.strips_of(judgement, file.horizon)
+    dangers = data.dangers_of(file, library)
     lanes = len(file.road.lanes)
     heights = [0.2 + 0.26 * lanes] * SNAPSHOTS + [1.4, 1.4, 1.2, 0.2 + STRIP * len(strips)]
     longest = max((2 * x.depth + len(x.name) for x in strips), default=0)
     figure, axes = make_figure(heights, WIDTH + 0.05 * max(0, longest - 50))  # room for names of strips
-    colours = dict(zip(vehicles_of(file), COLOURS * len(file.drive.vehicles), strict=False))
+    colours = dict(zip(data.vehicles_of(file), COLOURS * len(file.drive.vehicles), strict=False))
     _draw_roads(axes[:SNAPSHOTS], file, colours, heights[0])
     speeds, along, across, below = axes[SNAPSHOTS:]
     _speeds(speeds, file, colours)
@@ -66,9 +49,9 @@ def draw_drive(file: DriveFile, library: Library, title: str = "") -> Any:
     return figure
 
 
-def _title(file: DriveFile, library: Library, title: str, dangers: Sequence[Danger]) -> str:
+def _title(file: DriveFile, library: Library, title: str, dangers: Sequence[data.Danger]) -> str:
     """What is shown in words, on which road, and when danger begins."""
-    lines = title.splitlines() or heading_of(file, library)
+    lines = title.splitlines() or data.heading_of(file, library)
     lanes = "".join(f", {name} = {lane}" for name, lane in file.lanes.items())
     lines.append(f"set {file.set_name}, road {file.road.name}{lanes}")
     lines[-1] += "".join(f"; {x}" for x in dangers)
@@ -81,16 +64,16 @@ def _title(file: DriveFile, library: Library, title: str, dangers: Sequence[Dang
 def _draw_roads(axes: Sequence[Any], file: DriveFile, colours: Mapping[str, str], height: float) -> None:
     """The road around the vehicles at some instants, all to one scale, driving direction to the right."""
     times = [file.horizon * k / (SNAPSHOTS - 1) for k in range(SNAPSHOTS)]
-    window = window_of(file, times)
+    window = data.window_of(file, times)
     zones: dict[Zone, None] = {}
     for one, time in zip(axes, times, strict=True):
         origin = state_at(file.drive.vehicles[next(iter(colours))], time).s
-        road = road_in(file.road, origin, window)
+        road = data.road_in(file.road, origin, window)
         zones |= dict.fromkeys(road.zones)
         _snapshot(one, road, window, f"{float(time):.1f} s")
         _vehicles(one, file, colours, time, (window[1] - window[0], height))
     for zone in zones:
-        axes[0].fill([], [], color=SHADES[zone], ec="#888888", lw=0.6, label=ZONES[zone])
+        axes[0].fill([], [], color=SHADES[zone], ec="#888888", lw=0.6, label=data.ZONES[zone])
     legend_beside(axes[0])
     arrow = {"arrowstyle": "->", "lw": 0.9, "color": "#444444"}
     axes[1].annotate("", (1.12, 0.5), (1.01, 0.5), "axes fraction", arrowprops=arrow, annotation_clip=False)
@@ -100,7 +83,7 @@ def _draw_roads(axes: Sequence[Any], file: DriveFile, colours: Mapping[str, str]
     axes[-1].set_xlabel(f"m along the road from the front of {next(iter(colours))}", fontsize=7)
 
 
-def _snapshot(axes: Any, road: ShownRoad, window: Span, when: str) -> None:
+def _snapshot(axes: Any, road: data.ShownRoad, window: data.Span, when: str) -> None:
     for zone, along, (right, left) in road.pieces:
         axes.fill_between(along, right, left, color=SHADES[zone], zorder=1, linewidth=0)
         axes.plot(along, (right, right), color="#888888", lw=0.6, zorder=2)
@@ -118,14 +101,14 @@ def _vehicles(
 ) -> None:
     """The boxes of all vehicles and their names; ``size``: metres shown along, inches across."""
     origin = state_at(file.drive.vehicles[next(iter(colours))], time).s
-    boxes: dict[str, Box] = {}
+    boxes: dict[str, data.Box] = {}
     for name in colours:
         motion, state = file.drive.vehicles[name], state_at(file.drive.vehicles[name], time)
         s, d = float(state.s - origin), float(state.d)
         boxes[name] = (s - float(motion.length), s, d - float(motion.width), d)
     low, high = axes.get_ylim()
     letter = (LETTER[0] * size[0] / ROAD_INCHES, LETTER[1] * (high - low) / size[1])
-    names = place_names(boxes, {name: (len(name) * letter[0], letter[1]) for name in boxes})
+    names = data.place_names(boxes, {name: (len(name) * letter[0], letter[1]) for name in boxes})
     for name, colour in colours.items():
         draw_box(axes, boxes[name], colour)
         left, _, bottom, top = names[name]
@@ -138,7 +121,7 @@ def _vehicles(
 # --- over time ----------------------------------------------------------------------------------
 
 
-def _share_time(axes: Sequence[Any], horizon: float, dangers: Sequence[Danger]) -> None:
+def _share_time(axes: Sequence[Any], horizon: float, dangers: Sequence[data.Danger]) -> None:
     """One axis of time for all, labelled below the last, and a line through all where danger begins."""
     for one in axes:
         one.set_xlim(0, horizon)
@@ -160,7 +143,7 @@ def _share_time(axes: Sequence[Any], horizon: float, dangers: Sequence[Danger]) 
 
 
 def _speeds(axes: Any, file: DriveFile, colours: Mapping[str, str]) -> None:
-    times = times_of(file)
+    times = data.times_of(file)
     seconds = [float(time) for time in times]
     for name, colour in colours.items():
         states: list[State] = [state_at(file.drive.vehicles[name], time) for time in times]
@@ -175,11 +158,11 @@ def _speeds(axes: Any, file: DriveFile, colours: Mapping[str, str]) -> None:
 
 
 def _gaps(
-    axes: Any, file: DriveFile, colours: Mapping[str, str], library: Library, direction: Direction
+    axes: Any, file: DriveFile, colours: Mapping[str, str], library: Library, direction: data.Direction
 ) -> None:
     """Distances between boxes, and the RSS distances that they need; shaded where they are below."""
-    seconds = [float(time) for time in times_of(file)]
-    for x in distances_of(file, library, direction):
+    seconds = [float(time) for time in data.times_of(file)]
+    for x in data.distances_of(file, library, direction):
         colour = colours[x.other]
         axes.plot(seconds, x.gap, color=colour, label=f"{x.one} to {x.other}")
         for k, run in enumerate(x.runs):
@@ -196,7 +179,7 @@ def _gaps(
     legend_beside(axes)
 
 
-def _draw_strips(axes: Any, strips: Sequence[Strip]) -> None:
+def _draw_strips(axes: Any, strips: Sequence[data.Strip]) -> None:
     """A row for each part, its name moved in below what it is part of."""
     for row, strip in enumerate(strips):
         for begin, end in strip.spans:

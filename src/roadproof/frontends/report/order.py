@@ -8,7 +8,7 @@ from roadproof.analysis.order.study import Order
 from roadproof.frontends.report.figures import make_figure
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.scenarios import Scenario
-from roadproof.library.words import Called, Words, legend
+from roadproof.library.words import Called, legend
 from roadproof.verdict import Verdict
 
 
@@ -66,17 +66,13 @@ def draw_order(order: Order, title: str, words: Called) -> Any:
         names = "\n".join(map(str, kind.nodes))
         axes.text(x, y, names, fontsize=5, ha="center", va="center", bbox=box)
     for x, number in enumerate(columns):
-        axes.text(x, -0.45, _column(words[number]), fontsize=6, rotation=90, ha="center", va="top")
+        told = f"{words[number].title}\n{words[number].sector}".strip()
+        axes.text(x, -0.45, told, fontsize=6, rotation=90, ha="center", va="top")
     axes.set_xlim(-0.7, len(columns) - 0.3)
     axes.set_ylim(-0.5, max(y for _, y in place.values()) + 0.5)
     axes.axis("off")
     figure.suptitle(title, fontsize=8)
     return figure
-
-
-def _column(words: Words) -> str:
-    """What stands below a column of the diagram."""
-    return f"{words.title}\n{words.sector}".strip()
 
 
 def _heights(kinds: Sequence[Kind], edges: Sequence[Edge]) -> dict[Scenario, int]:

@@ -64,7 +64,7 @@ def sheet_of(verdicts: Sequence[PairVerdict], words: Called) -> Sheet[PairVerdic
             Column("set_b", lambda x: x.b.set_name, "csv"),
             Column("verdict", lambda x: x.verdict),
             Column("formula", lambda x: "" if x.query is None else x.query.text, "csv"),
-            Column("core", _core, "csv"),
+            Column("core", lambda x: "; ".join(x.told), "csv"),
             Column("reason", lambda x: x.reason),
             Column("evidence", _evidence, "csv"),
             Column("name_a", lambda x: words[x.a.number].name, "csv"),
@@ -73,10 +73,6 @@ def sheet_of(verdicts: Sequence[PairVerdict], words: Called) -> Sheet[PairVerdic
         ),
         verdicts,
     )
-
-
-def _core(pair: PairVerdict) -> str:
-    return "; ".join(dict.fromkeys(part for core in pair.cores for part in core.told))
 
 
 def _evidence(pair: PairVerdict) -> str:
@@ -95,7 +91,9 @@ def draw_overlap(verdicts: Sequence[PairVerdict], title: str, across: bool, word
     found = _cells(verdicts, across)
     captions, numbers = _captions(verdicts)
     width = max(8.0, _CELL * len(columns) + _NAMES)
-    lines = [line for k, caption in enumerate(captions, 1) for line in _caption(k, caption, width)]
+    letters = int((width - 0.4) / _LETTER)
+    told = (wrap(f"{k:>3}  {x}", letters, subsequent_indent="     ") for k, x in enumerate(captions, 1))
+    lines = [line for each in told for line in each]
     figure, (axes, below) = make_figure([_CELL * len(rows) + 0.7, 0.3 + 0.15 * len(lines)], width)
     for y, row in enumerate(rows):
         for x, column in enumerate(columns):
@@ -119,8 +117,8 @@ def draw_overlap(verdicts: Sequence[PairVerdict], title: str, across: bool, word
         axes.legend(fontsize=8, loc="upper right", frameon=False)
     below.axis("off")
     style = {"textcoords": "offset points", "fontsize": 7, "va": "top", "family": "monospace"}
-    told = below.annotate("\n".join(lines), (0, 1), (beside, 0), "axes fraction", **style)
-    told.set_in_layout(False)
+    shown = below.annotate("\n".join(lines), (0, 1), (beside, 0), "axes fraction", **style)
+    shown.set_in_layout(False)
     figure.suptitle(title, fontsize=10)
     return figure
 
@@ -186,8 +184,3 @@ def _captions(
             captions.append(caption)
         numbers[x.a.number, x.b.number] = captions.index(caption) + 1
     return captions, numbers
-
-
-def _caption(number: int, caption: str, width: float) -> list[str]:
-    """One caption on lines; what clashes is joined by a cross, one clash for each way to meet."""
-    return wrap(f"{number:>3}  {caption}", int((width - 0.4) / _LETTER), subsequent_indent="     ")

@@ -12,7 +12,7 @@ from roadproof.frontends.report.figures import as_bytes
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.scenarios import LANE
 from roadproof.library.specification import Library, Specification
-from roadproof.library.words import Words, words_of
+from roadproof.library.words import words_of
 from roadproof.logic.custom_names import told_freedom
 from roadproof.recordings.export.csv_table import csv_of
 
@@ -33,7 +33,8 @@ def as_line(outcome: Outcome, specification: Specification, verbose: bool = Fals
         shown += f" {len(outcome.drives)} drives" if len(outcome.drives) > 1 else ""
     shown += f" {outcome.seconds['all']:.2f} s"
     if outcome.scenario is not None:
-        shown += _called(words_of(specification, outcome.scenario))
+        name = words_of(specification, outcome.scenario).name
+        shown += f"\n  {name}" if name else ""
     shown += "".join(f"\n  {said}" for said in told_freedom(outcome.query.formula))
     if outcome.reason:
         shown += f"\n  {outcome.reason}"
@@ -45,11 +46,6 @@ def as_line(outcome: Outcome, specification: Specification, verbose: bool = Fals
         shown += f"\n  sizes {dict(outcome.sizes)}"
         shown += "\n  seconds " + ", ".join(f"{k} {v:.3f}" for k, v in outcome.seconds.items())
     return shown
-
-
-def _called(words: Words) -> str:
-    """What a scenario is called, on a line below its number."""
-    return f"\n  {words.name}" if words.name else ""
 
 
 def sheet_of(searches: Sequence[SearchedFor]) -> Sheet[SearchedFor]:

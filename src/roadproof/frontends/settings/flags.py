@@ -56,19 +56,14 @@ def _rules(settings: type[Settings], name: str, option: Option) -> dict[str, Any
         return {"action": "store_false" if default else "store_true"}
     rules = {
         "metavar": option.metavar,
-        "type": _reader(option),
+        "type": None if option.read is None else _naming(option, option.read),
         "choices": option.choices,
         "default": default,
+        "required": option.required or None,
     }
-    rules |= {"required": option.required or None}
     if option.gather is not None:
         rules |= {"action": "append", "default": None}
     return {key: value for key, value in rules.items() if value is not None}
-
-
-def _reader(option: Option) -> Callable[[str], object] | None:
-    """The reader of an option; its ``UsageError`` begins with the flag."""
-    return None if option.read is None else _naming(option, option.read)
 
 
 def _naming(option: Option, made: Callable[[A], object]) -> Callable[[A], object]:

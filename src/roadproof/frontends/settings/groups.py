@@ -305,3 +305,8 @@ class Prevention(Settings):
 @dataclass(frozen=True, kw_only=True)
 class Survey(Definitions, Models, Budget, Sharing, Run):
     """Options of every question about several scenarios."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class DriveSearch(SeveralSets, SearchPlace, Method, Prevention, Budget, Sharing, Run):
+    """Options of every question about drives of some scenarios or formulas."""

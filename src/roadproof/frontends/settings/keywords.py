@@ -86,11 +86,7 @@ class SurveyKeywords(ModelsKeywords, BudgetKeywords, SharingKeywords, RunKeyword
     pass
 
 
-class CompareKeywords(SearchPlaceKeywords, MethodKeywords, BudgetKeywords, WorkersKeywords, total=False):
-    pass
-
-
-class WitnessKeywords(
+class DriveSearchKeywords(
     SearchPlaceKeywords,
     MethodKeywords,
     PreventionKeywords,
@@ -99,21 +95,21 @@ class WitnessKeywords(
     RunKeywords,
     total=False,
 ):
+    pass
+
+
+class CompareKeywords(SearchPlaceKeywords, MethodKeywords, BudgetKeywords, WorkersKeywords, total=False):
+    pass
+
+
+class WitnessKeywords(DriveSearchKeywords, total=False):
     objective: Objective
     count: int
     pictures: bool
     animate: str | Iterable[str]
 
 
-class ExploreKeywords(
-    SearchPlaceKeywords,
-    MethodKeywords,
-    PreventionKeywords,
-    BudgetKeywords,
-    SharingKeywords,
-    RunKeywords,
-    total=False,
-):
+class ExploreKeywords(DriveSearchKeywords, total=False):
     vary: Mapping[str, tuple[Number, Number]] | None
     steps: int | None
     least: Term | None

@@ -7,26 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roadproof.frontends.settings.groups import (
-    OBJECTIVES,
-    Answered,
-    Budget,
-    Definitions,
-    Method,
-    Models,
-    Prevention,
-    Run,
-    SearchPlace,
-    SeveralSets,
-    Sharing,
-    Workers,
-    checker_of,
-    effort_for,
-    folder_for,
-    one_set,
-    pictures_of,
-    specifications_of,
-)
+from roadproof.frontends.settings import groups
 from roadproof.frontends.settings.option import option, output, search
 from roadproof.frontends.settings.readers import named, seconds, text_or_none, whole
 
@@ -43,35 +24,35 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Compare(SeveralSets, SearchPlace, Method, Budget, Workers):
+class Compare(groups.SeveralSets, groups.SearchPlace, groups.Method, groups.Budget, groups.Workers):
     """Options of ``compare``."""
 
-    out: str | Path | None = folder_for("certificates and drive files", command_line_only=True)
+    out: str | Path | None = groups.folder_for("certificates and drive files", command_line_only=True)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Witness(SeveralSets, SearchPlace, Method, Prevention, Budget, Sharing, Run):
+class Witness(groups.DriveSearch):
     """Options of ``witness``."""
 
     objective: Objective = option(
         "smooth",
         "--objective KIND",
         "any, smooth (default), margin, mild, severe or short",
-        choices=OBJECTIVES,
+        choices=groups.OBJECTIVES,
     )
     count: int = option(
         1, "--count K", "find K clearly different drives (default: 1)", read=whole(1), least=1
     )
     verbose: bool = output(False, "--verbose", "print sizes and seconds by stage", keyword=False, rare=True)
-    out: str | Path | None = folder_for("drive files, CSV and pictures")
-    pictures: bool = pictures_of()
+    out: str | Path | None = groups.folder_for("drive files, CSV and pictures")
+    pictures: bool = groups.pictures_of()
     animate: str | Iterable[str] = output(
         (), "--animate FORMAT", "with --out: write animations: svg, gif or mp4", gather=list
     )
 
 
 @dataclass(frozen=True, kw_only=True)
-class Explore(SeveralSets, SearchPlace, Method, Prevention, Budget, Sharing, Run):
+class Explore(groups.DriveSearch):
     """Options of ``explore``."""
 
     vary: Mapping[str, tuple[Number, Number]] | None = option(
@@ -91,16 +72,16 @@ class Explore(SeveralSets, SearchPlace, Method, Prevention, Budget, Sharing, Run
     precision: Number | None = option(
         None, "--precision P", "width of a bracket in SI units (default: range/60; 0.1 for a term)"
     )
-    effort: float = effort_for("a question", 6.0)
-    out: str | Path | None = folder_for("drives, certificates, JSON, pictures")
-    pictures: bool = pictures_of(command_line_only=True)
+    effort: float = groups.effort_for("a question", 6.0)
+    out: str | Path | None = groups.folder_for("drives, certificates, JSON, pictures")
+    pictures: bool = groups.pictures_of(command_line_only=True)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Prove(Definitions, Models, Budget, Run):
+class Prove(groups.Definitions, groups.Models, groups.Budget, groups.Run):
     """Options of ``prove``."""
 
-    sets: tuple[str, ...] = one_set()
+    sets: tuple[str, ...] = groups.one_set()
     file: Path | None = option(
         None, "--claims FILE", "read claims from a file, one a paragraph", read=Path, keyword=False
     )
@@ -145,19 +126,19 @@ class Prove(Definitions, Models, Budget, Run):
     kernel: Kernel | None = option(
         None, "--kernel", "also check each proof with the kernel of Coq, by coqc", choices=("coq",)
     )
-    effort: float = effort_for("a claim", 60.0)
-    out: str | Path | None = folder_for("certificates and an index")
+    effort: float = groups.effort_for("a claim", 60.0)
+    out: str | Path | None = groups.folder_for("certificates and an index")
     verbose: bool = output(
         False, "--verbose", "print a line for every claim of the list", keyword=False, rare=True
     )
 
 
 @dataclass(frozen=True, kw_only=True)
-class Check(Answered, Budget, Workers):
+class Check(groups.Answered, groups.Budget, groups.Workers):
     """Options of ``check``."""
 
-    solver: Solver = checker_of("solver that checks certificates")
-    specs: Iterable[str | Path] = specifications_of("the claims")
+    solver: Solver = groups.checker_of("solver that checks certificates")
+    specs: Iterable[str | Path] = groups.specifications_of("the claims")
     kernel: Kernel | None = option(
         None,
         "--kernel",
@@ -167,7 +148,7 @@ class Check(Answered, Budget, Workers):
     strict: bool = option(
         False, "--strict", "exit with 20 if an answer has no evidence (UNKNOWN, NONE-WITHIN)"
     )
-    effort: float = effort_for("a query", 60.0)
+    effort: float = groups.effort_for("a query", 60.0)
     write: Path | None = output(
         None, "--write DIR", "only write the files for Coq, with --kernel", read=Path, keyword=False
     )
@@ -175,10 +156,10 @@ class Check(Answered, Budget, Workers):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Page(Workers):
+class Page(groups.Workers):
     """Options of ``report``, which is ``page`` in Python."""
 
     title: str | None = output(None, "--title TEXT", "title of the page")
-    solver: Solver = checker_of("solver that checks certificates")
-    specs: Iterable[str | Path] = specifications_of("the results")
+    solver: Solver = groups.checker_of("solver that checks certificates")
+    specs: Iterable[str | Path] = groups.specifications_of("the results")
     progress: Progress | None = option(None)

@@ -7,17 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roadproof.frontends.settings.groups import (
-    Definitions,
-    Sharing,
-    Traces,
-    Workers,
-    folder_for,
-    one_set,
-    pictures_of,
-    several_sets,
-    specifications_of,
-)
+from roadproof.frontends.settings import groups
 from roadproof.frontends.settings.option import Settings, option, output
 from roadproof.frontends.settings.readers import (
     LARGEST_SEED,
@@ -45,10 +35,10 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Monitor(Definitions, Traces):
+class Monitor(groups.Definitions, groups.Traces):
     """Options of ``monitor``."""
 
-    sets: tuple[str, ...] = one_set()
+    sets: tuple[str, ...] = groups.one_set()
     lanes: Mapping[str, str] | None = option(
         None,
         "--lane [L=]LANE",
@@ -78,10 +68,10 @@ class Monitor(Definitions, Traces):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Evaluate(Definitions, Sharing, Traces):
+class Evaluate(groups.Definitions, groups.Sharing, groups.Traces):
     """Options of ``evaluate``."""
 
-    sets: tuple[str, ...] = several_sets("base", "extA", "ext")
+    sets: tuple[str, ...] = groups.several_sets("base", "extA", "ext")
     among: Among = option(None, "--among N-M", "only these scenarios (default: all of two or three vehicles)")
     min_danger: Iterable[Number] = option(
         (0, "0.6 s"),
@@ -109,16 +99,16 @@ class Evaluate(Definitions, Sharing, Traces):
     detectors: bool = option(True, "--no-detectors", "leave out the detectors of earlier works", rare=True)
     check: bool = option(False, "--check", "compare with the plain recursive evaluator (slow)", rare=True)
     keep_going: bool = option(False, "--keep-going", "skip recordings that cannot be used")
-    out: str | Path | None = folder_for("results", command_line_only=True)
+    out: str | Path | None = groups.folder_for("results", command_line_only=True)
     list_roads: bool = output(
         False, "--list", "only list lanes and zones, and which of them were inferred", keyword=False
     )
-    pictures: bool = pictures_of("figures, which need matplotlib")
+    pictures: bool = groups.pictures_of("figures, which need matplotlib")
     tell: Say | None = option(None)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Simulate(Workers):
+class Simulate(groups.Workers):
     """Options of ``simulate``."""
 
     recordings: int = option(1, "--recordings N", "number of recordings (default: 1)", read=whole(1, 999))
@@ -147,7 +137,7 @@ class Simulate(Workers):
     plant_set: str = option(
         "base", "--plant-set S", "spec set of --plant N,N (default: base)", keyword=False, rare=True
     )
-    out: str | Path | None = folder_for("recordings", command_line_only=True, required=True)
+    out: str | Path | None = groups.folder_for("recordings", command_line_only=True, required=True)
     tell: Say | None = option(None)
 
 
@@ -175,5 +165,5 @@ class Export(Settings):
     rate: int = option(
         25, "--rate N", "samples per second of commonroad, highd and csv (default: 25)", read=whole(1)
     )
-    specs: Iterable[str | Path] = specifications_of("the drives")
-    out: str | Path | None = folder_for("files", command_line_only=True, required=True)
+    specs: Iterable[str | Path] = groups.specifications_of("the drives")
+    out: str | Path | None = groups.folder_for("files", command_line_only=True, required=True)

@@ -6,36 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roadproof.frontends.settings.groups import (
-    OBJECTIVES,
-    Budget,
-    Definitions,
-    Models,
-    Prevention,
-    Readings,
-    Run,
-    SeveralSets,
-    Sharing,
-    Survey,
-    driver_model,
-    effort_for,
-    fixed_or_any,
-    folder_for,
-    pictures_of,
-    same_or_any,
-    scenarios_such_as,
-    several_sets,
-    with_complete,
-)
+from roadproof.frontends.settings import groups, readers
 from roadproof.frontends.settings.option import option, output, search
-from roadproof.frontends.settings.readers import (
-    driver_models_or_none,
-    flat,
-    initial_values,
-    items_of,
-    seconds,
-    whole,
-)
+from roadproof.frontends.settings.readers import whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -48,69 +21,69 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Ask(Survey):
+class Ask(groups.Survey):
     """Options of ``ask``."""
 
-    among: str | None = scenarios_such_as()
+    among: str | None = groups.scenarios_such_as()
 
 
 @dataclass(frozen=True, kw_only=True)
-class Atlas(Readings, Run):
+class Atlas(groups.Readings, groups.Run):
     """Options of ``atlas``."""
 
-    among: Among = scenarios_such_as("1-8", keyword=True)
+    among: Among = groups.scenarios_such_as("1-8", keyword=True)
     topics: Sequence[str] = option(
         (),
         "--topics NAME,…",
         "only these: proofs, drives, overlaps, implications, redundancy, gaps, classes or plates "
         "(default: all)",
-        read=items_of("topics", ", such as drives,overlaps"),
+        read=readers.items_of("topics", ", such as drives,overlaps"),
     )
-    out: str | Path | None = folder_for("pages and evidence", required=True)
+    out: str | Path | None = groups.folder_for("pages and evidence", required=True)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Overlap(SeveralSets, Survey, Prevention):
+class Overlap(groups.SeveralSets, groups.Survey, groups.Prevention):
     """Options of ``overlap``."""
 
-    among: str | None = scenarios_such_as()
-    lanes: Same = same_or_any("--lanes", "L is the same lane in both scenarios, or any")
-    roles: Same = same_or_any("--roles", "vehicles have the same roles in both, or any")
-    start: Same = same_or_any("--start", "both start at time 0, or one at any later time")
+    among: str | None = groups.scenarios_such_as()
+    lanes: Same = groups.same_or_any("--lanes", "L is the same lane in both scenarios, or any")
+    roles: Same = groups.same_or_any("--roles", "vehicles have the same roles in both, or any")
+    start: Same = groups.same_or_any("--start", "both start at time 0, or one at any later time")
     horizon: Number | None = search(
-        None, "--horizon S", "seconds to search (default: 6; 9 with --start any)", read=seconds
+        None, "--horizon S", "seconds to search (default: 6; 9 with --start any)", read=readers.seconds
     )
-    effort: float = effort_for("a drive", 60.0)
-    out: str | Path | None = folder_for("evidence, CSV, JSON and heat map")
-    pictures: bool = pictures_of("heat map", command_line_only=True)
+    effort: float = groups.effort_for("a drive", 60.0)
+    out: str | Path | None = groups.folder_for("evidence, CSV, JSON and heat map")
+    pictures: bool = groups.pictures_of("heat map", command_line_only=True)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Order(Survey):
+class Order(groups.Survey):
     """Options of ``order``."""
 
-    sets: tuple[str, ...] = several_sets("base", "extA", "ext")
-    among: str | None = scenarios_such_as()
-    effort: float = effort_for("a drive", 120.0)
-    out: str | Path | None = folder_for("certificates, drives, DOT and SVG")
-    pictures: bool = pictures_of("picture", command_line_only=True)
+    sets: tuple[str, ...] = groups.several_sets("base", "extA", "ext")
+    among: str | None = groups.scenarios_such_as()
+    effort: float = groups.effort_for("a drive", 120.0)
+    out: str | Path | None = groups.folder_for("certificates, drives, DOT and SVG")
+    pictures: bool = groups.pictures_of("picture", command_line_only=True)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Redundancy(Survey):
+class Redundancy(groups.Survey):
     """Options of ``redundancy``."""
 
-    among: str | None = scenarios_such_as()
+    among: str | None = groups.scenarios_such_as()
     whole: bool = option(False, "--whole", "include the parts of simple predicates")
-    effort: float = effort_for("a drive", 20.0)
+    effort: float = groups.effort_for("a drive", 20.0)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Coverage(Survey, Prevention):
+class Coverage(groups.Survey, groups.Prevention):
     """Options of ``coverage``."""
 
-    preventable: str | None = driver_model("preventable", "prevents", "drives")
-    unpreventable: str | None = driver_model("unpreventable", "cannot prevent", "drives")
+    preventable: str | None = groups.driver_model("preventable", "prevents", "drives")
+    unpreventable: str | None = groups.driver_model("unpreventable", "cannot prevent", "drives")
     wider: str | None = option(
         None, "--wider S", "set that misses nothing (default: complete, if it extends the set)"
     )
@@ -123,42 +96,42 @@ class Coverage(Survey, Prevention):
     on: str | Path | None = option(
         None, "--on DIR", "count the classes of gaps in these recordings", read=Path
     )
-    effort: float = effort_for("a search", 10.0)
-    out: str | Path | None = folder_for("certificates, drives and pictures")
-    pictures: bool = pictures_of(command_line_only=True)
+    effort: float = groups.effort_for("a search", 10.0)
+    out: str | Path | None = groups.folder_for("certificates, drives and pictures")
+    pictures: bool = groups.pictures_of(command_line_only=True)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Classify(Survey, Prevention):
+class Classify(groups.Survey, groups.Prevention):
     """Options of ``classify``."""
 
-    among: str | None = scenarios_such_as("1-8")
+    among: str | None = groups.scenarios_such_as("1-8")
     on: str | Path | None = option(
         None, "--on DIR", "recordings for the shares (default: simulated traffic)", read=Path
     )
     shares: bool = option(True, "--no-shares", "compute no shares")
-    effort: float = effort_for("a drive or a proof", 60.0)
-    out: str | Path | None = folder_for("classes.spec, claims, evidence, picture")
-    pictures: bool = pictures_of("picture", command_line_only=True)
+    effort: float = groups.effort_for("a drive or a proof", 60.0)
+    out: str | Path | None = groups.folder_for("classes.spec, claims, evidence, picture")
+    pictures: bool = groups.pictures_of("picture", command_line_only=True)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Preventable(Definitions, Budget, Sharing, Run):
+class Preventable(groups.Definitions, groups.Budget, groups.Sharing, groups.Run):
     """Options of ``preventable``."""
 
     models: Sequence[str] = option(
         (),
         "--model NAME",
         "driver model: careful, r157, eu1426, rss or fsm (default: all but fsm)",
-        read=items_of("names", ", such as careful,r157"),
-        gather=flat,
+        read=readers.items_of("names", ", such as careful,r157"),
+        gather=readers.flat,
         keyword=False,
     )
     at: Mapping[str, Number | Sequence[Number]] | None = option(
         None,
         "--at NAME=VALUE[,…]",
         "fix an initial value; several values make several plates",
-        read=initial_values,
+        read=readers.initial_values,
         gather=dict,
     )
     along: tuple[Number, Number] | None = option(
@@ -169,24 +142,24 @@ class Preventable(Definitions, Budget, Sharing, Run):
     )
     lines: int = option(100, "--lines K", "lines of a plate (default: 100)", read=whole(2))
     lemmas: bool = option(True, "--no-lemmas", "prove no lemmas")
-    effort: float = effort_for("a lemma", 60.0)
-    out: str | Path | None = folder_for("drives, certificates, CSV, pictures")
-    pictures: bool = pictures_of(command_line_only=True)
+    effort: float = groups.effort_for("a lemma", 60.0)
+    out: str | Path | None = groups.folder_for("drives, certificates, CSV, pictures")
+    pictures: bool = groups.pictures_of(command_line_only=True)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Catalogue(SeveralSets, Models, Budget, Run, Prevention):
+class Catalogue(groups.SeveralSets, groups.Models, groups.Budget, groups.Run, groups.Prevention):
     """Options of ``catalogue``."""
 
-    among: Among = scenarios_such_as("1-8", keyword=True)
+    among: Among = groups.scenarios_such_as("1-8", keyword=True)
     classes: bool = option(True, "--no-classes", "ask about scenarios only")
     gaps: bool = option(False, "--gaps", "also ask for a test of each class of gaps that is not proved empty")
     explore: bool = option(
         False, "--explore", "also ask how drives of each class can begin, and which part no test covers"
     )
-    roles: Look = fixed_or_any("--roles", "choices of roles")
-    lanes: Look = fixed_or_any("--lanes", "lanes")
-    start: Look = fixed_or_any("--start", "instants")
+    roles: Look = groups.fixed_or_any("--roles", "choices of roles")
+    lanes: Look = groups.fixed_or_any("--lanes", "lanes")
+    start: Look = groups.fixed_or_any("--start", "instants")
     near: float = option(
         0.5,
         "--near X",
@@ -198,11 +171,11 @@ class Catalogue(SeveralSets, Models, Budget, Run, Prevention):
         None,
         "--drivers MODELS",
         "driver models that drive each test: careful,r157, or none (default: all)",
-        read=driver_models_or_none,
+        read=readers.driver_models_or_none,
     )
-    effort: float = effort_for("a drive", 60.0)
-    out: str | Path | None = folder_for("matrix, JUnit, picture, evidence")
-    pictures: bool = pictures_of("picture", command_line_only=True)
+    effort: float = groups.effort_for("a drive", 60.0)
+    out: str | Path | None = groups.folder_for("matrix, JUnit, picture, evidence")
+    pictures: bool = groups.pictures_of("picture", command_line_only=True)
     complete: Path | None = output(
         None,
         "--complete DIR",
@@ -210,12 +183,12 @@ class Catalogue(SeveralSets, Models, Budget, Run, Prevention):
         read=Path,
         keyword=False,
     )
-    objective: Objective | None = with_complete(
-        "--objective", "what the drives should be like (default: smooth)", choices=OBJECTIVES
+    objective: Objective | None = groups.with_complete(
+        "--objective", "what the drives should be like (default: smooth)", choices=groups.OBJECTIVES
     )
-    spread: int | None = with_complete(
+    spread: int | None = groups.with_complete(
         "--spread K", "write drives far from the tests until each class has K tests", read=whole(1)
     )
-    formats: Sequence[str] | None = with_complete(
+    formats: Sequence[str] | None = groups.with_complete(
         "--format FORMAT", "also write openscenario, commonroad, highd, csv or opendrive", gather=list
     )

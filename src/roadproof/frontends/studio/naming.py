@@ -1,6 +1,6 @@
 """Words for the editor: what there is to be named, what a name means, and what is wrong with a text."""
 
-from roadproof.errors import Position, RoadproofError
+from roadproof.errors import RoadproofError
 from roadproof.evidence.codec import write
 from roadproof.frontends.api.drafting import mistakes
 from roadproof.frontends.studio.requests import Answer, Ask
@@ -91,14 +91,15 @@ def _expansion(home: Specification, name: str) -> str:
 def read(ask: Ask) -> Answer:
     """What is wrong with a draft and with the formulas that are asked of it, and what they are called."""
     told = [
-        {"where": x.where, "message": x.message, "hint": x.hint, "at": x.position and _ends(x.position)}
+        {
+            "where": x.where,
+            "message": x.message,
+            "hint": x.hint,
+            "at": (at := x.position) and [[at.line, at.column], [at.end_line, at.end_column]],
+        }
         for x in mistakes(ask.draft, ask.formulas)
     ]
     return {"mistakes": told, "formulas": _about(ask)}
-
-
-def _ends(at: Position) -> list[list[int]]:
-    return [[at.line, at.column], [at.end_line, at.end_column]]
 
 
 def _about(ask: Ask) -> Answer:
