@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 
 from roadproof.analysis.study.evidence_store import readings
 from roadproof.engines.prove.induction import prove_of_scenarios
-from roadproof.engines.prove.prover import Result
+from roadproof.engines.prove.prover import Result, SharedPremise
 from roadproof.evidence.settled import Settled
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.bind import values_with
@@ -92,10 +92,15 @@ class Basis:
         search_options = SearchOptions(self.objective, effort=effort or self.effort, explain=explain)
         return Search(self.specification, query, setting, search_options)
 
-    def proof_of(self, query: Query, units: float | None = None, label: str = "") -> Result:
-        """The verdict on a claim with ``units`` of work (None: ``proof``). Raises ``BudgetExceeded``."""
+    def proof_of(
+        self, query: Query, units: float | None = None, label: str = "", shared: SharedPremise | None = None
+    ) -> Result:
+        """The verdict on a claim with ``units`` of work (None: ``proof``). Raises ``BudgetExceeded``.
+
+        ``shared``: of claims with a premise that a drive satisfies, what is known of it.
+        """
         effort = self.effort.of(self.proof if units is None else units)
-        return prove_of_scenarios(self.specification, query, effort).called(label)
+        return prove_of_scenarios(self.specification, query, effort, shared).called(label)
 
     def settle(self, claim: Claim, query: Query, units: float, label: str) -> ProofResult[Claim]:
         """The verdict on ``claim``, which ``query`` says; in doubt where the clock cuts the proof off."""

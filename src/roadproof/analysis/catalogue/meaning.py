@@ -1,45 +1,33 @@
 """What abstract tests mean: which scenarios and tests each implies or excludes, and what it can show.
 
-A test is run once, by a drive that is looked for. What that drive shows may be implied by the test, what it
-does not show may be excluded: both are for the prover, in dense time and on all roads. Where a scenario is
-not excluded, a drive of the test is looked for that shows it.
+Each test is asked by itself (``formula_facts``), then pairs of tests and the sides of driver models.
 """
 
 import hashlib
 import json
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, TypeAlias, TypeVar
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.decisions import Drivers, said_of
-from roadproof.analysis.catalogue.entries import Abstract, Freedom
+from roadproof.analysis.catalogue.entries import Abstract
 from roadproof.analysis.catalogue.fact import Fact, read_fact, record_of
+from roadproof.analysis.catalogue.formula_facts import FormulaFacts, facts_of_pair
 from roadproof.analysis.catalogue.gaps import GapKinds
 from roadproof.analysis.catalogue.ranges import Reach, reached
-from roadproof.analysis.catalogue.showing import names_shown, shown_by
 from roadproof.analysis.catalogue.sides import Sides, facts_on_sides, has_sides, unanswered_sides
 from roadproof.analysis.coverage import answers as survey
 from roadproof.analysis.coverage.study import Coverage
-from roadproof.analysis.placing import judged_as
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.analysis.study.frame import Unprepared
-from roadproof.engines.search.ask import Outcome, Search, answer
-from roadproof.engines.search.question import SearchOptions, Setting
 from roadproof.errors import InputError
 from roadproof.evidence.answers import catalogue_index as kept
-from roadproof.evidence.answers.catalogue_index import Relation
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.strict import JsonObject
-from roadproof.library.bind import bind
-from roadproof.library.compose import both
-from roadproof.library.scenarios import Scenario, applied, definition_of, name_of, number_in
-from roadproof.library.specification import Query
-from roadproof.runtime.budget import BudgetExceeded
-from roadproof.semantics.exact.exact import judge
-from roadproof.verdict import Verdict
+from roadproof.library.scenarios import Scenario, definition_of, name_of, number_in
 
 
 @dataclass(frozen=True)
@@ -203,85 +191,15 @@ class Meanings(Unprepared):
                 assert self.survey is not None
                 return {GAPS + name: AboutGaps(x) for name, x in self.survey.settle(inside).items()}
             case Pair(one, other, drive):
-                return {_name(one.id, other.id): self._implied(one, other, drive)}
+                return {_name(one.id, other.id): facts_of_pair(self.basis, self.asked, one, other, drive)}
             case Sides(entry, scenario):
                 assert self.drivers is not None
                 facts = facts_on_sides(self.basis, self.asked, self.drivers, piece)
                 return {_name(entry.id, scenario): facts}
             case Abstract():
-                return {_name(piece.id): self._of_test(piece)}
+                return {_name(piece.id): FormulaFacts(self.basis, self.asked, piece, self.beside).all()}
             case Reach(target, term):
                 return {_name(target, term): reached(self.basis, piece)}
-
-    def _of_test(self, entry: Abstract) -> Facts:
-        outcome = self._search(entry, entry.query, explain=True)
-        if not outcome.drives:
-            return (self._without_drive(entry, outcome),)
-        drive = outcome.drives[0]
-        shown = names_shown(drive, self.asked)
-        alone = Fact(entry.id, "", "runs", entry.query, drive=drive, also=shown)
-        scenarios = self.asked.scenarios_of(entry.query.vehicles)
-        found = [self._of_scenario(entry, name, query, drive, shown) for name, query in scenarios.items()]
-        found += [fact for asked in self.beside for fact in self._in_set(entry, asked, drive)]
-        for name in (x for x in shown if x in self.asked.named.values()):
-            implied = self._proved(entry, name, "implies", self.asked.class_query(name))
-            found += [] if implied is None else [implied]
-        return (alone, *found)
-
-    def _in_set(self, entry: Abstract, asked: Questions, drive: JudgedDrive) -> Iterator[Fact]:
-        """The scenarios of another set that a test implies, among those that its drive shows."""
-        shown = {x.what for x in shown_by(drive.file, asked, Freedom())}
-        set_name = asked.specification.set_name
-        for number in asked.numbers:
-            if name_of(number) in shown:
-                query = applied(self.basis.specification, Scenario(number, set_name))
-                implied = self._proved(entry, f"{name_of(number)}@{set_name}", "implies", query)
-                yield from [] if implied is None else [implied]
-
-    def _without_drive(self, entry: Abstract, outcome: Outcome) -> Fact:
-        if outcome.impossibility is None:
-            reason = outcome.told(()) or "no drive was found"
-            return Fact(entry.id, "", "open", entry.query, reason=reason)
-        return Fact(entry.id, "", "empty", entry.query, certificate=outcome.impossibility.certificate)
-
-    def _of_scenario(
-        self, entry: Abstract, name: str, query: Query, drive: JudgedDrive, shown: Names
-    ) -> Fact:
-        if name in shown:
-            here = Fact(entry.id, name, "shows", entry.query, query, also=shown)
-            judged = judged_as(drive.file, here.query, self.basis.library)
-            return self._proved(entry, name, "implies", query) or replace(here, drive=judged)
-        return self._proved(entry, name, "excludes", query) or self._looked_for(entry, name, query)
-
-    def _looked_for(self, entry: Abstract, name: str, query: Query) -> Fact:
-        outcome = self._search(entry, both(entry.query, query), explain=False)
-        if not outcome.drives:
-            reason = outcome.told(()) or "no drive was found"
-            return Fact(entry.id, name, "open", entry.query, query, reason, exhausted=outcome.exhausted)
-        drive = outcome.drives[0]
-        return Fact(
-            entry.id, name, "shows", entry.query, query, drive=drive, also=names_shown(drive, self.asked)
-        )
-
-    def _implied(self, one: Abstract, other: Abstract, drive: JudgedDrive) -> Facts:
-        formula = bind(other.query.formula, drive.file.road, drive.file.lanes, self.asked.values)
-        if not judge(formula, drive.file.drive).holds:
-            return ()
-        implied = self._proved(one, other.id, "implies", other.query)
-        return () if implied is None else (implied,)
-
-    def _proved(self, entry: Abstract, name: str, relation: Relation, conclusion: Query) -> Fact | None:
-        fact = Fact(entry.id, name, relation, entry.query, conclusion)
-        try:
-            result = self.basis.proof_of(fact.query)
-        except BudgetExceeded:
-            return None
-        return replace(fact, certificate=result.certificate) if result.verdict is Verdict.PROVED else None
-
-    def _search(self, entry: Abstract, query: Query, explain: bool) -> Outcome:
-        setting = Setting(entry.road, vehicles=entry.vehicles, values=self.basis.values)
-        options = SearchOptions("smooth", effort=self.basis.effort, explain=explain)
-        return answer(Search(self.basis.specification, query, setting, options))
 
     def doubt(self, piece: Piece, reason: str) -> dict[str, Kept]:
         match piece:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from roadproof.drivers.restriction import left_open
-from roadproof.engines.prove.prover import Result, prove
+from roadproof.engines.prove.prover import Result, SharedPremise, prove
 from roadproof.errors import InputError
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import Assumption, Axiom, axiom_formula
@@ -73,7 +73,9 @@ def _number(term: Term) -> str:
 _OPEN = "not proved where it is left open what a driver prevents, and no other proof was looked for"
 
 
-def prove_of_scenarios(specification: Specification, query: Query, effort: Effort) -> Result:
+def prove_of_scenarios(
+    specification: Specification, query: Query, effort: Effort, shared: SharedPremise | None = None
+) -> Result:
     """As ``prove``; but where a driver model says what begins, UNKNOWN for what needs its numbers.
 
     A proof is one of the claim itself, with its certificate. That there may be one is asked first where what
@@ -85,4 +87,4 @@ def prove_of_scenarios(specification: Specification, query: Query, effort: Effor
         first = prove(outline, read_claim(outline, query.text), effort)
         if not first.holds:
             return Result(first.work, verdict=Verdict.UNKNOWN, reason=_OPEN, seconds=first.seconds)
-    return prove(specification, query, effort)
+    return prove(specification, query, effort, shared=shared)

@@ -79,11 +79,22 @@ class Result(Settled[ClaimVerdict]):
         return replace(self, certificate=replace(self.certificate, property=label, scenario=scenario))
 
 
+@dataclass(frozen=True)
+class SharedPremise:
+    """What proofs of claims with the same premise share, of which a judged drive shows that it can hold.
+
+    So no claim is VACUOUS because of it. ``learnt``: of states, by the values that a premise demands.
+    """
+
+    learnt: dict[tuple[str, ...], Learnt] = field(default_factory=dict)
+
+
 def prove(
     specification: Specification,
     query: Query,
     effort: Effort | None = None,
     assumed: Assumption = NOTHING,
+    shared: SharedPremise | None = None,
 ) -> Result:
     """Decide whether ``query`` holds at time 0 on all traces, for all values of its parameters.
 
@@ -91,7 +102,8 @@ def prove(
     above zero, roads, and signals as functions of time; a value that is ``assumed``, or that the claim's own
     premise demands, is put in first. A proof counts only once its certificate, derived apart, has been
     answered unsat. Where motion is ``assumed`` nothing is refuted: a trace that has it at finitely many
-    instants need be no motion. Raises ``BudgetExceeded``; ``InputError`` for forbidden assumptions.
+    instants need be no motion. ``shared``: of the claim's own premise, where a drive satisfies it. Raises
+    ``BudgetExceeded``; ``InputError`` for forbidden assumptions.
     """
     begun = now()
     meter = (effort or Effort()).meter()
@@ -99,7 +111,8 @@ def prove(
     demanded = _demanded(specification, query, here)
     pinned = value_texts(specification, demanded)
     values = {**here, **demanded}
-    states = _states(specification, values)
+    learnt = None if shared is None else shared.learnt.setdefault(pinned, Learnt())
+    states = _states(specification, values, learnt)
     premise, claim = goal_of(specification, query, assumed, states.atoms, pinned)
     attempt = _Attempt(specification, query, states, meter, is_moving(assumed.said))
 
@@ -133,7 +146,7 @@ def prove(
         return replace(result(verdict, why), stop=Stop.CERTIFICATE if verdict is Verdict.UNKNOWN else None)
     if premise != f.TRUE and attempt.never_holds(premise, f.TRUE):
         return result(Verdict.VACUOUS, CONTRADICTION, certificate)
-    condition = _premise(query, claim)
+    condition = None if shared is not None else _premise(query, claim)
     if condition is not None and attempt.never_holds(premise, condition):
         return result(Verdict.VACUOUS, "the premise never holds, whatever the conclusion", certificate)
     return result(Verdict.PROVED, "", certificate)
