@@ -2,7 +2,7 @@
 
 A drive of the test is looked for first. Scenarios that it does not show may be excluded, which is for the
 prover; where they are not, a drive is looked for that shows them. Only what all these drives show may be
-implied. One drive can show several scenarios, and is taken for each of them once it is judged.
+implied.
 """
 
 from collections.abc import Iterator
@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Questions
+from roadproof.analysis.catalogue.candidates import CandidateDrives
 from roadproof.analysis.catalogue.entries import Abstract, Freedom
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.showing import names_shown, shown_by
@@ -74,26 +75,32 @@ class FormulaFacts:
 
     def _of_shown(self, name: str, query: Query) -> Fact:
         """A scenario that the first drive shows."""
-        return self._implied(name, query) or self._shows(name, query, *self.found[0])
+        drive, names = self.found[0]
+        fact = Fact(self.entry.id, name, "shows", self.entry.query, query, also=names)
+        judged = judged_as(drive.file, fact.query, self.basis.library)
+        return self._implied(name, query) or replace(fact, drive=judged)
 
     def _of_another(self, name: str, query: Query) -> Fact:
         """A scenario that the first drive does not show."""
-        for drive, names in self.found:
-            if name in names:
-                return self._shows(name, query, drive, names)
+        candidate = self._candidate(name, query)
+        if candidate is not None:
+            return self._shown_by(name, query, candidate)
         return self._proved(name, "excludes", query) or self._looked_for(name, query)
 
-    def _shows(self, name: str, query: Query, drive: JudgedDrive, names: tuple[str, ...]) -> Fact:
-        fact = Fact(self.entry.id, name, "shows", self.entry.query, query, also=names)
-        return replace(fact, drive=judged_as(drive.file, fact.query, self.basis.library))
+    def _candidate(self, name: str, query: Query) -> JudgedDrive | None:
+        return CandidateDrives(self.basis, self.entry, *self.found[0]).find(name, query)
+
+    def _shown_by(self, name: str, query: Query, drive: JudgedDrive) -> Fact:
+        """A scenario that a drive shows which is not known yet."""
+        entry = self.entry
+        return Fact(entry.id, name, "shows", entry.query, query, drive=drive, also=self._add(drive))
 
     def _looked_for(self, name: str, query: Query) -> Fact:
         entry, outcome = self.entry, self._search(both(self.entry.query, query), explain=False)
         if not outcome.drives:
             reason = outcome.told(()) or "no drive was found"
             return Fact(entry.id, name, "open", entry.query, query, reason, exhausted=outcome.exhausted)
-        drive = outcome.drives[0]
-        return Fact(entry.id, name, "shows", entry.query, query, drive=drive, also=self._add(drive))
+        return self._shown_by(name, query, outcome.drives[0])
 
     def _in_set(self, asked: Questions, drive: JudgedDrive) -> Iterator[Fact]:
         """The scenarios of another set that a test implies, among those that its drive shows."""

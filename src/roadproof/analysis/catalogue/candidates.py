@@ -1,0 +1,135 @@
+"""Drives that may show a scenario in a test before any search: shipped drives of the classes of scenarios.
+
+They are proposals, whatever they were found for. Each is tried as it is, and moved towards a drive of the
+test, and counts once it is judged exactly for the test and the scenario, in the definitions at hand.
+"""
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cache, cached_property
+
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.catalogue.entries import Abstract
+from roadproof.analysis.placing import judged_as
+from roadproof.analysis.study.known import shipped_answers
+from roadproof.engines.search.ask import telling_values
+from roadproof.errors import RoadproofError
+from roadproof.evidence.answers import classify as kept
+from roadproof.evidence.codec import read
+from roadproof.evidence.drive_file import DriveFile, read_drive
+from roadproof.evidence.judged import JudgedDrive
+from roadproof.library.bind import bind
+from roadproof.library.compose import both
+from roadproof.library.scenarios import PAIR, SUBJECT, name_of
+from roadproof.library.specification import Query
+from roadproof.semantics.exact.exact import LazyJudge
+from roadproof.world.drive import Drive
+from roadproof.world.models import load_vehicle
+from roadproof.world.motion import monotone_starts
+from roadproof.world.signals import KINDS
+
+_DIGITS = 10  # least parts of m and m/s by which drives are moved
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A shipped drive of a class: the ``text`` of its file, and the ``scenarios`` of the class by name."""
+
+    text: str
+    vehicles: tuple[str, ...]
+    scenarios: frozenset[str]
+
+    @cached_property
+    def file(self) -> DriveFile:
+        """The drive file, read once."""
+        return read_drive(json.loads(self.text), "a shipped drive")
+
+
+@cache
+def candidates() -> tuple[Candidate, ...]:
+    """All shipped drives of classes, those of classes with few scenarios first."""
+    found: list[Candidate] = []
+    for answer in shipped_answers("classify"):
+        record = read(kept.Record, answer.record, "a shipped answer")
+        for one in record.classes:
+            text = answer.files.get(str(one.drive))
+            if text is not None:
+                found.append(Candidate(text, one.vehicles, frozenset(map(name_of, one.scenarios))))
+    return tuple(sorted(found, key=lambda x: len(x.scenarios)))
+
+
+@dataclass(frozen=True)
+class CandidateDrives:
+    """Candidates for drives of a test of which one ``drive`` is known, which shows ``names``."""
+
+    basis: Basis
+    entry: Abstract
+    drive: JudgedDrive
+    names: tuple[str, ...]
+
+    def find(self, name: str, query: Query) -> JudgedDrive | None:
+        """A drive of the test on which the scenario ``name`` holds, as ``query`` says it, judged."""
+        if self.entry.vehicles:
+            return None  # shipped drives are those of cars
+        wanted = both(self.entry.query, query)
+        known = (x for x in candidates() if name in x.scenarios and not x.scenarios.isdisjoint(self.names))
+        for candidate in known:
+            if {*candidate.vehicles} == {*wanted.vehicles} and self.entry.road in (None, candidate.file.road):
+                judged = self._judged(candidate.file, wanted)
+                if judged is not None:
+                    return judged
+        return None
+
+    def _judged(self, file: DriveFile, wanted: Query) -> JudgedDrive | None:
+        library, home = self.basis.library, self.basis.specification
+        if not {*wanted.lanes} <= {*file.lanes}:
+            return None
+        values = self.basis.all_values()
+        test = bind(self.entry.query.formula, file.road, file.lanes, values)
+        told = telling_values(library, wanted.formula, values)
+        here = replace(file, set_name=home.set_name, options=dict(home.options), values=told)
+        for drive in _moved_towards(file.drive, self.drive.file.drive):
+            try:
+                if LazyJudge.on(drive).holds(test):
+                    judged = judged_as(replace(here, drive=drive), wanted, library)
+                    if judged is not None:
+                        return judged
+            except RoadproofError:  # the test speaks of signals that shipped drives do not have
+                return None
+        return None
+
+
+def _moved_towards(drive: Drive, other: Drive) -> Iterator[Drive]:
+    """The drive, then at the speed of SV in the other one, then with the gap of that, too."""
+    yield drive
+    if not {*PAIR} == {*drive.vehicles} == {*other.vehicles}:
+        return
+    here, there = drive.vehicles[SUBJECT], other.vehicles[SUBJECT]
+    faster = (there.v_lon - here.v_lon).limit_denominator(_DIGITS)
+    farther = (_gap(other) - _gap(drive)).limit_denominator(_DIGITS)
+    for ahead in (Fraction(0), farther):
+        moved = _moved(drive, faster, ahead)
+        if moved != drive and _is_drivable(moved):
+            yield moved
+
+
+def _gap(drive: Drive) -> Fraction:
+    first, other = (drive.vehicles[name] for name in PAIR)
+    return other.s - first.s
+
+
+def _moved(drive: Drive, faster: Fraction, ahead: Fraction) -> Drive:
+    """All vehicles that much faster (m/s), POV that far ahead (m)."""
+    vehicles = {
+        name: replace(x, v_lon=x.v_lon + faster, s=x.s if name == SUBJECT else x.s + ahead)
+        for name, x in drive.vehicles.items()
+    }
+    return replace(drive, vehicles=vehicles)
+
+
+def _is_drivable(drive: Drive) -> bool:
+    """Whether all speeds are those of a car."""
+    low, high = load_vehicle(KINDS[0]).v_lon
+    return all(low <= x.v_lon <= high for m in drive.vehicles.values() for x in monotone_starts(m))
