@@ -15,6 +15,7 @@ import roadproof as rp
 from roadproof.analysis.catalogue import examination, meaning
 from roadproof.analysis.catalogue.entries import Abstract, Concrete
 from roadproof.analysis.catalogue.fact import Fact
+from roadproof.analysis.catalogue.formula_facts import FormulaFacts
 from roadproof.analysis.catalogue.meaning import Meanings, Piece
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
 from roadproof.analysis.study import known, pool
@@ -160,13 +161,14 @@ def test_what_a_clock_may_cut_off_is_not_kept(tests: Path, work: Work) -> None:
 def test_doubts_that_the_same_work_leaves_are_kept(
     tests: Path, work: Work, monkeypatch: pytest.MonkeyPatch, other: str, exhausted: bool, is_kept: bool
 ) -> None:
-    def left_open(study: Meanings, entry: Abstract) -> tuple[Fact, ...]:
+    def left_open(facts: FormulaFacts) -> tuple[Fact, ...]:
+        entry = facts.entry
         conclusion = entry.query if other else None
         return (
             Fact(entry.id, other, "open", entry.query, conclusion, "none was found", exhausted=exhausted),
         )
 
-    monkeypatch.setattr(Meanings, "_of_test", left_open)
+    monkeypatch.setattr(FormulaFacts, "all", left_open)
     first = asked(tests)
     work.taken()
     assert timeless(asked(tests)) == timeless(first)

@@ -102,15 +102,18 @@ class CandidateDrives:
 
 
 def _moved_towards(drive: Drive, other: Drive) -> Iterator[Drive]:
-    """The drive, then at the speed of SV in the other one, then with the gap of that, too."""
+    """The drive, then at the speed of SV in the other one: with its own gap, that of the other, and smaller
+    or larger ones, since RSS distances grow with speed and with its square.
+    """
     yield drive
     if not {*PAIR} == {*drive.vehicles} == {*other.vehicles}:
         return
     here, there = drive.vehicles[SUBJECT], other.vehicles[SUBJECT]
     faster = (there.v_lon - here.v_lon).limit_denominator(_DIGITS)
-    farther = (_gap(other) - _gap(drive)).limit_denominator(_DIGITS)
-    for ahead in (Fraction(0), farther):
-        moved = _moved(drive, faster, ahead)
+    ratio = (here.v_lon + faster) / here.v_lon if here.v_lon else Fraction(1)
+    gap = _gap(drive)
+    for wanted in dict.fromkeys((gap, gap * ratio, gap * ratio**2, _gap(other))):
+        moved = _moved(drive, faster, (wanted - gap).limit_denominator(_DIGITS))
         if moved != drive and _is_drivable(moved):
             yield moved
 

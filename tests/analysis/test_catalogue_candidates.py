@@ -1,0 +1,106 @@
+"""Shipped drives as drives of a test, and proofs that share a premise: nothing is said that is not judged."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import pytest
+
+import roadproof as rp
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.catalogue import formula_facts
+from roadproof.analysis.catalogue.asked import Questions
+from roadproof.analysis.catalogue.candidates import CandidateDrives, candidates
+from roadproof.analysis.catalogue.entries import Abstract
+from roadproof.analysis.catalogue.formula_facts import FormulaFacts
+from roadproof.engines.prove.prover import SharedPremise
+from roadproof.evidence.judged import JudgedDrive, judge_file
+from roadproof.library.compose import implication, negation
+from roadproof.library.scenarios import name_of
+from roadproof.verdict import Verdict
+from roadproof.world.models import load_road, load_vehicle
+
+HOME = rp.load()
+BASIS = Basis(HOME.alone)
+NUMBERS = (1, 4, 6, 8)
+ASKED = Questions(HOME.alone, NUMBERS, None, HOME.all_values())
+SLOW = "scenario_4(SV,POV,L) and v_lon(SV) >= 14 m/s and v_lon(SV) <= 20 m/s"
+"""Shipped drives are faster."""
+QUERIES = ASKED.scenarios_of(("SV", "POV"))
+
+
+def entry(formula: str = SLOW) -> Abstract:
+    return Abstract("T", HOME.read(formula))
+
+
+@pytest.fixture(scope="module")
+def drive() -> JudgedDrive:
+    """A drive of the slow test."""
+    [found] = rp.witness(SLOW, jobs=1).drives
+    return found
+
+
+def found_for(test: Abstract, drive: JudgedDrive, name: str = "scenario_6") -> JudgedDrive | None:
+    return CandidateDrives(BASIS, test, drive, ("scenario_4",)).find(name, QUERIES[name])
+
+
+def test_every_class_has_a_shipped_drive() -> None:
+    assert len(candidates()) == 91
+    shown = {name for x in candidates() for name in x.scenarios}
+    assert shown == {name_of(n) for n in range(1, 25)}
+
+
+def test_a_shipped_drive_is_moved_to_the_speed_of_the_test(drive: JudgedDrive) -> None:
+    found = found_for(entry(), drive)
+    assert found is not None
+    assert judge_file(found.file, HOME.library).accepted
+    assert found.file.formula == f"({SLOW.replace(',', ', ')}) and scenario_6(SV, POV, L)"
+    assert 14 <= found.file.drive.vehicles["SV"].v_lon <= 20
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        replace(entry(), road=load_road("main-3")),
+        replace(entry(), vehicles={"SV": load_vehicle("truck")}),
+        entry("scenario_4(SV,POV,L) and v_lon(SV) >= 60 m/s"),
+        entry("given M: lane: scenario_4(SV,POV,M)"),
+    ],
+)
+def test_a_drive_that_is_none_of_the_test_is_not_taken(changed: Abstract, drive: JudgedDrive) -> None:
+    assert found_for(changed, drive) is None
+
+
+def test_a_drive_that_does_not_show_the_scenario_is_not_taken(
+    drive: JudgedDrive, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wrong = next(x for x in candidates() if x.scenarios == {"scenario_4"})
+    lying = replace(wrong, scenarios=frozenset({"scenario_4", "scenario_6"}))
+    monkeypatch.setattr("roadproof.analysis.catalogue.candidates.candidates", lambda: (lying,))
+    assert found_for(entry(), drive) is None
+
+
+def relations(without: bool, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[str, str]]:
+    def none(drives: CandidateDrives, name: str, query: object) -> None:
+        return None
+
+    with monkeypatch.context() as patched:
+        if without:
+            patched.setattr(formula_facts.CandidateDrives, "find", none)
+        for fact in FormulaFacts(BASIS, ASKED, entry()).all():
+            assert (fact.drive is None) == (fact.verdict is Verdict.PROVED)
+            yield fact.other, fact.relation
+
+
+def test_a_test_means_the_same_without_shipped_drives(monkeypatch: pytest.MonkeyPatch) -> None:
+    said = [*relations(False, monkeypatch)]
+    assert said == [*relations(True, monkeypatch)]
+    assert {x for _, x in said} == {"runs", "implies", "excludes", "shows"}
+
+
+def test_proofs_that_share_a_premise_come_to_the_same() -> None:
+    shared, premise = SharedPremise(), HOME.read(SLOW)
+    for query in QUERIES.values():
+        for claim in (implication(premise, query), implication(premise, negation(query))):
+            together, alone = BASIS.proof_of(claim, shared=shared), BASIS.proof_of(claim)
+            assert together.verdict is alone.verdict
+            assert (together.certificate is None) == (alone.certificate is None)
