@@ -76,7 +76,7 @@ class TextError(InputError):
     def __str__(self) -> str:
         where = self.source or "input"
         lines = [self.message]
-        if self.position is not None:
+        if self.position is not None and self.position.line:
             where = f"{where}, line {self.position.line}, column {self.position.column}"
             source_lines = self.text.splitlines()
             if 1 <= self.position.line <= len(source_lines):

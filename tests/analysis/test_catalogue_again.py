@@ -17,9 +17,9 @@ from evidence.test_every_field import another, leaves, path_of
 from roadproof.analysis.catalogue import examination, traces
 from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.entries import Concrete, Freedom
-from roadproof.analysis.catalogue.playing import choices, roles_of
+from roadproof.analysis.catalogue.playing import choices
 from roadproof.analysis.catalogue.showing import ConcreteAnswer, show
-from roadproof.analysis.catalogue.traces import courses_of, digest_of
+from roadproof.analysis.catalogue.traces import courses_of, digest_of, roles_in
 from roadproof.engines.prove.properties import find_label
 from roadproof.errors import InputError
 from roadproof.evidence.finding import Acceptance
@@ -364,7 +364,7 @@ def looked_at(asked: Questions, path: Path, free: bool = False, **roles: str) ->
     ],
 )
 def test_names_and_roles(vehicles: list[str], given: dict[str, str], expected: dict[str, str]) -> None:
-    assert roles_of(Concrete("x", "x.csv", roles=given), vehicles, KNOWN).by_name == expected
+    assert roles_in(Concrete("x", "x.csv", roles=given), vehicles, KNOWN).by_name == expected
 
 
 def test_choices_keep_who_is_named() -> None:

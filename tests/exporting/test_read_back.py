@@ -28,7 +28,8 @@ from roadproof.frontends.api.exporting import export
 from roadproof.frontends.api.traces import MonitorAnswer, monitor, of_file
 from roadproof.library.bind import bind
 from roadproof.library.elaborate import read_claim
-from roadproof.library.scenarios import roles, vehicle_order
+from roadproof.library.roles import vehicle_order
+from roadproof.library.scenarios import roles
 from roadproof.recordings.evaluate.one_trace import OneTrace, read_pair, read_samples, sample_drive
 from roadproof.recordings.export import openscenario
 from roadproof.recordings.export.points import axle_to_centre, centre, heading, rear_axle

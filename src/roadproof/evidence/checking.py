@@ -17,6 +17,7 @@ from roadproof.evidence.strict import Fields, read_json
 from roadproof.library.bind import default_values, values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import is_moving, statement
+from roadproof.library.scenario_references import own_names
 from roadproof.library.scenarios import Scenario, applied, name_of
 from roadproof.library.specification import Library
 from roadproof.logic.parse import parse_claim
@@ -125,8 +126,9 @@ class Checker:
         if file.scenario is not None:
             if name_of(file.scenario) not in specification.definitions:
                 return f"scenario={file.scenario}, but there is none of that number"
-            whole = applied(specification, Scenario(file.scenario, file.set_name))
-            if whole.formula != query.formula:
+            scenario = Scenario(file.scenario, file.set_name)
+            whole, own = applied(specification, scenario), own_names(specification, query.claim, scenario)
+            if whole.formula != query.formula and not own:
                 return f"scenario={file.scenario}, but its formula is another: {file.formula[:120]}"
         said = Fields(Fields(content, "it").mapping("verdict"), "its verdict", _VERDICT)
         if said.has("verdict") and said.text("verdict") != "WITNESSED":

@@ -16,6 +16,7 @@ from roadproof.errors import InputError
 from roadproof.evidence.answers import drive as kept
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.strict import Fields, JsonObject, is_rational, rational, read_json
+from roadproof.library.roles import with_vehicles
 from roadproof.library.scenarios import LANE
 from roadproof.world.drive import Course, Drive, Motion, Piece
 from roadproof.world.road import Lanelet, Road, pairs
@@ -115,7 +116,7 @@ def read_drive(content: object, where: str) -> DriveFile:
     return DriveFile(
         said.scenario,
         said.set,
-        said.formula,
+        with_vehicles(said.formula, said.vehicles),
         said.horizon,
         _lanes(said, where),
         numbers,

@@ -50,7 +50,8 @@ def judge_file(file: DriveFile, library: Library) -> Ruling:
                 raise InputError(f"lane {name}={lane}: the road has {', '.join(file.road.lanes)}")
         absent = set(query.vehicles) - set(file.drive.vehicles)
         if absent:
-            raise InputError(f"the file has no vehicle {', '.join(sorted(absent))}")
+            known = f"; it has {', '.join(file.drive.vehicles)}" if file.drive.vehicles else ""
+            raise InputError(f"the file has no vehicle {', '.join(sorted(absent))}{known}")
         formula = bind(query.formula, file.road, file.lanes, values_with(library, file.values))
         judgement = judge(formula, file.drive)
     except RoadproofError as error:

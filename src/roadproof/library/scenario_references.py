@@ -11,7 +11,15 @@ from difflib import get_close_matches
 
 from roadproof.errors import InputError, UsageError
 from roadproof.library.elaborate import apply_definition, read_claim
-from roadproof.library.scenarios import Scenario, are_numbers, name_of, number_in, numbers_of
+from roadproof.library.scenarios import (
+    LANE,
+    Scenario,
+    are_numbers,
+    name_of,
+    number_in,
+    numbers_of,
+    vehicles_of,
+)
 from roadproof.library.specification import Query, Specification
 from roadproof.library.words import called
 from roadproof.logic import syntax
@@ -143,6 +151,19 @@ def application_in(specification: Specification, said: syntax.Expression) -> App
     if number is None or len(arguments) < len(said.arguments):
         return None
     return Application(Scenario(number, set_name or specification.set_name), arguments)
+
+
+def own_names(specification: Specification, claim: syntax.Claim, scenario: Scenario) -> dict[str, str]:
+    """The vehicle of each role, where a claim is a scenario for L and for vehicles that it declares.
+
+    Empty for every other claim, and where some of the vehicles are called as roles.
+    """
+    found, known = application_in(specification, claim.body), vehicles_of(specification, scenario)
+    if found is None or found.scenario != scenario or found.arguments[len(known) :] != (LANE,):
+        return {}
+    vehicles = found.arguments[: len(known)]
+    is_own = {x.name for x in claim.given} == {*vehicles} and len({*vehicles} - {*known}) == len(known)
+    return dict(zip(known, vehicles, strict=True)) if is_own else {}
 
 
 def claimed(specification: Specification, said: int | str, where: str) -> str:

@@ -7,7 +7,7 @@ whose lane L is come from the specification.
 """
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, TypeAlias
@@ -373,11 +373,6 @@ DETECTORS: Mapping[str, Mapping[Metric, str]] = {
 """Detectors of earlier works, by what they detect and their danger metric (paper, RQ5)."""
 COMPARISON = tuple(name for detectors in DETECTORS.values() for name in detectors.values())
 """The detectors that the paper's comparison table counts, all definitions of (SV, POV, L)."""
-
-
-def vehicle_order(names: Iterable[str]) -> list[str]:
-    """Names of vehicles in the order in which every format numbers them: SV first, the others by name."""
-    return sorted(names, key=lambda name: (name != SUBJECT, name))
 
 
 def roles(vehicles: int) -> tuple[str, ...]:

@@ -11,14 +11,8 @@ import numpy as np
 from roadproof.analysis.catalogue.asked import DangerQuestion, Key, Questions
 from roadproof.analysis.catalogue.decisions import Decision, Drivers, decide_drive, decide_trace
 from roadproof.analysis.catalogue.entries import Concrete, Freedom
-from roadproof.analysis.catalogue.playing import (
-    cast_samples,
-    choices,
-    no_role,
-    play_drive,
-    roles_of,
-)
-from roadproof.analysis.catalogue.traces import digest_of, is_samples, traces_of
+from roadproof.analysis.catalogue.playing import cast_samples, choices, no_role, play_drive
+from roadproof.analysis.catalogue.traces import digest_of, is_samples, roles_in, traces_of
 from roadproof.analysis.catalogue.why import Course, signals_of, why_none
 from roadproof.drivers.restriction import restriction_of, unrestricted
 from roadproof.errors import InputError
@@ -113,7 +107,7 @@ def _of_drive(
     ruling = judge_file(_as_written(file, asked.specification), asked.specification.library)
     if not ruling.readable and drivers is not None:
         ruling = judge_file(file, drivers.specification.library)
-    roles = roles_of(entry, tuple(file.drive.vehicles), asked.role_names)
+    roles = roles_in(entry, tuple(file.drive.vehicles), asked.role_names)
     played = play_drive(file, roles)
     shown = all_shown_by(played, asked, freedom)
     chosen = tuple(choices(asked.roles, asked.all_roles, tuple(played.drive.vehicles), freedom.roles))

@@ -7,11 +7,19 @@ from fractions import Fraction
 from pathlib import Path
 
 from roadproof.analysis.catalogue.entries import Concrete
-from roadproof.analysis.catalogue.playing import checked, chosen_vehicles, play_drive, play_samples, roles_of
+from roadproof.analysis.catalogue.playing import chosen_vehicles, play_drive
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile, load_drive
-from roadproof.library.scenarios import PAIR, SUBJECT, TRIPLE
-from roadproof.recordings.evaluate.one_trace import OneTrace, cut_trace, is_pair, read_pair, read_samples
+from roadproof.library.roles import Roles, check_roles, roles_of, vehicle_order
+from roadproof.library.scenarios import PAIR, TRIPLE
+from roadproof.recordings.evaluate.one_trace import (
+    OneTrace,
+    cut_trace,
+    is_pair,
+    play_samples,
+    read_pair,
+    read_samples,
+)
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.samples import ROAD_ENDING
 from roadproof.recordings.formats.source import beside
@@ -28,6 +36,11 @@ def is_samples(entry: Concrete) -> bool:
     return not is_pair(entry.place) and Path(entry.place).suffix in (".csv", ".parquet", ".xosc")
 
 
+def roles_in(entry: Concrete, vehicles: Sequence[str], known: Collection[str]) -> Roles:
+    """The roles of the vehicles of a test. Raises ``InputError`` for unknown names and roles."""
+    return roles_of(vehicles, known, entry.roles, f"{entry.place}: roles")
+
+
 def traces_of(entry: Concrete, known: Collection[str]) -> Iterator[tuple[OneTrace, Mapping[str, str]]]:
     """The traces of a test, each with what the test calls the vehicles; ``known``: the roles of scenarios."""
     path = Path(entry.place)
@@ -41,7 +54,7 @@ def traces_of(entry: Concrete, known: Collection[str]) -> Iterator[tuple[OneTrac
         yield trace, dict(zip(trace.lanes, ids, strict=True))
     elif is_samples(entry):
         trace = read_samples(path)
-        roles = roles_of(entry, tuple(trace.lanes), known)
+        roles = roles_in(entry, tuple(trace.lanes), known)
         played = play_samples(trace, roles)
         yield replace(played, notes=(*played.notes, *((roles.note,) * bool(roles.note)))), roles.own_names
     else:
@@ -57,7 +70,8 @@ def _all_of(
     it names play their role.
     """
     ids = [str(x) for x in recording.vehicle_id]
-    given = dict(checked(entry, ids, known))
+    given = entry.roles
+    check_roles(ids, known, given, f"{entry.place}: roles")
     complete = [x for x in (PAIR, TRIPLE) if set(x) <= set(given)]
     if recording.vehicles > MOST_VEHICLES and not complete:
         raise InputError(
@@ -109,7 +123,7 @@ def courses_of(entry: Concrete) -> Courses | None:
     try:
         if entry.place.endswith(".json") and not is_pair(entry.place):
             file = load_drive(Path(entry.place))
-            return of_drive(play_drive(file, roles_of(entry, tuple(file.drive.vehicles), known)))
+            return of_drive(play_drive(file, roles_in(entry, tuple(file.drive.vehicles), known)))
         return next((_of_trace(trace) for trace, _ in traces_of(entry, known)), None)
     except InputError:
         return None
@@ -139,7 +153,7 @@ def _of_trace(trace: OneTrace) -> Courses:
 
 
 def _in_order(found: Mapping[str, Course]) -> dict[str, Course]:
-    return {name: found[name] for name in sorted(found, key=lambda name: (name != SUBJECT, name))}
+    return {name: found[name] for name in vehicle_order(found)}
 
 
 def _markings(road: Road) -> tuple[float, ...]:

@@ -1,7 +1,7 @@
 """The answer of ``roadproof monitor``: where a formula holds on one trace."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers.shared import Formula, PlainHeading, Rational, SetName
@@ -49,9 +49,15 @@ class Place:
     road: Annotated[str, Doc("Name of the road.")]
     lanes: Annotated[Mapping[str, str], Doc("The lane that each free lane of the formula stands for.")]
     overruled: Annotated[tuple[Override, ...], Doc("What was asked for otherwise than a drive file says.")]
+    roles: Annotated[
+        Mapping[str, str],
+        LEFT_OUT,
+        Doc("What the trace calls the vehicle of each role, where that is not the role."),
+    ] = field(default_factory=dict)
 
     def __str__(self) -> str:
         parts = [f"trace: {self.trace}", f"start: {self.start}"]
+        parts += [f"{role}: vehicle {name}" for role, name in self.roles.items()]
         parts += [f"set: {self.set_name}", f"road: {self.road}"]
         parts += [f"lane {name}: {lane}" for name, lane in self.lanes.items()]
         for x in self.overruled:

@@ -1,17 +1,18 @@
 """What questions are asked of: definitions, readings and values of parameters."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
 from typing import TypeAlias
 
-from roadproof.errors import InputError, UsageError
+from roadproof.errors import InputError, TextError, UsageError
 from roadproof.frontends.api.phrases import Phrase, Term, call
 from roadproof.library import diagnose as texts
 from roadproof.library.bind import Number, exact, values_with
 from roadproof.library.diagnose import Diagnostic, checked_library
 from roadproof.library.elaborate import read_claim
+from roadproof.library.roles import with_vehicles
 from roadproof.library.scenario_references import read_numbers, read_query
 from roadproof.library.scenarios import are_numbers
 from roadproof.library.specification import Library, Query, Source, Specification, unknown
@@ -83,8 +84,20 @@ class Definitions:
         """A formula as a value that can be asked about. Raises ``TextError`` with line, column and caret."""
         return self.numbered(what)[1]
 
-    def numbered(self, what: What) -> tuple[int | None, Query]:
-        """As ``read``, with the number of the scenario where one was asked for by number."""
+    def numbered(self, what: What, vehicles: Collection[str] = ()) -> tuple[int | None, Query]:
+        """As ``read``, with the number of the scenario where one was asked for by number.
+
+        ``vehicles`` need not be declared.
+        """
+        try:
+            return self._numbered(what)
+        except TextError:
+            declared = with_vehicles(str(what), vehicles)
+            if declared == str(what):
+                raise
+            return self._numbered(declared)
+
+    def _numbered(self, what: What) -> tuple[int | None, Query]:
         match what:
             case Query():
                 return None, what

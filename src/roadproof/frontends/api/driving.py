@@ -14,6 +14,8 @@ from roadproof.frontends.settings.keywords import MotionKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.value_types import RoadLike
 from roadproof.library.bind import Number, exact, values_with
+from roadproof.library.roles import cast_of
+from roadproof.library.scenarios import LANE, Scenario, name_of, vehicles_of
 from roadproof.world.drive import Drive, Motion, pieces_of
 from roadproof.world.signals import KINDS
 
@@ -84,6 +86,7 @@ def drive(
 ) -> JudgedDrive:
     """A drive out of ``vehicles`` by name (``motion``), on which ``what`` holds; the judge says so.
 
+    Vehicles of a scenario by number may have names of their own, such as Ego, as for ``monitor``.
     ``road``: that of the formula where None; ``lanes``: free lanes, each any lane of the road on which it
     holds where it is left out; ``horizon``: up to when boxes have to be apart (s), unless ``collisions``.
     Limits of vehicles are not asked for (``judge.replay.first_breach`` is). Raises ``InputError`` with the
@@ -93,7 +96,11 @@ def drive(
     from roadproof.engines.search.question import assignments, usual_road
 
     home = using or load()
-    scenario, query = home.numbered(what)
+    scenario, query = home.numbered(what, vehicles)
+    if scenario is not None and {*query.vehicles} - {*vehicles} and len(vehicles) >= len(query.vehicles):
+        roles = cast_of([*vehicles], query.vehicles, {}, "drive: vehicles")
+        known = vehicles_of(home.specification, Scenario(scenario, home.specification.set_name))
+        query = home.numbered(f"{name_of(scenario)}({', '.join((*roles.own(known), LANE))})", vehicles)[1]
     place = usual_road(query.formula) if road is None else as_road(road)
     end = positive("horizon", horizon, "s")
     told = telling_values(home.library, query.formula, values_with(home.library, home.values))

@@ -25,6 +25,7 @@ from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.recordings import Monitor
 from roadproof.frontends.settings.value_types import RoadLike
 from roadproof.library.bind import bind, values_with
+from roadproof.library.roles import cast_of, subject_in, vehicle_order
 from roadproof.library.scenarios import SUBJECT, Scenario, lane_owner
 from roadproof.library.specification import Library, Query
 from roadproof.recordings.evaluate.observed import FirstAnswer, Spans, observe_drive, observe_samples
@@ -32,8 +33,10 @@ from roadproof.recordings.evaluate.one_trace import (
     OneTrace,
     is_pair,
     of_columns,
+    play_samples,
     read_pair,
     read_samples,
+    read_vehicles,
     refuse_unmeasured,
     sample_drive,
 )
@@ -148,8 +151,10 @@ def monitor(
     columns as for ``trace`` or a CSV or Parquet file of them on ``road`` (by default that beside the file, or
     main-2), or vehicles of a recording such as "highd/01_tracks.csv:12,15" on ``frames``. What a drive file
     says of set, readings and parameters holds where ``using`` is None. ``lanes``: for each free lane its
-    name, or a vehicle, whose lane at the start it is. ``end``: what the end of a recorded trace means. Raises
-    ``InputError``, ``UsageError``, ``TextError``.
+    name, or a vehicle, whose lane at the start it is. ``roles``: a vehicle by role, such as {"SV": "Ego"}; by
+    default the vehicle of that name, for SV also the only one called ego, hero or the like, and the others in
+    the order of the file where they are as many as roles are left. ``end``: what the end of a recorded trace
+    means. Raises ``InputError``, ``UsageError``, ``TextError``.
     """
     given = Monitor.of(options)
     if isinstance(on, str | Path) and str(on).endswith(".json"):
@@ -159,28 +164,39 @@ def monitor(
     if given.view == "dense":
         raise UsageError("--view dense requires a drive file: other traces have samples only")
     home = using or load()
-    return _on_trace(what, _read(on, given.road, given.frames), home, home.all_values(), {}, given)
+    return _on_trace(what, _read(on, given), home, home.all_values(), {}, given)
 
 
-def _read(
-    on: "str | Path | OneTrace | Mapping[str, Any] | Frame",
-    road: RoadLike | None,
-    frames: tuple[int | None, int | None],
-) -> OneTrace:
+def _read(on: "str | Path | OneTrace | Mapping[str, Any] | Frame", given: Monitor) -> OneTrace:
+    road, names = given.road, dict(given.roles or {})
     if isinstance(on, OneTrace):
+        if names and on.names:
+            raise UsageError(f"roles={names}: the vehicles of this trace have roles already")
         return on
     if not isinstance(on, str | Path):
         return trace(on, road or "main-2")
-    if is_pair(str(on)):
-        if road is not None:
-            raise UsageError(f"--road: {on} has the road of its recording; omit --road")
-        return read_pair(str(on), frames)
     if Path(on).suffix in (".csv", ".parquet", ".xosc") and not TRACK_FILES.fullmatch(Path(on).name):
         return read_samples(Path(on), None if road is None else as_road(road))
+    if road is not None:
+        raise UsageError(f"--road: {on} has the road of its recording; omit --road")
+    if is_pair(str(on)):
+        if names:
+            raise UsageError(f"--roles: the order of the vehicles in {on} says their roles; omit --roles")
+        return read_pair(str(on), given.frames)
+    if names:
+        return read_vehicles(Path(on), _numbers(names), given.frames, str(on))
     raise InputError(
         f"{on}: a trace is a drive (.json), samples (.csv, .parquet or .xosc), or vehicles of a recording "
-        "such as highd/01_tracks.csv:12,15"
+        "such as highd/01_tracks.csv:12,15; --roles SV=12,POV=15 names them, too"
     )
+
+
+def _numbers(names: Mapping[str, str]) -> dict[str, int]:
+    """The numbers of vehicles of a recording. Raises ``UsageError``."""
+    for role, name in names.items():
+        if not (name.isascii() and name.isdecimal() and len(name) < 10):
+            raise UsageError(f"--roles {role}={name}: vehicles of recordings have numbers, as SV=12,POV=15")
+    return {role: int(name) for role, name in names.items()}
 
 
 def of_file(file: DriveFile) -> Definitions:
@@ -200,11 +216,14 @@ def _on_drive(
     if given.view == "recorded":
         found = _on_trace(what, samples, home, values, file.lanes, given)
         return replace(found, place=replace(found.place, overruled=overruled))
-    number, query = home.numbered(what)
-    lanes = _lanes(home, query, number, samples, file.lanes, given)
+    number, query = home.numbered(what, samples.lanes)
+    roles = cast_of([*samples.lanes], query.vehicles, given.roles or {}, f"{source}: roles")
+    played, drive = play_samples(samples, roles), file.drive
+    drive = drive.cast({roles.called(name): name for name in drive.vehicles})
+    lanes = _lanes(home, query, number, played, file.lanes, given)
     formula = bind(query.formula, file.road, lanes, values)
-    observed = observe_drive(query.text, formula, file.drive, file.horizon, step)
-    return MonitorAnswer(home.library, observed, _place(samples, home, lanes, overruled))
+    observed = observe_drive(query.text, formula, drive, file.horizon, step)
+    return MonitorAnswer(home.library, observed, _place(played, home, query, lanes, overruled))
 
 
 def _overruled(file: DriveFile, home: Definitions, values: Mapping[str, Fraction]) -> Iterator[Override]:
@@ -228,16 +247,23 @@ def _on_trace(
     known: Mapping[str, str],
     given: Monitor,
 ) -> MonitorAnswer:
-    number, query = home.numbered(what)
+    number, query = home.numbered(what, samples.lanes)
+    if not samples.names:
+        roles = cast_of([*samples.lanes], query.vehicles, given.roles or {}, f"{samples.source}: roles")
+        samples = play_samples(samples, roles)
     lanes = _lanes(home, query, number, samples, known, given)
     formula = bind(query.formula, samples.road, lanes, values)
     refuse_unmeasured(samples, formula)
     observed = observe_samples(query.text, formula, samples.batch, given.end)
-    return MonitorAnswer(home.library, observed, _place(samples, home, lanes), samples.notes)
+    return MonitorAnswer(home.library, observed, _place(samples, home, query, lanes), samples.notes)
 
 
 def _place(
-    samples: OneTrace, home: Definitions, lanes: Mapping[str, str], overruled: tuple[Override, ...] = ()
+    samples: OneTrace,
+    home: Definitions,
+    query: Query,
+    lanes: Mapping[str, str],
+    overruled: tuple[Override, ...] = (),
 ) -> Place:
     return Place(
         trace=samples.source,
@@ -246,6 +272,7 @@ def _place(
         road=samples.road.name,
         lanes=lanes,
         overruled=overruled,
+        roles={role: samples.names[role] for role in vehicle_order(query.vehicles) if role in samples.names},
     )
 
 
@@ -264,10 +291,11 @@ def _lanes(
             f"{query.text}: mentions {', '.join(missing)}, but {samples.source} has "
             f"{', '.join(samples.lanes)}; name other vehicles or another formula"
         )
-    asked = given.lanes or {}
-    lanes = {**known, **{name: samples.lanes.get(lane, lane) for name, lane in asked.items()}}
+    at_start = {own: samples.lanes[role] for role, own in samples.names.items()} | dict(samples.lanes)
+    lanes = {**known, **{name: at_start.get(lane, lane) for name, lane in (given.lanes or {}).items()}}
     scenario = None if number is None else Scenario(number, home.specification.set_name)
-    usual = SUBJECT if scenario is None else lane_owner(home.specification, scenario)
+    subject = subject_in(samples.lanes) or SUBJECT
+    usual = subject if scenario is None else lane_owner(home.specification, scenario)
     for name in query.lanes:
         if not lanes.get(name):
             lanes[name] = samples.lanes.get(usual, "")

@@ -70,7 +70,7 @@ def _read(path: Path) -> "Iterator[DriveFile]":
     from roadproof.evidence.drive_file import load_drive
     from roadproof.evidence.judged import judge_file
     from roadproof.library.loading import bundled_library
-    from roadproof.recordings.simulate.planting import plantable
+    from roadproof.recordings.simulate.planting import plantable, with_roles
 
     files = [x for x in sorted(path.glob("*.json")) if _may_be_drive(x)] if path.is_dir() else [path]
     if not files:
@@ -81,7 +81,7 @@ def _read(path: Path) -> "Iterator[DriveFile]":
         if reason:
             _warn(f"not planted: {name}: {reason}")
         else:
-            yield file
+            yield with_roles(file, bundled_library())
 
 
 def _may_be_drive(path: Path) -> bool:

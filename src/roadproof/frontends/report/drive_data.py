@@ -13,7 +13,8 @@ from roadproof.drivers.words import words_of_parts
 from roadproof.errors import RoadproofError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.library.bind import bind, values_with
-from roadproof.library.scenarios import SUBJECT, danger, too_near_ahead, too_near_left
+from roadproof.library.roles import vehicle_order
+from roadproof.library.scenarios import danger, too_near_ahead, too_near_left
 from roadproof.library.specification import Library, Query, Specification
 from roadproof.library.words import words_of
 from roadproof.logic.formula import Compare, Formula, nesting, subformulas
@@ -94,7 +95,7 @@ class ShownRoad:
 
 def vehicles_of(file: DriveFile) -> list[str]:
     """SV first, the others by name."""
-    return sorted(file.drive.vehicles, key=lambda name: (name != SUBJECT, name))
+    return vehicle_order(file.drive.vehicles)
 
 
 def heading_of(file: DriveFile, library: Library) -> list[str]:

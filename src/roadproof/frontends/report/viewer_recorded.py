@@ -17,7 +17,7 @@ from roadproof.frontends.report.viewer_document import (
     VehicleView,
 )
 from roadproof.library.bind import bind
-from roadproof.library.scenarios import SUBJECT
+from roadproof.library.roles import vehicle_order
 from roadproof.library.specification import Specification
 from roadproof.recordings.evaluate.observed import FirstAnswer, Strip, margins_of
 from roadproof.recordings.evaluate.one_trace import OneTrace
@@ -40,7 +40,7 @@ def recorded_data(
     batch = trace.batch
     count = int(batch.lengths[0])
     dt = float(batch.dt)
-    names = sorted({name for _, name in batch.signals}, key=lambda name: (name != SUBJECT, name))
+    names = vehicle_order({name for _, name in batch.signals})
     drive = DriveView(
         home.set_name,
         (count - 1) * dt,

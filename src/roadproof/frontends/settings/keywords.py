@@ -203,6 +203,7 @@ class CatalogueKeywords(ModelsKeywords, BudgetKeywords, RunKeywords, PreventionK
 
 class MonitorKeywords(TracesKeywords, total=False):
     lanes: Mapping[str, str] | None
+    roles: Mapping[str, str] | None
     road: RoadLike | None
     view: View | None
     dt: Number

@@ -71,6 +71,19 @@ def named(usual: str) -> Callable[[str], tuple[str, str]]:
     return read
 
 
+def mapping_of(example: str) -> Callable[[str], dict[str, str]]:
+    """A reader of ``NAME=VALUE`` pairs with commas between them; each name comes once."""
+
+    def read(text: str) -> dict[str, str]:
+        pairs = [[x.strip() for x in item.partition("=")[::2]] for item in text.split(",")]
+        found = {name: value for name, value in pairs if name and value}
+        if len(found) < len(pairs):
+            raise UsageError(f"{text}: write NAME=VALUE with commas, each name once, such as {example}")
+        return found
+
+    return read
+
+
 def file_name(text: str) -> str:
     """The name of a file, or - for stdout."""
     if not Path(text).name:

@@ -14,6 +14,7 @@ from roadproof.frontends.settings.readers import (
     decimal,
     frame_range,
     items_of,
+    mapping_of,
     named,
     seconds,
     seconds_or_zero,
@@ -46,6 +47,13 @@ class Monitor(groups.Definitions, groups.Traces):
         "the lane of SV; of POV for scenario 7, acceleration behind)",
         read=named("L"),
         gather=dict,
+    )
+    roles: Mapping[str, str] | None = option(
+        None,
+        "--roles SV=NAME,…",
+        "vehicle of each role, such as SV=Ego,POV=Target (default: the one called as the role; for SV also "
+        "ego, hero and the like; the others in the order of the file)",
+        read=mapping_of("SV=Ego,POV=Target"),
     )
     road: RoadLike | None = option(
         None, "--road R", "road of samples (default: NAME_road.toml beside the file, else main-2)"

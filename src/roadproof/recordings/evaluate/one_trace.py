@@ -6,7 +6,7 @@ Where a file is one trace, it has for every time one row a vehicle, in equal ste
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence, Sized
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import combinations, product
 from pathlib import Path
@@ -15,6 +15,7 @@ import numpy as np
 
 from roadproof.errors import InputError
 from roadproof.library.bind import occupies
+from roadproof.library.roles import Roles
 from roadproof.library.scenarios import roles
 from roadproof.logic.custom_names import code_of, own_of
 from roadproof.logic.formula import Formula
@@ -49,7 +50,8 @@ class OneTrace:
     """A batch of one trace, its road, and the lane of each vehicle's centre at the start ("" for none).
 
     ``first`` is the time of the first sample as the source counts it: seconds, or a frame. ``notes``: what is
-    odd in the recording that it is from.
+    odd in the recording that it is from. ``names``: what the source calls vehicles that have other names
+    here.
     """
 
     source: str
@@ -58,6 +60,7 @@ class OneTrace:
     lanes: Mapping[str, str]
     first: str
     notes: tuple[str, ...] = ()
+    names: Mapping[str, str] = field(default_factory=dict)
 
 
 def is_pair(text: str) -> bool:
@@ -76,10 +79,17 @@ def read_pair(text: str, frames: tuple[int | None, int | None] = (None, None)) -
         raise InputError(f"{text}: name a pair as highd/01_tracks.csv:12,15, or three vehicles")
     path, numbers = named.groups()
     ids = [int(x) for x in numbers.split(",")]
-    recording = find_source(Path(path)).read()
-    index = [_find(recording, number, text) for number in ids]
     if len(set(ids)) < len(ids):
         raise InputError(f"{text}: each vehicle may be named once")
+    return read_vehicles(Path(path), dict(zip(roles(len(ids)), ids, strict=True)), frames, text)
+
+
+def read_vehicles(
+    path: Path, by_role: Mapping[str, int], frames: tuple[int | None, int | None], text: str
+) -> OneTrace:
+    """As ``read_pair``, the vehicles of a recording by the role that each plays; ``text`` names the trace."""
+    recording = find_source(path).read()
+    index = [_find(recording, number, text) for number in by_role.values()]
     if len({int(recording.direction[v]) for v in index}) > 1:
         raise InputError(f"{text}: the vehicles drive in different directions; name some of one direction")
     low = max(int(recording.first_frame[v]) for v in index)
@@ -88,8 +98,21 @@ def read_pair(text: str, frames: tuple[int | None, int | None] = (None, None)) -
     if low > high or not low <= wanted[0] <= wanted[1] <= high:
         have = f"they share the frames {low} to {high}" if low <= high else "they share no frame"
         raise InputError(f"{text}, frames {wanted[0]} to {wanted[1]}: {have}")
-    made = cut_trace(recording, text, dict(zip(roles(len(ids)), index, strict=True)), wanted)
-    return replace(made, notes=(*made.notes, *_overlaps(made)))
+    made = cut_trace(recording, text, dict(zip(by_role, index, strict=True)), wanted)
+    names = {role: str(number) for role, number in by_role.items()}
+    return replace(made, notes=(*made.notes, *_overlaps(made)), names=names)
+
+
+def play_samples(trace: OneTrace, roles: Roles) -> OneTrace:
+    """Samples with their vehicles called as their roles; nothing but signals is given of them."""
+    if not roles.by_name:
+        return trace
+    called, batch = roles.called, trace.batch
+    signals = {(signal, called(name)): x for (signal, name), x in batch.signals.items()}
+    sizes = {(size, called(name)): x for (size, name), x in batch.sizes.items()}
+    lanes = {called(name): lane for name, lane in trace.lanes.items()}
+    played = replace(batch, signals=signals, sizes=sizes, given={})
+    return replace(trace, batch=played, lanes=lanes, names=roles.own_names)
 
 
 def _overlaps(trace: OneTrace) -> Iterator[str]:

@@ -9,7 +9,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from roadproof.library.scenarios import SUBJECT
 from roadproof.recordings.export.points import centre
 from roadproof.recordings.export.subject import WRITTEN, Layout, Section, Subject, kind_of, together
 from roadproof.recordings.export.xml import Element, decimal, document, element
@@ -146,8 +145,8 @@ def _exact(tag: str, value: Fraction) -> Element:
 
 
 def _problem(subject: Subject) -> Element:
-    """That of SV: from where it starts to the place and time where it ends (2020a has none without one)."""
-    name = SUBJECT if SUBJECT in subject.vehicles else next(iter(subject.vehicles))
+    """That of the first vehicle, SV: from where it starts to where and when it ends (2020a requires one)."""
+    name = next(iter(subject.vehicles))
     motion = subject.vehicles[name]
     states = subject.samples[name]
     start, end = states[0], states[-1]

@@ -15,7 +15,7 @@ from math import ceil, floor
 
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.library.scenarios import vehicle_order
+from roadproof.library.roles import vehicle_order
 from roadproof.world.drive import Motion
 from roadproof.world.motion import State, advance, monotone_starts, starts_of, states_at
 from roadproof.world.road import Lanelet, Road

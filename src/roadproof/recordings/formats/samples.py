@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from roadproof.errors import InputError
-from roadproof.library.scenarios import vehicle_order
+from roadproof.library.roles import vehicle_order
 from roadproof.recordings.formats.contradictions import contradictions
 from roadproof.recordings.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED, check
 from roadproof.recordings.formats.recording import Floats, Integers, Recording, own_numbers, with_notes

@@ -6,7 +6,7 @@ written down as planted is a ground truth for recall.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import cycle
 
@@ -16,7 +16,18 @@ from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.library.bind import bind, default_values
 from roadproof.library.elaborate import read_claim
-from roadproof.library.scenarios import LANE, MIN_DANGER, SUBJECT, Scenario, danger, endangered, lane_owner
+from roadproof.library.roles import vehicle_order
+from roadproof.library.scenario_references import own_names
+from roadproof.library.scenarios import (
+    LANE,
+    MIN_DANGER,
+    SUBJECT,
+    Scenario,
+    applied,
+    danger,
+    endangered,
+    lane_owner,
+)
 from roadproof.library.specification import Library
 from roadproof.library.words import words_of
 from roadproof.recordings.evaluate.one_trace import OneTrace, cut_trace
@@ -214,6 +225,20 @@ def plantable(file: DriveFile) -> str:
     return ""
 
 
+def with_roles(file: DriveFile, library: Library) -> DriveFile:
+    """A drive of a scenario whose vehicles, where the formula gives them other names, are called as roles."""
+    if file.scenario is None:
+        return file
+    specification = library.select(file.set_name, file.options)
+    scenario = Scenario(file.scenario, file.set_name)
+    own = own_names(specification, read_claim(specification, file.formula).claim, scenario)
+    if not own:
+        return file
+    roles = {name: role for role, name in own.items()}
+    drive = file.drive.cast({roles.get(name, name): name for name in file.drive.vehicles})
+    return replace(file, drive=drive, formula=applied(specification, scenario).text)
+
+
 def plant_drives(
     recording: Recording, files: Sequence[DriveFile], library: Library
 ) -> tuple[Recording, list[Truth], list[str]]:
@@ -269,7 +294,7 @@ def _confirm(recording: Recording, planted: PlantedDrive, file: DriveFile, libra
     """The truth of a planted drive, or why its scenario cannot be told from the samples."""
     number = file.scenario
     assert number is not None
-    names = sorted(file.drive.vehicles, key=lambda name: (name != SUBJECT, name))
+    names = vehicle_order(file.drive.vehicles)
     index = {n: int(np.flatnonzero(recording.vehicle_id == planted.vehicles[n])[0]) for n in names}
     spec = library.select(file.set_name, file.options)
     values = {**default_values(library), **file.values}
