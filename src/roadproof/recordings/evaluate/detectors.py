@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from roadproof.library.scenarios import LANE, PAIR
+from roadproof.library.scenarios import LANE
 from roadproof.recordings.evaluate.questions import Questions
 from roadproof.recordings.evaluate.traces import blocks, gather
 from roadproof.recordings.formats.pairs import Pairs, pairs_in_sight
@@ -53,9 +53,8 @@ def _detect(recording: Recording, questions: Questions, pairs: Pairs, lanes: Mas
     asked, ids = pairs.choose(pair), recording.vehicle_id
     for index in blocks(asked.low, asked.high, 400_000):
         block = asked.choose(index)
-        vehicles = dict(zip(PAIR, (block.first, block.second), strict=True))
         at = {LANE: lane[index]}
-        batch = gather(recording, vehicles, block.low, block.high, signals, at, questions.lane_atoms)
+        batch = gather(recording, block.vehicles, block.low, block.high, signals, at, questions.lane_atoms)
         answers = questions.detectors.evaluate(batch, questions.settings.convention).answers
         for sought, answer in answers.items():
             for p in np.flatnonzero(answer.true):

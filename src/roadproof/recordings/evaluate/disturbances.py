@@ -111,8 +111,7 @@ def _violations_in_time(
     pairs, frames = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
     for index in blocks(meeting.low, meeting.high, 400_000):
         block = meeting.choose(index)
-        vehicles = dict(zip(PAIR, (block.first, block.second), strict=True))
-        batch = gather(recording, vehicles, block.low, block.high, questions.violation.signals)
+        batch = gather(recording, block.vehicles, block.low, block.high, questions.violation.signals)
         sample, trace = np.nonzero(questions.violation.evaluate(batch, at="all").answers[VIOLATION].true)
         pairs.append(index[trace])
         frames.append(sample + block.low[trace])
@@ -133,8 +132,7 @@ def _batch(recording: Recording, questions: Questions, block: Pairs, truth: Bool
     given = {questions.violation.formulas[VIOLATION]: truth} if questions.violation_is_state else {}
     if questions.danger.rests_on(given):
         return Batch(Fraction(1, recording.rate), block.samples, given=given)
-    vehicles = dict(zip(PAIR, (block.first, block.second), strict=True))
-    batch = gather(recording, vehicles, block.low, block.high, questions.danger.signals)
+    batch = gather(recording, block.vehicles, block.low, block.high, questions.danger.signals)
     return replace(batch, given={**batch.given, **given})
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from roadproof.library.scenarios import LANE, PAIR, TRIPLE
+from roadproof.library.scenarios import LANE
 from roadproof.recordings.evaluate.boundary import TraceQuestion, uncertain
 from roadproof.recordings.evaluate.detectors import Detection, find_detections, order_of_detections
 from roadproof.recordings.evaluate.disturbances import (
@@ -22,7 +22,7 @@ from roadproof.recordings.evaluate.matching import Match
 from roadproof.recordings.evaluate.questions import START, MonitorKey, Questions
 from roadproof.recordings.evaluate.traces import OTHER_LANE, gather
 from roadproof.recordings.formats.neighbours import Overlap, find_overlaps, told_overlap
-from roadproof.recordings.formats.pairs import Pairs, Triples, row_of, triples_of
+from roadproof.recordings.formats.pairs import Pairs, row_of, triples_of
 from roadproof.recordings.formats.recording import Bools, Integers, Recording
 from roadproof.recordings.formats.repeats import FramePair, see_pair
 from roadproof.recordings.formats.windows import Window
@@ -197,7 +197,7 @@ def _match_pairs(
     if not len(chosen) or not questions.pairs:
         return
     pairs, start = found.pairs.choose(chosen), found.start[chosen]
-    vehicles = dict(zip(PAIR, (pairs.first, pairs.second), strict=True))
+    vehicles = pairs.vehicles
     at = zip((LANE, OTHER_LANE), vehicles.values(), strict=True)
     lanes = {lane: _lane_at(recording, vehicle, start) for lane, vehicle in at}
     ends = tuple(x[chosen] for x in found.end)
@@ -214,7 +214,7 @@ def _candidates(window: Window, questions: Questions, found: Disturbances) -> Cu
     if not len(cut.triples):
         return cut
     lanes = {LANE: _lane_at(recording, cut.triples.sv, cut.start)}
-    vehicles, signals = _of_three(cut.triples), questions.triple_start.signals
+    vehicles, signals = cut.triples.vehicles, questions.triple_start.signals
     batch = gather(recording, vehicles, cut.start, cut.start, signals, lanes, questions.lane_atoms)
     return cut.choose(questions.triple_start.evaluate(batch).answers[START].true)
 
@@ -226,12 +226,8 @@ def _match_triples(
     if not len(triples):
         return iter(())
     lanes = {LANE: _lane_at(recording, triples.sv, cut.start)}
-    vehicles = _of_three(triples)
+    vehicles = triples.vehicles
     return _ask_all(recording, questions, questions.triples, vehicles, cut.start, cut.end, lanes, tally)
-
-
-def _of_three(triples: Triples) -> dict[str, Integers]:
-    return dict(zip(TRIPLE, (triples.sv, triples.pov1, triples.pov2), strict=True))
 
 
 def _ask_all(
@@ -305,8 +301,7 @@ def _sectors_at(
     everywhere = np.ones(len(pairs), bool)
     if not len(pairs):
         return {x.name: everywhere for x in questions.sectors}
-    vehicles = dict(zip(PAIR, (pairs.first, pairs.second), strict=True))
     asked = questions.where
-    batch = gather(recording, vehicles, frame, frame, asked.signals, None, questions.lane_atoms)
+    batch = gather(recording, pairs.vehicles, frame, frame, asked.signals, None, questions.lane_atoms)
     answers = asked.evaluate(batch).answers
     return {x.name: answers[x].true if x in answers else everywhere for x in questions.sectors}

@@ -4,6 +4,7 @@ The upper carriageway is one lane that nobody drives on, since a recording has t
 metres so that x and y are positive, as they are in highD; frames count from 1.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
@@ -15,11 +16,12 @@ from roadproof.recordings.export.csv_table import road_toml
 from roadproof.recordings.export.points import upper_left
 from roadproof.recordings.export.subject import Subject, class_of
 from roadproof.recordings.formats.highd import LOWER, lanes_of_markings
-from roadproof.recordings.formats.recording import Floats, Recording, offsets
-from roadproof.recordings.formats.straight import of_bands, place
+from roadproof.recordings.formats.recording import Floats, Recording
+from roadproof.recordings.formats.straight import of_bands, record
 from roadproof.recordings.formats.table import table_bytes
 from roadproof.recordings.formats.write_highd import highd_tables
 from roadproof.world.road import Road
+from roadproof.world.signals import RECORDED
 
 DECIMALS = 9
 _UPPER = (0.0, 4.0)
@@ -66,32 +68,21 @@ def recording_of(subject: Subject, name: str, shift: Shift) -> Recording:
         (state, motion) for motion, x in zip(motions, subject.samples.values(), strict=True) for state in x
     ]
     corners = [upper_left(state, motion.length) for state, motion in rows]
-    d = _floats([-y + shift.d for _, y in corners])
-    direction = np.full(len(motions), LOWER)
-    s = _floats([x + shift.s for x, _ in corners]) + np.repeat(length, counts)
-    sizes = (np.repeat(x, counts) for x in (length, width))
-    return Recording(
-        name=name,
-        rate=subject.rate,
-        **vars(road),
-        vehicle_id=np.array([*subject.ids.values()]),
-        direction=direction,
-        kind=np.array([class_of(m) for m in motions]),
-        length=length,
-        width=width,
-        first_frame=np.ones(len(motions), np.int64),
-        start=offsets(counts),
-        s=s,
-        d=d,
-        v_lon=_floats([x.v_lon for x, _ in rows]),
-        v_lat=_floats([x.v_lat for x, _ in rows]),
-        a_lon=_floats([x.a_lon for x, _ in rows]),
-        a_lat=_floats([x.a_lat for x, _ in rows]),
-        **vars(place(road, np.repeat(direction, counts), s, d, *sizes)),
-    )
+    s = _floats(x + shift.s for x, _ in corners) + np.repeat(length, counts)
+    d = _floats(-y + shift.d for _, y in corners)
+    others = (_floats(getattr(state, x) for state, _ in rows) for x in RECORDED[2:])
+    vehicles = {
+        "vehicle_id": np.array([*subject.ids.values()]),
+        "direction": np.full(len(motions), LOWER),
+        "kind": np.array([class_of(m) for m in motions]),
+        "length": length,
+        "width": width,
+        "first_frame": np.ones(len(motions), np.int64),
+    }
+    return record(road, name, subject.rate, vehicles, counts, (s, d, *others))
 
 
-def _floats(values: list[Fraction]) -> Floats:
+def _floats(values: Iterable[Fraction]) -> Floats:
     return np.array([float(x) for x in values])
 
 

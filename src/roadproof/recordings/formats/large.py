@@ -168,7 +168,11 @@ def _named(table: Table) -> tuple[list[str], Integers]:
 
 
 def _divide_rows(path: Path, survey: _Survey, folder: Path) -> list[Path]:
-    """Folders with the rows of some vehicles each, in order of vehicles, in files in order of the rows."""
+    """Folders with the rows of some vehicles each, in order of vehicles, in files in order of the rows.
+
+    A partitioned sink of polars 2.1 is three times as fast, but keeps all rows in memory: 2.3 GB for a file
+    of 0.9 GB, where this needs 0.6 GB for any.
+    """
     pl = polars_module()
     group = (offsets(survey.counts)[:-1] // windows.MOST_SAMPLES).astype(np.int64)
     group = np.unique(group, return_inverse=True)[1]

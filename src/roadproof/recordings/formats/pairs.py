@@ -9,6 +9,7 @@ from typing import Self
 
 import numpy as np
 
+from roadproof.library.scenarios import PAIR, TRIPLE
 from roadproof.recordings.formats.recording import Bools, Floats, Integers, Masks, Recording, offsets
 
 
@@ -36,6 +37,11 @@ class Pairs(_Columns):
     def samples(self) -> Integers:
         """How many common frames each pair has."""
         return self.high - self.low + 1
+
+    @property
+    def vehicles(self) -> dict[str, Integers]:
+        """The vehicles of each pair by the names that they have in formulas."""
+        return dict(zip(PAIR, (self.first, self.second), strict=True))
 
 
 @dataclass(frozen=True)
@@ -329,6 +335,11 @@ class Triples(_Columns):
     pov2: Integers
     low: Integers
     high: Integers
+
+    @property
+    def vehicles(self) -> dict[str, Integers]:
+        """The vehicles of each triple by the names that they have in formulas."""
+        return dict(zip(TRIPLE, (self.sv, self.pov1, self.pov2), strict=True))
 
 
 def triples_of(recording: Recording, endangered: Pairs, meeting: Pairs) -> Triples:

@@ -8,7 +8,7 @@ NAME_road.toml beside NAME.csv or NAME.parquet, in the form of models/roads, say
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ from roadproof.recordings.formats.contradictions import contradictions
 from roadproof.recordings.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED, check
 from roadproof.recordings.formats.recording import Floats, Integers, Recording, own_numbers, with_notes
 from roadproof.recordings.formats.source import first_line
-from roadproof.recordings.formats.straight import StraightRoad, of_road, place
+from roadproof.recordings.formats.straight import StraightRoad, of_road, record
 from roadproof.recordings.formats.table import (
     RULES,
     Column,
@@ -220,27 +220,15 @@ def vehicles_of(table: Table, ids: Integers, clock: "Clock", road: StraightRoad,
     counts = np.diff(start)
     kind = table["kind"].astype(np.str_) if "kind" in table.columns else np.full(table.rows, "Car")
     table.require(kind == np.repeat(kind[first], counts), "kind", "the class of a vehicle stays the same")
-    placed = place(
-        road, np.full(table.rows, DIRECTION), *(table[x] for x in ("s", "d")), *(table[x] for x in SIZES)
-    )
-    return Recording(
-        name=name,
-        rate=clock.rate,
-        **vars(road),
-        vehicle_id=ids[first],
-        direction=np.full(len(first), DIRECTION),
-        kind=kind[first],
-        length=table["length"][first],
-        width=table["width"][first],
-        first_frame=frames[first],
-        start=start,
-        s=table["s"],
-        d=table["d"],
-        v_lon=table["v_lon"],
-        v_lat=table["v_lat"],
-        a_lon=table["a_lon"],
-        a_lat=table["a_lat"],
-        **vars(placed),
+    vehicles: dict[str, Column] = {
+        "vehicle_id": ids[first],
+        "direction": np.full(len(first), DIRECTION),
+        "kind": kind[first],
+        **{name: table[name][first] for name in SIZES},
+        "first_frame": frames[first],
+    }
+    return replace(
+        record(road, name, clock.rate, vehicles, counts, (table[x] for x in RECORDED)),
         label=table[LABEL].astype(np.str_)[first] if LABEL in table.columns else np.zeros(0, np.str_),
         own={name: own_numbers(table[name].tolist()) for name in own_columns(table.columns)},
     )

@@ -3,10 +3,11 @@
 The road of a recording is a file in the form of models/roads, in the recording's own s and d.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -14,14 +15,18 @@ from roadproof.errors import InputError
 from roadproof.recordings.formats.recording import (
     ZONES,
     Bools,
+    Column,
     Floats,
     Integers,
     Lane,
     Masks,
+    Recording,
     beside_by_order,
     occupy_bands,
+    offsets,
 )
 from roadproof.world.road import Lanelet, Road
+from roadproof.world.signals import RECORDED
 
 MOST_LANES = 32
 """As many as a mask has bits."""
@@ -105,6 +110,25 @@ def place(
         held = (begin <= along) & (along < end) & (low <= across) & (across < high)
         lane[ours & held] = k
     return Placement(occupancy, lane, zones, inside)
+
+
+def record(
+    road: StraightRoad,
+    name: str,
+    rate: int,
+    vehicles: Mapping[str, Column],
+    counts: Integers,
+    signals: Iterable[Floats],
+) -> Recording:
+    """A recording on ``road``, whose samples are placed here.
+
+    ``vehicles``: the fields ``OF_VEHICLES`` of each, ``counts``: of how many samples; ``signals``: an entry
+    a sample, in the order of RECORDED.
+    """
+    columns: dict[str, Any] = {**vehicles, **dict(zip(RECORDED, signals, strict=True))}
+    ways, length, width = (np.repeat(columns[x], counts) for x in ("direction", "length", "width"))
+    placed = place(road, ways, columns["s"], columns["d"], length, width)
+    return Recording(name=name, rate=rate, start=offsets(counts), **columns, **vars(road), **vars(placed))
 
 
 def _band(road: Road, lane: str) -> tuple[float, float] | None:

@@ -34,14 +34,20 @@ from roadproof.recordings.evaluate.one_trace import OneTrace, cut_trace
 from roadproof.recordings.evaluate.recheck import trace_of
 from roadproof.recordings.evaluate.results import MATCH_COLUMNS
 from roadproof.recordings.formats.highd import LOWER, UPPER
-from roadproof.recordings.formats.recording import Bools, Floats, Recording, join_vehicles, keep_vehicles
-from roadproof.recordings.formats.straight import StraightRoad
-from roadproof.recordings.formats.straight import place as place_boxes
+from roadproof.recordings.formats.recording import (
+    Bools,
+    Column,
+    Floats,
+    Recording,
+    join_vehicles,
+    keep_vehicles,
+)
+from roadproof.recordings.formats.straight import StraightRoad, record
 from roadproof.semantics.sampled.batch import steps_of
 from roadproof.semantics.sampled.recursive import TraceReader
 from roadproof.world.drive import Drive
 from roadproof.world.motion import state_at
-from roadproof.world.signals import RECORDED
+from roadproof.world.signals import RECORDED, SIZES
 
 
 @dataclass(frozen=True)
@@ -84,33 +90,21 @@ def plant(recording: Recording, drive: Drive, place: Place) -> tuple[Recording, 
     _check_time(recording, place, last)
     names = sorted(drive.vehicles)
     samples = [_sample(drive, name, frames, place, recording.rate) for name in names]
-    s, d, v_lon, v_lat, a_lon, a_lat = (np.concatenate(values) for values in zip(*samples, strict=True))
-    length, width = (
-        np.array([round(float(getattr(drive.vehicles[n], x)), 2) for n in names]) for x in ("length", "width")
-    )
-    direction = np.full(len(names), place.direction)
-    road = StraightRoad(recording.lanes, recording.beside, ())
-    boxes = (np.repeat(x, frames) for x in (length, width))
-    placed = place_boxes(road, np.repeat(direction, frames), s, d, *boxes)
     ids = int(recording.vehicle_id.max(initial=0)) + 1 + np.arange(len(names))
-    guests = Recording(
-        name=recording.name,
-        rate=recording.rate,
-        **vars(road),
-        vehicle_id=ids,
-        direction=direction,
-        kind=np.full(len(names), "Car"),
-        length=length,
-        width=width,
-        first_frame=np.full(len(names), place.start_frame),
-        start=np.arange(len(names) + 1) * frames,
-        s=s,
-        d=d,
-        v_lon=v_lon,
-        v_lat=v_lat,
-        a_lon=a_lon,
-        a_lat=a_lat,
-        **vars(placed),
+    vehicles: dict[str, Column] = {
+        "vehicle_id": ids,
+        "direction": np.full(len(names), place.direction),
+        "kind": np.full(len(names), "Car"),
+        **{x: np.array([round(float(getattr(drive.vehicles[n], x)), 2) for n in names]) for x in SIZES},
+        "first_frame": np.full(len(names), place.start_frame),
+    }
+    guests = record(
+        StraightRoad(recording.lanes, recording.beside, ()),
+        recording.name,
+        recording.rate,
+        vehicles,
+        np.full(len(names), frames),
+        map(np.concatenate, zip(*samples, strict=True)),
     )
     _check_section(recording, guests, names)
     in_the_way = _in_the_way(recording, guests, place)

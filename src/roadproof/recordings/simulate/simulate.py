@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from roadproof.recordings.formats.highd import LOWER, UPPER, lanes_of_markings
 from roadproof.recordings.formats.recording import Bools, Floats, Integers, Recording, offsets
-from roadproof.recordings.formats.straight import of_bands, place
+from roadproof.recordings.formats.straight import of_bands, record
 from roadproof.recordings.simulate.traffic import (
     Drivers,
     Random,
@@ -285,28 +285,16 @@ def simulate(traffic: Traffic, seed: int, number: int = 1) -> Recording:
     right_edge = np.where(up, upper[0] - ramp, -lower[-1])
     s: Floats = np.round(along[rows] - np.where(up, traffic.section, 0.0), 2)
     d = np.round(d[rows] + right_edge, 2)
-    direction = np.where(way == 0, UPPER, LOWER)
-    length, width = movement.length[seen], movement.width[seen]
-    sizes = (np.repeat(x, counts) for x in (length, width))
-    return Recording(
-        name=f"{number:02d}",
-        rate=traffic.rate,
-        **vars(road),
-        vehicle_id=np.arange(1, len(seen) + 1),
-        direction=direction,
-        kind=np.where(movement.truck[seen], "Truck", "Car"),
-        length=length,
-        width=width,
-        first_frame=frame[first][by_entry],
-        start=offsets(counts),
-        s=s,
-        d=d,
-        v_lon=_two_decimals((v + a * after)[rows]),
-        v_lat=_two_decimals(v_lat[rows]),
-        a_lon=_two_decimals(a[rows]),
-        a_lat=_two_decimals(a_lat[rows]),
-        **vars(place(road, np.repeat(direction, counts), s, d, *sizes)),
-    )
+    vehicles = {
+        "vehicle_id": np.arange(1, len(seen) + 1),
+        "direction": np.where(way == 0, UPPER, LOWER),
+        "kind": np.where(movement.truck[seen], "Truck", "Car"),
+        "length": movement.length[seen],
+        "width": movement.width[seen],
+        "first_frame": frame[first][by_entry],
+    }
+    moving = (_two_decimals(x[rows]) for x in (v + a * after, v_lat, a, a_lat))
+    return record(road, f"{number:02d}", traffic.rate, vehicles, counts, (s, d, *moving))
 
 
 def _two_decimals(values: Floats) -> Floats:
