@@ -1,7 +1,6 @@
 """The values of the front page and of the overview pages: pairs, implications, classes and gaps."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from roadproof.frontends.atlas.answers import Answers, Source
 from roadproof.frontends.atlas.notation import shown
@@ -9,37 +8,6 @@ from roadproof.frontends.atlas.pictures import DrivePicture
 from roadproof.frontends.atlas.scenario_page import Gap, Statement, all_gaps, claims
 from roadproof.frontends.report.page.templates import counted
 from roadproof.library.words import Words
-
-
-@dataclass(frozen=True)
-class Card:
-    """A scenario on the front page."""
-
-    words: Words
-    drawn: DrivePicture | None
-
-
-@dataclass(frozen=True)
-class PairCell:
-    """A pair of scenarios, with the page and the part of it that tells of the pair."""
-
-    verdict: str
-    told: str
-    target: str
-    source: Source
-
-
-@dataclass(frozen=True)
-class ClassCard:
-    """A class: the scenarios in it, what happens where, and a drive."""
-
-    name: str
-    scenarios: str
-    description: str
-    verdict: str
-    html: str
-    source: Source
-    drawn: DrivePicture | None
 
 
 def page_of(number: int) -> str:
@@ -51,12 +19,11 @@ def front_values(answers: Answers, drawn: Mapping[str, DrivePicture]) -> dict[st
     """The grid of scenarios, and how often each verdict occurs on each overview."""
     every = [answers.home.words(n) for n in answers.numbers]
     sectors = [*dict.fromkeys(x.sector for x in every)]
-    rows: dict[str, dict[str, Card]] = {}
+    rows: dict[str, dict[str, tuple[Words, DrivePicture | None]]] = {}
     smooth = answers.drives.get("smooth", {})
     for x in every:
         found = smooth.get(x.number)
-        card = Card(x, None if found is None else drawn[found.source.file])
-        rows.setdefault(x.title, {})[x.sector] = card
+        rows.setdefault(x.title, {})[x.sector] = x, None if found is None else drawn[found.source.file]
     return {"sectors": sectors, "rows": rows, "general": claims(answers, None), "counts": _counts(answers)}
 
 
@@ -80,17 +47,15 @@ def _counts(answers: Answers) -> dict[str, list[tuple[str, int]]]:
 
 def overlap_values(answers: Answers) -> dict[str, object]:
     """The matrix of pairs: cells by both numbers."""
-    cells: dict[tuple[int, int], PairCell] = {}
+    cells: dict[tuple[int, int], tuple[str, Source]] = {}
     for x in () if answers.overlap is None else answers.overlap.verdicts:
         source = answers.source("overlap", f"--among {x.a},{x.b}", "overlap", x.drive or x.certificate)
-        for one, other in ((x.a, x.b), (x.b, x.a)):
-            target = f"{page_of(one)}#with-{other}"
-            cells[one, other] = PairCell(x.verdict, f"{one} and {other}: {x.verdict}", target, source)
+        cells[x.a, x.b] = cells[x.b, x.a] = x.verdict, source
     return {"names": [answers.home.words(n) for n in answers.numbers], "cells": cells}
 
 
 def implication_values(answers: Answers) -> dict[str, object]:
-    """The implications that follow from no others, the pairs that are refuted, and those in doubt."""
+    """The implications that follow from no others, and the pairs that are refuted."""
     index = answers.order
     assert index is not None, "it is asked only where there are implications"
     proved = [
@@ -98,7 +63,7 @@ def implication_values(answers: Answers) -> dict[str, object]:
             "PROVED",
             shown(x.claim),
             answers.source("order", "", "order", x.certificate),
-            _implies(x.above, x.below),
+            f"{x.above} implies {x.below}",
         )
         for x in sorted(index.edges, key=lambda x: (int(x.above.partition("@")[0]), x.pair))
     ]
@@ -111,27 +76,15 @@ def implication_values(answers: Answers) -> dict[str, object]:
         for x in index.drives
     ]
     same = [kind for kind in index.kinds if len(kind) > 1]
-    doubts = [(_implies(x.above, x.below), x.reason) for x in index.doubts]
-    return {"proved": proved, "refuted": refuted, "same": same, "doubts": doubts}
-
-
-def _implies(above: str, below: str) -> str:
-    return f"{above} implies {below}"
+    return {"proved": proved, "refuted": refuted, "same": same}
 
 
 def class_values(answers: Answers, drawn: Mapping[str, DrivePicture]) -> dict[str, object]:
     """The classes, and the claims that they exclude each other and make up the scenarios."""
     index = answers.classes
     assert index is not None, "it is asked only where there are classes"
-    cards = []
-    for x in index.classes:
-        source = answers.source("classify", "--no-shares", "classes", x.drive)
-        numbers = ", ".join(map(str, x.scenarios))
-        cards.append(
-            ClassCard(
-                x.name, numbers, x.description, x.verdict, shown(x.formula), source, drawn.get(source.file)
-            )
-        )
+    sources = [answers.source("classify", "--no-shares", "classes", x.drive) for x in index.classes]
+    cards = [(x, source, drawn.get(source.file)) for x, source in zip(index.classes, sources, strict=True)]
     proofs = [
         Statement(
             x.verdict,
@@ -149,7 +102,7 @@ def gap_values(answers: Answers, drawn: Mapping[str, DrivePicture]) -> dict[str,
     """The classes of gaps by scenario; None stands for those of no single scenario."""
     groups: dict[Words | None, list[Gap]] = {}
     for x in all_gaps(answers, drawn):
-        words = None if x.scenario is None else answers.home.words(x.scenario)
+        words = None if x.found.scenario is None else answers.home.words(x.found.scenario)
         groups.setdefault(words, []).append(x)
     index = answers.coverage
     assert index is not None, "it is asked only where there are gaps"

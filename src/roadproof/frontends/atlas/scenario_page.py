@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from roadproof.drivers.models import course_in
-from roadproof.evidence.answers import overlap, plates
+from roadproof.evidence.answers import coverage, overlap, plates
 from roadproof.frontends.atlas.answers import OBJECTIVES, Answers, Source
 from roadproof.frontends.atlas.notation import as_html, head_as_html, shown
 from roadproof.frontends.atlas.pictures import DrivePicture
@@ -36,23 +36,6 @@ class Statement:
 
 
 @dataclass(frozen=True)
-class Partner:
-    """Another scenario that holds on one drive with this one."""
-
-    words: Words
-    drawn: DrivePicture
-    source: Source
-
-
-@dataclass(frozen=True)
-class Excluded:
-    """Scenarios that exclude this one because the same ``parts`` conflict, as HTML."""
-
-    parts: Sequence[str]
-    others: Sequence[tuple[Words, Source]]
-
-
-@dataclass(frozen=True)
 class Unfolded:
     """A definition: its head and body as HTML, and what it says in words."""
 
@@ -79,7 +62,7 @@ def scenario_values(answers: Answers, drawn: Mapping[str, DrivePicture], number:
         "parameters": _parameters(home, number),
         "claims": claims(answers, number),
         "partners": [
-            Partner(with_, drawn[source.file], source)
+            (with_, drawn[source.file], source)
             for with_, source, x in pairs
             if x.verdict is Verdict.WITNESSED
         ],
@@ -88,7 +71,7 @@ def scenario_values(answers: Answers, drawn: Mapping[str, DrivePicture], number:
         "implications": _implications(answers, number),
         "parts": _parts(answers, number),
         "plates": _plates(answers, number),
-        "gaps": [x for x in all_gaps(answers, drawn) if x.scenario == number],
+        "gaps": [x for x in all_gaps(answers, drawn) if x.found.scenario == number],
         "frequencies": frequencies(number, words.sector),
         "traffic_source": SOURCE,
     }
@@ -151,13 +134,13 @@ def _pairs(answers: Answers, number: int) -> Iterator[_Pair]:
             yield answers.home.words(x.b if x.a == number else x.a), source, x
 
 
-def _excluded(pairs: Sequence[_Pair]) -> list[Excluded]:
-    """The scenarios that exclude this one, those with the same conflicting parts together."""
+def _excluded(pairs: Sequence[_Pair]) -> dict[tuple[str, ...], list[tuple[Words, Source]]]:
+    """The scenarios that exclude this one, by the parts that conflict, as HTML."""
     groups: dict[tuple[str, ...], list[tuple[Words, Source]]] = {}
     for words, source, pair in pairs:
         if pair.verdict is Verdict.IMPOSSIBLE:
-            groups.setdefault(pair.core, []).append((words, source))
-    return [Excluded([*map(shown, parts)], others) for parts, others in groups.items()]
+            groups.setdefault(tuple(map(shown, pair.core)), []).append((words, source))
+    return groups
 
 
 def _implications(answers: Answers, number: int) -> list[Statement]:
@@ -170,14 +153,14 @@ def _implications(answers: Answers, number: int) -> list[Statement]:
                 "order", f"--among {','.join({y[0]: 0 for y in ends})}", "order", x.certificate
             )
             made.append(
-                Statement("PROVED", f"{shown(x.claim)}", source, " implies ".join(map(_named, x.pair)))
+                Statement(
+                    "PROVED",
+                    f"{shown(x.claim)}",
+                    source,
+                    " implies ".join(end.replace("@", " in ") for end in x.pair),
+                )
             )
     return made
-
-
-def _named(name: str) -> str:
-    number, _, set_name = name.partition("@")
-    return f"{number} in {set_name}"
 
 
 def _parts(answers: Answers, number: int) -> list[Statement]:
@@ -228,16 +211,15 @@ def _sides(answers: Answers, manoeuvre: str, plate: plates.Plate) -> list[tuple[
 
 @dataclass(frozen=True)
 class Gap:
-    """A class of disturbances that no scenario describes, with a drive if there is one."""
+    """A class of disturbances that no scenario describes, with a drive if there is one.
 
-    component: str
+    ``condition``: the part that fails, as HTML.
+    """
+
+    found: coverage.CountedClass
     condition: str
-    description: str
-    verdict: str
-    scenario: int | None
     source: Source
     drawn: DrivePicture | None
-    reason: str
 
 
 def all_gaps(answers: Answers, drawn: Mapping[str, DrivePicture]) -> list[Gap]:
@@ -249,11 +231,8 @@ def all_gaps(answers: Answers, drawn: Mapping[str, DrivePicture]) -> list[Gap]:
     for x in answers.coverage.classes:
         file = files[x.gaps[0]] if x.gaps else x.certificate
         source = answers.source("coverage", "", "coverage", file)
-        picture = drawn.get(source.file)
         formula, _, home = x.condition.rpartition(" in ")  # such as "aheadOf(SV, POV) in cutIn"
         is_inside = bool(formula) and home.isidentifier()
         condition = f"{shown(formula)} in {shown(home)}" if is_inside else shown(x.condition)
-        made.append(
-            Gap(x.component, condition, x.description, x.verdict, x.scenario, source, picture, x.reason)
-        )
+        made.append(Gap(x, condition, source, drawn.get(source.file)))
     return made
