@@ -338,7 +338,7 @@ def test_a_drive_of_one_vehicle_speaks_of_no_distances() -> None:
 
 
 def test_danger_that_no_definition_speaks_of_has_no_row(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("roadproof.frontends.report.scene.danger_spans", lambda *_: None)
+    monkeypatch.setattr("roadproof.frontends.report.drive_data.danger_spans", lambda *_: None)
     shown = draw_moving(file_of(), LIBRARY).decode()
     assert "danger between" not in shown
     assert "danger begins" not in shown

@@ -10,16 +10,8 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
+from roadproof.drivers import margins
 from roadproof.drivers.manoeuvres import ManoeuvreName
-from roadproof.drivers.margins import (
-    Boundary,
-    State,
-    boundary_of,
-    controller_hits,
-    controller_margin,
-    holds_in,
-    margin,
-)
 from roadproof.drivers.models import MODELS, course_in, foreseen, unpreventable
 from roadproof.errors import InputError
 from roadproof.evidence.answers.catalogue_index import TestedSide
@@ -76,7 +68,7 @@ class Drivers:
     models: tuple[str, ...]
     _read: dict[str, Formula] = field(default_factory=dict, repr=False, compare=False)
     _bound: dict[str, Formula] = field(default_factory=dict, repr=False, compare=False)
-    _boundaries: dict[str, Boundary] = field(default_factory=dict, repr=False, compare=False)
+    _boundaries: dict[str, margins.Boundary] = field(default_factory=dict, repr=False, compare=False)
 
     def of(self, manoeuvre: ManoeuvreName) -> tuple[str, ...]:
         """The models that speak of a manoeuvre."""
@@ -104,11 +96,11 @@ class Drivers:
             if not MODELS[x].is_stepped
         }
 
-    def boundary(self, manoeuvre: ManoeuvreName, model: str, vehicles: tuple[str, ...]) -> Boundary:
+    def boundary(self, manoeuvre: ManoeuvreName, model: str, vehicles: tuple[str, ...]) -> margins.Boundary:
         """Where a collision is unpreventable for a model, to be varied."""
         text = unpreventable(manoeuvre, model, vehicles)
         if text not in self._boundaries:
-            self._boundaries[text] = boundary_of(self.formula(text), model, self.values)
+            self._boundaries[text] = margins.boundary_of(self.formula(text), model, self.values)
         return self._boundaries[text]
 
     def _at_values(self, text: str) -> Formula:
@@ -151,21 +143,21 @@ def decide_drive(
     yield from _decided(drivers, manoeuvre, scenario, vehicles, approximate(begins.point), state, hit)
 
 
-def _state_at(file: DriveFile, cut: Cut) -> State:
+def _state_at(file: DriveFile, cut: Cut) -> margins.State:
     """The state at a cut; near it where it is just after a point, or at an irrational one."""
     time = cut.point if isinstance(cut.point, Fraction) else Fraction(approximate(cut.point))
     time += _JUST_AFTER if cut.after else 0
     states = {name: state_at(motion, time) for name, motion in file.drive.vehicles.items()}
-    return State(
+    return margins.State(
         {(x, name): Fraction(getattr(at, x)) for name, at in states.items() for x in SIGNALS},
         {(x, n): getattr(m, x) for n, m in file.drive.vehicles.items() for x in ("length", "width")},
     )
 
 
-def _hit(file: DriveFile, cut: Cut, state: State, collides: Mapping[str, Formula]) -> dict[str, bool]:
+def _hit(file: DriveFile, cut: Cut, state: margins.State, collides: Mapping[str, Formula]) -> dict[str, bool]:
     """Whether each formula about a state holds at a cut of a drive, exactly."""
     if isinstance(cut.point, Fraction) and not cut.after:
-        return {name: holds_in(x, state) for name, x in collides.items()}
+        return {name: margins.holds_in(x, state) for name, x in collides.items()}
     judgement = judge(f.And(tuple(collides.values())), file.drive)
     return {name: bisect_right(judgement.truth(x).cuts, cut) % 2 == 1 for name, x in collides.items()}
 
@@ -200,7 +192,7 @@ def decide_trace(
     first = round(since / float(batch.dt))
     for k in range(first, int(batch.lengths[0])):
         if true[BEGINS][k]:
-            state = State(
+            state = margins.State(
                 {
                     (x, name): _rounded(batch.signals[x, name][k, 0])
                     for name in vehicles
@@ -258,12 +250,12 @@ def _decided(
     scenario: str,
     vehicles: tuple[str, ...],
     at: float,
-    state: State,
+    state: margins.State,
     hit: Mapping[str, bool],
     called: tuple[str, ...] | None = None,
 ) -> Iterator[Decision]:
     """``hit``: whether each model with a formula collides; the state is rounded for margins only."""
-    near = State({k: _rounded(x) for k, x in state.signals.items()}, state.sizes)
+    near = margins.State({k: _rounded(x) for k, x in state.signals.items()}, state.sizes)
     begun = near.start(manoeuvre, vehicles)
     when = round(at, _PLACES)
     made = Decision(scenario, called or vehicles, "", "undecided", when, start=begun, reason=_slight(begun))
@@ -271,7 +263,7 @@ def _decided(
         if MODELS[model].is_stepped:
             yield _of_controller(replace(made, driver=model), near, manoeuvre, vehicles)
             continue
-        found = margin(near, drivers.boundary(manoeuvre, model, vehicles), vehicles)
+        found = margins.margin(near, drivers.boundary(manoeuvre, model, vehicles), vehicles)
         side: TestedSide = "unpreventable" if hit[model] else "preventable"
         yield replace(made, driver=model, side=side, metres=found.metres, seconds=found.seconds)
 
@@ -285,11 +277,11 @@ def _slight(start: Mapping[str, float]) -> str:
 
 
 def _of_controller(
-    made: Decision, state: State, manoeuvre: ManoeuvreName, vehicles: tuple[str, ...]
+    made: Decision, state: margins.State, manoeuvre: ManoeuvreName, vehicles: tuple[str, ...]
 ) -> Decision:
     try:
-        hit = controller_hits(state, manoeuvre, vehicles)
-        metres = None if made.reason else controller_margin(state, manoeuvre, vehicles, hit)
+        hit = margins.controller_hits(state, manoeuvre, vehicles)
+        metres = None if made.reason else margins.controller_margin(state, manoeuvre, vehicles, hit)
     except InputError as error:
         return replace(made, reason=str(error))
     return replace(made, side="unpreventable" if hit else "preventable", metres=metres)

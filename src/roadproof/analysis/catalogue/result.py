@@ -51,26 +51,18 @@ class Result(ABC):
     @cached_property
     def tested(self) -> Targets:
         """What is tested, what is missing, and what is to be said of tests."""
-        facts = all_facts(self.known)
-        words = targets_of(self.examination.study.asked)
-        gaps = None if self.examination.study.gaps is None else self.gap_answers
-        return tested(
-            self.examination.study.asked,
-            self.concrete,
-            self.examination.study.entries,
-            facts,
-            words,
-            self.examination.request.near,
-            gaps,
-        )
+        study, near = self.examination.study, self.examination.request.near
+        words, gaps = targets_of(study.asked), None if study.gaps is None else self.gap_answers
+        return tested(study.asked, self.concrete, study.entries, all_facts(self.known), words, near, gaps)
 
     @cached_property
     def gap_answers(self) -> dict[str, ClassAnswer | None]:
         """Where it was asked, what is known of each class of gaps by name: None of those that tests show."""
-        if self.examination.study.gaps is None or self.examination.study.survey is None:
+        study = self.examination.study
+        if study.gaps is None or study.survey is None:
             return {}
-        known = self.examination.study.survey.classes_in(gap_answers(self.known))
-        return {n: known(part) for n, part in self.examination.study.gaps.parts.items()}
+        known = study.survey.classes_in(gap_answers(self.known))
+        return {n: known(part) for n, part in study.gaps.parts.items()}
 
     @cached_property
     def figures(self) -> tuple[Figure, ...]:

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Unpack
 
-from roadproof.analysis.explore.answer import Explorable, ExplorationResult, PointFinding, Sense, say_nothing
+from roadproof.analysis.explore.answer import Explorable, ExplorationResult, Sense, say_nothing
 from roadproof.analysis.explore.asking import ask_for
 from roadproof.analysis.explore.study import Exploration
 from roadproof.analysis.study.pool import Say
@@ -45,7 +45,8 @@ class Explorations(StudyAnswers[Exploration, ExplorationResult, kept.Record]):
 
     @property
     def verdicts(self) -> dict[str, Verdict]:
-        return {f"{name}, {kind} {_at(x)}": x.verdict for name, kind, x, _ in self._entries}
+        entries = ((name, kind, ", ".join(map(report.show, x.at)), x) for name, kind, x, _ in self._entries)
+        return {f"{name}, {kind} {at}": x.verdict for name, kind, at, x in entries}
 
     @property
     def evidence(self) -> tuple[Evidence, ...]:
@@ -78,10 +79,6 @@ class Explorations(StudyAnswers[Exploration, ExplorationResult, kept.Record]):
         return "\n".join(
             report.as_text(asked, self.explored[name]) for name, asked in self.study.named.items()
         )
-
-
-def _at(finding: PointFinding) -> str:
-    return ", ".join(report.show(value) for value in finding.at)
 
 
 @takes(Explore)

@@ -3,7 +3,7 @@
 import argparse
 import os
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from typing import TypeAlias
 
 from roadproof.frontends.cli.help import COMMANDS, CommandParser, fill
@@ -96,8 +96,7 @@ def _claims(prefix: str) -> Values:
 def _sets(prefix: str) -> Values:
     from roadproof.library.loading import bundled_library
 
-    head = prefix[: prefix.rfind(",") + 1]
-    return {f"{head}{name}": block.doc for name, block in bundled_library().sets.items()}
+    return _listed(prefix, {name: block.doc for name, block in bundled_library().sets.items()})
 
 
 def _readings(prefix: str) -> Values:
@@ -116,34 +115,32 @@ def _parameters(prefix: str) -> Values:
 def _drivers(prefix: str) -> Values:
     from roadproof.drivers.models import MODELS
 
-    head = prefix[: prefix.rfind(",") + 1]
-    return {f"{head}{name}": model.title for name, model in MODELS.items()}
+    return _listed(prefix, {name: model.title for name, model in MODELS.items()})
 
 
 def _formats(prefix: str) -> Values:
     from roadproof.frontends.api.exporting import NAMES
 
-    return _listed(prefix, NAMES)
+    return _listed(prefix, dict.fromkeys(NAMES, ""))
 
 
 def _animations(prefix: str) -> Values:
     from roadproof.frontends.report.animation import ENDINGS
 
-    return _listed(prefix, ENDINGS)
+    return _listed(prefix, dict.fromkeys(ENDINGS, ""))
 
 
-def _listed(prefix: str, names: Iterable[str]) -> Values:
-    """Names behind those that stand before a comma."""
-    head = prefix[: prefix.rfind(",") + 1]
-    return dict.fromkeys((f"{head}{name}" for name in names), "")
+def _listed(prefix: str, values: Values, mark: str = ",") -> Values:
+    """Values behind those that stand before a comma, or before another mark."""
+    head = prefix[: prefix.rfind(mark) + 1]
+    return {f"{head}{word}": about for word, about in values.items()}
 
 
 def _models(kind: str) -> Callable[[str], Values]:
     def values(prefix: str) -> Values:
         from roadproof.world.models import names_of
 
-        head = prefix[: prefix.rfind("=") + 1]
-        return dict.fromkeys((f"{head}{name}" for name in names_of(kind)), "")
+        return _listed(prefix, dict.fromkeys(names_of(kind), ""), "=")
 
     return values
 
@@ -158,22 +155,19 @@ _BRACKETS = re.compile(r" \([^()]*\)")
 _FILES = re.compile(r"FILE|DIR|PATH|TRACE|DRIVE|RESULT")
 _OR_FILES = ("FILE", "R", "[NAME=]MODEL", "PATH|N,N")
 
-
-def _by(values: Callable[[str], Values], names: Iterable[str]) -> dict[str, Callable[[str], Values]]:
-    return dict.fromkeys(names, values)
-
-
-_VALUES = {
-    **_by(_scenarios, ("N|FORMULA", "FORMULA", "F1", "F2", "WHAT", "MANOEUVRE", "--among", "--plant")),
-    **_by(_claims, ("CLAIM",)),
-    **_by(_sets, ("--set", "--plant-set", "--wider")),
-    **_by(_readings, ("--option",)),
-    **_by(_parameters, ("--param", "--vary")),
-    **_by(_drivers, ("--preventable", "--unpreventable", "--drivers", "--model")),
-    **_by(_formats, ("--to", "--format")),
-    **_by(_animations, ("--animate",)),
-    **_by(_models("roads"), ("--road",)),
-    **_by(_models("vehicles"), ("--vehicle",)),
-    **_by(_files_on_request, ("--spec",)),
+_VALUES: Mapping[str, Callable[[str], Values]] = {
+    **dict.fromkeys(
+        ("N|FORMULA", "FORMULA", "F1", "F2", "WHAT", "MANOEUVRE", "--among", "--plant"), _scenarios
+    ),
+    "CLAIM": _claims,
+    **dict.fromkeys(("--set", "--plant-set", "--wider"), _sets),
+    "--option": _readings,
+    **dict.fromkeys(("--param", "--vary"), _parameters),
+    **dict.fromkeys(("--preventable", "--unpreventable", "--drivers", "--model"), _drivers),
+    **dict.fromkeys(("--to", "--format"), _formats),
+    "--animate": _animations,
+    "--road": _models("roads"),
+    "--vehicle": _models("vehicles"),
+    "--spec": _files_on_request,
 }
 """How values are completed, by flag or by the name of the value in help."""

@@ -94,7 +94,7 @@ def _as_text(specification: Specification) -> str:
             _block("Definitions", _definitions(others, specification)),
             _block("Spec sets", [(_extends(s), s.doc) for s in library.sets.values()]),
             _block("Options (the first value is the default)", options),
-            _block("Parameters", [(_value(p), p.doc) for p in library.parameters.values()]),
+            _block("Parameters", [(value_of(p), p.doc) for p in library.parameters.values()]),
         ]
     )
 
@@ -139,7 +139,8 @@ def _extends(spec_set: SetBlock) -> str:
     return f"{spec_set.name} extends {spec_set.parent}" if spec_set.parent else spec_set.name
 
 
-def _value(parameter: ParameterDeclaration) -> str:
+def value_of(parameter: ParameterDeclaration) -> str:
+    """A parameter with its value and unit."""
     sign = "-" if parameter.value < 0 else ""
     return f"{parameter.name} = {sign}{decimal(abs(parameter.value))} {parameter.unit}"
 

@@ -13,6 +13,7 @@ from roadproof.evidence.codec import write
 from roadproof.evidence.heading import heading
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.cli.basis import read_definitions
+from roadproof.frontends.cli.list import value_of
 from roadproof.frontends.cli.options import write_json
 from roadproof.frontends.cli.terminal import width_of_terminal
 from roadproof.frontends.settings.commands import Show
@@ -27,7 +28,7 @@ from roadproof.logic import syntax
 from roadproof.logic.latex import align, latex
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.restore import as_syntax, term_as_syntax
-from roadproof.logic.show import decimal, text
+from roadproof.logic.show import text
 from roadproof.logic.syntax import Binding, Claim, Definition, ParameterDeclaration, SetBlock
 from roadproof.verdict import ExitCode
 
@@ -185,9 +186,7 @@ def _said(about: About | None) -> Iterator[str]:
 
 def _declaration(parameter: ParameterDeclaration) -> str:
     bound = f" where {parameter.name} {parameter.bound} 0" if parameter.bound else ""
-    sign = "-" if parameter.value < 0 else ""
-    value = f"{sign}{decimal(abs(parameter.value))} {parameter.unit}"
-    return f'param {parameter.name} = {value}{bound} "{parameter.doc}"'
+    return f'param {value_of(parameter)}{bound} "{parameter.doc}"'
 
 
 def _as_latex(exhibit: Exhibit) -> str:

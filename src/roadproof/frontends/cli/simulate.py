@@ -3,8 +3,9 @@
 import argparse
 import re
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -43,7 +44,8 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError(
             f"--plant with --ramp {args.ramp}: drives are planted on main roads only; omit one of them"
         )
-    drives = tuple(_drives(args.plant or (), args.plant_set))
+    each = (_found(x, args.plant_set) if _NUMBERS.fullmatch(x) else _read(Path(x)) for x in args.plant or ())
+    drives = tuple(chain.from_iterable(each))
     if args.plant and not drives:
         raise InputError(f"--plant {' '.join(args.plant)}: no drive that can be planted")
     found = simulate(args.out, **read_keywords(args, Simulate) | {"plant": drives, "tell": note})
@@ -56,17 +58,8 @@ def run(args: argparse.Namespace) -> int:
     return ExitCode.AS_EXPECTED
 
 
-def _drives(texts: Sequence[str], set_name: str) -> "Iterator[DriveFile]":
-    """The drives that were asked for and can be planted; of the others it is said why not."""
-    for text in texts:
-        if _NUMBERS.fullmatch(text):
-            yield from _found(text, set_name)
-        else:
-            yield from _read(Path(text))
-
-
 def _read(path: Path) -> "Iterator[DriveFile]":
-    """The drives of a file or a folder."""
+    """The drives of a file or a folder that can be planted; of the others it is said why not."""
     from roadproof.evidence.drive_file import load_drive
     from roadproof.evidence.judged import judge_file
     from roadproof.library.loading import bundled_library

@@ -165,28 +165,23 @@ def _distance(
     margins = {pair: _margins(file, library, direction, pair, times) for pair in gaps}
     gap, needed, one_behind = [], [], []
     for k in range(len(times)):
-        pair = max(gaps, key=lambda pair: gaps[pair][k].order)
-        known = margins[pair]
+        pair = max(gaps, key=lambda pair: gaps[pair][k][0])
+        known, here = margins[pair], gaps[pair][k][1]
         if known is None:
             return None
-        gap.append(gaps[pair][k].gap)
-        needed.append(gaps[pair][k].gap + known[k])
+        gap.append(here)
+        needed.append(here + known[k])
         one_behind.append(pair == (one, other))
     return Distance(one, other, tuple(gap), tuple(needed), tuple(one_behind))
 
 
-@dataclass(frozen=True)
-class _Gap:
-    """``order``: how much further the second vehicle is than the first, by the points that are tracked."""
-
-    order: float
-    gap: float
-
-
 def _gaps(
     file: DriveFile, direction: Direction, pair: tuple[str, str], times: Sequence[Fraction]
-) -> list[_Gap]:
-    """From the front of one vehicle to the rear of another, or from a left to a right side."""
+) -> list[tuple[float, float]]:
+    """How much further one vehicle is than another, by the points that are tracked, and the gap.
+
+    The gap is from the front of one to the rear of the other, or from a left to a right side.
+    """
     lower, higher = (file.drive.vehicles[name] for name in pair)
     found = []
     for a, b in zip(states_at(lower, times), states_at(higher, times), strict=True):
@@ -194,7 +189,7 @@ def _gaps(
             order, size = b.s - a.s, higher.length
         else:
             order, size = b.d - a.d, higher.width
-        found.append(_Gap(float(order), float(order - size)))
+        found.append((float(order), float(order - size)))
     return found
 
 

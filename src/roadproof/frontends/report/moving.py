@@ -57,8 +57,12 @@ def _road(scene: Scene, lanes: Pavement) -> Iterator[Element]:
 def _drawn(scene: Scene, shape: Shape) -> Element:
     """A shape as it is at the instant of a still picture, with its changes."""
     if isinstance(shape, Rectangle):
-        return _rectangle(scene, shape)
-    if isinstance(shape, Line):
+        still, changes = _at_instants(scene, _BOX, shape.boxes)
+        opacity = {} if shape.opacity == 1 else {"fill-opacity": f"{shape.opacity:g}"}
+        made = element("rect", **still, fill=shape.fill, **opacity)
+        if shape.red:
+            changes.append(_switched(scene, shape.red, DANGER, shape.fill))
+    elif isinstance(shape, Line):
         still, changes = _at_instants(scene, _ENDS, shape.ends)
         dash = {} if shape.dash is None else {"stroke-dasharray": " ".join(map(_n, shape.dash))}
         made = element("line", **still, stroke=shape.stroke, **dash)
@@ -68,16 +72,6 @@ def _drawn(scene: Scene, shape: Shape) -> Element:
         look = {"fill": shape.fill, "font-size": str(shape.size)}
         made = element("text", text=shape.text, **still, **look, **anchor)
     made.extend(changes)
-    return made
-
-
-def _rectangle(scene: Scene, shape: Rectangle) -> Element:
-    still, changes = _at_instants(scene, _BOX, shape.boxes)
-    opacity = {} if shape.opacity == 1 else {"fill-opacity": f"{shape.opacity:g}"}
-    made = element("rect", **still, fill=shape.fill, **opacity)
-    made.extend(changes)
-    if shape.red:
-        made.append(_switched(scene, shape.red, DANGER, shape.fill))
     return made
 
 

@@ -13,23 +13,8 @@ from typing import TypeAlias
 
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import judge_file
+from roadproof.frontends.report import drive_data as data
 from roadproof.frontends.report.drive import COLOURS, DANGER, SHADES, TRUE
-from roadproof.frontends.report.drive_data import (
-    GRAIN,
-    Box,
-    Distance,
-    ShownRoad,
-    Span,
-    Strip,
-    danger_spans,
-    distances_of,
-    heading_of,
-    road_in,
-    strips_of,
-    times_of,
-    vehicles_of,
-    window_of,
-)
 from roadproof.frontends.report.sheet import excerpt
 from roadproof.library.specification import Library
 from roadproof.world.motion import State, states_at
@@ -48,7 +33,7 @@ STEPS, MOST_TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000), 12  # whole seco
 class Rectangle:
     """Left, top, width and height at each instant, or once; ``red``: whether it is red, at each instant."""
 
-    boxes: Sequence[Box]
+    boxes: Sequence[data.Box]
     fill: str
     opacity: float = 1.0
     red: Sequence[bool] = ()
@@ -58,9 +43,9 @@ class Rectangle:
 class Line:
     """Between two points (x, x, y, y) at each instant, or once; ``dash``: pixels of each dash and gap."""
 
-    ends: Sequence[Box]
+    ends: Sequence[data.Box]
     stroke: str
-    dash: Span | None = None
+    dash: data.Span | None = None
 
 
 @dataclass(frozen=True)
@@ -68,7 +53,7 @@ class Text:
     """A text that begins at a point, or has its middle there; the points at each instant, or once."""
 
     text: str
-    places: Sequence[Span]
+    places: Sequence[data.Span]
     fill: str = "#111111"
     size: int = LETTER
     middle: bool = False
@@ -81,7 +66,7 @@ Shape: TypeAlias = Rectangle | Line | Text
 class Pavement:
     """Lanes that move by ``shifts`` pixels to the right, one for each instant, and are seen in ``window``."""
 
-    window: Box
+    window: data.Box
     shapes: tuple[Rectangle | Line, ...]
     shifts: tuple[float, ...]
 
@@ -100,18 +85,19 @@ class Scene:
     edge: float = EDGE
     top: float = TITLE
     lane_pixels: float = LANE_PIXELS
-    grain: Fraction = GRAIN
+    grain: Fraction = data.GRAIN
 
     @cached_property
     def times(self) -> list[Fraction]:
         """The instants of the picture, in s."""
-        return times_of(self.file, self.grain)
+        return data.times_of(self.file, self.grain)
 
     @cached_property
     def states(self) -> dict[str, tuple[State, ...]]:
         """The states of each vehicle at these instants, SV first."""
         return {
-            name: states_at(self.file.drive.vehicles[name], self.times) for name in vehicles_of(self.file)
+            name: states_at(self.file.drive.vehicles[name], self.times)
+            for name in data.vehicles_of(self.file)
         }
 
     @cached_property
@@ -120,9 +106,9 @@ class Scene:
         return dict(zip(self.states, COLOURS * len(self.states), strict=False))
 
     @cached_property
-    def window(self) -> Span:
+    def window(self) -> data.Span:
         """What is seen along the road, in m from SV's front."""
-        return window_of(self.file, self.times)
+        return data.window_of(self.file, self.times)
 
     @cached_property
     def scale(self) -> tuple[float, float]:
@@ -132,9 +118,9 @@ class Scene:
         return along, max(along, self.lane_pixels)
 
     @cached_property
-    def across(self) -> Span:
+    def across(self) -> data.Span:
         """Right and left edge of the road, in m."""
-        return road_in(self.file.road, self.states[self.subject][0].s, self.window).across
+        return data.road_in(self.file.road, self.states[self.subject][0].s, self.window).across
 
     @property
     def subject(self) -> str:
@@ -142,10 +128,10 @@ class Scene:
         return next(iter(self.states))
 
     @cached_property
-    def dangers(self) -> dict[str, tuple[Span, ...]]:
+    def dangers(self) -> dict[str, tuple[data.Span, ...]]:
         """When the subject is in danger with each other vehicle, in s, where the library defines that."""
         others = [name for name in self.states if name != self.subject]
-        spans = {name: danger_spans(self.file, self.library, self.subject, name) for name in others}
+        spans = {name: data.danger_spans(self.file, self.library, self.subject, name) for name in others}
         return {name: x for name, x in spans.items() if x is not None}
 
     @cached_property
@@ -163,14 +149,14 @@ class Scene:
         """A round of the picture, in s."""
         return self.times[-1] + PAUSE
 
-    def pixels(self, box: Box) -> Box:
+    def pixels(self, box: data.Box) -> data.Box:
         """Left, top, width and height of a box in m along, from SV's front, and across."""
         left, right, bottom, top = box
         along, across = self.scale
         x, y = self.edge + (left - self.window[0]) * along, self.top + (self.across[1] - top) * across
         return x, y, (right - left) * along, (top - bottom) * across
 
-    def box(self, name: str, k: int) -> Box:
+    def box(self, name: str, k: int) -> data.Box:
         """A vehicle at an instant, in m along from SV's front, and across."""
         motion, state = self.file.drive.vehicles[name], self.states[name][k]
         s, d = float(state.s - self.states[self.subject][k].s), float(state.d)
@@ -188,21 +174,21 @@ class Scene:
         return [float(state.s - states[0].s) for state in states]
 
     @cached_property
-    def road(self) -> ShownRoad:
+    def road(self) -> data.ShownRoad:
         """What of the road is seen, in m along from the front of the subject at the start, and across."""
         low, high = self.window
         seen = low + min(self.travel), high + max(self.travel)
-        return road_in(self.file.road, self.states[self.subject][0].s, seen)
+        return data.road_in(self.file.road, self.states[self.subject][0].s, seen)
 
     @cached_property
-    def distances(self) -> tuple[Distance, ...]:
+    def distances(self) -> tuple[data.Distance, ...]:
         """Those of the subject from each other vehicle along the road."""
-        return distances_of(self.file, self.library, "along", self.grain)
+        return data.distances_of(self.file, self.library, "along", self.grain)
 
     @cached_property
     def envelopes(self) -> list["Envelope"]:
         """For each other vehicle, the area within RSS distances of the subject."""
-        across = {x.other: x for x in distances_of(self.file, self.library, "across", self.grain)}
+        across = {x.other: x for x in data.distances_of(self.file, self.library, "across", self.grain)}
         found = []
         for along in self.distances:
             beside = across.get(along.other)
@@ -216,10 +202,10 @@ class Scene:
         return found
 
     @cached_property
-    def strips(self) -> list[Strip]:
+    def strips(self) -> list[data.Strip]:
         """The parts of the formula that have a row, with the times at which they are true."""
         judgement = judge_file(self.file, self.library).judgement
-        strips = () if judgement is None else strips_of(judgement, self.file.horizon)
+        strips = () if judgement is None else data.strips_of(judgement, self.file.horizon)
         return [x for x in strips if x.depth <= DEEPEST][:MOST_STRIPS]
 
     @property
@@ -238,13 +224,13 @@ class Envelope:
     """Where ``other`` is too near to the subject at each instant, in pixels, and whether it is ``near``."""
 
     other: str
-    boxes: Sequence[Box]
+    boxes: Sequence[data.Box]
     near: Sequence[bool]
 
 
 def headings(scene: Scene, title: str = "") -> Iterator[Text]:
     """The title (by default the scenario in words, or the formula) and a legend."""
-    yield Text(title or heading_of(scene.file, scene.library)[0], [(EDGE, 20)], size=14)
+    yield Text(title or data.heading_of(scene.file, scene.library)[0], [(EDGE, 20)], size=14)
     told = [f"the view follows {scene.subject}"]
     if len(scene.states) > 1:
         told.append("shaded: within RSS distances, red if violated")
@@ -273,7 +259,7 @@ def areas(scene: Scene) -> Iterator[Rectangle]:
         yield Rectangle(x.boxes, scene.colours[x.other], 0.2, x.near)
 
 
-def _around(box: Box, along: Distance, across: Distance, k: int) -> Box:
+def _around(box: data.Box, along: data.Distance, across: data.Distance, k: int) -> data.Box:
     """Where the other vehicle would be too near: from the box of SV as far as the RSS distances reach.
 
     Where a distance is negative, as that of a faster vehicle ahead can be, it reaches less far than the box.

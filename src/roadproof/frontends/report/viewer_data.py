@@ -14,23 +14,13 @@ from typing import TypeAlias, assert_never
 from roadproof.drivers.words import words_of_parts
 from roadproof.errors import InputError, RoadproofError, UsageError
 from roadproof.evidence.drive_file import DriveFile, drive_data
+from roadproof.frontends.report import viewer_document as document
 from roadproof.frontends.report.drive_data import (
     GRAIN,
     Direction,
     dangers_of,
     distances_of,
     vehicles_of,
-)
-from roadproof.frontends.report.viewer_document import (
-    DistanceView,
-    Document,
-    DriveView,
-    FormulaView,
-    LaneletView,
-    PartView,
-    RoadView,
-    Span,
-    VehicleView,
 )
 from roadproof.library.bind import bind, values_with
 from roadproof.library.scenario_references import read_query
@@ -70,7 +60,7 @@ class ShownFormula:
     explain: tuple[int, Fraction] | None = None
 
 
-def viewer_data(file: DriveFile, library: Library, asked: Sequence[ShownFormula] = ()) -> Document:
+def viewer_data(file: DriveFile, library: Library, asked: Sequence[ShownFormula] = ()) -> document.Document:
     """The document for a drive; without ``asked`` the formula of the file is shown.
 
     A formula that cannot be judged on the drive has an ``error`` in place of parts. Raises ``InputError``
@@ -79,13 +69,8 @@ def viewer_data(file: DriveFile, library: Library, asked: Sequence[ShownFormula]
     home = library.select(file.set_name, file.options)
     every = asked or (ShownFormula("question", file.formula),)
     formulas = [shown_formula(x, file, x.specification or home) for x in every]
-    return Document(_title(home, file), shown_drive(file, library), drive_data(file, {}), formulas)
-
-
-def _title(home: Specification, file: DriveFile) -> str:
-    if file.scenario is None:
-        return file.formula
-    return str(words_of(home, file.scenario))
+    title = file.formula if file.scenario is None else str(words_of(home, file.scenario))
+    return document.Document(title, shown_drive(file, library), drive_data(file, {}), formulas)
 
 
 # --- the drive ----------------------------------------------------------------------------------
@@ -96,9 +81,9 @@ def shown_drive(
     library: Library,
     directions: Sequence[Direction] = ("along", "across"),
     grain: Fraction = GRAIN,
-) -> DriveView:
+) -> document.DriveView:
     """Road, vehicles by name (SV first) with their states at the knots, and distances every ``grain`` s."""
-    return DriveView(
+    return document.DriveView(
         file.set_name,
         float(file.horizon),
         float(grain),
@@ -106,7 +91,7 @@ def shown_drive(
         shown_road(file.road),
         {name: _shown_motion(file, name) for name in vehicles_of(file)},
         [
-            DistanceView(direction, x.one, x.other, _short(x.gap), _short(x.needed), x.one_behind)
+            document.DistanceView(direction, x.one, x.other, _short(x.gap), _short(x.needed), x.one_behind)
             for direction in directions
             for x in distances_of(file, library, direction, grain)
         ],
@@ -114,12 +99,12 @@ def shown_drive(
     )
 
 
-def shown_road(road: Road) -> RoadView:
+def shown_road(road: Road) -> document.RoadView:
     """Lanelets with their extent (m)."""
-    return RoadView(
+    return document.RoadView(
         road.name,
         [
-            LaneletView(
+            document.LaneletView(
                 x.lane, x.zone, [None if y is None else float(y) for y in x.s], [float(y) for y in x.d]
             )
             for x in road.lanelets
@@ -127,18 +112,18 @@ def shown_road(road: Road) -> RoadView:
     )
 
 
-def _shown_motion(file: DriveFile, name: str) -> VehicleView:
+def _shown_motion(file: DriveFile, name: str) -> document.VehicleView:
     motion = file.drive.vehicles[name]
     knots = [[float(x) for x in vars(state).values()] for state in starts_of(motion)]
-    return VehicleView(float(motion.length), float(motion.width), knots)
+    return document.VehicleView(float(motion.length), float(motion.width), knots)
 
 
 # --- formulas -----------------------------------------------------------------------------------
 
 
-def shown_formula(asked: ShownFormula, file: DriveFile, home: Specification) -> FormulaView:
+def shown_formula(asked: ShownFormula, file: DriveFile, home: Specification) -> document.FormulaView:
     """One formula on the drive: its parts with truth and margins, or why it cannot be judged."""
-    view = FormulaView(asked.role, asked.formula, home.set_name)
+    view = document.FormulaView(asked.role, asked.formula, home.set_name)
     try:
         query, onto = bound_on(asked, file, home)
         judgement = judge(onto(query.formula), file.drive)
@@ -176,14 +161,14 @@ def bound_on(asked: ShownFormula, file: DriveFile, home: Specification) -> tuple
 
 
 def _explained(
-    view: FormulaView,
+    view: document.FormulaView,
     judgement: Judgement,
     query: Query,
     onto: Onto,
     home: Specification,
     place: int,
     at: Fraction,
-) -> FormulaView:
+) -> document.FormulaView:
     """With ``because`` and ``said`` of the part at a place. Raises ``UsageError`` where there is none."""
     parts = list(subformulas(judgement.formula))[:MOST_PARTS]
     if not 0 <= place < len(parts):
@@ -216,7 +201,7 @@ def _lane_of(file: DriveFile, name: str) -> str:
 
 def shown_parts(
     judgement: Judgement, file: DriveFile, home: Specification
-) -> tuple[list[PartView], int, float]:
+) -> tuple[list[document.PartView], int, float]:
     """Every distinct sub-formula once, the whole first; how many were left out; seconds between margins."""
     every = list(subformulas(judgement.formula))
     shown = every[:MOST_PARTS]
@@ -230,7 +215,7 @@ def shown_parts(
             definition = home.definitions.get(part.name.partition("@")[0])
             says, called = "" if definition is None else home.describe(definition), words.get(part)
         parts.append(
-            PartView(
+            document.PartView(
                 _operator(part),
                 told(part),
                 [places[x] for x in f.children(part) if x in places],
@@ -244,10 +229,10 @@ def shown_parts(
     return parts, len(every) - len(shown), step
 
 
-def shown_truth(truth: TruthSet) -> list[Span]:
+def shown_truth(truth: TruthSet) -> list[document.Span]:
     """When something is true."""
     return [
-        Span(
+        document.Span(
             approximate(span.begin.point),
             None if span.end is None else approximate(span.end.point),
             not span.begin.after,

@@ -5,17 +5,9 @@ from fractions import Fraction
 from typing import Any
 
 from roadproof.errors import RoadproofError
+from roadproof.frontends.report import viewer_document as document
 from roadproof.frontends.report.drive_data import Direction, nearer_in, too_near
 from roadproof.frontends.report.viewer_data import short_number, shown_road
-from roadproof.frontends.report.viewer_document import (
-    DistanceView,
-    Document,
-    DriveView,
-    FormulaView,
-    PartView,
-    Span,
-    VehicleView,
-)
 from roadproof.library.bind import bind
 from roadproof.library.roles import vehicle_order
 from roadproof.library.specification import Specification
@@ -31,7 +23,7 @@ def recorded_data(
     observed: Sequence[tuple[str, FirstAnswer]],
     home: Specification,
     values: Mapping[str, Fraction],
-) -> Document:
+) -> document.Document:
     """The document for a trace; ``observed`` are roles and what the monitor said of each formula.
 
     Between samples vehicles are drawn as if they kept their speed. ``values`` of parameters, with the
@@ -41,7 +33,7 @@ def recorded_data(
     count = int(batch.lengths[0])
     dt = float(batch.dt)
     names = vehicle_order({name for _, name in batch.signals})
-    drive = DriveView(
+    drive = document.DriveView(
         home.set_name,
         (count - 1) * dt,
         dt,
@@ -55,12 +47,12 @@ def recorded_data(
             if (shown := _shown_distance(trace, home, values, direction, names[0], other)) is not None
         ],
     )
-    return Document(
+    return document.Document(
         trace.source, drive, None, [_shown_formula(role, x, home.set_name) for role, x in observed]
     )
 
 
-def _shown_vehicle(trace: OneTrace, name: str, count: int, dt: float) -> VehicleView:
+def _shown_vehicle(trace: OneTrace, name: str, count: int, dt: float) -> document.VehicleView:
     batch = trace.batch
 
     def column(signal: Any) -> list[float]:
@@ -69,7 +61,7 @@ def _shown_vehicle(trace: OneTrace, name: str, count: int, dt: float) -> Vehicle
     columns = [column(x) for x, about in SIGNALS.items() if about.kept == "start"]
     knots = [[round(k * dt, 6), *row, 0.0, 0.0, 0.0] for k, row in enumerate(zip(*columns, strict=True))]
     length, width = (float(batch.sizes[x, name][0]) for x in ("length", "width"))
-    return VehicleView(length, width, knots)
+    return document.VehicleView(length, width, knots)
 
 
 def _shown_distance(
@@ -79,7 +71,7 @@ def _shown_distance(
     direction: Direction,
     one: str,
     other: str,
-) -> DistanceView | None:
+) -> document.DistanceView | None:
     """Gap and RSS distance at each sample; None where the library has none, or of another form."""
     batch, count = trace.batch, int(trace.batch.lengths[0])
     signal = "s" if direction == "along" else "d"
@@ -104,11 +96,11 @@ def _shown_distance(
         margin = margins[k]
         gaps.append(short_number(gap))
         needed.append(None if margin is None else short_number(gap + margin))
-    return DistanceView(direction, one, other, gaps, needed, behind)
+    return document.DistanceView(direction, one, other, gaps, needed, behind)
 
 
-def _shown_formula(role: str, observed: FirstAnswer, set_name: str) -> FormulaView:
-    return FormulaView(
+def _shown_formula(role: str, observed: FirstAnswer, set_name: str) -> document.FormulaView:
+    return document.FormulaView(
         role,
         observed.formula,
         set_name,
@@ -122,7 +114,7 @@ def _shown_formula(role: str, observed: FirstAnswer, set_name: str) -> FormulaVi
     )
 
 
-def _shown_part(strips: Sequence[Strip], place: int) -> PartView:
+def _shown_part(strips: Sequence[Strip], place: int) -> document.PartView:
     """A strip as a part whose children are the strips one deeper that follow it."""
     one = strips[place]
     children = []
@@ -133,12 +125,12 @@ def _shown_part(strips: Sequence[Strip], place: int) -> PartView:
             children.append(k)
     told = "; ".join(f"{begin:g} to {end:g} s" for begin, end in one.true) or "at no sample"
     margins = [None if x is None else short_number(x) for x in one.margins]
-    return PartView(
+    return document.PartView(
         "part",
         one.name,
         children,
-        [Span(*x) for x in one.true],
-        [Span(*x) for x in one.undecided],
+        [document.Span(*x) for x in one.true],
+        [document.Span(*x) for x in one.undecided],
         told,
         margins=margins if any(x is not None for x in margins) else None,
     )
