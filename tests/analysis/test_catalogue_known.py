@@ -13,6 +13,7 @@ import pytest
 
 import roadproof as rp
 from roadproof.analysis.catalogue import examination, meaning
+from roadproof.analysis.catalogue.candidates import candidates
 from roadproof.analysis.catalogue.entries import Abstract, Concrete
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.formula_facts import FormulaFacts
@@ -80,6 +81,7 @@ def tests(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     monkeypatch.setenv(SWITCH, "on")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setattr(known, "shipped", lambda _: tmp_path / "shipped")
+    candidates.cache_clear()
     folder = tmp_path / "tests"
     folder.mkdir()
     for name in DRIVES:
@@ -87,6 +89,7 @@ def tests(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     (folder / "catalogue.toml").write_text(TOML, "utf-8")
     yield folder
     known._read.cache_clear()
+    candidates.cache_clear()
 
 
 def asked(tests: Path, **more: Any) -> CatalogueAnswer:

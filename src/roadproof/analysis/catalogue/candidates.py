@@ -1,20 +1,22 @@
 """Drives that may show a scenario in a test before any search: shipped drives of the classes of scenarios.
 
 They are proposals, whatever they were found for. Each is tried as it is, and moved towards a drive of the
-test, and counts once it is judged exactly for the test and the scenario, in the definitions at hand.
+test, then that drive on other roads. One counts once it is judged exactly for the test and the scenario, in
+the definitions at hand.
 """
 
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache, cached_property
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.entries import Abstract
-from roadproof.analysis.placing import judged_as
+from roadproof.analysis.placing import judged_as, placed
 from roadproof.analysis.study.known import shipped_answers
 from roadproof.engines.search.ask import telling_values
+from roadproof.engines.search.impossible import parts
 from roadproof.errors import RoadproofError
 from roadproof.evidence.answers import classify as kept
 from roadproof.evidence.codec import read
@@ -24,6 +26,8 @@ from roadproof.library.bind import bind
 from roadproof.library.compose import both
 from roadproof.library.scenarios import PAIR, SUBJECT, name_of
 from roadproof.library.specification import Query
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
 from roadproof.semantics.exact.exact import LazyJudge
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_vehicle
@@ -62,43 +66,64 @@ def candidates() -> tuple[Candidate, ...]:
 
 @dataclass(frozen=True)
 class CandidateDrives:
-    """Candidates for drives of a test of which one ``drive`` is known, which shows ``names``."""
+    """Candidates for drives of a test of which one ``drive`` is known, which shows ``names``.
+
+    ``moved``: each candidate towards that drive; ``judges``: what is known of these, by their places.
+    """
 
     basis: Basis
     entry: Abstract
     drive: JudgedDrive
     names: tuple[str, ...]
+    moved: dict[int, tuple[Drive, ...]] = field(default_factory=dict, repr=False)
+    judges: dict[tuple[int, int], LazyJudge] = field(default_factory=dict, repr=False)
 
     def find(self, name: str, query: Query) -> JudgedDrive | None:
         """A drive of the test on which the scenario ``name`` holds, as ``query`` says it, judged."""
         if self.entry.vehicles:
             return None  # shipped drives are those of cars
         wanted = both(self.entry.query, query)
-        known = (x for x in candidates() if name in x.scenarios and not x.scenarios.isdisjoint(self.names))
-        for candidate in known:
-            if {*candidate.vehicles} == {*wanted.vehicles} and self.entry.road in (None, candidate.file.road):
-                judged = self._judged(candidate.file, wanted)
+        places = [k for k, x in enumerate(candidates()) if self._may_show(x, name, wanted)]
+        try:
+            found = (judged for k in places if (judged := self._judged(k, wanted)) is not None)
+            return next(found, None) or (self._on_another_road(wanted) if places else None)
+        except RoadproofError:  # the test speaks of signals that these drives do not have
+            return None
+
+    def _may_show(self, candidate: Candidate, name: str, wanted: Query) -> bool:
+        return (
+            name in candidate.scenarios
+            and not candidate.scenarios.isdisjoint(self.names)
+            and {*candidate.vehicles} == {*wanted.vehicles}
+        )
+
+    def _judged(self, place: int, wanted: Query) -> JudgedDrive | None:
+        file, library, home = candidates()[place].file, self.basis.library, self.basis.specification
+        if self.entry.road not in (None, file.road) or not {*wanted.lanes} <= {*file.lanes}:
+            return None
+        if place not in self.moved:
+            self.moved[place] = tuple(_moved_towards(file.drive, self.drive.file.drive))
+        values = self.basis.all_values()
+        formula = bind(wanted.formula, file.road, file.lanes, values)
+        first = at_start(formula)
+        for k, drive in enumerate(self.moved[place]):
+            judge = self.judges.setdefault((place, k), LazyJudge.on(drive))
+            if judge.holds(first) and judge.holds(formula):
+                told = telling_values(library, wanted.formula, values)
+                here = replace(file, set_name=home.set_name, options=dict(home.options), values=told)
+                judged = judged_as(replace(here, drive=drive), wanted, library)
                 if judged is not None:
                     return judged
         return None
 
-    def _judged(self, file: DriveFile, wanted: Query) -> JudgedDrive | None:
-        library, home = self.basis.library, self.basis.specification
-        if not {*wanted.lanes} <= {*file.lanes}:
-            return None
-        values = self.basis.all_values()
-        test = bind(self.entry.query.formula, file.road, file.lanes, values)
-        told = telling_values(library, wanted.formula, values)
-        here = replace(file, set_name=home.set_name, options=dict(home.options), values=told)
-        for drive in _moved_towards(file.drive, self.drive.file.drive):
-            try:
-                if LazyJudge.on(drive).holds(test):
-                    judged = judged_as(replace(here, drive=drive), wanted, library)
-                    if judged is not None:
-                        return judged
-            except RoadproofError:  # the test speaks of signals that shipped drives do not have
-                return None
-        return None
+    def _on_another_road(self, wanted: Query) -> JudgedDrive | None:
+        """The drive of the test itself where it shows the scenario, too."""
+        return None if self.entry.road else placed(self.drive.file, wanted, self.basis.library)
+
+
+def at_start(formula: Formula) -> Formula:
+    """What a formula says of time 0 alone, which is judged quickly."""
+    return f.conjunction(*(part for part in parts(formula) if f.is_state(part)))
 
 
 def _moved_towards(drive: Drive, other: Drive) -> Iterator[Drive]:

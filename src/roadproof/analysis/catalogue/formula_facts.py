@@ -7,10 +7,11 @@ implied.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Questions
-from roadproof.analysis.catalogue.candidates import CandidateDrives
+from roadproof.analysis.catalogue.candidates import CandidateDrives, at_start
 from roadproof.analysis.catalogue.entries import Abstract, Freedom
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.showing import names_shown, shown_by
@@ -25,7 +26,7 @@ from roadproof.library.compose import both
 from roadproof.library.scenarios import Scenario, applied, name_of
 from roadproof.library.specification import Query
 from roadproof.runtime.budget import BudgetExceeded
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.exact import DriveJudge, LazyJudge
 from roadproof.verdict import Verdict
 
 
@@ -82,13 +83,14 @@ class FormulaFacts:
 
     def _of_another(self, name: str, query: Query) -> Fact:
         """A scenario that the first drive does not show."""
-        candidate = self._candidate(name, query)
+        candidate = self._candidates.find(name, query)
         if candidate is not None:
             return self._shown_by(name, query, candidate)
         return self._proved(name, "excludes", query) or self._looked_for(name, query)
 
-    def _candidate(self, name: str, query: Query) -> JudgedDrive | None:
-        return CandidateDrives(self.basis, self.entry, *self.found[0]).find(name, query)
+    @cached_property
+    def _candidates(self) -> CandidateDrives:
+        return CandidateDrives(self.basis, self.entry, *self.found[0])
 
     def _shown_by(self, name: str, query: Query, drive: JudgedDrive) -> Fact:
         """A scenario that a drive shows which is not known yet."""
@@ -143,7 +145,8 @@ def facts_of_pair(
 ) -> tuple[Fact, ...]:
     """That a test implies another one, where this is proved; ``drive`` is one of the first."""
     formula = bind(other.query.formula, drive.file.road, drive.file.lanes, asked.values)
-    if not judge(formula, drive.file.drive).holds:
+    judge = (LazyJudge if asked.is_always_judged else DriveJudge).on(drive.file.drive)
+    if not (judge.holds(at_start(formula)) and judge.holds(formula)):
         return ()
     implied = proved(basis, Fact(one.id, other.id, "implies", one.query, other.query), SharedPremise())
     return () if implied is None else (implied,)
