@@ -19,8 +19,7 @@ from roadproof.evidence.answers.catalogue_index import (
     Relation,
 )
 from roadproof.evidence.answers.entry import Common, Entry, file_of, shows_of, shows_of_claim
-from roadproof.evidence.answers.reader import Background, Reader, read_kept
-from roadproof.evidence.codec import read
+from roadproof.evidence.answers.reader import Background, Reader
 from roadproof.evidence.strict import Fields, rational
 from roadproof.library.compose import both, implication, negation
 from roadproof.library.elaborate import read_claim, read_term
@@ -125,29 +124,19 @@ def _bounds(fact: KeptFact, where: str, common: Common, conclusion: Formula) -> 
     )
 
 
-def _gaps(
-    claims: Sequence[coverage.Claim], classes: Sequence[coverage.KeptClass], background: Background
-) -> Iterator[Entry]:
-    """What is said of classes of gaps, as an index of ``coverage`` says it. Raises ``InputError``."""
+def _entries(answer: Index | Record, background: Background) -> Iterator[Entry]:
+    """Facts, and what is said of classes of gaps, as an index of ``coverage`` says it."""
+    yield from _facts(answer.facts, background, background.where)
+    if answer.gaps is None:
+        return
+    claims = answer.gaps.claims if isinstance(answer, Index) else [answer.gaps.claim]
+    if isinstance(answer, Record):
+        group = answer.gaps.group
+        if group is not None and answer.name != f"gaps-{coverage.stem_of(group)}":
+            raise InputError(f"{background.where}, gaps: group='{group[:60]}' does not go with its name")
     entries = coverage.Entries(background.home, background.once(Preamble).scenarios)
-    yield from entries.of_claims(claims)
-    yield from entries.of_classes(classes)
-
-
-def _read_index(data: Fields, background: Background) -> Iterator[Entry]:
-    index = read(Index, data.content, data.where)
-    yield from _facts(index.facts, background, data.where)
-    yield from _gaps(index.gaps.claims, index.gaps.classes, background)
-
-
-def _read_record(record: Fields, background: Background) -> Iterator[Entry]:
-    said = read_kept(Record, record)
-    yield from _facts(said.facts, background, record.where)
-    gaps = said.gaps
-    if gaps is not None:
-        if gaps.group is not None and said.name != f"gaps-{coverage.stem_of(gaps.group)}":
-            raise InputError(f"{record.where}, gaps: group='{gaps.group[:60]}' does not go with its name")
-        yield from _gaps([] if gaps.claim is None else [gaps.claim], gaps.classes, background)
+    yield from entries.of_claims([x for x in claims if x is not None])
+    yield from entries.of_classes(answer.gaps.classes)
 
 
 def _lines(record: Fields) -> Iterator[object]:
@@ -160,19 +149,25 @@ def _lines(record: Fields) -> Iterator[object]:
         yield from said.items("classes")
 
 
-def _record_faults(record: Fields, background: Background) -> Iterator[str]:
+def _record_faults(kept: Record, background: Background) -> Iterator[str]:
     """As of a kept answer of ``coverage``."""
-    if record.has("gaps"):
-        yield from coverage.record_faults(Fields(record.mapping("gaps"), record.where), background)
+    if kept.gaps is not None:
+        yield from coverage.record_faults(kept.gaps, background)
 
 
 READER = replace(
-    Reader.of(Index, Preamble, _read_index, Record, _read_record, lambda record: record.text("name")),
+    Reader.of(
+        Index,
+        Preamble,
+        Record,
+        _entries,
+        file_name=lambda kept: kept.name,
+        record_faults=_record_faults,
+    ),
     unchecked=("seconds", "facts[].reason"),
     unchecked_kept=(
         *("said.scenarios", *(f"facts[].{x}" for x in ("test", "other", "reason", "also"))),
         *(f"gaps.{x}" for x in coverage.UNCHECKED_KEPT),
     ),
     lines=_lines,
-    record_faults=_record_faults,
 )

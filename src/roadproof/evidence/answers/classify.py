@@ -1,6 +1,6 @@
 """The index and the answers of ``roadproof classify``: classes with drives, and claims about them."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Annotated, Final, Literal, TypeAlias
@@ -8,9 +8,8 @@ from typing import Annotated, Final, Literal, TypeAlias
 from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows_of, shows_of_claim
 from roadproof.evidence.answers.proofs import unchecked_of
-from roadproof.evidence.answers.reader import Background, Reader, read_kept, unchecked
-from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Key, Rule, read
-from roadproof.evidence.strict import Fields
+from roadproof.evidence.answers.reader import Background, Reader, unchecked
+from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Key, Rule
 from roadproof.library.compose import both, either, equivalence, implication, negation
 from roadproof.library.elaborate import apply_definition, signature
 from roadproof.library.scenarios import LANE, Scenario, applied, name_of, number_in, numbers_of, vehicles_of
@@ -197,26 +196,15 @@ class Record:
     claims: tuple[Claim, ...]
 
 
-def _of_index(data: Fields, background: Background) -> Iterator[Entry]:
-    index, common = read(Index, data.content, data.where), background.at(CLASSES)
-    yield from _entries(index.classes, index.claims, data.where, common)
-    for number, doubt in enumerate(index.doubts, 1):
-        where = f"{data.where}, doubt {number}"
-        yield Entry(common, where, ("doubt", number), "UNKNOWN", doubt.about, "nothing", "", expected=list)
-
-
-def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
-    kept = read_kept(Record, record)
-    return _entries(kept.classes, kept.claims, record.where, background.at(CLASSES))
-
-
-def _entries(
-    classes: Sequence[KeptClass], claims: Sequence[Claim], where: str, common: Common
-) -> Iterator[Entry]:
-    for number, one in enumerate(classes, 1):
+def _entries(answer: Index | Record, background: Background) -> Iterator[Entry]:
+    common, where = background.at(CLASSES), background.where
+    for number, one in enumerate(answer.classes, 1):
         yield _of_class(one, f"{where}, class {number}", common)
-    for number, claim in enumerate(claims, 1):
+    for number, claim in enumerate(answer.claims, 1):
         yield _of_claim(claim, f"{where}, claim {number}", common)
+    for number, doubt in enumerate(answer.doubts if isinstance(answer, Index) else (), 1):
+        place, key = f"{where}, doubt {number}", ("doubt", number)
+        yield Entry(common, place, key, "UNKNOWN", doubt.about, "nothing", "", expected=list)
 
 
 def _of_class(said: KeptClass, where: str, common: Common) -> Entry:
@@ -267,9 +255,9 @@ def _outer_names(formula: Formula) -> tuple[str, ...]:
     return tuple(dict.fromkeys(name for part in f.children(formula) for name in _outer_names(part)))
 
 
-def _faults(data: Fields, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
+def _faults(index: Index, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
     """What the index says as a whole otherwise than its definitions and claims."""
-    index, common = read(Index, data.content, data.where), background.at(CLASSES)
+    common = background.at(CLASSES)
     if index.text not in [x.text for x in background.library.files]:
         yield "the text of its classes is not that of a specification file beside it"
     home = common.library.sets[CLASSES].parent
@@ -292,7 +280,6 @@ def _faults(data: Fields, background: Background, formulas: Mapping[str, str]) -
 
 
 READER = replace(
-    Reader.of(Index, Preamble, _of_index, Record, _of_record),
-    faults=_faults,
+    Reader.of(Index, Preamble, Record, _entries, faults=_faults),
     unchecked_kept=(*unchecked(Record), "said.set", "said.scenarios"),
 )

@@ -10,10 +10,9 @@ from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.entry import PROOFS, Common, Entry, evidence_name, shows_of, shows_of_claim
 from roadproof.evidence.answers.gaps import claims_of, fault_of_gap
 from roadproof.evidence.answers.proofs import unchecked_of
-from roadproof.evidence.answers.reader import Background, Reader, read_kept, unchecked
-from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule, read
+from roadproof.evidence.answers.reader import Background, Reader, unchecked
+from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.strict import Fields
 from roadproof.library.scenarios import numbers_of
 from roadproof.logic.formula import Formula
 from roadproof.verdict import ProofVerdict, Verdict
@@ -206,28 +205,23 @@ class Record:
     classes: Annotated[tuple[KeptClass, ...], LEFT_OUT] = ()
 
 
-def _of_index(data: Fields, background: Background) -> Iterator[Entry]:
-    index = read(Index, data.content, data.where)
-    common = background.at(index.set)
+def _entries(answer: Index | Record, background: Background) -> Iterator[Entry]:
+    where, common = background.where, background.at(background.said.text("set"))
     entries = Entries(common, numbers_of(common.specification))
-    yield from entries.of_claims(index.claims)
-    yield from entries.of_needs(index.needs)
-    told, count = [n for x in index.classes for n in x.gaps], len(index.gaps)
+    if isinstance(answer, Record):
+        if [answer.claim, answer.need, answer.group].count(None) != 2:
+            raise InputError(f"{where}: it has to be about one claim, one definition or one group")
+        yield from entries.of_claims([x for x in [answer.claim] if x is not None])
+        yield from entries.of_needs([x for x in [answer.need] if x is not None])
+        yield from entries.of_classes(answer.classes)
+        return
+    yield from entries.of_claims(answer.claims)
+    yield from entries.of_needs(answer.needs)
+    told, count = [n for x in answer.classes for n in x.gaps], len(answer.gaps)
     if told != [*range(1, count + 1)]:
-        raise InputError(f"{data.where}: its classes name the gaps {str(told)[:60]}, but it has 1 to {count}")
-    yield from entries.of_classes(index.classes)
-    yield from entries.of_gaps(index.gaps, data.where)
-
-
-def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
-    kept = read_kept(Record, record)
-    if [kept.claim, kept.need, kept.group].count(None) != 2:
-        raise InputError(f"{record.where}: it has to be about one claim, one definition or one group")
-    common = background.at(background.said.text("set"))
-    entries = Entries(common, numbers_of(common.specification))
-    yield from entries.of_claims([x for x in [kept.claim] if x is not None])
-    yield from entries.of_needs([x for x in [kept.need] if x is not None])
-    yield from entries.of_classes(kept.classes)
+        raise InputError(f"{where}: its classes name the gaps {str(told)[:60]}, but it has 1 to {count}")
+    yield from entries.of_classes(answer.classes)
+    yield from entries.of_gaps(answer.gaps, where)
 
 
 @dataclass(frozen=True)
@@ -336,11 +330,6 @@ class Entries:
                 )
 
 
-def name_of_group(record: Fields) -> str | None:
-    """Under which name the answer on the classes of a component is kept; None of another answer."""
-    return stem_of(record.text("group")) if record.has("group") else None
-
-
 def stem_of(group: str) -> str:
     """Under which name the answer on the classes of a component is kept."""
     return group.replace(" ", "-")
@@ -351,10 +340,9 @@ def _on_other_road(road: str, file: DriveFile) -> str:
     return "" if file.road.name == road else f"its road is {road[:40]}, but that of its file {file.road.name}"
 
 
-def _faults(data: Fields, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
+def _faults(index: Index, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
     """What the verdict on the set says beyond what its entries show."""
-    index = read(Index, data.content, data.where)
-    common = background.at(index.set)
+    common = background.at(background.said.text("set"))
     if [common.formula(x.claim) for x in index.claims] != claims_of(common.specification):
         yield "its claims are not those that together say that there is no gap"
     if index.verdict is Verdict.COVERED and not all(x.verdict in PROOFS for x in index.claims):
@@ -363,18 +351,23 @@ def _faults(data: Fields, background: Background, formulas: Mapping[str, str]) -
         yield "GAPS, but it has none"
 
 
-def record_faults(record: Fields, background: Background) -> Iterator[str]:
+def record_faults(kept: Record, background: Background) -> Iterator[str]:
     """Where the claim of a kept answer is none of those that together say that there is no gap."""
-    said = read_kept(Record, record).claim
-    common = background.at(background.said.text("set"))
+    said, common = kept.claim, background.at(background.said.text("set"))
     if said is not None and common.formula(said.claim) not in claims_of(common.specification):
-        yield f"{record.where}: coverage does not rest on this claim: {said.claim[:120]}"
+        yield f"{background.where}: coverage does not rest on this claim: {said.claim[:120]}"
 
 
 UNCHECKED_KEPT = unchecked(Record)
 READER = replace(
-    Reader.of(Index, Preamble, _of_index, Record, _of_record, name_of_group),
-    faults=_faults,
+    Reader.of(
+        Index,
+        Preamble,
+        Record,
+        _entries,
+        faults=_faults,
+        file_name=lambda kept: kept.group and stem_of(kept.group),
+        record_faults=record_faults,
+    ),
     unchecked_kept=("said.wider", *UNCHECKED_KEPT),
-    record_faults=record_faults,
 )

@@ -8,10 +8,10 @@ from typing import Annotated, Final, Literal, TypeAlias
 from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.entry import Common, Entry, evidence_name, fault_of_number, shows_of
 from roadproof.evidence.answers.proofs import shown
-from roadproof.evidence.answers.reader import Background, Reader, read_kept, unchecked
+from roadproof.evidence.answers.reader import Background, Reader, unchecked
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
 from roadproof.evidence.json_schema import File, Whole
-from roadproof.evidence.strict import Fields, rational
+from roadproof.evidence.strict import rational
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.verdict import DriveVerdict, Verdict
@@ -110,9 +110,11 @@ class Answer(shared.Heading):
     verdicts: tuple[Outcome, ...]
 
 
-def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
-    """An entry for each drive, or one for the proof."""
-    outcome, where = read_kept(Record, record).outcome, f"{record.where}, outcome"
+def _entries(answer: Preamble | Record, background: Background) -> Iterator[Entry]:
+    """An entry for each drive, or one for the proof; there is no index."""
+    if isinstance(answer, Preamble):
+        return
+    outcome, where = answer.outcome, f"{background.where}, outcome"
     common, verdict = background.at(outcome.set), outcome.verdict
     shows = shows_of(verdict, where, "impossibility", "drive")
     fault = fault_of_number(common, where, outcome.scenario, outcome.formula)
@@ -138,9 +140,8 @@ def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
 
 
 READER = replace(
-    Reader.of(
-        Preamble, Preamble, lambda data, background: (), Record, _of_record, lambda x: x.text("name"), SCHEMA
-    ),
+    Reader.of(Preamble, Preamble, Record, _entries, file_name=lambda kept: kept.name, schema=SCHEMA),
+    read_index=lambda data, background: (),
     alone=True,
     unchecked_kept=tuple(sorted(unchecked(Record), key=lambda path: path != "outcome.reason")),
 )

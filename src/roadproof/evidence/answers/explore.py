@@ -9,9 +9,9 @@ from roadproof.errors import InputError
 from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.entry import Common, Entry, fault_of_number, file_of, shows_of
 from roadproof.evidence.answers.proofs import unchecked_of
-from roadproof.evidence.answers.reader import Background, Reader, read_kept
-from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule, read
-from roadproof.evidence.strict import Fields, rational
+from roadproof.evidence.answers.reader import Background, Reader
+from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
+from roadproof.evidence.strict import rational
 from roadproof.library.bind import values_with
 from roadproof.library.compose import always, both, comparison, eventually
 from roadproof.library.elaborate import read_claim, read_term
@@ -145,13 +145,12 @@ class Record:
     exploration: Exploration
 
 
-def _of_index(data: Fields, background: Background) -> Iterator[Entry]:
-    for number, said in enumerate(read(Index, data.content, data.where).explored, 1):
-        yield from _one(said, f"{data.where}, exploration {number}", background)
-
-
-def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
-    return _one(read_kept(Record, record).exploration, record.where, background)
+def _entries(answer: Index | Record, background: Background) -> Iterator[Entry]:
+    if isinstance(answer, Record):
+        yield from _one(answer.exploration, background.where, background)
+        return
+    for number, said in enumerate(answer.explored, 1):
+        yield from _one(said, f"{background.where}, exploration {number}", background)
 
 
 @dataclass(frozen=True)
@@ -342,4 +341,4 @@ def _other(
     return f"{where} assumes {wrong[0]}" if wrong else ""
 
 
-READER = Reader.of(Index, Preamble, _of_index, Record, _of_record)
+READER = Reader.of(Index, Preamble, Record, _entries)

@@ -10,9 +10,8 @@ from typing import Annotated, Final, Literal, TypeAlias
 from roadproof.errors import InputError, TextError
 from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.entry import Common, Conjunctions, Entry, file_of
-from roadproof.evidence.answers.reader import Background, Reader, read_kept
-from roadproof.evidence.codec import Doc, Key, Rule, read
-from roadproof.evidence.strict import Fields
+from roadproof.evidence.answers.reader import Background, Reader
+from roadproof.evidence.codec import Doc, Key, Rule
 from roadproof.library.compose import implication
 from roadproof.library.scenario_references import Application, application_in
 from roadproof.library.scenarios import LANE, SUBJECT, Scenario, applied, vehicles_of
@@ -141,21 +140,12 @@ class Record:
     doubts: tuple[Doubt, ...]
 
 
-def _of_index(data: Fields, background: Background) -> Iterator[Entry]:
-    index = read(Index, data.content, data.where)
-    return _entries(index.proved, index.drives, background.home)
-
-
-def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
-    kept = read_kept(Record, record)
-    return _entries(kept.proved, kept.drives, background.home)
-
-
-def _entries(proved: Sequence[Edge], drives: Sequence[Refutation], common: Common) -> Iterator[Entry]:
-    for number, edge in enumerate(proved, 1):
-        yield _implication(edge, f"{common.where}, implication {number}", common)
-    for number, drive in enumerate(drives, 1):
-        yield _refutation(drive, f"{common.where}, drive {number}", common)
+def _entries(answer: Index | Record, background: Background) -> Iterator[Entry]:
+    where, common = background.where, background.home
+    for number, edge in enumerate(answer.proved, 1):
+        yield _implication(edge, f"{where}, implication {number}", common)
+    for number, drive in enumerate(answer.drives, 1):
+        yield _refutation(drive, f"{where}, drive {number}", common)
 
 
 def _implication(edge: Edge, where: str, common: Common) -> Entry:
@@ -242,9 +232,9 @@ def _fit(above: tuple[str, ...], below: tuple[str, ...]) -> bool:
     return ends and set(fewer) <= set(more) and len(set(fewer)) == len(fewer)
 
 
-def faults(data: Fields, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
+def _faults(index: Index, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
     """What a whole index says that its entries do not show; ``formulas`` are those of accepted drives."""
-    index, common = read(Index, data.content, data.where), background.home
+    common = background.home
     proved = {x.pair for x in index.proved}
     for edge in index.edges:
         if edge not in index.proved:
@@ -340,7 +330,6 @@ def _node(name: str) -> Scenario:
 
 
 READER = replace(
-    Reader.of(Index, Preamble, _of_index, Record, _of_record, lambda record: record.text("family")),
-    faults=faults,
+    Reader.of(Index, Preamble, Record, _entries, faults=_faults, file_name=lambda kept: kept.family),
     unchecked_kept=("doubts", "said.sets"),
 )

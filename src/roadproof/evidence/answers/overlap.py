@@ -9,10 +9,9 @@ from typing import Annotated, Final, Literal, TypeAlias
 from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.entry import Common, Entry, file_of, shows_of
 from roadproof.evidence.answers.proofs import unchecked_of
-from roadproof.evidence.answers.reader import Background, Reader, read_kept
-from roadproof.evidence.codec import UNCHECKED, Doc, Rule, read
+from roadproof.evidence.answers.reader import Background, Reader
+from roadproof.evidence.codec import UNCHECKED, Doc, Rule
 from roadproof.evidence.json_schema import Shared
-from roadproof.evidence.strict import Fields
 from roadproof.library.compose import both, eventually
 from roadproof.library.scenarios import LANE, Scenario, applied, vehicles_of
 from roadproof.library.specification import Query
@@ -105,16 +104,10 @@ class Record:
     verdict: Pair
 
 
-def _of_index(data: Fields, background: Background) -> Iterator[Entry]:
-    index = read(Index, data.content, data.where)
-    for number, pair in enumerate(index.verdicts, 1):
-        yield _entry(pair, f"{data.where}, pair {number}", background.home, index)
-
-
-def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
-    said = read(Preamble, background.said.content, background.said.where)
-    pair = read_kept(Record, record).verdict
-    yield _entry(pair, f"{record.where}, pair 1", background.home, said)
+def _entries(answer: Index | Record, background: Background) -> Iterator[Entry]:
+    said = background.once(Preamble)
+    for number, pair in enumerate(answer.verdicts if isinstance(answer, Index) else [answer.verdict], 1):
+        yield _entry(pair, f"{background.where}, pair {number}", background.home, said)
 
 
 def _entry(pair: Pair, where: str, common: Common, said: Preamble) -> Entry:
@@ -162,4 +155,4 @@ def _assignments(vehicles: Sequence[str], count: int, roles: str) -> list[tuple[
     return [(vehicles[0], *others) for others in combinations(vehicles[1:], count - 1)]
 
 
-READER = Reader.of(Index, Preamble, _of_index, Record, _of_record)
+READER = Reader.of(Index, Preamble, Record, _entries)

@@ -15,10 +15,9 @@ from roadproof.drivers.models import MODELS, boundary_of, manoeuvre_of, models_f
 from roadproof.errors import InputError
 from roadproof.evidence.answers.entry import Entry, file_of, shows_of
 from roadproof.evidence.answers.plates import Index, Lemma, Line, Plate, Preamble, Record, SideDrive
-from roadproof.evidence.answers.reader import Background, Reader, read_kept
-from roadproof.evidence.codec import read
+from roadproof.evidence.answers.reader import Background, Reader
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.strict import Fields, rational
+from roadproof.evidence.strict import rational
 from roadproof.library.bind import values_with
 from roadproof.logic.formula import Formula as FormulaTree
 from roadproof.verdict import Verdict
@@ -215,34 +214,28 @@ def _lemma(said: Lemma, background: Background, number: int) -> Entry:
     )
 
 
-def _index(data: Fields, background: Background) -> Iterator[Entry]:
-    said = read(Index, data.content, data.where)
-    _scenarios(said, data.where)
-    for number, plate in enumerate(said.plates, 1):
+def _entries(answer: Index | Record, background: Background) -> Iterator[Entry]:
+    if isinstance(answer, Record):
+        plates = [] if answer.plate is None else [answer.plate]
+        lemmas = [] if answer.lemma is None else [answer.lemma]
+    else:
+        _scenarios(answer, background.where)
+        plates, lemmas = [*answer.plates], [*answer.lemmas]
+    for number, plate in enumerate(plates, 1):
         yield from _plate(plate, background, number)
-    for number, lemma in enumerate(said.lemmas, 1):
+    for number, lemma in enumerate(lemmas, 1):
         yield _lemma(lemma, background, number)
 
 
-def _record(record: Fields, background: Background) -> Iterator[Entry]:
-    said = read_kept(Record, record)
-    if said.lemma is not None:
-        yield _lemma(said.lemma, background, 1)
-    if said.plate is not None:
-        yield from _plate(said.plate, background, 1)
-
-
-def _record_faults(record: Fields, background: Background) -> Iterator[str]:
+def _record_faults(kept: Record, background: Background) -> Iterator[str]:
     """As of an index with this plate alone."""
-    plate = read_kept(Record, record).plate
-    if plate is not None:
-        yield from _line_fault(plate, background, 1)
+    if kept.plate is not None:
+        yield from _line_fault(kept.plate, background, 1)
 
 
-def _faults(data: Fields, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
+def _faults(said: Index, background: Background, formulas: Mapping[str, str]) -> Iterator[str]:
     """Plates whose lines differ from their formula or motion (controllers aside), and wrong idle options."""
-    said = read(Index, data.content, data.where)
-    if data.has("idle"):
+    if background.said.has("idle"):
         found = _idle(said, background, {x.model for x in said.plates})
         if said.idle != found:
             yield f"what no boundary depends on is {', '.join(found) or 'nothing that was chosen'}"
@@ -278,10 +271,5 @@ def _idle(said: Index, background: Background, models: Set[str]) -> tuple[str, .
     return idle(common.specification, common.values or {}, MANOEUVRES[said.manoeuvre], asked)
 
 
-_READER = Reader.of(Index, Preamble, _index, Record, _record)
-READER = replace(
-    _READER,
-    faults=_faults,
-    record_faults=_record_faults,
-    unchecked_kept=(*_READER.unchecked_kept, "said.along", "said.scenario"),
-)
+_READER = Reader.of(Index, Preamble, Record, _entries, faults=_faults, record_faults=_record_faults)
+READER = replace(_READER, unchecked_kept=(*_READER.unchecked_kept, "said.along", "said.scenario"))

@@ -8,10 +8,9 @@ from typing import Annotated, Final, Literal, TypeAlias
 from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.drive import KeptCounterexample, KeptTrace
 from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows_of
-from roadproof.evidence.answers.reader import Background, Reader, read_kept
-from roadproof.evidence.codec import ABSENT, LEFT_OUT, UNCHECKED, Doc, Rule, read
+from roadproof.evidence.answers.reader import Background, Reader
+from roadproof.evidence.codec import ABSENT, LEFT_OUT, UNCHECKED, Doc, Rule
 from roadproof.evidence.json_schema import File
-from roadproof.evidence.strict import Fields
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import is_moving, under_limits
 from roadproof.logic import formula as f
@@ -95,13 +94,13 @@ class Record:
     ]
 
 
-def _of_index(data: Fields, background: Background) -> Iterator[Entry]:
-    for number, claim in enumerate(read(Index, data.content, data.where).claims, 1):
-        yield _entry(claim, f"{data.where}, claim {number}", background)
-
-
-def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
-    yield _entry(read_kept(Record, record).claim, f"{record.where}, claim", background)
+def _entries(answer: Index | Record, background: Background) -> Iterator[Entry]:
+    where = f"{background.where}, claim"
+    if isinstance(answer, Record):
+        yield _entry(answer.claim, where, background)
+        return
+    for number, claim in enumerate(answer.claims, 1):
+        yield _entry(claim, f"{where} {number}", background)
 
 
 def _entry(claim: Claim, where: str, background: Background) -> Entry:
@@ -148,9 +147,7 @@ def misnamed(where: str, told: tuple[str, str, int | None], label: tuple[str, st
     return f"{where} is called {shown(told, '')[:60]}, but its claim is {right}"
 
 
-READER = replace(
-    Reader.of(Index, Preamble, _of_index, Record, _of_record), unchecked_kept=("reason", "seconds", "asked")
-)
+READER = replace(Reader.of(Index, Preamble, Record, _entries), unchecked_kept=("reason", "seconds", "asked"))
 
 
 # --- the answer ------------------------------------------------------------------------------------

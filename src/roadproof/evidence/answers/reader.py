@@ -14,6 +14,8 @@ from roadproof.evidence.strict import Fields
 from roadproof.library.specification import Library
 
 T = TypeVar("T")
+W = TypeVar("W")
+R = TypeVar("R")
 
 # Property, part and scenario of a claim in a set, where it is a template property.
 FindLabel: TypeAlias = Callable[[str, str], "tuple[str, str, int | None] | None"]
@@ -116,9 +118,9 @@ class Reader:
     """How an index of one ``schema`` is read, and each of the answers that are kept before it is written.
 
     ``said`` are the fields of what is said once for all entries, ``index`` the further ones of an index,
-    ``record`` those of a kept answer, none where none are kept. ``alone``: files that no answer names may lie
-    beside them, and stand for themselves. ``faults``: what an index says as a whole
-    and its entries do not show, given the formulas of its accepted drives by file. All raise ``InputError``.
+    ``record`` those of a kept answer. ``alone``: files that no answer names may lie beside them, and stand
+    for themselves. ``faults``: what an index says as a whole and its entries do not show, given the formulas
+    of its accepted drives by file. All raise ``InputError``.
 
     ``unchecked`` are the fields of the index that nothing is compared with, as paths such as
     ``verdicts[].seconds``, ``unchecked_kept`` those of a kept answer without an index, and of its question;
@@ -131,45 +133,54 @@ class Reader:
     schema: str
     said: tuple[str, ...]
     index: tuple[str, ...]
+    record: tuple[str, ...]
     read_index: Read
-    record: tuple[str, ...] = ()
-    read_record: Read = lambda record, background: ()
-    faults: Callable[[Fields, Background, Mapping[str, str]], Iterable[str]] = (
-        lambda data, background, formulas: ()
-    )
+    read_record: Read
+    faults: Callable[[Fields, Background, Mapping[str, str]], Iterable[str]]
+    file_name: Callable[[Fields], str | None]
+    record_faults: Callable[[Fields, Background], Iterable[str]]
+    unchecked: tuple[str, ...]
+    unchecked_kept: tuple[str, ...]
     alone: bool = False
-    unchecked: tuple[str, ...] = ()
-    unchecked_kept: tuple[str, ...] = ()
-    file_name: Callable[[Fields], str | None] = lambda record: None
     lines: Callable[[Fields], Iterable[object]] = _lines
-    record_faults: Callable[[Fields, Background], Iterable[str]] = lambda record, background: ()
 
     @staticmethod
     def of(
-        index: type,
+        index: type[W],
         said: type,
-        read_index: Read,
-        record: type,
-        read_record: Read,
-        file_name: Callable[[Fields], str | None] = lambda record: None,
+        record: type[R],
+        entries: Callable[[W | R, Background], Iterable[Entry]],
+        *,
+        faults: Callable[[W, Background, Mapping[str, str]], Iterable[str]] | None = None,
+        file_name: Callable[[R], str | None] | None = None,
+        record_faults: Callable[[R, Background], Iterable[str]] | None = None,
         schema: str = "",
     ) -> "Reader":
         """The reader of an index that is defined as ``index``, and whose kept answers are ``record``.
 
-        ``schema``: where there is no index.
+        ``entries`` are those of either; the other functions get what was read, too. ``schema``: where there
+        is no index.
         """
-        every = {x.key: x for x in fields_of(index)}
+        every = {x.key: x for x in fields_of(bare(index))}
         once = tuple(x.key for x in fields_of(said))
-        left = tuple(x for x in every if x not in (*HEADING, *once))
-        kept = tuple(x.key for x in fields_of(record))
+
+        def read_index(data: Fields) -> W:
+            return read(index, data.content, data.where)
+
         return Reader(
             schema or get_args(every["schema"].type)[0],
             once,
-            left,
-            read_index,
-            kept,
-            read_record,
-            unchecked=tuple(sorted(unchecked(index), key=lambda path: (path.count("[]"), path != "seconds"))),
-            unchecked_kept=tuple(sorted(unchecked(record), key=lambda path: path.count("[]"))),
-            file_name=file_name,
+            tuple(x for x in every if x not in (*HEADING, *once)),
+            tuple(x.key for x in fields_of(bare(record))),
+            lambda data, background: entries(read_index(data), background),
+            lambda kept, background: entries(read_kept(record, kept), background),
+            lambda data, background, formulas: (
+                faults(read_index(data), background, formulas) if faults else ()
+            ),
+            lambda kept: file_name(read_kept(record, kept)) if file_name else None,
+            lambda kept, background: (
+                record_faults(read_kept(record, kept), background) if record_faults else ()
+            ),
+            tuple(sorted(unchecked(index), key=lambda path: (path.count("[]"), path != "seconds"))),
+            tuple(sorted(unchecked(record), key=lambda path: path.count("[]"))),
         )

@@ -8,9 +8,8 @@ from typing import Annotated, Final, Literal, TypeAlias
 from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.drive import KeptTrace
 from roadproof.evidence.answers.entry import Common, Entry, file_of, shows_of
-from roadproof.evidence.answers.reader import Background, Reader, read_kept
-from roadproof.evidence.codec import UNCHECKED, Doc, Key, read
-from roadproof.evidence.strict import Fields
+from roadproof.evidence.answers.reader import Background, Reader
+from roadproof.evidence.codec import UNCHECKED, Doc, Key
 from roadproof.library.compose import both, equivalence, implication, negation
 from roadproof.library.elaborate import read_claim
 from roadproof.library.scenarios import Scenario, applied, leaves_at_once, vehicles_of
@@ -94,18 +93,9 @@ class Record:
     verdicts: tuple[Finding, ...]
 
 
-def _of_index(data: Fields, background: Background) -> Iterator[Entry]:
-    return _entries(read(Index, data.content, data.where).verdicts, background)
-
-
-def _of_record(record: Fields, background: Background) -> Iterator[Entry]:
-    return _entries(read_kept(Record, record).verdicts, background)
-
-
-def _entries(findings: Sequence[Finding], background: Background) -> Iterator[Entry]:
-    common = background.home
-    for number, finding in enumerate(findings, 1):
-        yield _entry(finding, f"{common.where}, change {number}", common)
+def _entries(answer: Index | Record, background: Background) -> Iterator[Entry]:
+    for number, finding in enumerate(answer.verdicts, 1):
+        yield _entry(finding, f"{background.where}, change {number}", background.home)
 
 
 def _entry(said: Finding, where: str, common: Common) -> Entry:
@@ -135,11 +125,4 @@ def _entry(said: Finding, where: str, common: Common) -> Entry:
     )
 
 
-READER = Reader.of(
-    Index,
-    Preamble,
-    _of_index,
-    Record,
-    _of_record,
-    lambda record: f"scenario-{record.whole('scenario'):02}",
-)
+READER = Reader.of(Index, Preamble, Record, _entries, file_name=lambda kept: f"scenario-{kept.scenario:02}")
