@@ -451,7 +451,7 @@ def test_along_lines_of_driver_models_it_is_what_the_judge_says(options, speed):
     read_table(__file__, "planted_faults_are_noticed"),
 )
 def test_planted_faults_are_noticed(monkeypatch, name, right, wrong):
-    owner = exact._EndedSignals if name == "signal" else exact._RestrictedTruth
+    owner, _, method = name.partition(".")
     found = []
 
     @settings(max_examples=400, deadline=None, derandomize=True, database=None)
@@ -461,7 +461,7 @@ def test_planted_faults_are_noticed(monkeypatch, name, right, wrong):
         if said != expected:
             found.append(formula)
 
-    plant(monkeypatch, owner, name, right, wrong)
+    plant(monkeypatch, getattr(exact, owner), method, right, wrong)
     look()
     assert found
 

@@ -9,16 +9,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil
-from typing import assert_never
 
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.semantics.exact.algebraic import moved
-from roadproof.semantics.exact.exact import seconds
+from roadproof.semantics.exact.exact import Judge, seconds
+from roadproof.semantics.exact.signals import AbstractSignals, Courses
 from roadproof.semantics.exact.truth import (
-    ALWAYS,
-    NEVER,
     Cut,
     TruthSet,
     complement,
@@ -51,46 +49,43 @@ def judge_periodic(formula: Formula, given: Mapping[Formula, TruthSet], loop: Lo
     ``given``: the truth of its comparisons there. Raises ``InputError`` for one that is not given, and for
     intervals that reach over too many rounds.
     """
-    inside = interval(Fraction(0), loop.end, "[)")
-    done: dict[Formula, TruthSet] = {}
+    return _PeriodicJudge(Courses(AbstractSignals({}, {})), given, loop=loop).visit(formula)
 
-    def visit(current: Formula) -> TruthSet:
-        if current not in done:
-            known = given.get(current)
-            done[current] = intersection([_visit(current) if known is None else known, inside])
-        return done[current]
 
-    def ahead(body: Formula, low: Fraction, negated: bool = False) -> TruthSet:
-        truth = intersection([complement(visit(body)), inside]) if negated else visit(body)
-        return unrolled(truth, loop, low + 2 * loop.end + loop.period)
+@dataclass(frozen=True, kw_only=True)
+class _PeriodicJudge(Judge):
+    """A judge who says of each part when it is true before the end of the first round."""
 
-    def _visit(current: Formula) -> TruthSet:
-        match current:
-            case f.Truth(value):
-                return ALWAYS if value else NEVER
-            case f.Not(body):
-                return complement(visit(body))
-            case f.And(parts):
-                return intersection([visit(part) for part in parts])
-            case f.Or(parts):
-                return union([visit(part) for part in parts])
-            case f.Application(_, _, body):
-                return visit(body)
+    loop: Loop
+
+    def visit(self, formula: Formula) -> TruthSet:
+        if formula not in self.truths:
+            self.truths[formula] = self._inside(Judge.visit(self, formula))
+        return self.truths[formula]
+
+    def _visit(self, formula: Formula) -> TruthSet:
+        match formula:
             case f.Eventually(window, body):
-                low, high = _within(window, loop)
-                return eventually(low, high, ahead(body, low))
+                low, high = _within(window, self.loop)
+                return eventually(low, high, self._ahead(self.visit(body), low))
             case f.Always(window, body):
-                low, high = _within(window, loop)
-                return complement(eventually(low, high, ahead(body, low, negated=True)))
+                low, high = _within(window, self.loop)
+                failing = self._inside(complement(self.visit(body)))
+                return complement(eventually(low, high, self._ahead(failing, low)))
             case f.Until(left, window, right):
-                low, high = _within(window, loop)
-                return until(ahead(left, low), low, high, ahead(right, low))
-            case f.Compare() | f.Occupies() | f.Some() | f.Every():
+                low, high = _within(window, self.loop)
+                held, reached = (self._ahead(self.visit(x), low) for x in (left, right))
+                return until(held, low, high, reached)
+            case f.Compare():
                 raise InputError("a part of the formula is neither given nor combined from what is")
             case _:
-                assert_never(current)
+                return Judge._visit(self, formula)
 
-    return visit(formula)
+    def _inside(self, truth: TruthSet) -> TruthSet:
+        return intersection([truth, interval(Fraction(0), self.loop.end, "[)")])
+
+    def _ahead(self, truth: TruthSet, low: Fraction) -> TruthSet:
+        return unrolled(truth, self.loop, low + 2 * self.loop.end + self.loop.period)
 
 
 def unrolled(truth: TruthSet, loop: Loop, horizon: Fraction) -> TruthSet:

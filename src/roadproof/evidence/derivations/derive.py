@@ -9,6 +9,7 @@ enough there is no derivation. Nothing rests on this: Coq checks what comes out.
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 from typing import TypeAlias, assert_never
 
 from roadproof.evidence.derivations.parts import (
@@ -40,19 +41,16 @@ from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import terms_of, vehicles_of, with_values, without_names
 from roadproof.semantics.exact.algebraic import Root
-from roadproof.semantics.exact.exact import judge, seconds
+from roadproof.semantics.exact.exact import NOTHING_GIVEN, Judge, seconds
 from roadproof.semantics.exact.polynomial import Polynomial, polynomial
+from roadproof.semantics.exact.signals import Courses, DriveSignals
 from roadproof.semantics.exact.truth import (
     ALWAYS,
-    NEVER,
     Cut,
     TruthSet,
-    always,
     complement,
-    eventually,
     intersection,
     union,
-    until,
 )
 from roadproof.world.drive import Drive
 from roadproof.world.road import Road
@@ -82,50 +80,21 @@ class _Finding:
     road: Road
     lanes: Mapping[str, str]
     shapes: Shapes
-    truths: dict[tuple[Formula, tuple[tuple[str, int], ...]], TruthSet] = field(default_factory=dict)
+    judges: dict[tuple[tuple[str, int], ...], "_ScopedJudge"] = field(default_factory=dict)
     steps: int = 0
+
+    @cached_property
+    def courses(self) -> Courses:
+        return Courses(DriveSignals(self.drive))
 
     # --- when something is true ---------------------------------------------------------------------
 
     def when(self, formula: Formula, scope: Scope, positive: bool = True) -> TruthSet:
-        key = formula, tuple(sorted(scope.items()))
-        if key not in self.truths:
-            self.truths[key] = self._when(formula, scope)
-        return self.truths[key] if positive else complement(self.truths[key])
-
-    def _when(self, formula: Formula, scope: Scope) -> TruthSet:
-        match formula:
-            case f.Truth(value):
-                return ALWAYS if value else NEVER
-            case f.Compare():
-                return judge(formula, self.drive).truth(formula)
-            case f.Occupies(vehicle, name):
-                inside = occupies_formula(vehicle, self.road.lanelets[self.number(name, scope)])
-                return judge(inside, self.drive).truth(inside)
-            case f.Some(variable, domain, body):
-                return union(
-                    [self.when(body, {**scope, variable: e}) for e in self.members(domain, scope)] or [NEVER]
-                )
-            case f.Every(variable, domain, body):
-                return intersection(
-                    [self.when(body, {**scope, variable: e}) for e in self.members(domain, scope)]
-                )
-            case f.Not(body):
-                return complement(self.when(body, scope))
-            case f.And(parts):
-                return intersection([self.when(x, scope) for x in parts])
-            case f.Or(parts):
-                return union([self.when(x, scope) for x in parts] or [NEVER])
-            case f.Eventually(interval, body):
-                return eventually(*seconds(interval), self.when(body, scope))
-            case f.Always(interval, body):
-                return always(*seconds(interval), self.when(body, scope))
-            case f.Until(left, interval, right):
-                return until(self.when(left, scope), *seconds(interval), self.when(right, scope))
-            case f.Application(_, _, body):
-                return self.when(body, scope)
-            case _:
-                assert_never(formula)
+        key = tuple(sorted(scope.items()))
+        if key not in self.judges:
+            self.judges[key] = _ScopedJudge(self.courses, NOTHING_GIVEN, finding=self, scope=scope)
+        truth = self.judges[key].visit(formula)
+        return truth if positive else complement(truth)
 
     def number(self, name: str, scope: Scope) -> int:
         """Which lanelet a name stands for; a lane by its first one."""
@@ -340,6 +309,26 @@ class _Finding:
                 )
             found.append((piece, step))
         return put_together(found)
+
+
+@dataclass(frozen=True, kw_only=True)
+class _ScopedJudge(Judge):
+    """Judges formulas on the drive, and on its road with what bound variables stand for."""
+
+    finding: _Finding
+    scope: Scope
+
+    def _visit(self, formula: Formula) -> TruthSet:
+        match formula:
+            case f.Occupies(vehicle, name):
+                lanelet = self.finding.road.lanelets[self.finding.number(name, self.scope)]
+                return self.visit(occupies_formula(vehicle, lanelet))
+            case f.Some(variable, domain, body) | f.Every(variable, domain, body):
+                scopes = ({**self.scope, variable: e} for e in self.finding.members(domain, self.scope))
+                truths = [self.finding.when(body, scope) for scope in scopes]
+                return union(truths) if isinstance(formula, f.Some) else intersection(truths)
+            case _:
+                return Judge._visit(self, formula)
 
 
 def _cuts(is_seen: Callable[[Part, Signs], bool], part: Part, deeper: int) -> list[Fraction]:

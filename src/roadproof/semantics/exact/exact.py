@@ -77,7 +77,7 @@ def judge(
 
 
 @dataclass(frozen=True)
-class _Judge:
+class Judge:
     """Judges bound formulas on the same vehicles: each part that they share is judged once.
 
     ``truths``: when each part is true that was judged; ``given``: as of ``judge``.
@@ -126,7 +126,7 @@ class _Judge:
                 assert_never(formula)
 
 
-class DriveJudge(_Judge):
+class DriveJudge(Judge):
     """A judge who judges all parts of each formula."""
 
     def judgement(self, formula: Formula) -> Judgement:
@@ -139,11 +139,14 @@ class DriveJudge(_Judge):
         return self.visit(formula).at(Fraction(0))
 
 
-class LazyJudge(_Judge):
+@dataclass(frozen=True)
+class LazyJudge(Judge):
     """A judge who comes to the same truth, and judges no part that decides nothing.
 
-    So a part that cannot be judged may raise no error.
+    So a part that cannot be judged may raise no error. ``within``: all that matters.
     """
+
+    within: TruthSet = ALWAYS
 
     def holds(self, formula: Formula) -> bool:
         """Whether a formula is true at time 0."""
@@ -164,7 +167,7 @@ class LazyJudge(_Judge):
     def _visit(self, formula: Formula) -> TruthSet:
         match formula:
             case f.And(parts):
-                found = ALWAYS
+                found = self.within
                 for part in parts:
                     if found == NEVER:
                         break
@@ -173,7 +176,7 @@ class LazyJudge(_Judge):
             case f.Or(parts):
                 found = NEVER
                 for part in parts:
-                    if found == ALWAYS:
+                    if found == self.within:
                         break
                     found = union([found, self.visit(part)])
                 return found
@@ -181,7 +184,7 @@ class LazyJudge(_Judge):
                 end = self.visit(right)
                 return until(self.visit(left), *seconds(interval), end) if end != NEVER else NEVER
             case _:
-                return _Judge._visit(self, formula)
+                return Judge._visit(self, formula)
 
 
 def seconds(interval: Interval) -> tuple[Fraction, Fraction | None]:
@@ -200,7 +203,8 @@ def truth_within(formula: Formula, signals: Signals, low: Fraction, high: Fracti
 
     Raises ``InputError`` for a formula with temporal operators, or one that is not bound.
     """
-    return _RestrictedTruth(Courses(_EndedSignals(signals, high + 1)), interval(low, high)).visit(formula)
+    courses = Courses(_EndedSignals(signals, high + 1))
+    return _RestrictedJudge(courses, NOTHING_GIVEN, within=interval(low, high)).visit(formula)
 
 
 @dataclass(frozen=True)
@@ -218,40 +222,12 @@ class _EndedSignals:
 
 
 @dataclass(frozen=True)
-class _RestrictedTruth:
-    courses: Courses
-    within: TruthSet
-    truths: dict[Formula, TruthSet] = field(default_factory=dict)
-
-    def visit(self, formula: Formula) -> TruthSet:
-        found = self.truths.get(formula)
-        if found is None:
-            found = self.truths[formula] = self._visit(formula)
-        return found
+class _RestrictedJudge(LazyJudge):
+    """A judge of formulas without temporal operators, who looks at nothing outside of a set."""
 
     def _visit(self, formula: Formula) -> TruthSet:
-        match formula:
-            case f.Truth(value):
-                return self.within if value else NEVER
-            case f.Compare(left, op, right):
-                return intersection([self.within, compare_truth(self.courses, left, op, right)])
-            case f.Not(body):
-                return intersection([self.within, complement(self.visit(body))])
-            case f.And(parts):
-                kept = self.within
-                for part in parts:
-                    if kept == NEVER:
-                        break
-                    kept = intersection([kept, self.visit(part)])
-                return kept
-            case f.Or(parts):
-                found = NEVER
-                for part in parts:
-                    if found == self.within:
-                        break
-                    found = union([found, self.visit(part)])
-                return found
-            case f.Application(_, _, body):
-                return self.visit(body)
-            case _:
-                raise InputError("only a bound formula without temporal operators is judged within a set")
+        if isinstance(formula, f.Temporal | f.Occupies | f.Some | f.Every):
+            raise InputError("only a bound formula without temporal operators is judged within a set")
+        found = LazyJudge._visit(self, formula)
+        is_inside = isinstance(formula, f.And | f.Or | f.Application)
+        return found if is_inside else intersection([self.within, found])
