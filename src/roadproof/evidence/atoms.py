@@ -15,9 +15,9 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import Application, Formula
 from roadproof.logic.node import once
 from roadproof.logic.restore import as_syntax
-from roadproof.logic.rewrite import rename, road_names, terms_of, without_names
+from roadproof.logic.rewrite import leaves_of, rename, road_names, without_names
 from roadproof.logic.show import text
-from roadproof.logic.terms import Varying, leaves
+from roadproof.logic.terms import Varying
 
 ZONES = ("main", "merge", "depart")
 
@@ -101,7 +101,7 @@ def is_rigid(formula: Formula) -> bool:
     """Whether time cannot change ``formula``: it speaks of parameters and variables only."""
     if any(isinstance(part, f.Occupies | f.Some | f.Every) for part in f.subformulas(formula)):
         return False
-    return not any(isinstance(leaf, Varying) for side in terms_of(formula) for leaf in leaves(side))
+    return not any(isinstance(leaf, Varying) for leaf in leaves_of(formula))
 
 
 def _combined(formula: Formula) -> Iterator[Formula]:
@@ -161,22 +161,3 @@ def true_of_roads(memberships: Collection[tuple[f.Domain, str]]) -> list[str]:
         if len(facts) == len(ZONES):
             found.append(f"(or {' '.join(sorted(facts))})")
     return found
-
-
-def free_lanelets(formula: Formula) -> tuple[str, ...]:
-    """Names of lanelets that ``formula`` speaks of and no quantifier in it binds, sorted."""
-
-    def visit(current: Formula) -> frozenset[str]:
-        if current not in done:
-            inside = frozenset[str]().union(*map(visit, f.children(current)))
-            match current:
-                case f.Occupies(_, lanelet):
-                    done[current] = frozenset({lanelet})
-                case f.Some(variable, _, _) | f.Every(variable, _, _):
-                    done[current] = inside - {variable}
-                case _:
-                    done[current] = inside
-        return done[current]
-
-    done: dict[Formula, frozenset[str]] = {}
-    return tuple(sorted(visit(formula)))

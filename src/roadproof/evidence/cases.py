@@ -89,10 +89,4 @@ def _extrema(term: Term) -> Iterator[t.Maximum | t.Minimum]:
 
 
 def _replace(formula: Formula, old: Term, new: Term) -> Formula:
-    return map_terms(formula, lambda term: _replace_term(term, old, new))
-
-
-def _replace_term(term: Term, old: Term, new: Term) -> Term:
-    if term == old:
-        return new
-    return t.with_children(term, tuple(_replace_term(child, old, new) for child in t.children(term)))
+    return map_terms(formula, lambda term: t.put(term, old, new))

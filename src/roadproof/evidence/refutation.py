@@ -25,7 +25,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.node import once
-from roadproof.logic.rewrite import bounds_of, map_terms, terms_of, without_names
+from roadproof.logic.rewrite import bounds_of, leaves_of, map_terms, without_names
 from roadproof.semantics.exact import TruthSet, judge
 from roadproof.semantics.exact.signals import AbstractSignals
 from roadproof.semantics.exact.truth import from_switches
@@ -187,7 +187,7 @@ def _holds_at(part: f.Compare, known: tuple[tuple[str, Fraction], ...]) -> bool:
 @once
 def _named(part: f.Compare) -> Mapping[t.Leaf, str]:
     """What a state calls the signals and sizes of a comparison."""
-    found = {leaf for side in terms_of(part) for leaf in t.leaves(side)}
+    found = {*leaves_of(part)}
     named: dict[t.Leaf, str] = {
         leaf: f"{leaf.name}({leaf.vehicle})" for leaf in found if isinstance(leaf, t.Signal | t.Size)
     }

@@ -8,7 +8,7 @@ from roadproof.evidence.times import constant, rational
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import terms_of
+from roadproof.logic.rewrite import leaves_of, terms_of
 from roadproof.logic.terms import Term
 
 
@@ -185,7 +185,7 @@ def declarations(formulas: Iterable[Formula], bounds: Mapping[str, str]) -> list
     for formula in formulas:
         for side in terms_of(formula):
             ratios |= dict.fromkeys(_ratios(side))
-        for leaf in (leaf for side in terms_of(formula) for leaf in t.leaves(side)):
+        for leaf in leaves_of(formula):
             match leaf:
                 case t.Number():
                     pass

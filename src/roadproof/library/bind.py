@@ -13,7 +13,7 @@ from roadproof.library.specification import Library, is_within, source_of, unkno
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import terms_of, with_values
+from roadproof.logic.rewrite import leaves_of, with_values
 from roadproof.world.road import Lanelet, Road
 from roadproof.world.units import UNITS
 
@@ -60,7 +60,7 @@ def _bound(
 
 def refuse_variables(formula: Formula) -> None:
     """Raise ``InputError`` where a number declared with ``given`` has no value."""
-    for leaf in (leaf for side in terms_of(formula) for leaf in t.leaves(side)):
+    for leaf in leaves_of(formula):
         if isinstance(leaf, t.Variable):
             raise InputError(
                 f"'{leaf.name}' stands for every number, and has no value on a drive or in a recording: "

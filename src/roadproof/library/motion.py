@@ -30,7 +30,7 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.initial_conditions import pins
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.restore import as_syntax, term_as_syntax
-from roadproof.logic.rewrite import parameters_of, terms_of, vehicles_of
+from roadproof.logic.rewrite import leaves_of, parameters_of, vehicles_of
 from roadproof.logic.show import text
 from roadproof.logic.terms import Term
 from roadproof.world.signals import LIMITED
@@ -254,7 +254,7 @@ def _equalities(specification: Specification, values: Mapping[str, Fraction]) ->
 
 def limits_of(query: Query, name: str, model: Vehicle) -> Iterator[str]:
     """What a model says of the signals of a vehicle that a claim speaks of, and of their rates."""
-    found = {x for side in terms_of(query.formula) for x in t.leaves(side) if isinstance(x, t.Signal)}
+    found = {x for x in leaves_of(query.formula) if isinstance(x, t.Signal)}
     spoken = {x.name for x in found if x.vehicle == name}
     while more := {motion.RATES[x] for x in spoken if x in motion.RATES} - spoken:
         spoken |= more

@@ -12,7 +12,7 @@ from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare, Comparison, Formula
-from roadproof.logic.rewrite import terms_of
+from roadproof.logic.rewrite import leaves_of
 from roadproof.logic.syntax import SignalDeclaration
 from roadproof.world.signals import KINDS, Kind
 from roadproof.world.units import SI, UNITS
@@ -65,14 +65,14 @@ def from_kind(vehicle: str, op: Comparison, kind: Kind) -> Formula:
 
 def own_of(formulas: Iterable[Formula]) -> tuple[t.Own, ...]:
     """The own signals that occur, each of each vehicle, by name and vehicle."""
-    found = {leaf for side in terms_of(*formulas) for leaf in t.leaves(side) if isinstance(leaf, t.Own)}
+    found = {leaf for leaf in leaves_of(*formulas) if isinstance(leaf, t.Own)}
     return tuple(sorted(found, key=lambda x: (x.name, x.vehicle)))
 
 
 def vehicles_with_kind(formula: Formula) -> tuple[str, ...]:
     """The vehicles whose kind matters, by name."""
-    leaves = (leaf for side in terms_of(formula) for leaf in t.leaves(side))
-    return tuple(sorted({x.vehicle for x in leaves if isinstance(x, t.Size) and x.name == "kind"}))
+    sizes = (x for x in leaves_of(formula) if isinstance(x, t.Size))
+    return tuple(sorted({x.vehicle for x in sizes if x.name == "kind"}))
 
 
 def freedom(formula: Formula) -> dict[str, str]:

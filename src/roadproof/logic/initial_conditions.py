@@ -8,7 +8,7 @@ from typing import TypeAlias, assert_never
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula, Interval
-from roadproof.logic.rewrite import terms_of
+from roadproof.logic.rewrite import leaves_of
 from roadproof.logic.terms import Parameter, Term, constant_value
 
 
@@ -99,7 +99,7 @@ def _has_now(interval: Interval) -> bool:
 
 
 def _has_own(part: f.Compare) -> bool:
-    return any(isinstance(leaf, t.Own) for side in terms_of(part) for leaf in t.leaves(side))
+    return any(isinstance(leaf, t.Own) for leaf in leaves_of(part))
 
 
 # ``parameter <= value`` (sign 1) or ``parameter >= value`` (sign -1).

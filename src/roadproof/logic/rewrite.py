@@ -102,26 +102,28 @@ def terms_of(*formulas: Formula) -> Iterator[Term]:
                 yield interval.high
 
 
+def leaves_of(*formulas: Formula) -> Iterator[Leaf]:
+    """The leaves of every comparison and every interval bound, those of several once for each."""
+    for term in terms_of(*formulas):
+        yield from leaves(term)
+
+
 def parameters_of(formula: Formula) -> tuple[str, ...]:
     """Names of the parameters that occur, sorted."""
-    found = {leaf.name for t in terms_of(formula) for leaf in leaves(t) if isinstance(leaf, Parameter)}
-    return tuple(sorted(found))
+    return tuple(sorted({leaf.name for leaf in leaves_of(formula) if isinstance(leaf, Parameter)}))
 
 
 def vehicles_of(formula: Formula) -> tuple[str, ...]:
     """Names of the vehicles that occur, sorted."""
     found = {f.vehicle for f in subformulas(formula) if isinstance(f, Occupies)}
-    found |= {
-        leaf.vehicle for t in terms_of(formula) for leaf in leaves(t) if isinstance(leaf, Signal | Size | Own)
-    }
+    found |= {leaf.vehicle for leaf in leaves_of(formula) if isinstance(leaf, Signal | Size | Own)}
     found -= {""}  # an own signal of no vehicle
     return tuple(sorted(found))
 
 
 def signals_of(formulas: Iterable[Formula]) -> tuple[SignalName, ...]:
     """Names of the signals that occur, in the order of the list of signals."""
-    terms = terms_of(*formulas)
-    found = {leaf.name for term in terms for leaf in leaves(term) if isinstance(leaf, Signal)}
+    found = {leaf.name for leaf in leaves_of(*formulas) if isinstance(leaf, Signal)}
     return tuple(name for name in SIGNALS if name in found)
 
 
@@ -171,6 +173,32 @@ def road_names(formula: Formula) -> frozenset[str]:
             case _:
                 pass
     return frozenset(found)
+
+
+def free_roads(formula: Formula) -> frozenset[str]:
+    """Names of lanes and lanelets that ``formula`` speaks of and no quantifier in it binds."""
+    return _free_names(formula, with_domains=True)
+
+
+def free_lanelets(formula: Formula) -> tuple[str, ...]:
+    """Names of lanelets that ``formula`` speaks of and no quantifier in it binds, sorted."""
+    return tuple(sorted(_free_names(formula, with_domains=False)))
+
+
+def _free_names(formula: Formula, with_domains: bool) -> frozenset[str]:
+    @cache
+    def visit(current: Formula) -> frozenset[str]:
+        inside = frozenset[str]().union(*map(visit, children(current)))
+        match current:
+            case Occupies(_, lanelet):
+                return frozenset({lanelet})
+            case Some(variable, domain, _) | Every(variable, domain, _):
+                of = {domain.of} if with_domains and domain.kind in ("adjacent", "lanelets") else set()
+                return (inside - {variable}) | of
+            case _:
+                return inside
+
+    return visit(formula)
 
 
 def rename_vehicles(formula: Formula, roles: Mapping[str, str]) -> Formula:
@@ -284,7 +312,6 @@ def is_cubic_state(formula: Formula) -> bool:
     lanes = (f.Occupies, f.Some, f.Every)
     if not f.is_state(formula) or any(isinstance(x, lanes) for x in f.subformulas(formula)):
         return False
-    sides = list(terms_of(formula))
-    if any(isinstance(leaf, t.Own | t.Variable) for side in sides for leaf in t.leaves(side)):
+    if any(isinstance(leaf, t.Own | t.Variable) for leaf in leaves_of(formula)):
         return False
-    return any((signal_degree(side) or 0) > 2 for side in sides)
+    return any((signal_degree(side) or 0) > 2 for side in terms_of(formula))

@@ -209,6 +209,13 @@ def replace_leaves(term: Term, replace: Callable[[Leaf], Term]) -> Term:
     return with_children(term, tuple(replace_leaves(child, replace) for child in children(term)))
 
 
+def put(term: Term, old: Term, new: Term) -> Term:
+    """``term`` with ``new`` wherever it has ``old``."""
+    if term == old:
+        return new
+    return with_children(term, tuple(put(child, old, new) for child in children(term)))
+
+
 def constant_value(term: Term) -> Fraction | None:
     """The value of a term made of numbers only, else None.
 

@@ -94,7 +94,7 @@ def _not_negative(term: Term, strict: bool, sizes: Sizes) -> Circuit[Inequality[
             ordered = [_not_negative(t.subtract(chosen, x), False, sizes) for x in others]
         else:
             ordered = [_not_negative(t.subtract(x, chosen), False, sizes) for x in others]
-        cases.append(all_of([*ordered, _not_negative(_replace(plain, extremum, chosen), strict, sizes)]))
+        cases.append(all_of([*ordered, _not_negative(t.put(plain, extremum, chosen), strict, sizes)]))
     return any_of(cases)
 
 
@@ -136,12 +136,6 @@ def _walk(term: Term) -> list[Term]:
 def _inner_extremum(term: Term) -> t.Maximum | t.Minimum | None:
     found = [x for x in _walk(term) if isinstance(x, t.Maximum | t.Minimum)]
     return found[-1] if found else None
-
-
-def _replace(term: Term, old: Term, new: Term) -> Term:
-    if term == old:
-        return new
-    return t.with_children(term, tuple(_replace(x, old, new) for x in t.children(term)))
 
 
 def polynomial_of(term: Term, sizes: Sizes) -> Polynomial[Quantity]:

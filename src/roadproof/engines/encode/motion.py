@@ -16,7 +16,7 @@ from roadproof.engines.encode.unroll import Grid
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import own_of
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import terms_of
+from roadproof.logic.rewrite import leaves_of
 from roadproof.world.polynomial import Polynomial, affine, constant, variable
 from roadproof.world.signals import STARTING, OwnName, SignalName
 from roadproof.world.vehicle import Range, Vehicle
@@ -35,7 +35,7 @@ class OwnColumns:
 
 def own_columns(formula: Formula) -> tuple[OwnColumns, ...]:
     """The own signals of a bound formula, by name and vehicle."""
-    numbers = [abs(x.value) for side in terms_of(formula) for x in t.leaves(side) if isinstance(x, t.Number)]
+    numbers = [abs(x.value) for x in leaves_of(formula) if isinstance(x, t.Number)]
     widest = max(WIDEST, 2 * max(numbers, default=Fraction(0)))
     return tuple(OwnColumns(signal, range_of(signal, widest)) for signal in own_of([formula]))
 

@@ -52,24 +52,25 @@ Circuit: TypeAlias = Leaf[T] | All[T] | AnyOf[T]
 
 def all_of(parts: Iterable[Circuit[T]]) -> Circuit[T]:
     """The conjunction of ``parts``, flattened; false as soon as one part is."""
-    kept: dict[int, Circuit[T]] = {}
-    for part in parts:
-        if isinstance(part, AnyOf) and not part.parts:
-            return part
-        inner = part.parts if isinstance(part, All) else (part,)
-        kept |= {id(p): p for p in inner}
-    return next(iter(kept.values())) if len(kept) == 1 else All(tuple(kept.values()))
+    return _flattened(parts, All, AnyOf)
 
 
 def any_of(parts: Iterable[Circuit[T]]) -> Circuit[T]:
     """The disjunction of ``parts``, flattened; true as soon as one part is."""
+    return _flattened(parts, AnyOf, All)
+
+
+def _flattened(
+    parts: Iterable[Circuit[T]], kind: type[All[T] | AnyOf[T]], other: type[All[T] | AnyOf[T]]
+) -> Circuit[T]:
+    """``parts`` joined to one of a ``kind``; a part of the ``other`` kind without parts decides."""
     kept: dict[int, Circuit[T]] = {}
     for part in parts:
-        if isinstance(part, All) and not part.parts:
+        if isinstance(part, other) and not part.parts:
             return part
-        inner = part.parts if isinstance(part, AnyOf) else (part,)
+        inner = part.parts if isinstance(part, kind) else (part,)
         kept |= {id(p): p for p in inner}
-    return next(iter(kept.values())) if len(kept) == 1 else AnyOf(tuple(kept.values()))
+    return next(iter(kept.values())) if len(kept) == 1 else kind(tuple(kept.values()))
 
 
 def nodes(circuit: Circuit[T]) -> Iterator[Circuit[T]]:

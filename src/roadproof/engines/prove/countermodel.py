@@ -24,7 +24,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import HALF, code_of, kind_of
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import terms_of, vehicles_of, without_names
+from roadproof.logic.rewrite import leaves_of, vehicles_of, without_names
 from roadproof.semantics.exact import TruthSet
 from roadproof.world.road import Zone
 from roadproof.world.signals import FIXED
@@ -64,7 +64,7 @@ def _standing(
     """The values of one instant: those that are known, vehicles in places of their own, and 0."""
     known = {name.strip("|"): Fraction(x) for name, x in found.items() if not isinstance(x, bool)}
     values: Values = {}
-    for leaf in (leaf for side in terms_of(formula) for leaf in t.leaves(side)):
+    for leaf in leaves_of(formula):
         match leaf:
             case t.Variable(name, _):
                 values[name] = fixed[name]
@@ -325,7 +325,7 @@ def _fixed_values(query: Query, model: Model, defaults: Mapping[str, Fraction]) 
             if fixed.setdefault(name.removesuffix("."), value) != value:
                 return None
     rest: dict[str, Fraction] = dict(defaults)
-    for leaf in (leaf for side in terms_of(query.formula) for leaf in t.leaves(side)):
+    for leaf in leaves_of(query.formula):
         if isinstance(leaf, t.Variable):
             rest[leaf.name] = Fraction(0)
     for vehicle in vehicles_of(query.formula):

@@ -4,12 +4,12 @@ The prover says where it stopped (``Stop``). Together with the form of the claim
 forms need a kind of reasoning that the prover does not have, so that more work is in vain.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
 from roadproof.evidence.answers import proofs as kept
-from roadproof.evidence.codec import read
+from roadproof.evidence.answers.proofs import Cause as Cause
 from roadproof.library.motion import is_moving
 from roadproof.library.specification import Query
 from roadproof.logic import formula as f
@@ -36,39 +36,8 @@ class Stop(StrEnum):
     CERTIFICATE = "certificate"
 
 
-class Cause(StrEnum):
-    """Why there is no answer."""
-
-    WORK = "work"
-    CLOCK = "clock"
-    PROCESS = "process"
-    SOLVER = "solver"
-    PLACE = "place"
-    FACTS = "facts"
-    CERTIFICATE = "certificate"
-    LANES = "lanes"
-    INDUCTION = "induction"
-    ALTERNATION = "alternation"
-    FIRST_INSTANT = "first-instant"
-    SECOND_ORDER = "second-order"
-
-    @property
-    def words(self) -> str:
-        """The cause as a clause."""
-        return _WORDS[self][0]
-
-    @property
-    def effort_helps(self) -> bool:
-        """Whether more work can change the answer."""
-        return self in (Cause.WORK, Cause.CLOCK, Cause.PROCESS)
-
-    @property
-    def remedy(self) -> str:
-        """The option or premise that helps, as an imperative."""
-        return _WORDS[self][1]
-
-
-_WORDS = {
+# Each cause as a clause, and what helps.
+_WORDS: Mapping[Cause, tuple[str, str]] = {
     Cause.WORK: ("the work limit ended the search", "raise --effort"),
     Cause.CLOCK: ("the clock ended the search", "raise --timeout, or ask on an idle machine"),
     Cause.PROCESS: ("the process of this claim ended", "ask this claim alone, with --jobs 1"),
@@ -111,12 +80,8 @@ _WORDS = {
 }
 
 
-class Try(StrEnum):
-    """What was tried, in the order of trial."""
-
-    PROOF = "a proof"
-    TRACES = "traces"
-    DRIVES = "drives"
+# What was tried, in the order of trial, with its words.
+_TRIES: Mapping[kept.Tried, str] = {"proof": "a proof", "traces": "traces", "drives": "drives"}
 
 
 @dataclass(frozen=True)
@@ -124,27 +89,31 @@ class Doubt:
     """Why a claim ends UNKNOWN. ``units``: the work limit; ``detail``: what a solver said, or empty."""
 
     cause: Cause
-    tried: tuple[Try, ...]
+    tried: tuple[kept.Tried, ...]
     units: float
     detail: str = ""
 
     @property
+    def effort_helps(self) -> bool:
+        """Whether more work can change the answer."""
+        return self.cause in (Cause.WORK, Cause.CLOCK, Cause.PROCESS)
+
+    @property
     def remedy(self) -> str:
-        """What to do, with the work limit to ask with where more work can help."""
+        """The option or premise that helps, as an imperative; with the work limit where more can help."""
         more = f" (now {self.units:g})" if self.cause is Cause.WORK else ""
-        return f"{self.cause.remedy}{more}"
+        return f"{_WORDS[self.cause][1]}{more}"
 
     @property
     def kept(self) -> kept.Doubt:
         """As the answer has it."""
-        said = {
-            "cause": str(self.cause),
-            "tried": [x.name.lower() for x in self.tried],
-            "effort_helps": self.cause.effort_helps,
-            "remedy": self.remedy,
-            "detail": self.detail,
-        }
-        return read(kept.Doubt, said, "a doubt")
+        return kept.Doubt(
+            cause=self.cause,
+            tried=self.tried,
+            effort_helps=self.effort_helps,
+            remedy=self.remedy,
+            detail=self.detail,
+        )
 
     def __str__(self) -> str:
         if self.cause is Cause.WORK:
@@ -152,9 +121,10 @@ class Doubt:
         elif self.cause in (Cause.CLOCK, Cause.PROCESS):
             return self.detail
         else:
-            said = self.cause.words + (f" ({self.detail})" if self.detail else "")
-        helps = "may help" if self.cause.effort_helps else "does not help"
-        return f"{said}; tried: {', '.join(self.tried)}; more work {helps}: {self.remedy}"
+            said = _WORDS[self.cause][0] + (f" ({self.detail})" if self.detail else "")
+        helps = "may help" if self.effort_helps else "does not help"
+        tried = ", ".join(_TRIES[x] for x in self.tried)
+        return f"{said}; tried: {tried}; more work {helps}: {self.remedy}"
 
 
 def doubt_of(
@@ -162,8 +132,8 @@ def doubt_of(
 ) -> Doubt:
     """Why ``query``, asked under what is ``said``, ends UNKNOWN where the search stopped at ``stop``."""
     moving = is_moving(said)
-    tries = ((Try.PROOF, True), (Try.TRACES, not moving), (Try.DRIVES, seek_drive))
-    tried = tuple(x for x, done in tries if done)
+    done = {"proof": True, "traces": not moving, "drives": seek_drive}
+    tried = tuple(x for x in _TRIES if done[x])
     cause = _cause(query.formula, said, stop, effort.units)
     kept = cause in (Cause.CLOCK, Cause.PROCESS, Cause.SOLVER, Cause.CERTIFICATE)
     return Doubt(cause, tried, effort.units, detail if kept else "")

@@ -13,11 +13,11 @@ from heapq import heapify, heappop, heappush
 from itertools import count, pairwise
 from typing import TypeAlias, get_args
 
-from roadproof.evidence.atoms import free_lanelets, is_atom
+from roadproof.evidence.atoms import is_atom
 from roadproof.evidence.derivation import free_prefix
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import road_names
+from roadproof.logic.rewrite import free_lanelets, road_names
 from roadproof.world.models import shared_boundaries
 from roadproof.world.road import Lanelet, Road, Zone
 

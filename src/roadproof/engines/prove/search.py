@@ -17,13 +17,13 @@ from roadproof.engines.prove.grounding import Grounding, Universal
 from roadproof.engines.prove.roads import Roster, open_quantifiers
 from roadproof.engines.prove.states import CASE, StateChecker, is_plain, reason
 from roadproof.engines.solve.smt import Satisfiability
-from roadproof.evidence.atoms import free_lanelets, membership
+from roadproof.evidence.atoms import membership
 from roadproof.evidence.derivation import free_prefix
 from roadproof.evidence.sites import Lemma, Site
 from roadproof.evidence.times import ZERO, Moment, at, bound_parameters, constant, moment_of, read_moment
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import intervals_of, road_names
+from roadproof.logic.rewrite import free_lanelets, intervals_of, road_names
 from roadproof.runtime.budget import Budget
 
 MOST_ROUNDS = 400

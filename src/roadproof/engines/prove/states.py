@@ -19,7 +19,7 @@ from roadproof.evidence.times import rational
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import map_terms, terms_of
+from roadproof.logic.rewrite import leaves_of, map_terms
 from roadproof.runtime.budget import Budget
 
 Assumed: TypeAlias = Literal["typical", "near", "nothing"]
@@ -221,7 +221,7 @@ class _Question:
 
 
 def _leaves(formulas: Iterable[Formula]) -> list[t.Parameter | t.Variable | t.Signal | t.Size | t.Own]:
-    found = {leaf for x in formulas for side in terms_of(x) for leaf in t.leaves(side)}
+    found = {leaf for x in formulas for leaf in leaves_of(x)}
     return sorted((leaf for leaf in found if not isinstance(leaf, t.Number)), key=state.symbol)
 
 

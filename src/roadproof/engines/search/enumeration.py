@@ -23,7 +23,7 @@ from roadproof.logic import terms as t
 from roadproof.logic.custom_names import own_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.initial_conditions import conjuncts, pins
-from roadproof.logic.rewrite import bounds_of, intervals_of, terms_of, with_values
+from roadproof.logic.rewrite import bounds_of, intervals_of, leaves_of, terms_of, with_values
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.semantics.sampled.compiled import compile
@@ -220,8 +220,7 @@ class _Search:
 
 
 def _speaks_of(part: Formula, signal: str, vehicle: str) -> bool:
-    leaves = (x for side in terms_of(part) for x in t.leaves(side))
-    return any(isinstance(x, t.Signal) and (x.name, x.vehicle) == (signal, vehicle) for x in leaves)
+    return any(isinstance(x, t.Signal) and (x.name, x.vehicle) == (signal, vehicle) for x in leaves_of(part))
 
 
 def _measures(term: t.Term, dimension: t.Dimension) -> bool:

@@ -22,7 +22,14 @@ from roadproof.logic import terms as t
 from roadproof.logic.custom_names import code_of, told_range, vehicles_with_kind
 from roadproof.logic.formula import Formula, subformulas
 from roadproof.logic.initial_conditions import conjuncts
-from roadproof.logic.rewrite import bounds_of, intervals_of, parameters_of, signals_of, terms_of, with_values
+from roadproof.logic.rewrite import (
+    bounds_of,
+    intervals_of,
+    leaves_of,
+    parameters_of,
+    signals_of,
+    with_values,
+)
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.signals import AbstractSignals
@@ -54,7 +61,7 @@ def _is_about_kind(part: Formula, vehicle: str) -> bool:
     about = (f.Truth, f.Compare, f.Not, f.And, f.Or, f.Application)
     if not all(isinstance(x, about) for x in f.subformulas(part)):
         return False
-    leaves = [x for side in terms_of(part) for x in t.leaves(side) if not isinstance(x, t.Number)]
+    leaves = [x for x in leaves_of(part) if not isinstance(x, t.Number)]
     return bool(leaves) and all(x == t.Size("kind", vehicle) for x in leaves)
 
 

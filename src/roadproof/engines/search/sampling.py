@@ -19,7 +19,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare, Formula
 from roadproof.logic.initial_conditions import conjuncts
-from roadproof.logic.rewrite import terms_of
+from roadproof.logic.rewrite import leaves_of
 from roadproof.logic.terms import Own, Signal, Size
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.signals import AbstractSignals
@@ -98,8 +98,7 @@ def holds(formula: Formula, state: State, sizes: Mapping[Size, Fraction]) -> boo
 
 def signals_in(formula: Formula) -> list[Signal]:
     """The signals that it speaks of, in an order that depends on it only."""
-    leaves = (leaf for side in terms_of(formula) for leaf in t.leaves(side))
-    return sorted({x for x in leaves if isinstance(x, Signal)}, key=lambda x: (x.name, x.vehicle))
+    return sorted({x for x in leaves_of(formula) if isinstance(x, Signal)}, key=lambda x: (x.name, x.vehicle))
 
 
 def _axis(signal: Signal, low: Fraction, high: Fraction) -> _Axis:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
+from enum import StrEnum
 from functools import partial
 from typing import Annotated, Final, Literal, TypeAlias
 
@@ -153,25 +154,32 @@ READER = replace(Reader.of(Index, Preamble, Record, _entries), unchecked_kept=("
 # --- the answer ------------------------------------------------------------------------------------
 
 
+class Cause(StrEnum):
+    """Why there is no answer."""
+
+    WORK = "work"
+    CLOCK = "clock"
+    PROCESS = "process"
+    SOLVER = "solver"
+    PLACE = "place"
+    FACTS = "facts"
+    CERTIFICATE = "certificate"
+    LANES = "lanes"
+    INDUCTION = "induction"
+    ALTERNATION = "alternation"
+    FIRST_INSTANT = "first-instant"
+    SECOND_ORDER = "second-order"
+
+
+Tried: TypeAlias = Literal["proof", "traces", "drives"]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Doubt:
     """Of an UNKNOWN: its cause, what was tried, and the option or premise that helps."""
 
-    cause: Literal[
-        "work",
-        "clock",
-        "process",
-        "solver",
-        "place",
-        "facts",
-        "certificate",
-        "lanes",
-        "induction",
-        "alternation",
-        "first-instant",
-        "second-order",
-    ]
-    tried: tuple[Literal["proof", "traces", "drives"], ...]
+    cause: Cause
+    tried: tuple[Tried, ...]
     effort_helps: Annotated[bool, Doc("Whether a higher --effort or --timeout can change the answer.")]
     remedy: str
     detail: Annotated[str, Doc("What a solver or process said; else empty.")]

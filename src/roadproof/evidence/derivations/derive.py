@@ -39,7 +39,7 @@ from roadproof.library.bind import occupies as occupies_formula
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import terms_of, vehicles_of, with_values, without_names
+from roadproof.logic.rewrite import leaves_of, vehicles_of, with_values, without_names
 from roadproof.semantics.exact.algebraic import Root
 from roadproof.semantics.exact.exact import NOTHING_GIVEN, Judge, seconds
 from roadproof.semantics.exact.polynomial import Polynomial, polynomial
@@ -162,8 +162,7 @@ class _Finding:
             def is_seen(part: Part, signs: Signs) -> bool:
                 return occupies(self.shapes, formula.vehicle, lanelet, positive, part, signs)
         else:
-            leaves = (leaf for side in terms_of(formula) for leaf in t.leaves(side))
-            vehicles = {x.vehicle for x in leaves if isinstance(x, t.Signal)}
+            vehicles = {x.vehicle for x in leaves_of(formula) if isinstance(x, t.Signal)}
             op = formula.op if positive else f.NEGATED[formula.op]
 
             def is_seen(part: Part, signs: Signs) -> bool:

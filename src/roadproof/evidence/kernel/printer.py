@@ -17,7 +17,7 @@ from roadproof.evidence.kernel.names import Names, literal
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import rename, rename_vehicles, vehicles_of
+from roadproof.logic.rewrite import free_roads, rename, rename_vehicles, vehicles_of
 from roadproof.logic.terms import Term
 
 # Words of Text.v, which are those of the language; a new signal has none there.
@@ -361,25 +361,3 @@ def _replaced(function: _Function, actual: Sequence[str]) -> Formula:
     for place, (_, new) in enumerate(lanes):
         body = rename(body, f"?{place}", new)
     return body
-
-
-def free_roads(formula: Formula) -> frozenset[str]:
-    """Names of lanes and lanelets that ``formula`` speaks of and no quantifier in it binds."""
-    done: dict[Formula, frozenset[str]] = {}
-
-    def visit(current: Formula) -> frozenset[str]:
-        if current not in done:
-            inside = frozenset[str]().union(*map(visit, f.children(current)))
-            match current:
-                case f.Occupies(_, lanelet):
-                    inside = frozenset({lanelet})
-                case f.Some(variable, domain, _) | f.Every(variable, domain, _):
-                    inside -= {variable}
-                    if domain.kind in ("adjacent", "lanelets"):
-                        inside |= {domain.of}
-                case _:
-                    pass
-            done[current] = inside
-        return done[current]
-
-    return visit(formula)

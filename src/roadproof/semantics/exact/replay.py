@@ -3,7 +3,7 @@
 Both questions are formulas, put to the exact judge.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations
@@ -59,16 +59,9 @@ def first_overlap(drive: Drive, horizon: Fraction | None) -> Overlap | None:
 
     Touching is no overlap. ``horizon`` in s; None is for ever. Raises ``UsageError`` where negative.
     """
-    found: list[tuple[Cut, str, str]] = []
-    judge = LazyJudge.on(drive)
-    for a, b in combinations(sorted(drive.vehicles), 2):
-        begin = _first(judge.visit(boxes_overlap(a, b)), horizon)
-        if begin is not None:
-            found.append((begin, a, b))
-    if not found:
-        return None
-    begin, a, b = min(found)
-    return Overlap(a, b, *begin)
+    judge, pairs = LazyJudge.on(drive), combinations(sorted(drive.vehicles), 2)
+    found = _earliest((((a, b), judge.visit(boxes_overlap(a, b))) for a, b in pairs), horizon)
+    return None if found is None else Overlap(*found[1], *found[0])
 
 
 def first_breach(drive: Drive, limits: Mapping[str, Vehicle], horizon: Fraction | None) -> Breach | None:
@@ -77,19 +70,16 @@ def first_breach(drive: Drive, limits: Mapping[str, Vehicle], horizon: Fraction 
     Speeds and accelerations in their ranges, no reversing, |v_lat| <= lateral_share·v_lon. Raises
     ``UsageError`` for a vehicle without limits.
     """
-    found: list[tuple[Cut, str, str]] = []
-    for name in sorted(drive.vehicles):
-        if name not in limits:
-            raise UsageError(f"vehicle={name} has no limits to be checked against: name its model")
-        for rule, formula in _rules(name, limits[name]):
-            kept = judge(formula, drive).truth(formula)
-            begin = _first(complement(kept), horizon)
-            if begin is not None:
-                found.append((begin, name, rule))
-    if not found:
-        return None
-    begin, name, rule = min(found)
-    return Breach(name, rule, *begin)
+
+    def broken() -> Iterator[tuple[tuple[str, str], TruthSet]]:
+        for name in sorted(drive.vehicles):
+            if name not in limits:
+                raise UsageError(f"vehicle={name} has no limits to be checked against: name its model")
+            for rule, formula in _rules(name, limits[name]):
+                yield (name, rule), complement(judge(formula, drive).truth(formula))
+
+    found = _earliest(broken(), horizon)
+    return None if found is None else Breach(*found[1], *found[0])
 
 
 def _rules(name: str, limits: Vehicle) -> Iterator[tuple[str, Formula]]:
@@ -108,6 +98,14 @@ def _rules(name: str, limits: Vehicle) -> Iterator[tuple[str, Formula]]:
     lateral = Signal("v_lat", name)
     inside = conjunction(Compare(lateral, "<=", share), Compare(subtract(zero, share), "<=", lateral))
     yield f"|v_lat| <= {limits.lateral_share}·v_lon (heading)", inside
+
+
+def _earliest(
+    named: Iterable[tuple[tuple[str, str], TruthSet]], horizon: Fraction | None
+) -> tuple[Cut, tuple[str, str]] | None:
+    """What begins first by ``horizon``, and when."""
+    begins = ((_first(truth, horizon), who) for who, truth in named)
+    return min(((begin, who) for begin, who in begins if begin is not None), default=None)
 
 
 def _first(truth: TruthSet, horizon: Fraction | None) -> Cut | None:
