@@ -134,7 +134,7 @@ def _read_told(home: Path, given: tuple[Path, ...], find_label: FindLabel) -> Fo
             told.index = read.index_fields(content, str(home / INDEX))
         named = told.index if told.index is not None else read.said_of(journal.head) if journal else None
         told.library, told.specs = read_beside(named, home, given)
-        told.alone = journal is not None and told.index is None and read.stands_alone(journal.head)
+        told.alone = journal is not None and told.index is None and read.reader_of(journal.head).alone
         if told.index is not None:
             if library_of(told.index) not in (None, told.library.fingerprint):
                 told.unchecked = (OTHER_LIBRARY,)
@@ -179,7 +179,7 @@ def _add_journal(told: FolderStatements, journal: Journal, library: Library, fin
             told.problems.append(_rejected(line.path, line.fault))
         try:
             entries = read.read_record(journal.head, line.record, library, find_label)
-            said = index is not None and all(map(index.has, read.lines_of(journal.head, line.record)))
+            said = index is not None and all(map(index.has, read.reader_of(journal.head).lines(line.record)))
             in_index = said and {*map(_words_of, entries)} <= known
             for fault in faults_of_line(journal, line, line.record, entries, library, in_index):
                 told.problems.append(_rejected(line.path, fault))

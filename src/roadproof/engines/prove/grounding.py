@@ -115,7 +115,11 @@ class Grounding:
         self.session.tell(f"(assert {self.truth(formula, False, ZERO)})")
         self.origins = dict.fromkeys(self.origins, "")
 
-    def truth(self, formula: Formula, positive: bool, moment: Moment) -> str:
+    def truth(self, formula: Formula, positive: bool, moment: Moment, easily: bool = False) -> str:
+        """What it takes for ``formula`` to be true, or false, at ``moment``.
+
+        ``easily``: what is enough for it, and speaks of that moment alone.
+        """
         match formula:
             case f.Truth(value):
                 return "true" if value == positive else "false"
@@ -123,12 +127,12 @@ class Grounding:
                 applied = self.atom(name, moment)
                 return applied if positive else f"(not {applied})"
             case f.Not(body):
-                return self.truth(body, not positive, moment)
+                return self.truth(body, not positive, moment, easily)
             case f.And(parts) | f.Or(parts):
                 word = "and" if isinstance(formula, f.And) == positive else "or"
-                return f"({word} {' '.join(self.truth(p, positive, moment) for p in parts)})"
+                return f"({word} {' '.join(self.truth(p, positive, moment, easily) for p in parts)})"
             case f.Until() | f.Eventually() | f.Always() | f.Some() | f.Every():
-                return self._obligation(formula, positive, moment)
+                return "false" if easily else self._obligation(formula, positive, moment)
             case f.Compare() | f.Occupies():
                 raise ValueError(f"no atom: {type(formula).__name__}; abstract the formula first")
             case _:
@@ -194,7 +198,7 @@ class Grounding:
                         window,
                         lambda when: self._fails(until, site, window.low, when),
                         False,
-                        lambda when: self._easily(right, False, when),
+                        lambda when: self.truth(right, False, when, easily=True),
                     )
                 )
             case f.Some(variable, domain, body) | f.Every(variable, domain, body):
@@ -257,26 +261,9 @@ class Grounding:
                 window,
                 lambda when: self.truth(body, positive, when),
                 flat,
-                lambda when: self._easily(body, positive, when),
+                lambda when: self.truth(body, positive, when, easily=True),
             )
         )
-
-    def _easily(self, formula: Formula, positive: bool, moment: Moment) -> str:
-        """What is enough for ``formula`` to be true, or false, and speaks of ``moment`` alone."""
-        match formula:
-            case f.Truth() | f.Application():
-                return self.truth(formula, positive, moment)
-            case f.Not(body):
-                return self._easily(body, not positive, moment)
-            case f.And(parts) | f.Or(parts):
-                word = "and" if isinstance(formula, f.And) == positive else "or"
-                return f"({word} {' '.join(self._easily(p, positive, moment) for p in parts)})"
-            case f.Until() | f.Eventually() | f.Always() | f.Some() | f.Every():
-                return "false"
-            case f.Compare() | f.Occupies():
-                raise ValueError("abstract the formula first")
-            case _:
-                assert_never(formula)
 
     def _name_time(self, site: Site, earliest: Moment) -> Moment:
         name = self.names.setdefault(site, f"{self.prefixes[0]}{len(self.names) + 1}")

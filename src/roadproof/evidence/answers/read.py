@@ -3,7 +3,7 @@
 A reader is the ``READER`` of a module in this folder; modules of no other folder are looked at.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from importlib import import_module
 from pkgutil import iter_modules
@@ -80,7 +80,7 @@ def unchecked_of_kept(head: Fields, in_index: bool, has_drives: bool) -> tuple[s
 
     ``in_index``: an index beside them says all of them, so that their objects are compared with it.
     """
-    reader = _keeping(head.text("of"), head.where)
+    reader = reader_of(head)
     if in_index:
         beside = (x for x in reader.unchecked_kept if x in reader.record and x not in reader.index)
         return (*beside, "question")
@@ -93,14 +93,9 @@ def faults_of_head(head: Fields, index: Fields) -> Iterator[str]:
     if head.text("of") != index.text("schema"):
         yield f"{head.where}: of='{head.text('of')[:60]}', but the index beside it is {index.text('schema')}"
     said = said_of(head).content
-    for name in _keeping(head.text("of"), head.where).said:
+    for name in reader_of(head).said:
         if said.get(name) != index.content.get(name):
             yield f"{head.where}: {name} is not that of the index beside it"
-
-
-def lines_of(head: Fields, record: Fields) -> Iterable[object]:
-    """The objects of a kept answer as an index holds them."""
-    return _keeping(head.text("of"), head.where).lines(record)
 
 
 def faults_of_record(
@@ -110,7 +105,7 @@ def faults_of_record(
 
     ``in_index``: what an index says in the same words is looked at there.
     """
-    reader = _keeping(head.text("of"), head.where)
+    reader = reader_of(head)
     told = reader.file_name(record)
     if None not in (told, name) and told != name:
         yield f"{record.where}: it is kept as '{name}', but says that it is '{str(told)[:60]}'"
@@ -138,7 +133,7 @@ def read_record(
     head: Fields, record: Fields, library: Library, find_label: FindLabel = without_labels
 ) -> list[Entry]:
     """What a kept answer says, one of those under ``head``. Raises ``InputError``."""
-    reader = _keeping(head.text("of"), head.where)
+    reader = reader_of(head)
     return list(reader.read_record(record, Background(said_of(head), library, record.where, find_label)))
 
 
@@ -147,14 +142,14 @@ def record_fields(schema: str, where: str) -> tuple[str, ...]:
     return _keeping(schema, where).record
 
 
-def stands_alone(head: Fields) -> bool:
-    """Whether files may lie beside kept answers that none of these names. Raises ``InputError``."""
-    return _keeping(head.text("of"), head.where).alone
-
-
 def said_of(head: Fields) -> Fields:
     """What is said once for all kept answers. Raises ``InputError``."""
-    return Fields(head.mapping("said"), head.where, _keeping(head.text("of"), head.where).said)
+    return Fields(head.mapping("said"), head.where, reader_of(head).said)
+
+
+def reader_of(head: Fields) -> Reader:
+    """The reader of the kept answers under ``head``. Raises ``InputError``."""
+    return _keeping(head.text("of"), head.where)
 
 
 def _keeping(schema: str, where: str) -> Reader:
