@@ -316,7 +316,7 @@ def test_every_cause_says_what_was_tried_and_what_helps(cause):
     else:
         assert "tried: a proof" in str(found)
         assert found.remedy in str(found)
-        assert ("more work may help" in str(found)) == found.cause.effort_helps
+        assert ("more work may help" in str(found)) == found.effort_helps
 
 
 def test_the_whole_limit_is_named_not_that_of_a_part(capsys):
