@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil
+from typing import assert_never
 
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
@@ -76,10 +77,12 @@ class _PeriodicJudge(Judge):
                 low, high = _within(window, self.loop)
                 held, reached = (self._ahead(self.visit(x), low) for x in (left, right))
                 return until(held, low, high, reached)
-            case f.Compare():
+            case f.Truth() | f.Not() | f.And() | f.Or() | f.Application():
+                return Judge._visit(self, formula)
+            case f.Compare() | f.Occupies() | f.Some() | f.Every():
                 raise InputError("a part of the formula is neither given nor combined from what is")
             case _:
-                return Judge._visit(self, formula)
+                assert_never(formula)
 
     def _inside(self, truth: TruthSet) -> TruthSet:
         return intersection([truth, interval(Fraction(0), self.loop.end, "[)")])
