@@ -77,12 +77,18 @@ class ChangeFinding(Settled[Word]):
 ChangeFindings = tuple[ChangeFinding, ...]
 
 
-def changes_of(specification: Specification, query: Query, whole: bool = False) -> Iterator[Change]:
+def changes_of(
+    specification: Specification, query: Query, whole: bool = False, stated: bool = False
+) -> Iterator[Change]:
     """Every occurrence of a part of ``query``, but itself, by true and by false, from the outside in.
 
     A definition of one instant that compares numbers, or uses no other one, is one part unless
-    ``whole``: ``rssViolation``, ``aheadOf``, ``atLane``.
+    ``whole``: ``rssViolation``, ``aheadOf``, ``atLane``. ``stated``: whether changed queries are known to be
+    right, and are elaborated only where more than their text is asked for.
     """
+
+    def read(claim: Claim) -> Query:
+        return StatedQuery(specification, text(claim)) if stated else read_tree(specification, claim, "")
 
     def walk(
         current: Formula,
@@ -101,7 +107,7 @@ def changes_of(specification: Specification, query: Query, whole: bool = False) 
             shown = text(as_syntax(current))
             for value in (True, False):
                 changed = Claim(query.claim.given, as_syntax(rebuild(f.Truth(value))))
-                yield Change(where, shown, value, read_tree(specification, changed, ""), value == positive)
+                yield Change(where, shown, value, read(changed), value == positive)
         parts = () if isinstance(current, f.Application) else f.children(current)
         for place, part in enumerate(parts):
             inside = _inside(current, parts, place, rebuild)
@@ -247,7 +253,7 @@ class Redundancy(Unprepared):
 
     def recall(self, record: Record, shelf: EvidenceStore) -> tuple[str, ChangeFindings]:
         examining = _ExaminationJobs(self.basis, self._scenario(record.scenario))
-        changes = list(changes_of(self.basis.specification, examining.query, self.whole))
+        changes = list(changes_of(self.basis.specification, examining.query, self.whole, stated=True))
         if len(changes) != len(record.verdicts):
             raise InputError(
                 f"{len(record.verdicts)} findings on the {len(changes)} changes of {examining.scenario}"

@@ -9,7 +9,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 from roadproof.analysis.classify.classes import Class, Classes
 from roadproof.engines.search.impossible import parts
@@ -19,7 +19,7 @@ from roadproof.library.scenarios import LANE, MIN_DANGER, PAIR, TRIPLE, disturba
 from roadproof.library.specification import Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import with_values
+from roadproof.logic.rewrite import all_with_values
 from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
 from roadproof.recordings.evaluate.questions import (
     ROLES,
@@ -33,8 +33,9 @@ from roadproof.recordings.evaluate.questions import (
 from roadproof.recordings.evaluate.totals import Counts, without_repeats
 from roadproof.recordings.evaluate.traces import OTHER_LANE
 from roadproof.recordings.formats.recording import Recording
-from roadproof.semantics.sampled.compiled import compile
+from roadproof.semantics.sampled.compiled import Monitor, compile
 
+K = TypeVar("K")
 Situation: TypeAlias = tuple[str, int, int, int | None, str]
 """Recording, SV, POV, POV2 or None, lane."""
 
@@ -112,8 +113,7 @@ def questions_of(classes: Classes, specification: Specification, settings: Setti
     starts: list[Formula] = []
 
     def applied(name: str, vehicles: tuple[str, ...], lane: str = LANE) -> Formula:
-        query = apply_definition(specification, name, (*vehicles, lane), walk_of(specification))
-        return with_values(query.formula, settings.values)
+        return apply_definition(specification, name, (*vehicles, lane), walk_of(specification)).formula
 
     for group in classes.plan.groups:
         names = [*map(name_of, group.rows), *(one.name for one in classes.of(group))]
@@ -124,16 +124,21 @@ def questions_of(classes: Classes, specification: Specification, settings: Setti
                         pairs[MonitorKey(name, 0, role, lane)] = applied(name, vehicles, lane)
         elif group.vehicles == TRIPLE:
             for number in group.disturbances:
-                happens = disturbance(specification, number, group.vehicles).formula
-                starts.append(with_values(happens, settings.values))
+                starts.append(disturbance(specification, number, group.vehicles).formula)
             for name in names:
                 triples[of_three(name, 0)] = applied(name, group.vehicles)
+    begun = {START: f.disjunction(*map(_at_start, starts))}
     return replace(
         ask(settings, rate),
-        pairs=(compile(pairs),) if pairs else (),
-        triple_start=compile({START: f.disjunction(*map(_at_start, starts))}) if triples else None,
-        triples=(compile(triples),) if triples else (),
+        pairs=(_compiled(pairs, settings),) if pairs else (),
+        triple_start=_compiled(begun, settings) if triples else None,
+        triples=(_compiled(triples, settings),) if triples else (),
     )
+
+
+def _compiled(formulas: Mapping[K, Formula], settings: Settings) -> Monitor[K]:
+    valued = all_with_values(formulas.values(), settings.values)
+    return compile(dict(zip(formulas, valued, strict=True)))
 
 
 def _at_start(formula: Formula) -> Formula:
