@@ -288,7 +288,11 @@ def test_counts_are_those_of_the_matches_one_by_one(seed: int) -> None:
     )
     rows = [*foretold_rows(totals)]
     assert len(rows) == len(DANGER_TIMES) * len(TWO_SETS) * sum(map(len, SPEAKS.values()))
-    counted = {(*row[:4], label): n for row in rows for label, n in zip(LABELS, row[4], strict=True)}
+    counted = {
+        (Fraction(x.min_danger), x.set, x.scenario, x.driver, label): n
+        for x in rows
+        for label, n in zip(LABELS, (x.preventable, x.unpreventable, x.not_foreseen), strict=True)
+    }
     assert counted == {key: expected[key] for key in counted}
     assert sum(counted.values()) == sum(expected.values()) > 50
     for row in totals.rows:

@@ -9,18 +9,8 @@ from fractions import Fraction
 from functools import cached_property, partial
 from typing import Literal
 
+from roadproof.drivers import manoeuvres as m
 from roadproof.drivers.braking import AssistedBraking, Joined, Ramp
-from roadproof.drivers.manoeuvres import (
-    FIRST,
-    OTHER,
-    SECOND,
-    CutIn,
-    CutOut,
-    Deceleration,
-    Manoeuvre,
-    Values,
-    start_of,
-)
 from roadproof.drivers.models import MODELS
 from roadproof.drivers.stepped import course_of
 from roadproof.errors import UsageError
@@ -119,27 +109,27 @@ def require(specification: Specification, values: Mapping[str, Fraction]) -> Non
         )
 
 
-def drive_of(manoeuvre: Manoeuvre, model: str, values: Values, reading: DriverSettings) -> Drive:
+def drive_of(manoeuvre: m.Manoeuvre, model: str, values: m.Values, reading: DriverSettings) -> Drive:
     """The drive from these initial values on. Raises ``InputError`` where an instant of it is irrational."""
-    start = start_of(manoeuvre, values)
+    start = m.start_of(manoeuvre, values)
     middle, speed = start.middle, start.Ve0
     motion = partial(motion_of, (start.length, start.width))
     stepped = course_of(manoeuvre, values).along if MODELS[model].is_stepped else None
     match start:
-        case CutIn(dV0=slower, Vy=w):
+        case m.CutIn(dV0=slower, Vy=w):
             driven = _cut_in(model, start, reading) if stepped is None else stepped
             across = _across(start.lane, -w, start.width / 4 if reading.has_aeb(model) else _STILL)
             place = (start.dx0 + start.length, middle + start.lane)
-            others = {OTHER: motion(place, (speed - slower, -w), (), across)}
-        case CutOut(Vy=w):
+            others = {m.OTHER: motion(place, (speed - slower, -w), (), across)}
+        case m.CutOut(Vy=w):
             onset = reading.parameters.cc_wander / w + reading.parameters.reaction
             driven = _along(model, speed, onset, reading) if stepped is None else stepped
             leaves = motion((start.first, middle), (speed, w), (), _across(start.lane, w))
-            others = {FIRST: leaves, SECOND: motion((start.second, middle), (start.Vf0, _STILL), ())}
-        case Deceleration():
+            others = {m.FIRST: leaves, m.SECOND: motion((start.second, middle), (start.Vf0, _STILL), ())}
+        case m.Deceleration():
             driven = motion_in_deceleration(model, start, reading) if stepped is None else stepped
             place, slow = (start.dx0 + start.length, middle), speed - start.dV0
-            others = {OTHER: motion(place, (slow, _STILL), _braking(slow, start))}
+            others = {m.OTHER: motion(place, (slow, _STILL), _braking(slow, start))}
     return Drive({SUBJECT: motion((_STILL, middle), (speed, _STILL), driven), **others})
 
 
@@ -150,9 +140,9 @@ def rest_of(drive: Drive) -> Fraction:
     return max(lasting, default=_STILL)
 
 
-def road_of(manoeuvre: Manoeuvre, values: Values) -> Road:
+def road_of(manoeuvre: m.Manoeuvre, values: m.Values) -> Road:
     """Two lanes without end, in the middle of which the vehicles begin."""
-    lane = start_of(manoeuvre, values).lane
+    lane = m.start_of(manoeuvre, values).lane
     lanelets = tuple(
         Lanelet(name, name, "main", "main", (None, None), (lane * k, lane * (k + 1)))
         for k, name in enumerate(_BOTH_LANES)
@@ -171,7 +161,7 @@ def _across(lane: Fraction, w: Fraction, past: Fraction = _STILL) -> list[Across
     return [*before, (steering, -w / steering)]
 
 
-def _onset(model: str, start: CutIn, reading: DriverSettings) -> Fraction | None:
+def _onset(model: str, start: m.CutIn, reading: DriverSettings) -> Fraction | None:
     """When SV begins to brake, or to respond, in a cut-in; None is never."""
     known = reading.parameters
     intrusion = (start.dy0 / 2 + known.r157_past) / start.Vy
@@ -186,7 +176,7 @@ def _onset(model: str, start: CutIn, reading: DriverSettings) -> Fraction | None
             return _careful_onset(start, reading)
 
 
-def _careful_onset(start: CutIn, reading: DriverSettings) -> Fraction | None:
+def _careful_onset(start: m.CutIn, reading: DriverSettings) -> Fraction | None:
     known, options = reading.parameters, reading.choices
     weighed = known.cc_evaluation if options.cc_perception == "time" else _STILL
     match options.cc_perception:
@@ -206,13 +196,13 @@ def _careful_onset(start: CutIn, reading: DriverSettings) -> Fraction | None:
     return max(seen + weighed, opens) + known.cc_delay
 
 
-def _cut_in(model: str, start: CutIn, reading: DriverSettings) -> list[Along]:
+def _cut_in(model: str, start: m.CutIn, reading: DriverSettings) -> list[Along]:
     if reading.has_aeb(model):
         return _aided(start, reading).pieces(start.Ve0)
     return _along(model, start.Ve0, _onset(model, start, reading), reading)
 
 
-def _aided(start: CutIn, reading: DriverSettings) -> AssistedBraking:
+def _aided(start: m.CutIn, reading: DriverSettings) -> AssistedBraking:
     """The braking of the careful driver, who may never brake, and of AEB from full wrap on."""
     known, wrap = reading.parameters, (start.dy0 + start.width) / start.Vy
     onset, ramp = _careful_onset(start, reading), known.cc_ramp
@@ -220,7 +210,7 @@ def _aided(start: CutIn, reading: DriverSettings) -> AssistedBraking:
     return AssistedBraking(driver, Ramp(wrap, ramp, known.aeb_braking), reading.choices.cc_aeb)
 
 
-def speeds_of(start: CutIn, reading: DriverSettings) -> tuple[Fraction, ...]:
+def speeds_of(start: m.CutIn, reading: DriverSettings) -> tuple[Fraction, ...]:
     """What ``follows_cutIn_careful`` takes of AEB (m/s): the speeds from which the ramps would have begun.
 
     Where a ramp has no part in the motion it is a speed from which the braking would be full by then.
@@ -247,7 +237,7 @@ def speeds_of(start: CutIn, reading: DriverSettings) -> tuple[Fraction, ...]:
             return tuple(begun(*x) if aided.at(x[0]) < aeb.full else full for x in (first, second))
 
 
-def motion_in_deceleration(model: str, start: Deceleration, reading: DriverSettings) -> list[Along]:
+def motion_in_deceleration(model: str, start: m.Deceleration, reading: DriverSettings) -> list[Along]:
     """How SV moves until it stands; nothing where it never brakes. Raises ``InputError`` as ``drive_of``."""
     known, rate = reading.parameters, start.dGdt
     if model == "rss":
@@ -260,7 +250,7 @@ def motion_in_deceleration(model: str, start: Deceleration, reading: DriverSetti
     return _along(model, start.Ve0, None if seen is None else seen + known.reaction, reading)
 
 
-def _braking(speed: Fraction, start: Deceleration) -> list[Along]:
+def _braking(speed: Fraction, start: m.Deceleration) -> list[Along]:
     """POV brakes, at once or harder and harder, until it stands."""
     if start.dGdt is None:
         return _brakes(speed, start.Gx)

@@ -8,29 +8,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
-from roadproof.drivers import gradual
+from roadproof.drivers import gradual, models
+from roadproof.drivers import manoeuvres as m
 from roadproof.drivers.driving import DriverSettings, speeds_of
-from roadproof.drivers.manoeuvres import (
-    CutIn,
-    CutOut,
-    Deceleration,
-    Manoeuvre,
-    Plane,
-    Start,
-    Values,
-    line,
-    start_of,
-)
-from roadproof.drivers.models import (
-    GRADUAL,
-    MODELS,
-    boundary_name,
-    follows,
-    foreseen,
-    touched,
-    unpreventable,
-    untouched,
-)
 from roadproof.library.bind import bind
 from roadproof.library.elaborate import apply_definition
 from roadproof.library.specification import Specification
@@ -42,38 +22,40 @@ Side: TypeAlias = Literal["unpreventable", "preventable"]
 SIDES: tuple[Side, ...] = ("unpreventable", "preventable")
 
 
-def claim_of(manoeuvre: Manoeuvre, model: str, values: Values, side: Side, reading: DriverSettings) -> str:
+def claim_of(
+    manoeuvre: m.Manoeuvre, model: str, values: m.Values, side: Side, reading: DriverSettings
+) -> str:
     """What the drive from these values shows: its side, the model followed, and what comes of it.
 
     Of a controller that is stepped: only how the drive begins, and what comes of it. Where POV's braking
     grows at a finite rate: that SV follows its model, and what comes of it.
     """
-    vehicles, start = manoeuvre.vehicles, start_of(manoeuvre, values)
-    met = touched(vehicles) if side == "unpreventable" else untouched(vehicles)
+    vehicles, start = manoeuvre.vehicles, m.start_of(manoeuvre, values)
+    met = models.touched(vehicles) if side == "unpreventable" else models.untouched(vehicles)
     numbers = _numbers(start, reading, reading.has_aeb(model))
-    if isinstance(start, Deceleration) and start.dGdt is not None:
-        driven = follows(GRADUAL, model, vehicles, numbers)
-        return f"{foreseen(GRADUAL, vehicles)} and {driven} and {met}"
-    begins = foreseen(manoeuvre.name, vehicles)
-    if MODELS[model].is_stepped:
+    if isinstance(start, m.Deceleration) and start.dGdt is not None:
+        driven = models.follows(models.GRADUAL, model, vehicles, numbers)
+        return f"{models.foreseen(models.GRADUAL, vehicles)} and {driven} and {met}"
+    begins = models.foreseen(manoeuvre.name, vehicles)
+    if models.MODELS[model].is_stepped:
         return f"{begins} and {met}"
-    boundary = unpreventable(manoeuvre.name, model, vehicles)
-    driven = follows(manoeuvre.name, model, vehicles, numbers)
+    boundary = models.unpreventable(manoeuvre.name, model, vehicles)
+    driven = models.follows(manoeuvre.name, model, vehicles, numbers)
     if side == "unpreventable":
         return f"{boundary} and {driven} and {met}"
     return f"{begins} and not {boundary} and {driven} and {met}"
 
 
-def _numbers(start: Start, reading: DriverSettings, has_aeb: bool) -> tuple[str, ...]:
+def _numbers(start: m.Start, reading: DriverSettings, has_aeb: bool) -> tuple[str, ...]:
     speed = _number(start.Ve0, "m/s")
     match start:
-        case CutIn():
+        case m.CutIn():
             aided = speeds_of(start, reading) if has_aeb else ()
             place = _number(start.middle + start.lane, "m")
             return (place, _number(start.dy0, "m"), speed, *(_number(x, "m/s") for x in aided))
-        case CutOut():
+        case m.CutOut():
             return (_number(start.middle, "m"), speed)
-        case Deceleration():
+        case m.Deceleration():
             braking = _number(start.Gx, "m/s^2")
             if start.dGdt is None:
                 return (speed, braking)
@@ -114,7 +96,7 @@ class Line:
 
 
 def truths(
-    specification: Specification, plane: Plane, model: str, values: Mapping[str, Fraction]
+    specification: Specification, plane: m.Plane, model: str, values: Mapping[str, Fraction]
 ) -> Iterator[TruthSet]:
     """Where a model that is not stepped cannot prevent a collision on each line of a plane, in order.
 
@@ -124,9 +106,9 @@ def truths(
     if gradual.RATE in plane.fixed:
         reading = DriverSettings(values, specification.options)
         return (gradual.line(plane, model, reading, row) for row in plane.rows)
-    name, vehicles = boundary_name(plane.manoeuvre.name, model), plane.manoeuvre.vehicles
+    name, vehicles = models.boundary_name(plane.manoeuvre.name, model), plane.manoeuvre.vehicles
     formula = bind(apply_definition(specification, name, vehicles).formula, _NO_ROAD, {}, values)
-    return (line(plane, formula, row) for row in plane.rows)
+    return (m.line(plane, formula, row) for row in plane.rows)
 
 
 def told_line(row: Fraction, true: TruthSet) -> Line:

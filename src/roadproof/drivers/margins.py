@@ -12,20 +12,10 @@ from itertools import pairwise
 from roadproof.drivers import stepped
 from roadproof.drivers.manoeuvres import MANOEUVRES, ManoeuvreName
 from roadproof.errors import InputError
+from roadproof.logic import terms as t
 from roadproof.logic.custom_names import own_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import map_terms, with_values
-from roadproof.logic.terms import (
-    Leaf,
-    Own,
-    Parameter,
-    Signal,
-    SignalName,
-    Size,
-    SizeName,
-    Term,
-    replace_leaves,
-)
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.exact import truth_within
 from roadproof.semantics.exact.polynomial import Polynomial, polynomial
@@ -50,16 +40,16 @@ _PLACES = 2
 class State:
     """The vehicles at one instant: signals and sizes by name and vehicle (SI)."""
 
-    signals: Mapping[tuple[SignalName, str], Fraction]
-    sizes: Mapping[tuple[SizeName, str], Fraction]
+    signals: Mapping[tuple[t.SignalName, str], Fraction]
+    sizes: Mapping[tuple[t.SizeName, str], Fraction]
 
-    def along(self, moved: str = "", begin: Fraction = Fraction(0), own: Sequence[Own] = ()) -> LineSignals:
+    def along(self, moved: str = "", begin: Fraction = Fraction(0), own: Sequence[t.Own] = ()) -> LineSignals:
         """As signals; what runs is where the front of ``moved`` is, from ``begin`` on, or ``own`` signals."""
-        courses: dict[Signal | Own, Polynomial] = {}
-        courses |= {Signal(*key): polynomial(x) for key, x in self.signals.items()}
-        courses |= {Signal("s", moved): polynomial(begin, Fraction(1))} if moved else {}
+        courses: dict[t.Signal | t.Own, Polynomial] = {}
+        courses |= {t.Signal(*key): polynomial(x) for key, x in self.signals.items()}
+        courses |= {t.Signal("s", moved): polynomial(begin, Fraction(1))} if moved else {}
         courses |= {x: polynomial(Fraction(0), Fraction(1)) for x in own}
-        return LineSignals(courses, {Size(*key): x for key, x in self.sizes.items()}, unknown_at_instant)
+        return LineSignals(courses, {t.Size(*key): x for key, x in self.sizes.items()}, unknown_at_instant)
 
     def gap(self, behind: str, ahead: str) -> Fraction:
         """From the front of one vehicle to the rear of the other, along the road."""
@@ -79,7 +69,7 @@ class State:
         """The initial values of a manoeuvre that say this state; ``length`` is that of a middling vehicle."""
         first, other, last = vehicles[0], vehicles[1], vehicles[-1]
         signals, speed = self.signals, self.signals["v_lon", first]
-        box: tuple[SizeName, ...] = ("length", "width")
+        box: tuple[t.SizeName, ...] = ("length", "width")
         length, width = ((self.sizes[x, first] + self.sizes[x, last]) / 2 for x in box)
         gap, nothing = self.gap(first, other), Fraction(0)
         match manoeuvre:
@@ -157,10 +147,12 @@ def _distance(ends: Sequence[float], here: Fraction) -> float | None:
 def _varying(formula: Formula, name: str) -> Formula:
     """The formula with a parameter as a signal of its own."""
 
-    def change(leaf: Leaf) -> Term:
-        return Own(name, "", leaf.dimension) if isinstance(leaf, Parameter) and leaf.name == name else leaf
+    def change(leaf: t.Leaf) -> t.Term:
+        return (
+            t.Own(name, "", leaf.dimension) if isinstance(leaf, t.Parameter) and leaf.name == name else leaf
+        )
 
-    return map_terms(formula, lambda term: replace_leaves(term, change))
+    return map_terms(formula, lambda term: t.replace_leaves(term, change))
 
 
 # --- controllers ---------------------------------------------------------------------------------

@@ -9,15 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal, TypeAlias, get_args
 
-from roadproof.drivers.models import (
-    BEGINS,
-    DRIVEN_BY,
-    DRIVERS,
-    MODELS,
-    PREVENTION,
-    SCENARIOS,
-    courses_of,
-)
+from roadproof.drivers import models
 from roadproof.errors import InputError, UsageError
 from roadproof.library.elaborate import elaborate
 from roadproof.library.loading import bundled_library
@@ -45,12 +37,12 @@ class Restriction:
     @property
     def options(self) -> dict[str, str]:
         """As options of ``prevention.spec``."""
-        return {PREVENTION: self.side, DRIVEN_BY: self.model, BEGINS: self.about}
+        return {models.PREVENTION: self.side, models.DRIVEN_BY: self.model, models.BEGINS: self.about}
 
     @property
     def scenarios(self) -> tuple[int, ...]:
         """The scenarios that begin so; all others are as they are."""
-        return courses_of(self.model) if self.about == "scenarios" else ()
+        return models.courses_of(self.model) if self.about == "scenarios" else ()
 
     def as_data(self) -> dict[str, object]:
         """What an answer says of it, as plain data."""
@@ -62,18 +54,18 @@ class Restriction:
         }
 
     def __str__(self) -> str:
-        said = f"{self.side} ({MODELS[self.model].title})"
+        said = f"{self.side} ({models.MODELS[self.model].title})"
         if self.about == "scenarios":
             numbers = ", ".join(map(str, self.scenarios))
             return f"{said}: scenarios {numbers} begin so, others are as they are"
-        kinds = " or ".join(x for x in MODELS[self.model].manoeuvres if x != "cut-out")
+        kinds = " or ".join(x for x in models.MODELS[self.model].manoeuvres if x != "cut-out")
         return f"{said}: drives between two vehicles begin so, with a {kinds}"
 
 
 EVERY = tuple(
     Restriction(side, model.name, about)
     for side in get_args(Side)
-    for model in MODELS.values()
+    for model in models.MODELS.values()
     for about in get_args(About)
 )
 
@@ -106,7 +98,7 @@ def left_open(specification: Specification) -> Specification | None:
     """
     if restriction_of(specification.options) is None:
         return None
-    found = {x.name: x for x in parse_library(_OPEN, PREVENTION) if isinstance(x, Definition)}
+    found = {x.name: x for x in parse_library(_OPEN, models.PREVENTION) if isinstance(x, Definition)}
     definitions = {**specification.definitions, **found}
     return Specification(specification.library, specification.set_name, specification.options, definitions)
 
@@ -116,7 +108,7 @@ def unrestricted(specification: Specification) -> Specification:
     options = specification.options
     if restriction_of(options) is None:
         return specification
-    return specification.library.select(specification.set_name, {**options, BEGINS: "drives"})
+    return specification.library.select(specification.set_name, {**options, models.BEGINS: "drives"})
 
 
 def said_in(query: Query, home: Specification, there: Specification) -> Query:
@@ -170,32 +162,33 @@ def check_drives(options: Mapping[str, str]) -> None:
     found = restriction_of(options)
     if found is not None and found.about == "scenarios":
         raise UsageError(
-            f"{BEGINS}=scenarios: drives that do not begin so would all be gaps; ask with {BEGINS}=drives"
+            f"{models.BEGINS}=scenarios: drives that do not begin so would all be gaps; ask with "
+            f"{models.BEGINS}=drives"
         )
 
 
 def files_for(given: Sequence[Source]) -> list[Path | Source]:
     """The specification files that a restriction needs, with those that are given on top."""
-    needed = [on_request()[name] for name in (DRIVERS, PREVENTION)]
+    needed = [on_request()[name] for name in (models.DRIVERS, models.PREVENTION)]
     mine = {str(path) for path in needed}
     return [*needed, *(x for x in given if x.name not in mine)]
 
 
 def names_for(given: Sequence[Path]) -> list[Path]:
     """As ``files_for``, of names as ``--spec`` takes them."""
-    needed = [Path(DRIVERS), Path(PREVENTION)]
+    needed = [Path(models.DRIVERS), Path(models.PREVENTION)]
     return [*needed, *(x for x in given if x not in needed)]
 
 
 def check_library(library: Library) -> None:
     """Raises ``InputError`` where a user's file says how a scenario begins, which would be lost."""
-    for number in SCENARIOS.values():
+    for number in models.SCENARIOS.values():
         name = initial_condition_name(number)
         blocks = [block.definitions for block in library.sets.values()]
-        blocks += [x for (option, _), x in library.variants.items() if option != BEGINS]
+        blocks += [x for (option, _), x in library.variants.items() if option != models.BEGINS]
         changed = library.definitions[name] != bundled_library().definitions[name]
         if changed or any(name == x.name for block in blocks for x in block):
             raise InputError(
-                f"{name}: your specification file and {PREVENTION}.spec both define it; "
+                f"{name}: your specification file and {models.PREVENTION}.spec both define it; "
                 "rename your definition, or use a formula with the conditions of driver.spec"
             )

@@ -11,19 +11,8 @@ from functools import cached_property
 from itertools import groupby
 from math import ceil
 
+from roadproof.drivers import manoeuvres as m
 from roadproof.drivers.fuzzy import HERTZ, TICKS, Controller, Scale, scale_of
-from roadproof.drivers.manoeuvres import (
-    CutIn,
-    CutOut,
-    Deceleration,
-    Manoeuvre,
-    Plane,
-    Start,
-    Values,
-    is_possible,
-    spread,
-    start_of,
-)
 from roadproof.errors import InputError
 from roadproof.world.drive import Along
 
@@ -82,17 +71,17 @@ class _Other:
         return self.speed * self.speed // (2 * self.braking), 0
 
 
-def _other(start: Start) -> tuple[_Other, int]:
+def _other(start: m.Start) -> tuple[_Other, int]:
     """The other vehicle, and SV's speed, in units."""
     speed, lateral, seen = start.Ve0, Fraction(0), 0
     beside, braking = Fraction(0), Fraction(0)
     match start:
-        case CutIn():
+        case m.CutIn():
             gap, other, beside, lateral = start.dx0, speed - start.dV0, start.dy0, start.Vy
-        case CutOut():
+        case m.CutOut():
             gap, other = start.second - start.length, start.Vf0
             seen = int(_WANDER / start.Vy * HERTZ) + 1
-        case Deceleration():
+        case m.Deceleration():
             gap, other, braking = start.dx0, speed - start.dV0, start.Gx
     stops = other**2 / (2 * braking) if braking else Fraction(0)
     lengths = 2 * start.length
@@ -110,12 +99,12 @@ def _other(start: Start) -> tuple[_Other, int]:
     return units, scale.speed(speed)
 
 
-def course_of(manoeuvre: Manoeuvre, values: Values, to_the_end: bool = True) -> Course:
+def course_of(manoeuvre: m.Manoeuvre, values: m.Values, to_the_end: bool = True) -> Course:
     """How SV drives from these values on; not ``to_the_end``: only whether the boxes touch, no brakings.
 
     Raises ``InputError`` where SV would have to look too often.
     """
-    other, speed = _other(start_of(manoeuvre, values))
+    other, speed = _other(m.start_of(manoeuvre, values))
     controller = Controller(other.scale)
     brakings: list[tuple[int, int]] = []
     gone, time, touches = 0, 0, False
@@ -240,19 +229,19 @@ def _held(scale: Scale, brakings: list[tuple[int, int]]) -> Iterator[tuple[int, 
         yield sum(count for count, _ in same), scale.to_acceleration(braking)
 
 
-def places_of(plane: Plane) -> tuple[Fraction, ...]:
+def places_of(plane: m.Plane) -> tuple[Fraction, ...]:
     """The places of each line that are looked at."""
-    return tuple(spread(*plane.along, PLACES))
+    return tuple(m.spread(*plane.along, PLACES))
 
 
-def labels_of(plane: Plane) -> tuple[tuple[bool, ...], ...]:
+def labels_of(plane: m.Plane) -> tuple[tuple[bool, ...], ...]:
     """For each row, at which places the boxes touch; nowhere where a vehicle would go backwards."""
     return tuple(tuple(_label(plane, row, place) for place in places_of(plane)) for row in plane.rows)
 
 
-def _label(plane: Plane, row: Fraction, place: Fraction) -> bool:
+def _label(plane: m.Plane, row: Fraction, place: Fraction) -> bool:
     values = plane.values(row, place)
-    return is_possible(values) and course_of(plane.manoeuvre, values, False).touches
+    return m.is_possible(values) and course_of(plane.manoeuvre, values, False).touches
 
 
 def spans_of(places: tuple[Fraction, ...], labels: tuple[bool, ...]) -> Iterator[tuple[Fraction, Fraction]]:
@@ -264,7 +253,7 @@ def spans_of(places: tuple[Fraction, ...], labels: tuple[bool, ...]) -> Iterator
 
 
 def beside_change(
-    plane: Plane, labels: tuple[tuple[bool, ...], ...], wanted: bool
+    plane: m.Plane, labels: tuple[tuple[bool, ...], ...], wanted: bool
 ) -> Iterator[dict[str, Fraction]]:
     """Initial values of that label whose neighbour has the other, those of middle rows first; then any."""
     middle, places = (plane.across[0] + plane.across[1]) / 2, places_of(plane)

@@ -14,31 +14,22 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from roadproof.runtime.progress import Stage, listening
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
+    from multiprocessing.process import BaseProcess
 
 OUTSIDE = "from outside or for want of memory"
 GRACE = 0.5  # seconds that a worker has to remove half-written files when it is dismissed
 _DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG of prctl(2)
 
 
-class Process(Protocol):
-    """What is needed of a process, as ``multiprocessing`` has it; ``exitcode`` is None while it lives."""
-
-    @property
-    def exitcode(self) -> int | None: ...
-    def join(self, timeout: float | None = None) -> None: ...
-    def terminate(self) -> None: ...
-    def kill(self) -> None: ...
-
-
 @dataclass
 class Fork:
-    """A child that ``os.fork`` has made, as a ``Process``."""
+    """A child that ``os.fork`` has made, with what is needed of a process of ``multiprocessing``."""
 
     pid: int
     exitcode: int | None = None
@@ -61,7 +52,7 @@ class Fork:
         os.kill(self.pid, signal.SIGKILL)
 
 
-def dismiss(processes: Sequence[Process], grace: float) -> None:
+def dismiss(processes: "Sequence[Fork | BaseProcess]", grace: float) -> None:
     """Ask processes to end, and kill those that live after ``grace`` seconds."""
     for process in processes:
         if process.exitcode is None:

@@ -132,8 +132,11 @@ def drivers_table(totals: Totals) -> Table | None:
     if not totals.settings.drivers:
         return None
     rows = [
-        (decimal(danger), set_name, f"s{number}", driver, *map(str, counts))
-        for danger, set_name, number, driver, counts in foretold_rows(totals)
+        (
+            *(decimal(Fraction(x.min_danger)), x.set, f"s{x.scenario}", x.driver),
+            *map(str, (x.preventable, x.unpreventable, x.not_foreseen)),
+        )
+        for x in foretold_rows(totals)
     ]
     said = [f"{name}: {MODELS[name].title} ({MODELS[name].source})" for name in totals.settings.drivers]
     return Table(

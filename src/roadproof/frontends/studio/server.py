@@ -58,7 +58,7 @@ class Studio:
 
     async def _start(self) -> None:
         for crew in self.crews.values():
-            await crew.start(one_by_one=True)
+            await crew.start()
 
     async def ask(self, scope: Message, receive: Receive, send: Send, most: int) -> None:
         """Answer one question with JSON lines; it ends with the request, whoever breaks that off."""

@@ -81,19 +81,17 @@ class WorkerPool:
     waiting: int = 0
     closed: bool = False
 
-    async def start(self, one_by_one: bool = False) -> None:
-        """Start its workers; ``one_by_one``: each when the one before is warm, for others to work."""
+    async def start(self) -> None:
+        """Start its workers, each when the one before is warm, so that others can work meanwhile."""
         for _ in range(self.limits.workers):
-            await self._add()
-            if one_by_one and self.every:
+            self._add()
+            if self.every:
                 await asyncio.wait({self.every[-1].warm})
 
-    async def _add(self) -> None:
-        if self.closed:
-            return
-        worker = StudioWorker(self.limits)
-        self.every.append(worker)
-        self.idle.put_nowait(worker)
+    def _add(self) -> None:
+        if not self.closed:
+            self.every.append(StudioWorker(self.limits))
+            self.idle.put_nowait(self.every[-1])
 
     async def end(self) -> None:
         """End all workers and their jobs."""
@@ -149,7 +147,7 @@ class WorkerPool:
         await worker.end()
         if worker in self.every:
             self.every.remove(worker)
-        await self._add()
+        self._add()
 
     async def _run(
         self, worker: StudioWorker, kind: str, ask: Mapping[str, object], seconds: float | None
@@ -165,7 +163,8 @@ class WorkerPool:
                 spent = time.monotonic() - begun
                 if isinstance(said, Reply):
                     done = True
-                    yield {**_told(said), "seconds": round(spent, 3)}
+                    fault = {"error": f"this is our fault: {said.error}", "exit_code": ExitCode.OUR_FAULT}
+                    yield {**(said.answer or fault), "seconds": round(spent, 3)}
                 elif spent > most:
                     yield {"error": f"ended after {most:g} s, which is the most that a job may take"}
                     return
@@ -179,11 +178,3 @@ class WorkerPool:
                 self.idle.put_nowait(worker)
             else:
                 await asyncio.shield(asyncio.ensure_future(self._replace(worker)))
-
-
-def _told(reply: Reply) -> Message:
-    """What is told of a job that is done; an error is one that ``serve`` could not tell."""
-    if reply.error is not None:
-        return {"error": f"this is our fault: {reply.error}", "exit_code": ExitCode.OUR_FAULT}
-    answer: Message = reply.answer
-    return answer

@@ -21,17 +21,8 @@ from roadproof.logic.custom_names import code_of, own_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import signals_of, with_values
 from roadproof.recordings.evaluate.traces import KIND, by_vehicle, gather_one, refuse_missing
-from roadproof.recordings.formats import openscenario
+from roadproof.recordings.formats import openscenario, samples
 from roadproof.recordings.formats.recording import Bools, Recording, kind_called, own_numbers
-from roadproof.recordings.formats.samples import (
-    DIRECTION,
-    HEADER,
-    LABEL,
-    ROAD_ENDING,
-    doubts_in,
-    own_columns,
-    read_columns,
-)
 from roadproof.recordings.formats.source import beside
 from roadproof.recordings.formats.sources import find_source
 from roadproof.recordings.formats.straight import of_road, whole
@@ -225,13 +216,13 @@ def read_samples(path: Path, road: Road | None = None) -> OneTrace:
         table, named, _ = openscenario.read_columns(path)
         road = road or named
     else:
-        table = read_columns(path)
+        table = samples.read_columns(path)
     if road is None:
-        known = beside(path, ROAD_ENDING)
+        known = beside(path, samples.ROAD_ENDING)
         road = load_recorded_road(known[0])[0] if known else load_road("main-2")
     lists = {name: values.tolist() for name, values in table.columns.items()}
     made = of_columns(lists, road, str(path))
-    doubts = doubts_in(table, of_road(road, DIRECTION, path))
+    doubts = samples.doubts_in(table, of_road(road, samples.DIRECTION, path))
     return replace(made, notes=(*doubts, *_overlaps(made)))
 
 
@@ -247,22 +238,22 @@ def of_columns(columns: Mapping[str, Sequence[object]], road: Road, source: str 
     Times are numbers of seconds, taken as the decimals that they are shown as (nine places). Raises
     ``InputError`` with column, row, value and rule.
     """
-    missing = [name for name in HEADER if name not in columns]
+    missing = [name for name in samples.HEADER if name not in columns]
     if missing:
         raise InputError(
-            f"{source}: there is no column {', '.join(missing)}; columns are {', '.join(HEADER)}"
+            f"{source}: there is no column {', '.join(missing)}; columns are {', '.join(samples.HEADER)}"
         )
-    rows = len(list(columns[HEADER[0]]))
-    own = [name for name in own_columns(columns) if _is_column(columns[name], rows)]
-    kind = [next(name for name in (LABEL, "kind") if name in columns)] if "kind" in columns else []
-    read = {name: list(columns[name]) for name in (*HEADER, *kind, *own)}
+    rows = len(list(columns[samples.HEADER[0]]))
+    own = [name for name in samples.own_columns(columns) if _is_column(columns[name], rows)]
+    kind = [next(name for name in (samples.LABEL, "kind") if name in columns)] if "kind" in columns else []
+    read = {name: list(columns[name]) for name in (*samples.HEADER, *kind, *own)}
     lengths = {name: len(values) for name, values in read.items()}
     if len(set(lengths.values())) > 1:
         told = ", ".join(f"{name} {length}" for name, length in lengths.items())
         raise InputError(f"{source}: columns must be equally long, but have {told} rows")
     keys = [
         (Fraction(repr(round(_finite(source, k, "time", time), 9))), str(name))
-        for k, (time, name) in enumerate(zip(*(read[x] for x in HEADER[:2]), strict=True))
+        for k, (time, name) in enumerate(zip(*(read[x] for x in samples.HEADER[:2]), strict=True))
     ]
     said = (*RECORDED, *SIZES)
     numbers = [[_finite(source, k, x, read[x][k]) for x in said] for k in range(len(keys))]

@@ -13,29 +13,11 @@ from typing import Literal, TypeAlias
 from roadproof.drivers.driving import require
 from roadproof.drivers.models import check_drivers
 from roadproof.errors import InputError, UsageError
+from roadproof.library import scenarios as s
 from roadproof.library.bind import default_values
 from roadproof.library.elaborate import apply_definition
 from roadproof.library.elaboration import Elaborator
 from roadproof.library.loading import bundled_library
-from roadproof.library.scenarios import (
-    COMPARISON,
-    LANE,
-    MIN_DANGER,
-    PAIR,
-    RSS_PARAMETERS,
-    SUBJECT,
-    TRIPLE,
-    Scenario,
-    applied,
-    danger,
-    initial_condition,
-    lane_owner,
-    name_of,
-    numbers_of,
-    safe,
-    vehicles_of,
-    violation,
-)
 from roadproof.library.specification import Library, Query, Specification, unknown
 from roadproof.logic.formula import Formula, disjunction, is_state
 from roadproof.logic.rewrite import all_with_values, horizon, with_values, without_names
@@ -51,7 +33,7 @@ from roadproof.semantics.sampled.compiled import Monitor, compile
 Role: TypeAlias = Literal["first", "second"]
 """Which vehicle of a pair is SV."""
 
-ROLES: Mapping[Role, tuple[str, ...]] = {"first": PAIR, "second": PAIR[::-1]}
+ROLES: Mapping[Role, tuple[str, ...]] = {"first": s.PAIR, "second": s.PAIR[::-1]}
 """The vehicles of a pair in the order of a scenario's arguments."""
 
 
@@ -80,7 +62,7 @@ class Settings:
             values = getattr(self, name)
             if not values or len(set(values)) != len(values):
                 raise UsageError(f"evaluate: {name}={values} must name at least one, each once")
-        known = numbers_of(self.library.select(self.sets[0], self.options))
+        known = s.numbers_of(self.library.select(self.sets[0], self.options))
         for number in sorted(set(self.scenarios) - set(known)):
             message = unknown("scenario", str(number), map(str, known))
             raise UsageError(f"evaluate: scenarios={self.scenarios}: {message}")
@@ -180,7 +162,7 @@ def ask(settings: Settings, rate: int, zones: Iterable[str] = ZONES) -> Question
     dt = Fraction(1, rate)
     sets = {name: settings.library.select(name, settings.options) for name in settings.sets}
     first = sets[settings.sets[0]]
-    near, starts_safe, endangers = (meaning(first, *PAIR) for meaning in (violation, safe, danger))
+    near, starts_safe, endangers = (meaning(first, *s.PAIR) for meaning in (s.violation, s.safe, s.danger))
     for name in settings.sets[1:]:
         _check_same_danger(settings, (starts_safe, endangers), first, sets[name])
     safely = _with_values(settings, starts_safe.formula)
@@ -214,13 +196,13 @@ def ask(settings: Settings, rate: int, zones: Iterable[str] = ZONES) -> Question
 
 
 def _with_values(settings: Settings, formula: Formula, min_danger: Fraction = Fraction(0)) -> Formula:
-    return with_values(formula, {**settings.values, MIN_DANGER: min_danger})
+    return with_values(formula, {**settings.values, s.MIN_DANGER: min_danger})
 
 
 def _all_with_values(
     settings: Settings, queries: Mapping[Key, Query], min_danger: Fraction = Fraction(0)
 ) -> dict[Key, Formula]:
-    values = {**settings.values, MIN_DANGER: min_danger}
+    values = {**settings.values, s.MIN_DANGER: min_danger}
     return dict(zip(queries, all_with_values((x.formula for x in queries.values()), values), strict=True))
 
 
@@ -231,56 +213,55 @@ def _monitors(settings: Settings, asked: Mapping[MonitorKey, Query]) -> tuple[Mo
 
 def askable(spec: Specification) -> tuple[int, ...]:
     """The scenarios that can be asked of recordings: of two cars, or of three with L the lane of SV."""
-    return tuple(n for n in numbers_of(spec) if _reason_not(spec, Scenario(n, spec.set_name)) is None)
+    return tuple(n for n in s.numbers_of(spec) if _reason_not(spec, s.Scenario(n, spec.set_name)) is None)
 
 
-def _reason_not(spec: Specification, scenario: Scenario) -> str | None:
+def _reason_not(spec: Specification, scenario: s.Scenario) -> str | None:
     """Why a scenario cannot be asked of recordings."""
-    vehicles, name = vehicles_of(spec, scenario), name_of(scenario.number)
-    if len(vehicles) not in (len(PAIR), len(TRIPLE)):
+    vehicles, name = s.vehicles_of(spec, scenario), s.name_of(scenario.number)
+    if len(vehicles) not in (len(s.PAIR), len(s.TRIPLE)):
         return (
             f"{name} is about {len(vehicles)} vehicles, but those of recordings are looked at in pairs and "
             "triples"
         )
-    owner = lane_owner(spec, scenario)
-    if len(vehicles) == len(TRIPLE) and owner != SUBJECT:
-        return (
-            f"in {name} {LANE} is the lane of {owner}, but of three vehicles that of {SUBJECT} is looked at"
-        )
+    owner = s.lane_owner(spec, scenario)
+    if len(vehicles) == len(s.TRIPLE) and owner != s.SUBJECT:
+        lane = f"in {name} {s.LANE} is the lane of {owner}"
+        return f"{lane}, but of three vehicles that of {s.SUBJECT} is looked at"
     return None
 
 
 def _by_vehicles(spec: Specification, numbers: Iterable[int]) -> tuple[list[int], list[int]]:
     """The scenarios of two cars and those of three. Raises ``InputError`` for others."""
-    of: dict[int, list[int]] = {len(PAIR): [], len(TRIPLE): []}
+    of: dict[int, list[int]] = {len(s.PAIR): [], len(s.TRIPLE): []}
     for number in numbers:
-        scenario = Scenario(number, spec.set_name)
+        scenario = s.Scenario(number, spec.set_name)
         reason = _reason_not(spec, scenario)
         if reason is not None:
             raise InputError(f"evaluate: {reason}: leave it out")
-        of[len(vehicles_of(spec, scenario))].append(number)
-    return of[len(PAIR)], of[len(TRIPLE)]
+        of[len(s.vehicles_of(spec, scenario))].append(number)
+    return of[len(s.PAIR)], of[len(s.TRIPLE)]
 
 
 def _of_pairs(sets: Iterable[Specification], numbers: Iterable[int]) -> dict[MonitorKey, Query]:
     """Scenarios of two cars in both roles."""
     asked: dict[MonitorKey, Query] = {}
-    lanes = dict(zip(PAIR, (LANE, OTHER_LANE), strict=True))
+    lanes = dict(zip(s.PAIR, (s.LANE, OTHER_LANE), strict=True))
     for spec in sets:
         walk = Elaborator(spec)
         for number in numbers:
-            scenario = Scenario(number, spec.set_name)
-            place = 0 if lane_owner(spec, scenario) == SUBJECT else 1
+            scenario = s.Scenario(number, spec.set_name)
+            place = 0 if s.lane_owner(spec, scenario) == s.SUBJECT else 1
             for role, vehicles in ROLES.items():
                 lane = lanes[vehicles[place]]
                 key = MonitorKey(spec.set_name, number, role, lane)
-                asked[key] = applied(spec, scenario, vehicles, lane, walk)
+                asked[key] = s.applied(spec, scenario, vehicles, lane, walk)
     return asked
 
 
 def _of_triples(sets: Iterable[Specification], numbers: Iterable[int]) -> dict[MonitorKey, Query]:
     return {
-        of_three(spec.set_name, number): applied(spec, Scenario(number, spec.set_name), TRIPLE)
+        of_three(spec.set_name, number): s.applied(spec, s.Scenario(number, spec.set_name), s.TRIPLE)
         for spec in sets
         for number in numbers
     }
@@ -288,14 +269,14 @@ def _of_triples(sets: Iterable[Specification], numbers: Iterable[int]) -> dict[M
 
 def of_three(set_name: str, number: int) -> MonitorKey:
     """The question for a scenario of three cars."""
-    return MonitorKey(set_name, number, "first", LANE)
+    return MonitorKey(set_name, number, "first", s.LANE)
 
 
 def _start_of_triples(
     settings: Settings, sets: Iterable[Specification], numbers: Iterable[int]
 ) -> Monitor[Condition]:
     """initialCondition is a conjunct of the template (paper, eq. disturbFormat), so no match is without."""
-    starts = [initial_condition(spec, number, TRIPLE).formula for spec in sets for number in numbers]
+    starts = [s.initial_condition(spec, number, s.TRIPLE).formula for spec in sets for number in numbers]
     return compile({START: disjunction(*(_with_values(settings, start) for start in starts))})
 
 
@@ -311,9 +292,9 @@ def _steps(formula: Formula, dt: Fraction, asked: Query) -> int:
 def _check_same_danger(
     settings: Settings, known: tuple[Query, Query], one: Specification, other: Specification
 ) -> None:
-    meanings: tuple[Callable[[Specification, str, str], Query], ...] = (safe, danger)
+    meanings: tuple[Callable[[Specification, str, str], Query], ...] = (s.safe, s.danger)
     for query, meaning in zip(known, meanings, strict=True):
-        theirs = meaning(other, *PAIR)
+        theirs = meaning(other, *s.PAIR)
         if not _same(_with_values(settings, query.formula), _with_values(settings, theirs.formula)):
             raise UsageError(
                 f"evaluate: {query.text} differs between the sets {one.set_name} and {other.set_name}; "
@@ -327,7 +308,7 @@ def _same(one: Formula, other: Formula) -> bool:
 
 def _of_detectors(settings: Settings, spec: Specification) -> dict[DetectorKey, Query]:
     return {
-        DetectorKey(name, role): apply_definition(spec, name, (*vehicles, LANE))
+        DetectorKey(name, role): apply_definition(spec, name, (*vehicles, s.LANE))
         for name in settings.detectors
         for role, vehicles in ROLES.items()
     }
@@ -335,11 +316,11 @@ def _of_detectors(settings: Settings, spec: Specification) -> dict[DetectorKey, 
 
 def _sight(settings: Settings, sought: Mapping[DetectorKey, Query]) -> DetectionRange | None:
     """The constants of the detectors' pre-filter, where all are the bundled ones."""
-    if not set(settings.detectors) <= set(COMPARISON):
+    if not set(settings.detectors) <= set(s.COMPARISON):
         return None
     bundled = _bundled(settings)
     for detector in settings.detectors:
-        theirs = apply_definition(bundled, detector, (*PAIR, LANE))
+        theirs = apply_definition(bundled, detector, (*s.PAIR, s.LANE))
         if not _same(sought[DetectorKey(detector, "first")].formula, theirs.formula):
             return None
     return DetectionRange(*(float(settings.values[x]) for x in ("ttcLimit", "thwLimit", "farthest")))
@@ -353,6 +334,6 @@ def _bundled(settings: Settings) -> Specification:
 
 def _reach(settings: Settings, near: Query) -> Reach | None:
     """The pre-filter's constants, where rssViolation is the bundled one, whose bound is proved."""
-    if not _same(near.formula, violation(_bundled(settings), *PAIR).formula):
+    if not _same(near.formula, s.violation(_bundled(settings), *s.PAIR).formula):
         return None
-    return Reach(**{name: float(settings.values[name]) for name in RSS_PARAMETERS})
+    return Reach(**{name: float(settings.values[name]) for name in s.RSS_PARAMETERS})

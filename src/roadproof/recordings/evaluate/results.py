@@ -191,7 +191,7 @@ def as_json(totals: Totals, failed: Mapping[str, str]) -> JsonObject:
         repeats=tuple(_kept_repeat(x, totals) for x in totals.repeats),
         notes=totals.notes,
         failed=failed,
-        drivers=_predictions(totals) if totals.settings.drivers else None,
+        drivers=tuple(foretold_rows(totals)) if totals.settings.drivers else None,
     )
     return write(answer)
 
@@ -222,7 +222,7 @@ def _kept_repeat(repeat: Repeat, totals: Totals) -> kept.Repeat:
     )
 
 
-def foretold_rows(totals: Totals) -> Iterator[tuple[Fraction, str, int, str, tuple[int, ...]]]:
+def foretold_rows(totals: Totals) -> Iterator[kept.Prediction]:
     """For each minDanger, set, scenario and model that speaks of it how many matches have each of LABELS.
 
     Scenarios of road sectors that no road has are left out.
@@ -233,22 +233,10 @@ def foretold_rows(totals: Totals) -> Iterator[tuple[Fraction, str, int, str, tup
         for number, driver in product(asked, settings.drivers):
             if course_in(number) in MODELS[driver].manoeuvres:
                 of = (k, set_name, number, driver)
-                counts = tuple(totals.foretold[Foretold(*of, label)] for label in LABELS)
-                yield danger, set_name, number, driver, counts
-
-
-def _predictions(totals: Totals) -> tuple[kept.Prediction, ...]:
-    labels = [label.replace(" ", "_") for label in LABELS]
-    return tuple(
-        kept.Prediction(
-            min_danger=str(danger),
-            set=set_name,
-            scenario=number,
-            driver=driver,
-            **dict(zip(labels, counts, strict=True)),
-        )
-        for danger, set_name, number, driver, counts in foretold_rows(totals)
-    )
+                counts = {x.replace(" ", "_"): totals.foretold[Foretold(*of, x)] for x in LABELS}
+                yield kept.Prediction(
+                    min_danger=str(danger), set=set_name, scenario=number, driver=driver, **counts
+                )
 
 
 def driver_columns(settings: Settings) -> list[str]:

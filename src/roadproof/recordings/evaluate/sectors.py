@@ -4,15 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from roadproof.errors import TextError
-from roadproof.library.scenarios import (
-    PAIR,
-    TRIPLE,
-    Scenario,
-    follows_template,
-    sector,
-    sector_words,
-    vehicles_of,
-)
+from roadproof.library import scenarios as s
 from roadproof.library.specification import Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, conjunction, disjunction, negation, transform
@@ -45,19 +37,19 @@ def sectors_of(specification: Specification, numbers: Iterable[int]) -> tuple[Se
         name, where = _place_of(specification, number)
         key = name, None if where is None else without_names(where.formula)
         known = found.get(key, Sector(name, (), (), where))
-        vehicles = vehicles_of(specification, Scenario(number, specification.set_name))
-        three = (number,) if len(vehicles) == len(TRIPLE) else ()
+        vehicles = s.vehicles_of(specification, s.Scenario(number, specification.set_name))
+        three = (number,) if len(vehicles) == len(s.TRIPLE) else ()
         scenarios, of_three = (*known.scenarios, number), (*known.of_three, *three)
         found[key] = replace(known, scenarios=scenarios, of_three=of_three)
     return tuple(found.values())
 
 
 def _place_of(specification: Specification, number: int) -> tuple[str, Query | None]:
-    if not follows_template(specification, number):
+    if not s.follows_template(specification, number):
         return ANYWHERE, None
-    name = sector_words(specification, number) or f"sector of {number}"
+    name = s.sector_words(specification, number) or f"sector of {number}"
     try:
-        return name, sector(specification, number, PAIR)
+        return name, s.sector(specification, number, s.PAIR)
     except TextError:  # a sector of three vehicles that says nothing of two
         return name, None
 

@@ -14,20 +14,11 @@ import numpy as np
 
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
+from roadproof.library import scenarios
 from roadproof.library.bind import bind, default_values
 from roadproof.library.elaborate import read_claim
 from roadproof.library.roles import vehicle_order
 from roadproof.library.scenario_references import own_names
-from roadproof.library.scenarios import (
-    LANE,
-    MIN_DANGER,
-    SUBJECT,
-    Scenario,
-    applied,
-    danger,
-    endangered,
-    lane_owner,
-)
 from roadproof.library.specification import Library
 from roadproof.library.words import words_of
 from roadproof.recordings.evaluate.one_trace import OneTrace, cut_trace
@@ -224,13 +215,13 @@ def with_roles(file: DriveFile, library: Library) -> DriveFile:
     if file.scenario is None:
         return file
     specification = library.select(file.set_name, file.options)
-    scenario = Scenario(file.scenario, file.set_name)
+    scenario = scenarios.Scenario(file.scenario, file.set_name)
     own = own_names(specification, read_claim(specification, file.formula).claim, scenario)
     if not own:
         return file
     roles = {name: role for role, name in own.items()}
     drive = file.drive.cast({roles.get(name, name): name for name in file.drive.vehicles})
-    return replace(file, drive=drive, formula=applied(specification, scenario).text)
+    return replace(file, drive=drive, formula=scenarios.applied(specification, scenario).text)
 
 
 def plant_drives(
@@ -293,30 +284,30 @@ def _confirm(recording: Recording, planted: PlantedDrive, file: DriveFile, libra
     spec = library.select(file.set_name, file.options)
     values = {**default_values(library), **file.values}
     whole = cut_trace(recording, "planted", index, (planted.first_frame, planted.last_frame))
-    endangers = bind(danger(spec, *endangered(names)).formula, whole.road, {}, values)
+    endangers = bind(scenarios.danger(spec, *scenarios.endangered(names)).formula, whole.road, {}, values)
     reading = TraceReader(trace_of(whole.batch))
     dangers = [k for k in range(whole.batch.samples) if reading.holds(endangers, k, "strong")]
     if not dangers:
         return "no danger within the section"
-    last = planted.first_frame + dangers[-1] + steps_of(values[MIN_DANGER], whole.batch.dt)
-    lane = whole.lanes.get(lane_owner(spec, Scenario(number, file.set_name)), "")
+    last = planted.first_frame + dangers[-1] + steps_of(values[scenarios.MIN_DANGER], whole.batch.dt)
+    lane = whole.lanes.get(scenarios.lane_owner(spec, scenarios.Scenario(number, file.set_name)), "")
     if not _same_lane(whole, file, lane):
-        return f"its lane {file.lanes.get(LANE)} is not the one that an evaluation takes"
+        return f"its lane {file.lanes.get(scenarios.LANE)} is not the one that an evaluation takes"
     cut = cut_trace(recording, "planted", index, (planted.first_frame, last))
-    formula = bind(read_claim(spec, file.formula).formula, cut.road, {LANE: lane}, values)
+    formula = bind(read_claim(spec, file.formula).formula, cut.road, {scenarios.LANE: lane}, values)
     if not TraceReader(trace_of(cut.batch)).holds(formula, 0, "strong"):
         return "the trace ends with its last danger, before the scenario is complete"
     ids = planted.vehicles
     pov2 = ids[names[2]] if len(names) > 2 else None
     return Truth(
         recording.name,
-        ids[SUBJECT],
+        ids[scenarios.SUBJECT],
         ids[names[1]],
         pov2,
         lane,
         planted.first_frame,
         last,
-        values[MIN_DANGER],
+        values[scenarios.MIN_DANGER],
         file.set_name,
         number,
         words_of(spec, number).title,
@@ -328,7 +319,7 @@ def _same_lane(trace: OneTrace, file: DriveFile, lane: str) -> bool:
     ours = sorted(trace.road.lanelets, key=lambda x: x.d[0])
     theirs = sorted(file.road.lanelets, key=lambda x: x.d[0])
     places = {x.lane: k for k, x in enumerate(theirs)}
-    return file.lanes.get(LANE) in places and lane == ours[places[file.lanes[LANE]]].lane
+    return file.lanes.get(scenarios.LANE) in places and lane == ours[places[file.lanes[scenarios.LANE]]].lane
 
 
 def rows_of(truths: Iterable[Truth]) -> Iterator[list[object]]:
