@@ -396,7 +396,7 @@ def test_classes_that_recordings_contradict(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     told = Shares(["01"], 3, 2, classified=Counter({2: 2}), broken=["recording 01: two classes"])
-    monkeypatch.setattr("roadproof.frontends.api.classifying.count_shares", lambda *arguments, **more: told)
+    monkeypatch.setattr("roadproof.analysis.classify.simulated.count_shares", lambda *arguments, **more: told)
     assert main(["classify", "--among", "7", "--jobs", "1"]) == 30
     said = capsys.readouterr().out
     assert "3 traces, 1 (33.3 %) in none of these scenarios" in said

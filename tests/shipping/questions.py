@@ -7,6 +7,9 @@ from typing import Any
 import roadproof as rp
 from roadproof.analysis.classify.classes import plan_of
 from roadproof.analysis.classify.divide import Dividing
+from roadproof.analysis.classify.divide import divide as divide_plan
+from roadproof.analysis.classify.simulated import SimulatedShares
+from roadproof.analysis.classify.study import classification_of
 from roadproof.analysis.study.frame import Study, StudyResult, conduct
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.settings.studies import Classify
@@ -27,12 +30,25 @@ class Asked:
 Ask = Callable[..., Any]
 
 
-def divide(jobs: int | None = None) -> Asked:
-    """The cells of the classes, which ``classify`` and ``catalogue`` begin with."""
+def _dividing() -> Dividing:
     home, given = rp.load(), Classify.of({})
     basis = basis_of(home, given, given.vehicles)
-    study = Dividing(basis, plan_of(home.alone, numbers_of(home.alone)))
+    return Dividing(basis, plan_of(home.alone, numbers_of(home.alone)))
+
+
+def divide(jobs: int | None = None) -> Asked:
+    """The cells of the classes, which ``classify`` and ``catalogue`` begin with."""
+    study = _dividing()
     return Asked(study, conduct(study, hands=jobs))
+
+
+def count_shares(jobs: int | None = None) -> Asked:
+    """The shares of the classes in a simulated recording."""
+    asked = _dividing()
+    division = divide_plan(asked.basis, asked.plan, jobs)
+    made = classification_of(asked.basis, division)
+    study = SimulatedShares(made.basis, made.classes)
+    return Asked(study, conduct(study, hands=1))
 
 
 def _questions() -> Mapping[str, Ask]:
@@ -53,6 +69,7 @@ def _questions() -> Mapping[str, Ask]:
         found[f"coverage --set {name}"] = lambda s=name, **more: rp.coverage(using=rp.load(s), **more)
     found["order"] = rp.order
     found["division of classes"] = divide
+    found["shares of classes"] = count_shares
     found["classify"] = lambda **more: rp.classify(shares=False, **more)
     for manoeuvre in MANOEUVRES:
         found[f"preventable {manoeuvre}"] = lambda x=manoeuvre, **more: rp.preventable(x, **more)

@@ -12,6 +12,7 @@ from roadproof.analysis.classify.classes import plan_of
 from roadproof.analysis.classify.divide import divide
 from roadproof.analysis.classify.drives import Example
 from roadproof.analysis.classify.shares import Shares, count_shares
+from roadproof.analysis.classify.simulated import simulated_shares
 from roadproof.analysis.classify.study import (
     Classification,
     ClassificationResult,
@@ -34,15 +35,11 @@ from roadproof.frontends.settings.keywords import ClassifyKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.words import Called, called
-from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.sources import find_sources
-from roadproof.recordings.simulate.simulate import simulate
-from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.runtime.files import make_folder, write_whole
 from roadproof.verdict import ExitCode, Verdict, exit_code
 
 CLAIMS_FILE = "claims.txt"
-SECONDS, SEED = 600.0, 1
 
 
 @dataclass(frozen=True, repr=False)
@@ -141,7 +138,7 @@ def classify(
     folder = None if given.out is None else Path(given.out)
     if folder is not None:
         make_folder(folder)
-    source, recordings = _recordings(given.on)
+    sources = () if given.on is None else find_sources(Path(given.on))
     division = divide(basis, plan, given.jobs, given.progress, fresh=given.fresh)
     study = classification_of(basis, division)
     if division.cut_off:
@@ -150,19 +147,11 @@ def classify(
         make_room(folder, study.question)
     counted = None
     if given.shares and not division.cut_off:
-        about, values = study.basis.specification, study.basis.all_values()
-        counted = count_shares(study.classes, about, values, recordings, source=source)
+        if given.on is None:
+            counted = simulated_shares(study.basis, study.classes, given.fresh)
+        else:
+            about, values = study.basis.specification, study.basis.all_values()
+            recordings = (source.read() for source in sources)
+            counted = count_shares(study.classes, about, values, recordings, source=str(given.on))
     more = {"shares": counted}
     return Classifications.asked(study, replace(given, out=folder), more=lambda: more, begun=begun)
-
-
-def _recordings(on: str | Path | None) -> tuple[str, Iterator[Recording]]:
-    """What the shares are counted on, in words, and the recordings one by one."""
-    if on is None:
-        return f"a simulated recording of {SECONDS:g} s, seed {SEED}", _simulated()
-    sources = find_sources(Path(on))
-    return str(on), (source.read() for source in sources)
-
-
-def _simulated() -> Iterator[Recording]:
-    yield simulate(Traffic(seconds=SECONDS), SEED)
