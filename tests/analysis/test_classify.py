@@ -26,6 +26,7 @@ from roadproof.analysis.classify.classes import Classes, plan_of, what_axis, whe
 from roadproof.analysis.classify.divide import divide
 from roadproof.analysis.classify.drives import find_examples, patched, with_zones
 from roadproof.analysis.classify.shares import Shares, count_shares
+from roadproof.analysis.classify.simulated import SimulatedShares
 from roadproof.analysis.classify.study import ProofClaims, classification_of
 from roadproof.analysis.classify.text import claims_of, with_classes, write_classes
 from roadproof.analysis.study.evidence_store import EvidenceStore
@@ -618,6 +619,13 @@ def test_simulated_traffic_lies_in_exactly_one_class(main_road: Classes) -> None
     )
     assert wrong != text
     assert count_shares(main_road, with_classes(wrong, BASE), values, [recording]).broken
+
+    study = SimulatedShares(Basis(with_classes(text, BASE)), main_road)
+    shelf = EvidenceStore(None, study.question)
+    told = replace(shares, source=study.source)
+    assert study.recall(study.record("shares", told, shelf), shelf) == ("shares", told)
+    other = SimulatedShares(Basis(with_classes(wrong, BASE)), main_road)
+    assert study.key("shares") != other.key("shares")
 
 
 # --- mistakes -----------------------------------------------------------------------------------
