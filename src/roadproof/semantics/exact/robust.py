@@ -32,14 +32,13 @@ class Robustness:
     """Margins of a formula and its sub-formulas at times 0, dt, …, horizon, in units of each atom.
 
     ``sampled_until`` (s) is the last sample that was looked at: the horizon and the reach of bounded
-    windows. ``unbounded`` says that some window has no end and was cut there.
+    windows; those without end are cut there.
     """
 
     formula: Formula
     dt: Fraction
     horizon: Fraction
     sampled_until: Fraction
-    unbounded: bool
     margins: Mapping[Formula, Array]
 
     @property
@@ -66,7 +65,7 @@ def robustness(formula: Formula, drive: Drive, dt: Fraction, horizon: Fraction) 
     sampling = _Sampler(Courses(DriveSignals(drive)), dt, last + 1)
     sampling.visit(formula)
     margins = {part: values[: wanted + 1] for part, values in sampling.known.items()}
-    return Robustness(formula, dt, horizon, last * dt, _has_endless_window(formula), margins)
+    return Robustness(formula, dt, horizon, last * dt, margins)
 
 
 def steps(time: Fraction, dt: Fraction, what: str = "interval bound") -> int:
@@ -87,10 +86,6 @@ def _reach(formula: Formula, dt: Fraction) -> int:
         steps(low, dt)
         within += steps(low if high is None else high, dt)
     return within
-
-
-def _has_endless_window(formula: Formula) -> bool:
-    return any(interval.high is None for part in f.subformulas(formula) for interval in f.intervals(part))
 
 
 @dataclass(frozen=True)
