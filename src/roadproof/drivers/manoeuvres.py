@@ -232,11 +232,7 @@ def along_line(manoeuvre: Manoeuvre, values: Values) -> LineSignals:
     }
     box: tuple[SizeName, ...] = ("length", "width")
     sizes = {Size(x, name): values[x] for name in manoeuvre.vehicles for x in box}
-    return LineSignals(signals, sizes, _undefined)
-
-
-def _undefined(what: str) -> UsageError:
-    return UsageError(f"the initial values do not define {what}")
+    return LineSignals(signals, sizes, lambda what: UsageError(f"the initial values do not define {what}"))
 
 
 def signals_of(manoeuvre: Manoeuvre, values: Values) -> dict[tuple[SignalName, str], Fraction]:

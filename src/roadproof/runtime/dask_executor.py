@@ -63,7 +63,8 @@ def _try_once(
     try:
         submit(1)
         for future in running:
-            submit(max(1, _AHEAD * _count_workers(client) - len(placed) + 1))
+            workers = len(client.scheduler_info(n_workers=-1)["workers"])
+            submit(max(1, _AHEAD * workers - len(placed) + 1))
             place, error = placed.pop(future), future.exception()
             if isinstance(error, KilledWorker):
                 died[place] = ""
@@ -94,10 +95,6 @@ def _serve(version: str, function: Callable[[Job], Answer], job: Job) -> Answer:
 def _freeze() -> None:
     """Once, after the first job: what it has imported stays, and is not walked through at each collection."""
     gc.freeze()
-
-
-def _count_workers(client: "Client") -> int:
-    return len(client.scheduler_info(n_workers=-1)["workers"])
 
 
 @cache

@@ -20,7 +20,8 @@ def whole_file(path: Path) -> Iterator[BinaryIO]:
     The folder must exist. What is no file, such as /dev/null, is written to as it stands; a link is
     followed. Raises ``InputError`` where the file cannot be written.
     """
-    path = _target(path)
+    if path.is_symlink() and not _is_no_file(path):  # those of /dev are no files, wherever they lead
+        path = path.resolve()
     try:
         if _is_no_file(path):
             with path.open("ab") as file:
@@ -37,11 +38,6 @@ def whole_file(path: Path) -> Iterator[BinaryIO]:
             raise
     except OSError as error:
         raise cannot_write(path, error) from None
-
-
-def _target(path: Path) -> Path:
-    """The file that a link leads to; those of /dev are no files to be replaced, wherever they lead."""
-    return path.resolve() if path.is_symlink() and not _is_no_file(path) else path
 
 
 def _is_no_file(path: Path) -> bool:

@@ -6,7 +6,7 @@ import json
 import secrets
 import socket
 import webbrowser
-from collections.abc import AsyncGenerator, AsyncIterator, Callable, Mapping
+from collections.abc import AsyncIterator, Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
@@ -24,7 +24,7 @@ from roadproof.frontends.studio.request_validation import (
     refuse,
     safe_headers,
 )
-from roadproof.frontends.studio.worker_pool import FullError, Limits, WorkerPool
+from roadproof.frontends.studio.worker_pool import Limits, WorkerPool
 
 if TYPE_CHECKING:
     from starlette.applications import Starlette
@@ -72,7 +72,7 @@ class Studio:
         await send({"type": "http.response.start", "status": 200, "headers": headers})
         gone = asyncio.create_task(_until_gone(receive))
         try:
-            async with contextlib.aclosing(_told(crew, kind, asked)) as told:
+            async with contextlib.aclosing(crew.work(kind, asked)) as told:
                 async for message in told:
                     if gone.done():
                         return
@@ -90,17 +90,6 @@ class Studio:
             if isinstance(kind, str) and kind in kinds:
                 return self.crews[name], kind
         raise RefusedError(400, "unknown kind of request")
-
-
-async def _told(
-    crew: WorkerPool, kind: str, asked: Mapping[str, object]
-) -> AsyncGenerator[dict[str, object], None]:
-    try:
-        async with contextlib.aclosing(crew.work(kind, asked)) as told:
-            async for message in told:
-                yield message
-    except FullError as error:
-        yield {"error": str(error), "full": True}
 
 
 async def _until_gone(receive: Receive) -> None:

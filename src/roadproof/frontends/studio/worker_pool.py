@@ -6,7 +6,6 @@ import time
 from collections.abc import AsyncGenerator, Mapping
 from dataclasses import dataclass, field
 
-from roadproof.errors import RoadproofError
 from roadproof.frontends.studio.worker import Job, WarmUp, serve, words_of
 from roadproof.runtime.progress import Stage
 from roadproof.runtime.worker import DeadWorkerError, Reply, Worker
@@ -27,12 +26,6 @@ class Limits:
     seconds: float = 600.0
     memory: int = 3072
     long: bool = True
-
-
-class FullError(RoadproofError):
-    """There is no place for a job."""
-
-    exit_code = 20
 
 
 class StudioWorker(Worker):
@@ -103,12 +96,13 @@ class WorkerPool:
         self, kind: str, ask: Mapping[str, object], seconds: float | None = None
     ) -> AsyncGenerator[Message, None]:
         """What is told of a job: ``waiting``, ``stage`` and ``seconds`` while it runs, ``answer`` or
-        ``error`` at last. A job whose listener goes away (``aclose``) is ended with its worker.
+        ``error`` at last, which is ``full`` where the queue is. A job whose listener goes away (``aclose``)
+        is ended with its worker.
         """
         if self.waiting >= self.limits.waiting:
-            raise FullError(
-                f"the queue is full: {len(self.every)} jobs run and {self.waiting} wait; stop one, or wait"
-            )
+            busy = f"{len(self.every)} jobs run and {self.waiting} wait; stop one, or wait"
+            yield {"error": f"the queue is full: {busy}", "full": True}
+            return
         self.waiting += 1
         try:
             getting = asyncio.ensure_future(self._take())

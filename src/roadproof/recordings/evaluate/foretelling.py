@@ -36,15 +36,13 @@ def foretell(recording: Recording, questions: Questions, matches: Sequence[Match
         if keys:
             for key, label in zip(keys, _labels(recording, questions, course, keys, place), strict=True):
                 found[k, key] = label
-    return [x if x.scenario not in of else _labelled(x, *found[of[x.scenario], _key(x)]) for x in matches]
+    asked = ((of.get(x.scenario, -1), _key(x)) for x in matches)
+    labelled = zip(matches, (found.get(key, (None, ())) for key in asked), strict=True)
+    return [replace(x, begun=begun, labels=labels) for x, (begun, labels) in labelled]
 
 
 def _key(match: Match) -> _Key:
     return match.sv, match.pov, match.pov2, match.start_frame, match.end_frame, match.min_danger
-
-
-def _labelled(match: Match, begun: int | None, labels: tuple[str, ...]) -> Match:
-    return replace(match, begun=begun, labels=labels)
 
 
 def _labels(

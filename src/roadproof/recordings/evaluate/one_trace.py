@@ -226,11 +226,6 @@ def read_samples(path: Path, road: Road | None = None) -> OneTrace:
     return replace(made, notes=(*doubts, *_overlaps(made)))
 
 
-def _is_column(values: object, rows: int) -> bool:
-    """Whether something beside the columns that are asked for is a column too."""
-    return isinstance(values, Sized) and not isinstance(values, str) and len(values) == rows
-
-
 def of_columns(columns: Mapping[str, Sequence[object]], road: Road, source: str = "columns") -> OneTrace:
     """The trace of columns named as in ``HEADER``: arrays, or a frame with such columns, in any order.
 
@@ -244,7 +239,8 @@ def of_columns(columns: Mapping[str, Sequence[object]], road: Road, source: str 
             f"{source}: there is no column {', '.join(missing)}; columns are {', '.join(samples.HEADER)}"
         )
     rows = len(list(columns[samples.HEADER[0]]))
-    own = [name for name in samples.own_columns(columns) if _is_column(columns[name], rows)]
+    sized = {name: x for name, x in columns.items() if isinstance(x, Sized) and not isinstance(x, str)}
+    own = [name for name in samples.own_columns(sized) if len(sized[name]) == rows]
     kind = [next(name for name in (samples.LABEL, "kind") if name in columns)] if "kind" in columns else []
     read = {name: list(columns[name]) for name in (*samples.HEADER, *kind, *own)}
     lengths = {name: len(values) for name, values in read.items()}

@@ -5,8 +5,6 @@ from its beginning to its end.
 """
 
 import re
-from bisect import bisect_right
-from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
@@ -17,7 +15,7 @@ from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.library.roles import vehicle_order
 from roadproof.world.drive import Motion
-from roadproof.world.motion import State, advance, monotone_starts, starts_of, states_at
+from roadproof.world.motion import State, advance, monotone_starts, states_at
 from roadproof.world.road import Lanelet, Road
 from roadproof.world.signals import Kind
 
@@ -178,7 +176,7 @@ class Subject:
     @cached_property
     def samples(self) -> dict[str, list[State]]:
         """The states of each vehicle at the times of the samples."""
-        return {name: [*_states(motion, self.times)] for name, motion in self.vehicles.items()}
+        return {name: [*states_at(motion, self.times)] for name, motion in self.vehicles.items()}
 
     @property
     def said(self) -> str:
@@ -205,13 +203,6 @@ def subject_of(name: str, number: int, file: DriveFile, rate: int) -> Subject:
             f"rate={rate}: {name} lasts {file.horizon} s, less than a step; write a greater rate"
         )
     return Subject(name, number, file, rate)
-
-
-def _states(motion: Motion, times: list[Fraction]) -> Iterator[State]:
-    starts = starts_of(motion)
-    for time in times:
-        begun = starts[bisect_right(starts, time, key=lambda state: state.time) - 1]
-        yield advance(begun, time - begun.time)
 
 
 def kind_of(motion: Motion) -> Kind:

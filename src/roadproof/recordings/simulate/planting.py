@@ -37,7 +37,7 @@ from roadproof.recordings.formats.straight import StraightRoad, record
 from roadproof.semantics.sampled.batch import steps_of
 from roadproof.semantics.sampled.recursive import TraceReader
 from roadproof.world.drive import Drive
-from roadproof.world.motion import state_at
+from roadproof.world.motion import state_at, states_at
 from roadproof.world.signals import RECORDED, SIZES
 
 
@@ -107,7 +107,7 @@ def plant(recording: Recording, drive: Drive, place: Place) -> tuple[Recording, 
 
 def _sample(drive: Drive, name: str, frames: int, place: Place, rate: int) -> list[Floats]:
     motion = drive.vehicles[name]
-    states = [state_at(motion, Fraction(k, rate)) for k in range(frames)]
+    states = states_at(motion, (Fraction(k, rate) for k in range(frames)))
     shifts = {"s": place.s, "d": place.d}
     return [
         np.round([float(getattr(x, signal)) + shifts.get(signal, 0.0) for x in states], 2) + 0.0
