@@ -167,9 +167,9 @@ def put(frame: pl.DataFrame, folder: Path, ending: str) -> Path:
 
 
 def answer(path: Path) -> str:
-    """What becomes of a recording: its error, or what it is."""
+    """What becomes of a recording as a whole, as windows have it: its error, or what is odd in it."""
     try:
-        recording = find_source(path).read()
+        recording = find_source(path, strict=True).read()
     except InputError as error:
         return str(error)
     return "\n".join(recording.notes)

@@ -79,8 +79,8 @@ def roles_of(
 def cast_of(vehicles: Sequence[str], wanted: Sequence[str], given: Mapping[str, str], where: str) -> Roles:
     """The roles of ``vehicles`` in one formula that speaks of ``wanted``, as ``roles_of``.
 
-    Where as many others as roles are left, they play these in the order of the file. Raises ``InputError``
-    where a role is left for which no single vehicle remains.
+    Where as many others as roles are left, they play these in the order of the file. Of fewer vehicles than
+    roles some roles stay open. Raises ``InputError`` where it is not clear who plays a role.
     """
     if not given and {*wanted} <= {*vehicles}:
         return Roles()
@@ -88,7 +88,7 @@ def cast_of(vehicles: Sequence[str], wanted: Sequence[str], given: Mapping[str, 
     by_role = {found.called(name): name for name in vehicles}
     missing = [role for role in wanted if role not in by_role]
     others = [name for name in vehicles if found.called(name) not in wanted]
-    if not missing:
+    if not missing or len(vehicles) < len(wanted):
         return found
     if len(missing) == len(wanted) or len(others) != len(missing):
         pairs = zip(vehicle_order(wanted), (*vehicle_order(vehicles), *"?" * len(wanted)), strict=False)

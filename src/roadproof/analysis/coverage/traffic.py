@@ -47,7 +47,7 @@ class GapQuestion:
 
 def recordings_in(folder: Path) -> Recordings:
     """The recordings of a folder. Raises ``InputError``, also where two have the same content."""
-    sources = find_sources(folder)
+    sources = find_sources(folder, strict=True)
     for fault in copies_among(sources, {source.name: source.digests() for source in sources}).values():
         raise InputError(fault)
     return Recordings(folder, sources)

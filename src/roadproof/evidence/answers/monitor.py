@@ -94,4 +94,9 @@ class Observation(PlainHeading):
 class Answer(Place, Observation):
     """Where a formula holds on one trace."""
 
+    notes: Annotated[
+        tuple[str, ...],
+        LEFT_OUT,
+        Doc("What is odd in the recording, what was computed, and which vehicles were left out."),
+    ] = ()
     schema: Literal["roadproof/monitor/2"] = SCHEMA

@@ -138,7 +138,7 @@ def classify(
     folder = None if given.out is None else Path(given.out)
     if folder is not None:
         make_folder(folder)
-    sources = () if given.on is None else find_sources(Path(given.on))
+    sources = () if given.on is None else find_sources(Path(given.on), strict=True)
     division = divide(basis, plan, given.jobs, given.progress, fresh=given.fresh)
     study = classification_of(basis, division)
     if division.cut_off:

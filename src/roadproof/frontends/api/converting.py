@@ -33,15 +33,19 @@ class Conversion:
 
 
 def convert(
-    path: str | Path, out: str | Path, jobs: int | None = None, progress: Progress | None = None
+    path: str | Path,
+    out: str | Path,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+    strict: bool = False,
 ) -> Conversion:
     """Write recordings of any format as Parquet, as they were read and checked, for quicker reading.
 
     Whatever reads recordings reads the folder ``out`` with the same answers. ``path``: a folder of recordings
     in one format, or the file of one. Raises ``InputError`` for the first that cannot be read; those that are
-    done stay.
+    done stay. ``strict``: reject a recording of which vehicles would be left out.
     """
-    sources, folder = find_sources(Path(path)), Path(out)
+    sources, folder = find_sources(Path(path), strict), Path(out)
     if sources[0].format is FORMAT:
         raise InputError(f"recordings={path}: they are converted already")
     if folder.resolve() == (Path(path) if Path(path).is_dir() else Path(path).parent).resolve():

@@ -97,7 +97,7 @@ def drive(
 
     home = using or load()
     scenario, query = home.numbered(what, vehicles)
-    if scenario is not None and {*query.vehicles} - {*vehicles} and len(vehicles) >= len(query.vehicles):
+    if scenario is not None and not {*query.vehicles} <= {*vehicles}:
         roles = cast_of([*vehicles], query.vehicles, {}, "drive: vehicles")
         known = vehicles_of(home.specification, Scenario(scenario, home.specification.set_name))
         query = home.numbered(f"{name_of(scenario)}({', '.join((*roles.own(known), LANE))})", vehicles)[1]

@@ -228,9 +228,9 @@ def _settings_of(home: Definitions, given: Evaluate) -> Settings:
 def _evaluate(path: Path, out: Path, settings: Settings, given: Evaluate) -> Evaluation:
     """As ``evaluate``, with what is asked as a value, in a folder that no other run is writing into."""
     hands = hands_of(given.jobs)
-    experiment = Experiment(path, out, settings, hands, given.keep_going)
+    experiment = Experiment(path, out, settings, hands, given.keep_going, given.strict)
     say = given.tell or (lambda line: None)
-    find_sources(path)
+    find_sources(path, given.strict)
     with hold_folder(out, shared=hands.shard is not None):
         remove_report(out)
         outcome = run_experiment(experiment, say)

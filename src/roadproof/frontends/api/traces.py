@@ -107,6 +107,7 @@ class MonitorAnswer(Table):
                 )
                 for strip in x.strips
             ),
+            notes=self.notes,
             **vars(self.place),
         )
         return write(answer)
@@ -182,9 +183,9 @@ def _read(on: "str | Path | OneTrace | Mapping[str, Any] | Frame", given: Monito
     if is_pair(str(on)):
         if names:
             raise UsageError(f"--roles: the order of the vehicles in {on} says their roles; omit --roles")
-        return read_pair(str(on), given.frames)
+        return read_pair(str(on), given.frames, given.strict)
     if names:
-        return read_vehicles(Path(on), _numbers(names), given.frames, str(on))
+        return read_vehicles(Path(on), _numbers(names), given.frames, str(on), given.strict)
     raise InputError(
         f"{on}: a trace is a drive (.json), samples (.csv, .parquet or .xosc), or vehicles of a recording "
         "such as highd/01_tracks.csv:12,15; --roles SV=12,POV=15 names them, too"

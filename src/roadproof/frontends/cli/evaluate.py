@@ -64,8 +64,11 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _tell_notes(out: Path, totals: "Totals") -> None:
-    """What is odd in the recordings, on the screen; all of it is in the results."""
+    """What is odd in the recordings, what was left out first, on the screen; all of it is in the results."""
+    from roadproof.recordings.formats.reliable import LEFT_OUT
+
     remarks = [(name, remark) for name, each in totals.notes.items() for remark in each]
+    remarks.sort(key=lambda remark: not remark[1].startswith(LEFT_OUT))
     for name, remark in remarks[:MOST_NOTES]:
         print(f"note: recording {name}: {remark}", file=sys.stderr)
     if len(remarks) > MOST_NOTES:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from roadproof.frontends.settings.groups import Answered, Readings, Workers, folder_for
+from roadproof.frontends.settings.groups import Answered, Readings, Workers, folder_for, strict_reading
 from roadproof.frontends.settings.option import Settings, option, output
 
 if TYPE_CHECKING:
@@ -30,6 +30,7 @@ class Convert(Workers):
     """Options of ``roadproof convert``."""
 
     out: str | Path | None = folder_for("the data set", required=True)
+    strict: bool = strict_reading()
 
 
 @dataclass(frozen=True, kw_only=True)

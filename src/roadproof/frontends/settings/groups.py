@@ -58,6 +58,11 @@ def pictures_of(what: str = "pictures", command_line_only: bool = False) -> Any:
     return output(True, "--no-pictures", f"draw no {what}", keyword=keyword, rare=True)
 
 
+def strict_reading() -> Any:
+    """``strict``: recordings are read as a whole or not at all."""
+    return option(False, "--strict", "reject a recording with bad vehicles, and leave none out")
+
+
 def checker_of(what: str) -> Any:
     """``solver``, which checks evidence; ``what`` is its help."""
     return option("z3", "--solver", f"{what} (default: z3)", choices=("z3", "cvc5"))

@@ -208,6 +208,7 @@ class MonitorKeywords(TracesKeywords, total=False):
     view: View | None
     dt: Number
     frames: tuple[int | None, int | None]
+    strict: bool
 
 
 class EvaluateKeywords(SharingKeywords, TracesKeywords, total=False):
@@ -218,6 +219,7 @@ class EvaluateKeywords(SharingKeywords, TracesKeywords, total=False):
     detectors: bool
     check: bool
     keep_going: bool
+    strict: bool
     pictures: bool
     tell: Say | None
 

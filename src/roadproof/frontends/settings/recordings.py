@@ -70,6 +70,7 @@ class Monitor(groups.Definitions, groups.Traces):
         "frames of a recording (default: all that the vehicles share)",
         read=frame_range,
     )
+    strict: bool = groups.strict_reading()
     picture: Path | None = output(
         None, "--picture FILE", "draw the truth over time into FILE (.png or .svg)", read=Path, keyword=False
     )
@@ -107,6 +108,7 @@ class Evaluate(groups.Definitions, groups.Sharing, groups.Traces):
     detectors: bool = option(True, "--no-detectors", "leave out the detectors of earlier works", rare=True)
     check: bool = option(False, "--check", "compare with the plain recursive evaluator (slow)", rare=True)
     keep_going: bool = option(False, "--keep-going", "skip recordings that cannot be used")
+    strict: bool = groups.strict_reading()
     out: str | Path | None = groups.folder_for("results", command_line_only=True)
     list_roads: bool = output(
         False, "--list", "only list lanes and zones, and which of them were inferred", keyword=False

@@ -29,13 +29,17 @@ from roadproof.runtime.worker import is_worker
 
 @dataclass(frozen=True)
 class Experiment:
-    """Where the recordings are, where results go, and what is asked."""
+    """Where the recordings are, where results go, and what is asked.
+
+    ``strict``: no vehicle is left out of a recording.
+    """
 
     recordings: Path
     out: Path
     settings: Settings
     hands: Executor = field(default_factory=lambda: Executor(1))
     keep_going: bool = False
+    strict: bool = False
 
 
 @dataclass(frozen=True)
@@ -60,7 +64,7 @@ def run_experiment(
     recording that cannot be evaluated, unless ``keep_going``: then it is left out, and said so. One of
     several runs that divide the recordings raises ``SharedError`` when its share is done.
     """
-    sources = find_sources(experiment.recordings)
+    sources = find_sources(experiment.recordings, experiment.strict)
     shard = experiment.hands.shard
     if shard is not None:
         sources = tuple(shard.among(sources))
@@ -68,7 +72,8 @@ def run_experiment(
     with ThreadPoolExecutor(experiment.hands.processes or os.cpu_count() or 1) as threads:
         found = threads.map(RecordingSource.digests, sources)
         digests = {source.name: each for source, each in zip(sources, found, strict=True)}
-    marks = {name: fingerprint(question, each) for name, each in digests.items()}
+    more = ["strict"] * experiment.strict
+    marks = {name: fingerprint(question, [*each, *more]) for name, each in digests.items()}
     failed = copies_among(sources, digests)
     waiting = [s for s in sources if s.name not in failed and _known(experiment, s, marks[s.name]) is None]
     kept = len(sources) - len(failed) - len(waiting)
@@ -114,7 +119,7 @@ def saved_findings(
     experiment: Experiment, outcome: ExperimentOutcome
 ) -> Iterator[tuple[RecordingSource, Findings]]:
     """What an experiment that is done has saved of each recording, in order."""
-    for source in find_sources(experiment.recordings):
+    for source in find_sources(experiment.recordings, experiment.strict):
         if source.name in outcome.marks and source.name not in outcome.failed:
             found = _known(experiment, source, outcome.marks[source.name])
             if found is not None:

@@ -23,6 +23,7 @@ from roadproof.logic.rewrite import signals_of, with_values
 from roadproof.recordings.evaluate.traces import KIND, by_vehicle, gather_one, refuse_missing
 from roadproof.recordings.formats import openscenario, samples
 from roadproof.recordings.formats.recording import Bools, Recording, kind_called, own_numbers
+from roadproof.recordings.formats.reliable import LEFT_OUT
 from roadproof.recordings.formats.source import beside
 from roadproof.recordings.formats.sources import find_source
 from roadproof.recordings.formats.straight import of_road, whole
@@ -59,7 +60,9 @@ def is_pair(text: str) -> bool:
     return _PAIR.fullmatch(text) is not None
 
 
-def read_pair(text: str, frames: tuple[int | None, int | None] = (None, None)) -> OneTrace:
+def read_pair(
+    text: str, frames: tuple[int | None, int | None] = (None, None), strict: bool = False
+) -> OneTrace:
     """Vehicles of a recording on their common frames, or on those of ``frames`` (first, last).
 
     The first id is SV, the others are POV, or POV1 and POV2. Raises ``InputError`` for files that are
@@ -72,14 +75,18 @@ def read_pair(text: str, frames: tuple[int | None, int | None] = (None, None)) -
     ids = [int(x) for x in numbers.split(",")]
     if len(set(ids)) < len(ids):
         raise InputError(f"{text}: each vehicle may be named once")
-    return read_vehicles(Path(path), dict(zip(roles(len(ids)), ids, strict=True)), frames, text)
+    return read_vehicles(Path(path), dict(zip(roles(len(ids)), ids, strict=True)), frames, text, strict)
 
 
 def read_vehicles(
-    path: Path, by_role: Mapping[str, int], frames: tuple[int | None, int | None], text: str
+    path: Path,
+    by_role: Mapping[str, int],
+    frames: tuple[int | None, int | None],
+    text: str,
+    strict: bool = False,
 ) -> OneTrace:
     """As ``read_pair``, the vehicles of a recording by the role that each plays; ``text`` names the trace."""
-    recording = find_source(path).read()
+    recording = find_source(path, strict).read()
     index = [_find(recording, number, text) for number in by_role.values()]
     if len({int(recording.direction[v]) for v in index}) > 1:
         raise InputError(f"{text}: the vehicles drive in different directions; name some of one direction")
@@ -125,7 +132,9 @@ def _find(recording: Recording, number: int, text: str) -> int:
     place = np.flatnonzero(recording.vehicle_id == number)
     if not len(place):
         known = f"{recording.vehicle_id.min()} to {recording.vehicle_id.max()}"
-        raise InputError(f"{text}: recording {recording.name} has no vehicle {number}; ids are {known}")
+        left_out = [f"\n{x}" for x in recording.notes if x.startswith(LEFT_OUT)]
+        told = f"recording {recording.name} has no vehicle {number}; ids are {known}"
+        raise InputError(f"{text}: {told}{''.join(left_out)}")
     return int(place[0])
 
 

@@ -5,23 +5,28 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
 from roadproof.errors import InputError
+from roadproof.recordings.formats.commonroad_obstacles import Obstacle, ObstacleRules, read_obstacles
 from roadproof.recordings.formats.lanelets import ZONES_ENDING, network_of
 from roadproof.recordings.formats.measured_roads import MeasuredTraffic, place_traffic
 from roadproof.recordings.formats.neighbours import describe_overlaps
-from roadproof.recordings.formats.plausible import (
-    LARGEST_ACCELERATION,
-    LARGEST_SIZE,
-    LARGEST_SPEED,
-    check,
+from roadproof.recordings.formats.plausible import SHARE, check
+from roadproof.recordings.formats.recording import (
+    Bools,
+    Floats,
+    Integers,
+    Recording,
+    offsets,
+    with_notes,
 )
-from roadproof.recordings.formats.recording import Floats, Integers, Recording, offsets, with_notes
+from roadproof.recordings.formats.reliable import named, reliable
 from roadproof.recordings.formats.repeats import moments_of
 from roadproof.recordings.formats.source import Format, find_files
 from roadproof.recordings.formats.topology import MeasuredLanelet
@@ -36,40 +41,11 @@ ATTRIBUTES: Mapping[str, Attribute] = {
 """Lanelet types that say what is main road and what is not, and the paper's attribute for them."""
 
 
-LARGEST_PLACE, LARGEST_ORIENTATION = 1e8, 100.0
-"""m, as in all coordinates of maps, and rad, which need not be one turn."""
-
-
-_STATE = {
-    "time": ("time/exact", math.inf),
-    "x": ("position/point/x", LARGEST_PLACE),
-    "y": ("position/point/y", LARGEST_PLACE),
-    "orientation": ("orientation/exact", LARGEST_ORIENTATION),
-    "velocity": ("velocity/exact", LARGEST_SPEED),
-    "acceleration": ("acceleration/exact", LARGEST_ACCELERATION),
-    "velocityY": ("velocityY/exact", LARGEST_SPEED),
-}
-"""What a state has, where, and how large it is at most; ``velocityY`` may be missing."""
-
-
-@dataclass(frozen=True)
-class _Obstacle:
-    """Columns of ``states``: x, y (centre of the box), orientation, velocity, acceleration, velocityY.
-
-    Velocity and acceleration are along the box, velocityY to its left.
-    """
-
-    id: int
-    kind: str
-    label: str
-    length: float
-    width: float
-    first_step: int
-    states: Floats
-
-
-def read_commonroad(path: Path, truck_length: float = 7.0) -> Recording:
+def read_commonroad(path: Path, strict: bool = True, truck_length: float = 7.0) -> Recording:
     """The traffic of a CommonRoad file; frame k is time step k.
+
+    Unless ``strict``, pedestrians, cyclists, parked vehicles and bad vehicles are left out, and values that
+    states do not have are computed from the others.
 
     A vehicle longer than ``truck_length`` (m) counts as a truck whatever its type says, since data
     sets such as NGSIM's label every vehicle a car. ``notes`` tell of overlapping vehicles, of noise
@@ -87,13 +63,42 @@ def read_commonroad(path: Path, truck_length: float = 7.0) -> Recording:
     if not nodes:
         raise InputError(f"{path}: the file has no lanelet; a road is needed to place vehicles on")
     lanelets = {name: _read_lanelet(path, node, nodes) for name, node in nodes.items()}
-    network = network_of(path, lanelets)
-    obstacles, notes = _read_obstacles(path, root, truck_length)
+    network = network_of(path, lanelets, strict)
+    obstacles, notes = read_obstacles(path, root, ObstacleRules(rate, truck_length, strict))
     traffic = _traffic(path.stem, rate, obstacles, notes)
     if _is_made(root):
         traffic = replace(traffic, moments=np.zeros_like(traffic.moments))
-    recording = place_traffic(traffic, network)
-    return with_notes(recording, (*_check_plausible(path, recording), *_describe(recording)))
+    whole = place_traffic(traffic, network)
+    recording = reliable(whole, strict, partial(_check_plausible, path))
+    lost = ~np.isin(whole.vehicle_id, recording.vehicle_id)
+    return with_notes(recording, (*_say_consistent(traffic, lost), *_describe(recording)))
+
+
+def _say_consistent(traffic: MeasuredTraffic, lost: Bools) -> Iterator[str]:
+    """A note on vehicles that were left out for the reference line, as they move as their velocities say."""
+    ids = traffic.vehicle_id[lost & _moves_as_told(traffic)].tolist() if lost.any() else []
+    if ids:
+        yield (
+            f"of the vehicles left out, {len(ids)} ({named(ids)}) move in the plane as their velocities say: "
+            "the reference line of the road does not follow their way"
+        )
+
+
+def _moves_as_told(traffic: MeasuredTraffic) -> Bools:
+    """For each vehicle whether it moves in the plane as its velocities say, in nine seconds of ten."""
+    found = np.ones(len(traffic.vehicle_id), np.bool_)
+    speed = np.hypot(*traffic.velocity.T)
+    for v, (begin, end) in enumerate(pairwise(traffic.start.tolist())):
+        way = np.hypot(*np.diff(traffic.centre[begin:end], axis=0).T)
+        told = (speed[begin : end - 1] + speed[begin + 1 : end]) / 2 / traffic.rate
+        seconds = np.ones(min(traffic.rate, len(way)))
+        if not len(seconds):
+            continue
+        one, other = np.convolve(way, seconds, "valid"), np.convolve(told, seconds, "valid")
+        greater = np.maximum(one, other)
+        wrong = (greater > 1) & (np.abs(one - other) > SHARE * greater + 0.2)
+        found[v] = np.count_nonzero(wrong) <= SHARE * len(wrong)
+    return found
 
 
 def _is_made(root: Element) -> bool:
@@ -104,7 +109,7 @@ def _is_made(root: Element) -> bool:
     return root.get("benchmarkID", "").removeprefix("C-").startswith("ZAM_")
 
 
-def _traffic(name: str, rate: int, obstacles: Sequence[_Obstacle], notes: tuple[str, ...]) -> MeasuredTraffic:
+def _traffic(name: str, rate: int, obstacles: Sequence[Obstacle], notes: tuple[str, ...]) -> MeasuredTraffic:
     counts = np.array([len(o.states) for o in obstacles])
     states = np.concatenate([o.states for o in obstacles])
     length, width = (np.array([getattr(o, x) for o in obstacles]) for x in ("length", "width"))
@@ -143,8 +148,11 @@ def _change(drift: Floats, start: Integers, rate: int) -> Floats:
     return step
 
 
-def _check_plausible(path: Path, recording: Recording) -> Iterator[str]:
-    """Notes on what the file contradicts itself in. Raises ``InputError`` where that is too much."""
+def _check_plausible(path: Path, recording: Recording, rows: Integers) -> Iterator[str]:
+    """Notes on what the file contradicts itself in. Raises ``InputError`` where that is too much.
+
+    Obstacles and time steps say where that is, so ``rows`` of the file do not matter.
+    """
     checks, ids = check(recording), recording.vehicle_id[recording.row_vehicle]
     found = [
         (f"{ids[x.row]}, time step {recording.row_frame[x.row]}: {x.told}", x.refused)
@@ -196,88 +204,6 @@ def _read_line(path: Path, node: Element | None, what: str) -> Floats:
     if len(points) < 2:
         raise InputError(f"{path}: {what} has {len(points)} points; at least two are needed")
     return np.array([[number_in(path, p.findtext(x), f"{x} in {what}") for x in "xy"] for p in points])
-
-
-def _read_obstacles(
-    path: Path, root: Element, truck_length: float
-) -> tuple[list[_Obstacle], tuple[str, ...]]:
-    obstacles, left_out = [], []
-    seen: set[int] = set()
-    for node in root.findall("dynamicObstacle"):
-        number = int(number_in(path, node.get("id"), "id of a dynamicObstacle"))
-        if number in seen:
-            raise InputError(f"{path}: dynamicObstacle {number} occurs twice; ids must differ")
-        seen.add(number)
-        shape = node.find("shape")
-        if shape is None or [x.tag for x in shape] != ["rectangle"] or node.find("trajectory") is None:
-            left_out.append(number)
-        else:
-            obstacles.append(_read_obstacle(path, node, number, truck_length))
-    if not obstacles:
-        raise InputError(f"{path}: the file has no dynamicObstacle with a rectangle and a trajectory")
-    shown = ", ".join(map(str, left_out))
-    notes = [f"obstacles left out (not one rectangle, or no trajectory): {shown}"] if left_out else []
-    static = len(root.findall("staticObstacle"))
-    if static:
-        notes.append(f"{static} static obstacles left out: they are no traffic")
-    return sorted(obstacles, key=lambda o: o.id), tuple(notes)
-
-
-def _read_obstacle(path: Path, node: Element, number: int, truck_length: float) -> _Obstacle:
-    where = f"dynamicObstacle {number}"
-    length, width = (
-        number_in(path, node.findtext(f"shape/rectangle/{x}"), f"{x} of {where}") for x in ("length", "width")
-    )
-    if length <= 0 or width <= 0:
-        told = f"{where} has length={length}, width={width}"
-        raise InputError(f"{path}: {told}; both must be greater than zero")
-    if max(length, width) > LARGEST_SIZE:
-        told = f"{where} has length={length:g}, width={width:g}"
-        raise InputError(f"{path}: {told}; no vehicle is larger than {LARGEST_SIZE:g} m")
-    nodes = (*node.findall("initialState"), *node.findall("trajectory/state"))
-    states = np.array([_read_state(path, x, where) for x in nodes])
-    states[:, 1:3] += _middle(path, node, states[:, 3], where)
-    if (np.diff(states[:, 0]) != 1).any():
-        k = int(np.argmax(np.diff(states[:, 0]) != 1))
-        steps = f"{states[k, 0]:g} is followed by {states[k + 1, 0]:g}"
-        raise InputError(f"{path}: {where}: time step {steps}; the steps of a trajectory have no gaps")
-    label = (node.findtext("type") or "").strip()
-    kind = "Truck" if label in ("truck", "bus") or length > truck_length else "Car"
-    told = kind if label == "car" else label
-    return _Obstacle(number, kind, told, length, width, int(states[0, 0]), states[:, 1:])
-
-
-def _middle(path: Path, node: Element, heading: Floats, where: str) -> Floats:
-    """How far (m) the middle of the box is from the position, whose frame is turned by ``heading`` (rad)."""
-    box = "shape/rectangle"
-    turned = node.find(f"{box}/orientation")
-    if turned is not None and number_in(path, turned.text, f"orientation of the rectangle of {where}") != 0:
-        told = f"orientation={turned.text} of the rectangle of {where}"
-        raise InputError(f"{path}: {told}: 0 is needed; boxes lie along their obstacle")
-    if node.find(f"{box}/center") is None:
-        return np.zeros((len(heading), 2))
-    ahead, left = (
-        number_in(path, node.findtext(f"{box}/center/{x}"), f"center {x} of the rectangle of {where}")
-        for x in "xy"
-    )
-    cos, sin = np.cos(heading), np.sin(heading)
-    return np.stack((ahead * cos - left * sin, ahead * sin + left * cos), axis=1)
-
-
-def _read_state(path: Path, node: Element, where: str) -> list[float]:
-    def number(what: str, place: str) -> float:
-        return number_in(path, node.findtext(place), f"{what} in a state of {where}")
-
-    aside = node.find("velocityY") is not None
-    state = {
-        what: number(what, place) if aside or what != "velocityY" else 0.0
-        for what, (place, _) in _STATE.items()
-    }
-    for what, (_, most) in _STATE.items():
-        if abs(state[what]) > most:
-            at = f"{what}={state[what]:g} of {where} at time step {state['time']:g}"
-            raise InputError(f"{path}: {at}: must lie between {-most:g} and {most:g}")
-    return list(state.values())
 
 
 FORMAT = Format(

@@ -115,8 +115,11 @@ def frame_of_samples(recording: Recording) -> Frame:
     return frame
 
 
-def read_converted(path: Path) -> Recording:
-    """The recording of NAME.recording.json, or of the samples beside it. Raises ``InputError``."""
+def read_converted(path: Path, strict: bool = True) -> Recording:
+    """The recording of NAME.recording.json, or of the samples beside it. Raises ``InputError``.
+
+    ``strict`` changes nothing: what is left out was left out when it was converted.
+    """
     head = _head_of(path)
     with _as_written(head):
         said = _read_head(head)

@@ -30,6 +30,7 @@ from roadproof.recordings.formats.lanelets import ZONES_ENDING, network_of
 from roadproof.recordings.formats.measured_roads import MeasuredTraffic, place_traffic
 from roadproof.recordings.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED, check
 from roadproof.recordings.formats.recording import Floats, Integers, Recording, with_notes
+from roadproof.recordings.formats.reliable import reliable
 from roadproof.recordings.formats.source import Files, Format, beside
 from roadproof.recordings.formats.table import Table, kinds_of, read_named
 from roadproof.recordings.formats.topology import MeasuredLanelet
@@ -229,8 +230,10 @@ SAMPLE_KINDS = kinds_of(
 LARGEST_PLACE = 10_000.0
 
 
-def read_exid(folder: Path, name: str) -> Recording:
-    """Recording ``name`` of ``folder``. Raises ``InputError`` that names file, element, value and rule."""
+def read_exid(folder: Path, name: str, strict: bool = True) -> Recording:
+    """Recording ``name`` of ``folder``; unless ``strict``, bad vehicles are left out.
+
+    Raises ``InputError`` that names file, element, value and rule."""
     about = read_named(folder / f"{name}_recordingMeta.csv", RECORDING_KINDS)
     rate = rate_of(about, "recordingId", int(name), f"the file is of recording {name}")
     meta = _read_vehicles(folder / f"{name}_tracksMeta.csv", int(name))
@@ -257,9 +260,9 @@ def read_exid(folder: Path, name: str) -> Recording:
         acceleration=np.stack((tracks["xAcceleration"], tracks["yAcceleration"]), axis=1),
         notes=(*notes, *told),
     )
-    recording = place_traffic(traffic, network_of(path, lanelets))
-    more = (*_check_plausible(tracks, recording), *_check_lanelets(tracks, recording, path))
-    return with_notes(recording, more)
+    recording = place_traffic(traffic, network_of(path, lanelets, strict))
+    stands = reliable(recording, strict, partial(_check_plausible, tracks))
+    return with_notes(stands, _check_lanelets(tracks, recording, path))
 
 
 def _read_vehicles(path: Path, recording: int) -> Table:
@@ -289,8 +292,9 @@ def _check_velocities(tracks: Table) -> Iterator[str]:
     yield from seldom(tracks, wrong, "lonVelocity", rule, advice)
 
 
-def _check_plausible(tracks: Table, recording: Recording) -> Iterator[str]:
+def _check_plausible(whole: Table, recording: Recording, rows: Integers) -> Iterator[str]:
     """Notes on what the file contradicts itself in. Raises ``InputError`` where that is too much."""
+    tracks = whole if len(rows) == whole.rows else whole.at(rows)
 
     def at(row: int, signal: str) -> str:
         return f"{tracks.cell(row, 'frame')}, trackId={tracks['trackId'][row]}"

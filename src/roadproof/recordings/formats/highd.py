@@ -29,6 +29,7 @@ from roadproof.recordings.formats.recording import (
     blockwise,
     with_notes,
 )
+from roadproof.recordings.formats.reliable import reliable
 from roadproof.recordings.formats.source import Files, Format
 from roadproof.recordings.formats.straight import StraightRoad, of_bands, of_road, place
 from roadproof.recordings.formats.table import Table, kinds_of, names_in, read_table, sample_rows
@@ -156,11 +157,13 @@ def _check_sight(meta: Table, tracks: Table) -> tuple[str, ...]:
     return (f"{tracks.path.name}, {told}",)
 
 
-def _check_plausible(recording: Recording, tracks: Table) -> Iterator[str]:
+def _check_plausible(whole: Table, recording: Recording, rows: Integers) -> Iterator[str]:
     """Notes on what the recording contradicts itself in; each vehicle must be at least once on a lane.
 
     Raises ``InputError`` where that is too much.
     """
+
+    tracks = whole if len(rows) == whole.rows else whole.at(rows)
 
     def at(row: int, signal: SignalName | SizeName) -> str:
         return f"{tracks.cell(row, _COLUMNS[signal])} of vehicle {tracks['id'][row]}"
@@ -178,10 +181,11 @@ def highd_files(folder: Path, name: str) -> Files:
     return (*((road,) if road.is_file() else ()), *files_of(folder, name))
 
 
-def read_highd(folder: Path, name: str) -> Recording:
+def read_highd(folder: Path, name: str, strict: bool = True) -> Recording:
     """Recording ``name`` of ``folder``, in the coordinates of semantics §2.
 
     ``XX_road.toml`` beside the files gives the lanelets of one direction in place of its markings.
+    Unless ``strict``, vehicles that contradict themselves are left out.
     Raises ``InputError`` that names file, row, column, value and rule for anything that does not fit;
     what is odd but usable is in ``Recording.notes``.
     """
@@ -222,8 +226,9 @@ def read_highd(folder: Path, name: str) -> Recording:
         notes=notes,
         **vars(placed),
     )
-    more = (*_check_plausible(recording, tracks), *_check_lanes(tracks, recording, direction != way))
-    return with_notes(recording, (*more, *_check_sight(meta, tracks)))
+    stands = reliable(recording, strict, partial(_check_plausible, tracks))
+    more = (*_check_lanes(tracks, recording, direction != way), *_check_sight(meta, tracks))
+    return with_notes(stands, more)
 
 
 def _turned(backwards: Bools, values: Floats) -> Floats:

@@ -5,8 +5,8 @@ with the same attribute. A lanelet beside a merge lane is in the merge zone, one
 lane in the depart zone, every other one on the main road. A file NAME_zones.toml may say otherwise.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import get_args
 
@@ -61,10 +61,10 @@ class Network:
     notes: tuple[str, ...]
 
 
-def network_of(path: Path, lanelets: Mapping[str, MeasuredLanelet]) -> Network:
+def network_of(path: Path, lanelets: Mapping[str, MeasuredLanelet], strict: bool = True) -> Network:
     """The network of the lanelets of ``path``, with the zones in the file beside it.
 
-    Raises ``InputError`` for more than 32 lanes.
+    Raises ``InputError`` for more than 32 lanes where it is ``strict``.
     """
     told = _read_said(path.with_name(f"{path.stem}{ZONES_ENDING}"), lanelets)
     for lanelet in lanelets.values():
@@ -75,7 +75,7 @@ def network_of(path: Path, lanelets: Mapping[str, MeasuredLanelet]) -> Network:
     attributes = {name: told.attributes.get(name, attribute) for name, (attribute, _) in inferred.items()}
     ways = carriageways_of(lanelets)
     lanes = _lanes(lanelets, attributes, ways)
-    if len(lanes) > MOST_LANES:
+    if strict and len(lanes) > MOST_LANES:
         raise InputError(f"{path}: {len(lanes)} lanes; at most {MOST_LANES} are supported, cut out a part")
     zones = {**_zones(lanelets, attributes), **told.zones}
     chains = chains_of(lanelets)
@@ -83,6 +83,27 @@ def network_of(path: Path, lanelets: Mapping[str, MeasuredLanelet]) -> Network:
     reasons = {name: reason for name, (_, reason) in inferred.items() if name not in told.attributes}
     notes = (*_say_inferred(lanes, attributes, reasons), *_say_said(told))
     return Network(lanelets, attributes, zones, lanes, _beside(lanelets, lanes), main, notes)
+
+
+def used_lanes(
+    network: Network, is_used: Callable[[MeasuredLanelet], bool], name: str
+) -> tuple[Network, tuple[str, ...]]:
+    """The network with the lanes that ``is_used`` says are used, where it has more than a mask has bits.
+
+    With a note on the others, which no vehicle is ever in. Raises ``InputError``, which begins with ``name``,
+    where more are used.
+    """
+    known = network.lanes
+    if len(known) <= MOST_LANES:
+        return network, ()
+    lanes = tuple(x for x in known if any(is_used(network.lanelets[y]) for y in x.lanelets))
+    if len(lanes) > MOST_LANES:
+        told = f"vehicles are in {len(lanes)} lanes; at most {MOST_LANES} are supported, cut out a part"
+        raise InputError(f"{name}: {told}")
+    names = {x.name for x in lanes}
+    beside = frozenset(pair for pair in network.beside if pair <= names)
+    told = f"left out {len(known) - len(lanes)} of {len(known)} lanes: no vehicle is ever in them"
+    return replace(network, lanes=lanes, beside=beside), (told,)
 
 
 def _read_said(path: Path, lanelets: Mapping[str, MeasuredLanelet]) -> LaneletAttributes:

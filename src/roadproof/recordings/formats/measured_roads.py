@@ -13,7 +13,7 @@ from fractions import Fraction
 import numpy as np
 import numpy.typing as npt
 
-from roadproof.recordings.formats.lanelets import Network
+from roadproof.recordings.formats.lanelets import Network, used_lanes
 from roadproof.recordings.formats.recording import (
     ZONES,
     Bools,
@@ -241,10 +241,16 @@ _IN_PLANE = ("centre", "heading", "velocity", "acceleration", "notes")
 
 
 def place_traffic(traffic: MeasuredTraffic, network: Network) -> Recording:
-    """The recording of ``traffic`` on ``network``; ``notes`` tell what was inferred and what is off."""
+    """The recording of ``traffic`` on ``network``; ``notes`` tell what was inferred and what is off.
+
+    Of more than 32 lanes those remain that some vehicle is in. Raises ``InputError`` where these are more.
+    """
     counts = np.diff(traffic.start)
     length, width = (np.repeat(x, counts) for x in (traffic.length, traffic.width))
     boxes = boxes_of(traffic.centre, traffic.heading, length, width)
+    network, unused = used_lanes(
+        network, lambda x: bool(overlap(boxes, triangles_of(x.left, x.right)).any()), traffic.name
+    )
     inside_of, occupancy, lane, zones = _occupy(network, boxes, traffic.centre)
     direction = _carriageway(network, occupancy, traffic.start)
     along = _along_main_ways(network, traffic.centre, np.repeat(direction, counts))
@@ -253,7 +259,12 @@ def place_traffic(traffic: MeasuredTraffic, network: Network) -> Recording:
     slack = _slack(along, corners, traffic.heading, s, d, length, width)
     v_lon, v_lat = _turned(traffic.velocity, along.heading)
     a_lon, a_lat = _turned(traffic.acceleration, along.heading)
-    notes = (*traffic.notes, *network.notes, *_say_off(along, slack, traffic.start, traffic.vehicle_id))
+    notes = (
+        *traffic.notes,
+        *network.notes,
+        *unused,
+        *_say_off(along, slack, traffic.start, traffic.vehicle_id),
+    )
     return Recording(
         **{name: value for name, value in vars(traffic).items() if name not in _IN_PLANE},
         lanes=tuple(Lane(x.name, x.carriageway) for x in network.lanes),
@@ -354,7 +365,7 @@ def _occupy(network: Network, boxes: Floats, centre: Floats) -> tuple[Bools, Mas
     """For each sample the lanelets and lanes it is in, the lane of its centre, and its zones."""
     occupancy, zones = np.zeros(len(boxes), np.uint32), np.zeros(len(boxes), np.uint32)
     lane = np.full(len(boxes), -1, np.int64)
-    inside_of = np.zeros((len(boxes), len(network.lanelets)), np.bool_)
+    inside_of = np.zeros((len(boxes), sum(len(x.lanelets) for x in network.lanes)), np.bool_)
     column = 0
     for k, measured in enumerate(network.lanes):
         for name in measured.lanelets:

@@ -87,11 +87,11 @@ def read_columns(path: Path) -> tuple[Table, Road, Path]:
     return _sampled(path, boxes, ways), load_road(road), road
 
 
-def read_recording(path: Path) -> Recording:
-    """The vehicles of a file as a recording. Raises ``InputError``."""
+def read_recording(path: Path, strict: bool = True) -> Recording:
+    """The vehicles of a file as a recording; unless ``strict``, without bad ones. Raises ``InputError``."""
     table, road, road_path = read_columns(path)
     note = f"speeds and accelerations are those of curves through the vertices, {RATE} samples a second"
-    return recording_of(table, of_road(road, DIRECTION, road_path), path.stem, (note,))
+    return recording_of(table, of_road(road, DIRECTION, road_path), path.stem, (note,), strict)
 
 
 def _text(path: Path, node: Element | None, attribute: str, what: str) -> str:

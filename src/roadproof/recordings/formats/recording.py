@@ -213,9 +213,18 @@ def _own_number(value: object) -> float:
 
 def keep_vehicles(recording: Recording, wanted: Bools) -> Recording:
     """The recording with only the vehicles for which ``wanted`` (one entry a vehicle) is true."""
-    counts = np.diff(recording.start)
-    rows = np.repeat(wanted, counts)
-    fields = ((wanted, (*OF_VEHICLES, "label")), (rows, (*OF_SAMPLES, "moments", "inside")))
+    return _part(recording, wanted, np.repeat(wanted, np.diff(recording.start)))
+
+
+def one_vehicle(recording: Recording, vehicle: int) -> Recording:
+    """The recording with only the vehicle of this index."""
+    start, end = recording.start[vehicle : vehicle + 2].tolist()
+    return _part(recording, slice(vehicle, vehicle + 1), slice(start, end))
+
+
+def _part(recording: Recording, vehicles: Bools | slice, rows: Bools | slice) -> Recording:
+    """The recording with some vehicles, whose samples are the ``rows``."""
+    fields = ((vehicles, (*OF_VEHICLES, "label")), (rows, (*OF_SAMPLES, "moments", "inside")))
     changed: dict[str, Any] = {
         name: getattr(recording, name)[of]
         for of, names in fields
@@ -225,7 +234,7 @@ def keep_vehicles(recording: Recording, wanted: Bools) -> Recording:
     if recording.slack is not None:
         changed["slack"] = Slack(*(values[rows] for values in vars(recording.slack).values()))
     own = {name: values[rows] for name, values in recording.own.items()}
-    return replace(recording, **changed, own=own, start=offsets(counts[wanted]))
+    return replace(recording, **changed, own=own, start=offsets(np.diff(recording.start)[vehicles]))
 
 
 def join_vehicles(recording: Recording, guests: Recording) -> Recording:

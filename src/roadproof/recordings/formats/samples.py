@@ -21,10 +21,12 @@ from roadproof.library.roles import vehicle_order
 from roadproof.recordings.formats.contradictions import contradictions
 from roadproof.recordings.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED, check
 from roadproof.recordings.formats.recording import Floats, Integers, Recording, own_numbers, with_notes
+from roadproof.recordings.formats.reliable import MOST_LEFT_OUT, left_out_note, reliable
 from roadproof.recordings.formats.source import first_line
 from roadproof.recordings.formats.straight import StraightRoad, of_road, record
 from roadproof.recordings.formats.table import (
     RULES,
+    CellError,
     Column,
     Frame,
     Kind,
@@ -170,13 +172,13 @@ def own_columns(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(name for name in names if name not in (*HEADER, *SIGNALS, "kind", LABEL))
 
 
-def read_recording(path: Path) -> Recording:
-    """The recording of a file, on the road beside it. Raises ``InputError``.
+def read_recording(path: Path, strict: bool = True) -> Recording:
+    """The recording of a file, on the road beside it; unless ``strict``, bad vehicles are left out.
 
-    Vehicles that are not called by whole numbers are numbered; ``notes`` tell how.
+    Raises ``InputError``. Vehicles that are not called by whole numbers are numbered; ``notes`` tell how.
     """
     columns = read_columns(path)
-    return recording_of(columns, road_beside(path), path.stem)
+    return recording_of(columns, road_beside(path), path.stem, strict=strict)
 
 
 def road_beside(path: Path) -> StraightRoad:
@@ -187,12 +189,43 @@ def road_beside(path: Path) -> StraightRoad:
     return of_road(load_recorded_road(road_file)[0], DIRECTION, road_file)
 
 
-def recording_of(columns: Table, road: StraightRoad, name: str, notes: tuple[str, ...] = ()) -> Recording:
-    """The recording of columns called as in ``HEADER``, and ``kind``, on a road. Raises ``InputError``."""
-    table, ids, clock, numbered = _in_order(columns)
-    recording = vehicles_of(table, ids, clock, road, name)
-    told = with_notes(recording, (*notes, *numbered, *clock.notes))
-    return with_notes(told, _check_plausible(table, recording))
+def recording_of(
+    columns: Table, road: StraightRoad, name: str, notes: tuple[str, ...] = (), strict: bool = True
+) -> Recording:
+    """The recording of columns called as in ``HEADER``, and ``kind``, on a road. Raises ``InputError``.
+
+    Unless it is ``strict``, vehicles of which a cell breaks a rule, and bad ones, are left out.
+    """
+    table, recording, told = _readable_part(columns, road, name, strict)
+    return reliable(with_notes(recording, (*notes, *told)), strict, partial(_check_plausible, table))
+
+
+def _readable_part(
+    columns: Table, road: StraightRoad, name: str, strict: bool
+) -> tuple[Table, Recording, tuple[str, ...]]:
+    """The rows by vehicle and their recording, with notes. Raises ``InputError``.
+
+    Without vehicles of which a cell breaks a rule, where it is not ``strict`` and they are not too many.
+    """
+    names = columns["vehicle"].astype(np.str_)
+    known, wanted, faults = len(np.unique(names)), np.ones(columns.rows, np.bool_), dict[str, CellError]()
+    while True:
+        try:
+            table, ids, clock, numbered = _in_order(
+                columns if wanted.all() else columns.at(np.flatnonzero(wanted))
+            )
+            recording = vehicles_of(table, ids, clock, road, name)
+            break
+        except CellError as error:
+            if strict or len(faults) + 1 > MOST_LEFT_OUT * known:
+                raise next(iter(faults.values()), error) from None
+            faults[str(names[error.place])] = error
+            wanted &= names != names[error.place]
+    left_out = (
+        left_out_note([vehicle], known, str(x).removeprefix(f"{columns.path}, "))
+        for vehicle, x in faults.items()
+    )
+    return table, recording, (*left_out, *numbered, *clock.notes)
 
 
 def doubts_in(columns: Table, road: StraightRoad) -> tuple[str, ...]:
@@ -208,7 +241,7 @@ def doubts_in(columns: Table, road: StraightRoad) -> tuple[str, ...]:
             "accelerations were not compared with each other",
         )
     recording = vehicles_of(table, ids, clock, road, columns.path.stem)
-    return tuple(_check_plausible(table, recording))
+    return tuple(_check_plausible(table, recording, np.arange(table.rows)))
 
 
 def vehicles_of(table: Table, ids: Integers, clock: "Clock", road: StraightRoad, name: str) -> Recording:
@@ -322,8 +355,9 @@ def _check_cells(table: Table, start: Integers) -> None:
     table.require(ends, "s", "a vehicle never ends further back than its length from where it began")
 
 
-def _check_plausible(table: Table, recording: Recording) -> Iterator[str]:
+def _check_plausible(whole: Table, recording: Recording, rows: Integers) -> Iterator[str]:
     """Notes on what the file contradicts itself in. Raises ``InputError`` where that is too much."""
+    table = whole if len(rows) == whole.rows else whole.at(rows)
 
     def at(row: int, signal: str) -> str:
         return f"{table.cell(row, signal)} of vehicle {table['vehicle'][row]}"

@@ -21,7 +21,8 @@ class Format:
 
     ``find``: the recordings of this kind, by name, that a folder holds or that a file is of; for each all
     files that it is read from, that of its samples last. A recording of which files are missing is found,
-    so that reading it is refused. ``read`` takes the file of its samples and raises ``InputError``.
+    so that reading it is refused. ``read`` takes the file of its samples, and whether it is strict: then no
+    vehicle is left out (reliable.py). It raises ``InputError``.
     ``rate_at``: where the files, {0} being the last, say the ``rate`` (1/s) and ``step`` (s) of samples.
     ``told``: the files in words. ``divide``: a recording that is too large to be read as a whole, in windows,
     None for others; formats without it are always read as a whole.
@@ -30,22 +31,23 @@ class Format:
     name: str
     told: str
     find: Callable[[Path], dict[str, Files]]
-    read: Callable[[Path], Recording]
+    read: Callable[[Path, bool], Recording]
     rate_at: str
     divide: Callable[[Path], WindowedRecording | None] | None = None
 
 
 @dataclass(frozen=True)
 class RecordingSource:
-    """A recording that can be read."""
+    """A recording that can be read; ``strict``: as a whole or not at all."""
 
     format: Format
     name: str
     files: Files
+    strict: bool = False
 
     def read(self) -> Recording:
         """Read and check it. Raises ``InputError``."""
-        return self.format.read(self.files[-1])
+        return self.format.read(self.files[-1], self.strict)
 
     def divided(self) -> WindowedRecording:
         """The recording in windows, one where it is small enough. Raises ``InputError``, reading them too."""

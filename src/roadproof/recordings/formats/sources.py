@@ -44,8 +44,11 @@ FORMATS: tuple[Format, ...] = (
 )
 
 
-def find_sources(path: Path) -> tuple[RecordingSource, ...]:
-    """The recordings of a folder, or the one that a file is of. Raises ``InputError``."""
+def find_sources(path: Path, strict: bool = False) -> tuple[RecordingSource, ...]:
+    """The recordings of a folder, or the one that a file is of. Raises ``InputError``.
+
+    ``strict``: a recording is read as a whole or not at all.
+    """
     if not path.exists():
         raise InputError(f"recordings={path}: not a folder and not a file; check the path")
     by_format = {x: found for x in FORMATS if (found := x.find(path))}
@@ -59,12 +62,12 @@ def find_sources(path: Path) -> tuple[RecordingSource, ...]:
             f"recordings={path}: {names} files in one folder; put them into folders of their own"
         )
     ((chosen, found),) = by_format.items()
-    return tuple(RecordingSource(chosen, name, files) for name, files in found.items())
+    return tuple(RecordingSource(chosen, name, files, strict) for name, files in found.items())
 
 
-def find_source(path: Path) -> RecordingSource:
+def find_source(path: Path, strict: bool = False) -> RecordingSource:
     """The only recording of a path. Raises ``InputError``."""
-    sources = find_sources(path)
+    sources = find_sources(path, strict)
     if len(sources) > 1:
         names = ", ".join(str(source.files[-1].name) for source in sources[:3])
         raise InputError(f"{path}: {len(sources)} recordings; name the file of one, such as {names}")

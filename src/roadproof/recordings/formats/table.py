@@ -41,6 +41,14 @@ RULES: Mapping[Kind, str] = {
 }
 
 
+class CellError(InputError):
+    """A cell breaks a rule; ``place``: its row among the data rows of the file, from 0."""
+
+    def __init__(self, message: str, place: int) -> None:
+        super().__init__(message)
+        self.place = place
+
+
 @dataclass(frozen=True)
 class Table:
     """Columns of equal length by name, and the file that they came from.
@@ -56,14 +64,17 @@ class Table:
     def __getitem__(self, name: str) -> Column:
         return self.columns[name]
 
-    def refuse(self, row: int, column: str, rule: str) -> InputError:
+    def refuse(self, row: int, column: str, rule: str) -> CellError:
         """The error for the cell in data row ``row`` (from 0)."""
-        return InputError(f"{self.path}, {self.cell(row, column)}: {rule}")
+        return CellError(f"{self.path}, {self.cell(row, column)}: {rule}", self.place(row))
+
+    def place(self, row: int) -> int:
+        """The place in the file of the data row ``row``, both from 0."""
+        return row if self.places is None else int(self.places[row])
 
     def cell(self, row: int, column: str) -> str:
         """Row of the file, column and value of the cell in data row ``row`` (from 0)."""
-        place = row if self.places is None else int(self.places[row])
-        return f"row {place + 2}, column {column}={self.columns[column][row]}"
+        return f"row {self.place(row) + 2}, column {column}={self.columns[column][row]}"
 
     def at(self, order: Column) -> "Table":
         """The rows at ``order``; each knows its place in the file."""

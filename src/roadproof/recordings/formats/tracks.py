@@ -20,9 +20,9 @@ def files_of(folder: Path, name: str) -> Files:
     return tuple(folder / f"{name}_{x}.csv" for x in ("recordingMeta", "tracksMeta", "tracks"))
 
 
-def read_tracks(read: Callable[[Path, str], Recording], path: Path) -> Recording:
+def read_tracks(read: Callable[[Path, str, bool], Recording], path: Path, strict: bool = True) -> Recording:
     """The recording whose tracks are in ``path``, which ``read`` reads from its folder and name."""
-    return read(path.parent, path.name.removesuffix(TRACKS))
+    return read(path.parent, path.name.removesuffix(TRACKS), strict)
 
 
 def find_recordings(path: Path, with_ids: bool, files: Callable[[Path, str], Files]) -> dict[str, Files]:

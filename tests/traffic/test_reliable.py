@@ -1,0 +1,291 @@
+"""A bad vehicle costs that vehicle: it is left out and named, the others are as in a file without it."""
+
+import json
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import roadproof as rp
+from roadproof.errors import InputError
+from roadproof.frontends.cli.main import main
+from roadproof.recordings.evaluate.one_trace import read_pair
+from roadproof.recordings.formats.recording import Recording
+from roadproof.recordings.formats.sources import find_source
+from roadproof.verdict import ExitCode
+from traffic.tiny_commonroad import Car, document, lanelet
+
+STEPS = 41
+
+
+def car(number: int, begin: float, speed: float = 20.0, told: float = 1.0, pull: float = 0.0) -> Car:
+    """A car in the right lane with constant acceleration ``pull``; it says ``told`` times its speed."""
+    times = [k / 10 for k in range(STEPS)]
+    centres = tuple((begin + speed * t + pull * t * t / 2, 1.75) for t in times)
+    motion = tuple((told * (speed + pull * t), pull) for t in times)
+    return Car(number, 0, centres, motion=motion)
+
+
+GOOD = tuple(car(k, 10.0 * k, speed=3.0) for k in range(1, 6))
+
+
+def written(folder: Path, text: str, name: str = "a") -> Path:
+    folder.mkdir(exist_ok=True)
+    (folder / f"{name}.xml").write_text(text, "utf-8")
+    return folder / f"{name}.xml"
+
+
+def both(path: Path) -> tuple[Recording, str]:
+    """The recording as it is read by default, and why it is rejected as a whole."""
+    with pytest.raises(InputError) as error:
+        find_source(path, strict=True).read()
+    return find_source(path).read(), str(error.value)
+
+
+def note_in(recording: Recording, begin: str) -> str:
+    [note] = [x for x in recording.notes if x.startswith(begin)]
+    return note
+
+
+def of_one(text: str, number: int, change: Callable[[str], str]) -> str:
+    """A file with the obstacle of this id changed."""
+    found = re.search(rf'<dynamicObstacle id="{number}">.*?</dynamicObstacle>', text, re.DOTALL)
+    assert found is not None
+    return text.replace(found[0], change(found[0]))
+
+
+# --- vehicles that contradict themselves -----------------------------------------------------------
+
+
+def test_the_others_are_as_without_it(tmp_path: Path) -> None:
+    good = find_source(written(tmp_path, document(GOOD))).read()
+    bad = car(9, 5.0, speed=20.0, told=2.0)
+    read, why = both(written(tmp_path / "b", document((*GOOD, bad)), "a"))
+    assert "dynamicObstacle 9, time step" in why
+    assert "velocities along the road and positions contradict each other, by a factor of 2" in why
+    rule = "velocities along the road and positions contradict each other"
+    assert note_in(read, "left out") == f"left out 1 of 6 vehicles (9): {rule}"
+    assert read.vehicle_id.tolist() == good.vehicle_id.tolist()
+    for name in ("s", "d", "v_lon", "a_lon", "occupancy", "inside", "start", "lane"):
+        assert np.array_equal(getattr(read, name), getattr(good, name)), name
+
+
+def test_nothing_is_left_out_of_what_stands(tmp_path: Path) -> None:
+    path = written(tmp_path, document(GOOD))
+    default, strict = find_source(path).read(), find_source(path, strict=True).read()
+    assert default.notes == strict.notes
+    assert default.vehicles == 5
+
+
+def test_too_many_cost_the_recording(tmp_path: Path) -> None:
+    """Half of the vehicles may be bad, and no more."""
+    bad = tuple(car(10 + k, 5.0 + k, speed=3.0, told=2.0) for k in range(6))
+    assert find_source(written(tmp_path, document((*GOOD, *bad[:5])))).read().vehicles == 5
+    with pytest.raises(
+        InputError, match=r"by a factor of 2.*; 6 of 11 vehicles would be left out, more than"
+    ):
+        find_source(written(tmp_path, document((*GOOD, *bad)))).read()
+
+
+def test_accelerations_come_from_velocities(tmp_path: Path) -> None:
+    """Places confirm the velocities, so that these say what accelerations are that a file has as zero."""
+    braking = tuple(car(k, 10.0 * k, speed=12.0, pull=-2.0) for k in range(1, 4))
+    silent = tuple(replace(x, motion=tuple((v, 0.0) for v, _ in x.motion or ())) for x in braking)
+    read, why = both(written(tmp_path, document(silent)))
+    assert "accelerations along the road and velocities contradict each other" in why
+    assert read.vehicles == 3
+    assert np.allclose(read.a_lon, -2.0)
+    assert "of 3 of 3 vehicles (1, 2, 3) contradict their velocities; they were" in note_in(
+        read, "accelerations a"
+    )
+
+
+def test_the_line_is_at_fault_where_the_plane_agrees(tmp_path: Path) -> None:
+    """A vehicle that drives across the road is left out, and the note says that its data agree."""
+    across = tuple((60.0, 1.75 + 5.0 * k / 10) for k in range(STEPS))
+    turned = replace(car(9, 0.0), centres=across, motion=((5.0, 0.0),) * STEPS, drift=np.pi / 2 + 0.6)
+    read = find_source(written(tmp_path, document((*GOOD, turned)))).read()
+    assert read.vehicle_id.tolist() == [1, 2, 3, 4, 5]
+    assert "left out, 1 (9) move in the plane as their velocities say" in note_in(read, "of the vehicles")
+    told = replace(turned, motion=((9.0, 0.0),) * STEPS)
+    read = find_source(written(tmp_path, document((*GOOD, told)))).read()
+    assert read.vehicle_id.tolist() == [1, 2, 3, 4, 5]
+    assert not any(x.startswith("of the vehicles") for x in read.notes)
+
+
+# --- what files do not have -------------------------------------------------------------------------
+
+
+def without(tag: str, first_only: bool = False) -> Callable[[str], str]:
+    return lambda text: re.sub(rf"<{tag}><exact>[^<]*</exact></{tag}>", "", text, count=int(first_only))
+
+
+@pytest.mark.parametrize("first_only", [True, False])
+@pytest.mark.parametrize("tag", ["orientation", "velocity", "acceleration"])
+def test_the_motion_says_what_states_lack(tag: str, first_only: bool, tmp_path: Path) -> None:
+    cars = (*GOOD, car(7, 70.0, speed=10.0, pull=1.0))
+    full = find_source(written(tmp_path, document(cars))).read()
+    read, why = both(written(tmp_path, of_one(document(cars), 7, without(tag, first_only))))
+    assert f"{tag} in a state of dynamicObstacle 7 is None; a finite number is needed" in why
+    assert f"{tag} of 1 of 6 vehicles (7)" in "\n".join(read.notes)
+    for name, within in (("s", 1e-6), ("v_lon", 0.06), ("v_lat", 1e-6), ("a_lon", 1.01)):
+        assert np.allclose(getattr(read, name), getattr(full, name), atol=within), name
+    inner = slice(int(read.start[-2]) + 2, -2)
+    assert np.allclose(read.a_lon[inner], full.a_lon[inner])
+
+
+def test_an_interval_stands_for_its_middle(tmp_path: Path) -> None:
+    def interval(text: str) -> str:
+        return text.replace(
+            "<velocity><exact>3.0</exact></velocity>",
+            "<velocity><intervalStart>2.5</intervalStart><intervalEnd>3.5</intervalEnd></velocity>",
+            1,
+        )
+
+    full = find_source(written(tmp_path, document(GOOD))).read()
+    read, why = both(written(tmp_path, of_one(document(GOOD), 2, interval)))
+    assert "velocity in a state of dynamicObstacle 2 is None" in why
+    assert "the middle of an interval is velocity of 1 of 5 vehicles (2)" in read.notes
+    assert np.array_equal(read.v_lon, full.v_lon)
+
+
+def test_unsigned_speeds_backwards(tmp_path: Path) -> None:
+    """Strict reading takes such a vehicle for one that drives on: it contradicts its places."""
+    back = replace(car(9, 60.0, speed=-6.0), motion=((6.0, 0.0),) * STEPS)
+    read, why = both(written(tmp_path, document((*GOOD, back))))
+    assert "by a factor of -1" in why
+    assert read.vehicles == 6
+    assert np.allclose(read.v_lon[read.start[-2] :], -6.0)
+    assert "an unsigned velocity, of 1 of 6 vehicles (9)" in note_in(read, "the motion is backwards")
+
+
+def test_a_first_state_that_is_said_twice(tmp_path: Path) -> None:
+    def twice(text: str) -> str:
+        first = text[text.index("<initialState>") : text.index("</initialState>")].partition(">")[2]
+        return text.replace("<trajectory>", f"<trajectory><state>{first}</state>")
+
+    read, why = both(written(tmp_path, of_one(document(GOOD), 2, twice)))
+    assert "dynamicObstacle 2: time step 0 is followed by 0" in why
+    assert np.array_equal(read.s, find_source(written(tmp_path, document(GOOD))).read().s)
+
+
+def test_an_obstacle_that_cannot_be_read(tmp_path: Path) -> None:
+    text = of_one(document(GOOD), 2, lambda x: x.replace("<time><exact>7</exact>", "<time><exact>99</exact>"))
+    read, why = both(written(tmp_path, text))
+    assert read.vehicle_id.tolist() == [1, 3, 4, 5]
+    told = "dynamicObstacle 2: time step 6 is followed by 99; the steps of a trajectory have no gaps"
+    assert told in why
+    assert note_in(read, "left out") == f"left out 1 of 5 vehicles (2): {told}"
+    every = document(GOOD).replace("<time><exact>7</exact>", "<time><exact>99</exact>")
+    with pytest.raises(InputError, match=r"time step 6 is followed by 99.*; 5 obstacles have such faults"):
+        find_source(written(tmp_path, every)).read()
+
+
+# --- what is no traffic -----------------------------------------------------------------------------
+
+
+def test_people_and_parked_vehicles_are_left_out(tmp_path: Path) -> None:
+    text = document(GOOD)
+    for number, kind in ((1, "pedestrian"), (2, "bicycle"), (4, "bicycle"), (5, "parkedVehicle")):
+        text = of_one(text, number, lambda x, kind=kind: x.replace("<type>car<", f"<type>{kind}<"))  # type: ignore[misc]
+    read = find_source(written(tmp_path, text)).read()
+    assert read.vehicle_id.tolist() == [3]
+    assert "left out 1 of 5 vehicles (1): they are pedestrians" in read.notes
+    assert "left out 2 of 5 vehicles (2, 4): they are cyclists" in read.notes
+    assert "left out 1 of 5 vehicles (5): they are parked vehicles" in read.notes
+    assert find_source(tmp_path / "a.xml", strict=True).read().vehicles == 5
+
+
+def test_vehicles_off_the_road(tmp_path: Path) -> None:
+    """They are left out where they would cost the recording, and noted where they are few."""
+    off = replace(car(9, 5.0, speed=3.0), centres=tuple((5.0 + 0.3 * k, 40.0) for k in range(STEPS)))
+    read, why = both(written(tmp_path, document((*GOOD, off))))
+    assert "dynamicObstacle 9: on no lanelet at any time" in why
+    assert note_in(read, "left out") == "left out 1 of 6 vehicles (9): on no lane at any time"
+
+
+def test_any_number_of_lanes(tmp_path: Path) -> None:
+    """Of more lanes than a mask has bits those remain that a vehicle is ever in, with the same places."""
+    more = "".join(lanelet(str(100 + k), 100 + 4 * k, 103 + 4 * k, (0, 80), "highway", "") for k in range(70))
+    text = document(GOOD).replace("<dynamicObstacle", f"{more}<dynamicObstacle", 1)
+    read, why = both(written(tmp_path, text))
+    assert "73 lanes; at most 32 are supported, cut out a part" in why
+    few = find_source(written(tmp_path / "few", document(GOOD))).read()
+    assert note_in(read, "left out") == "left out 72 of 73 lanes: no vehicle is ever in them"
+    assert [x.name for x in read.lanes] == ["1"]
+    assert np.array_equal(read.inside[:, :2], few.inside[:, :2])
+    assert np.array_equal(read.zones, few.zones)
+    assert rp.roads(tmp_path / "a.xml")[0].vehicles == 5
+
+
+# --- samples ----------------------------------------------------------------------------------------
+
+
+def samples(folder: Path, rows: dict[str, list[tuple[float, float]]]) -> Path:
+    """A CSV file with the (s, v_lon) of each vehicle, ten times a second, on a lane from 0 to 3.5."""
+    lines = ["time,vehicle,s,d,v_lon,v_lat,a_lon,a_lat,length,width"]
+    for name, course in rows.items():
+        lines += [f"{k / 10:g},{name},{s:g},2.6,{v:g},0,0,0,4.5,1.8" for k, (s, v) in enumerate(course)]
+    (folder / "a.csv").write_text("\n".join(lines) + "\n", "utf-8")
+    bound = "s = [-inf, inf]\nd = [0, 3.5]\n"
+    road = f'[[lanelet]]\nid = "r"\nlane = "slow"\nzone = "main"\nattribute = "main"\n{bound}'
+    (folder / "a_road.toml").write_text(road, "utf-8")
+    return folder / "a.csv"
+
+
+def course(begin: float, speed: float, told: float = 1.0) -> list[tuple[float, float]]:
+    return [(begin + speed * k / 10, told * speed) for k in range(STEPS)]
+
+
+def test_samples_without_bad_vehicles(tmp_path: Path) -> None:
+    rows = {str(k): course(30.0 * k, 20.0) for k in range(1, 6)}
+    good = find_source(samples(tmp_path, rows)).read()
+    wild = [(s, 300.0 if k == 3 else v) for k, (s, v) in enumerate(course(300.0, 20.0))]
+    read, why = both(samples(tmp_path, {"8": wild, **rows, "9": course(500.0, 20.0, 3.6)}))
+    assert "row 5, column v_lon=300.0: must lie between -250 and 250" in why
+    told = "left out 1 of 7 vehicles (8): row 5, column v_lon=300.0: must lie between -250 and 250"
+    assert told in read.notes
+    [told] = (x for x in read.notes if x.startswith("left out 1 of 6 vehicles (9)"))
+    assert "velocities along the road and positions contradict each other" in told
+    assert read.vehicle_id.tolist() == good.vehicle_id.tolist()
+    assert np.array_equal(read.s, good.s)
+    with pytest.raises(InputError, match="column v_lon=300"):
+        find_source(samples(tmp_path, {"8": wild, "1": rows["1"], "7": wild, "6": wild})).read()
+
+
+# --- answers say what was left out ------------------------------------------------------------------
+
+
+def test_evaluations_say_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """On the screen and in JSON; strict runs reject the recording, and do not take what others found."""
+    path, out = written(tmp_path, document((*GOOD, car(9, 5.0, told=2.0)))), tmp_path / "out"
+    asked = ["evaluate", str(path), "--out", str(out), "--no-pictures"]
+    assert main(asked) == ExitCode.AS_EXPECTED
+    assert "note: recording a: left out 1 of 6 vehicles (9): velocities along" in capsys.readouterr().err
+    notes = json.loads((out / "results.json").read_text("utf-8"))["notes"]["a"]
+    assert any(x.startswith("left out 1 of 6 vehicles (9)") for x in notes)
+    assert main([*asked, "--strict"]) == ExitCode.BAD_INPUT
+    assert "by a factor of 2" in capsys.readouterr().err
+
+
+def test_monitors_say_it(tmp_path: Path) -> None:
+    path = written(tmp_path, document((*GOOD, car(9, 5.0, told=2.0))))
+    found = rp.monitor("F danger(SV, POV)", f"{path}:1,2")
+    assert any(x.startswith("left out 1 of 6 vehicles (9)") for x in found.as_data()["notes"])
+    with pytest.raises(InputError, match=r"no vehicle 9; ids are 1 to 5\nleft out 1 of 6 vehicles \(9\):"):
+        rp.monitor("F danger(SV, POV)", f"{path}:1,9")
+    with pytest.raises(InputError, match="by a factor of 2"):
+        rp.monitor("F danger(SV, POV)", f"{path}:1,2", strict=True)
+    assert read_pair(f"{path}:1,2").batch.lengths[0] == STEPS
+
+
+def test_conversion_keeps_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path, out = written(tmp_path, document((*GOOD, car(9, 5.0, told=2.0)))), tmp_path / "out"
+    assert main(["convert", str(path), "--out", str(out), "--strict"]) == ExitCode.BAD_INPUT
+    assert main(["convert", str(path), "--out", str(out)]) == ExitCode.AS_EXPECTED
+    read = find_source(out).read()
+    assert read.vehicles == 5
+    assert note_in(read, "left out").startswith("left out 1 of 6 vehicles (9)")
