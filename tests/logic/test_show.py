@@ -221,13 +221,13 @@ def test_formulas(text: str, shown: str) -> None:
 
 
 PARENTHESES = [
-    (r"{_bounds(bounds)} {_show(right, UNARY)}", r"{_bounds(bounds)} {_show(right, UNTIL)}"),
-    (r"\neg {_show(body, UNARY)}", r"\neg {_show(body, UNTIL)}"),
-    ("{_show(left, UNARY)} {until}", "{_show(left, UNTIL)} {until}"),
-    ("{_show(right, UNTIL)}", "{_show(right, AND)}"),
+    (r"{_bounds(bounds)} {_show(right, show.UNARY)}", r"{_bounds(bounds)} {_show(right, show.UNTIL)}"),
+    (r"\neg {_show(body, show.UNARY)}", r"\neg {_show(body, show.UNTIL)}"),
+    ("{_show(left, show.UNARY)} {until}", "{_show(left, show.UNTIL)} {until}"),
+    ("{_show(right, show.UNTIL)}", "{_show(right, show.AND)}"),
     (
-        "{_range(symbol(variable), domain)}}} {_show(body, UNARY)}",
-        "{_range(symbol(variable), domain)}}} {_show(body, OR)}",
+        "{_range(symbol(variable), domain)}}} {_show(body, show.UNARY)}",
+        "{_range(symbol(variable), domain)}}} {_show(body, show.OR)}",
     ),
 ]
 

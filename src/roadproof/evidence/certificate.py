@@ -19,16 +19,8 @@ from roadproof.evidence.derivation import derive_lemma_queries, derive_query
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.sites import Lemma, Site
 from roadproof.evidence.strict import Fields, JsonObject, read_json
+from roadproof.library import motion
 from roadproof.library.elaborate import read_claim
-from roadproof.library.motion import (
-    ALL_SCHEMAS,
-    NOTHING,
-    Assumption,
-    Axiom,
-    assumption,
-    value_texts,
-    values_said,
-)
 from roadproof.library.specification import Library, Query, Specification, unknown
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
@@ -61,7 +53,7 @@ class Certificate:
     names: Mapping[Site, str]
     lemmas: tuple[Lemma, ...]
     queries: tuple[tuple[str, str], ...]
-    assumed: Assumption = NOTHING
+    assumed: motion.Assumption = motion.NOTHING
     pinned: tuple[str, ...] = ()
     tableau: tuple[str, ...] | None = field(default=None, compare=False)
     query: Query | None = field(default=None, compare=False, repr=False)
@@ -74,7 +66,7 @@ def certify(
     lemmas: tuple[Lemma, ...],
     label: str = "",
     scenario: int | None = None,
-    assumed: Assumption = NOTHING,
+    assumed: motion.Assumption = motion.NOTHING,
     pinned: tuple[str, ...] = (),
 ) -> Certificate:
     """The certificate for a claim, its queries derived here and not by the finder of the proof.
@@ -113,7 +105,7 @@ def certify(
 def goal_of(
     specification: Specification,
     query: Query,
-    assumed: Assumption,
+    assumed: motion.Assumption,
     atoms: Atoms,
     pinned: Sequence[str],
 ) -> tuple[Formula, Formula]:
@@ -122,17 +114,17 @@ def goal_of(
     Values of parameters that are assumed, and those that are ``pinned``, are put in. Raises ``InputError``
     for what nobody may assume, and for values that the claim does not pin.
     """
-    here = values_said(specification, assumed.said)
+    here = motion.values_said(specification, assumed.said)
     premised = pins(with_values(query.formula, here))
-    demanded = values_said(specification, pinned)
+    demanded = motion.values_said(specification, pinned)
     for name, value in demanded.items():
         if premised.get(name) != value:
             raise InputError(f"{name}={value}: no premise of the claim demands that value")
-    if tuple(pinned) != value_texts(specification, demanded):
+    if tuple(pinned) != motion.value_texts(specification, demanded):
         raise InputError(f"what is pinned is written otherwise than it is read: {', '.join(pinned)[:200]}")
     values = {**here, **demanded}
     claim = atoms.abstract(with_values(query.formula, values))
-    premise = with_values(assumption(specification, query, assumed), values)
+    premise = with_values(motion.assumption(specification, query, assumed), values)
     return atoms.abstract(premise), claim
 
 
@@ -290,24 +282,28 @@ def read_certificate_data(content: object, where: str) -> Certificate:
     )
 
 
-def _assumed(said: kept.Certificate, where: str) -> Assumption:
+def _assumed(said: kept.Certificate, where: str) -> motion.Assumption:
     """What is assumed, the facts about motion that are premises, and the limits that are none."""
     if said.axioms is None:
         if said.assuming or said.unused:
             raise InputError(f"{where}: 'axioms' is missing")
-        return NOTHING
+        return motion.NOTHING
     if not said.assuming and not said.axioms:
         raise InputError(f"{where}: 'axioms' is empty, and nothing is assumed: leave it out")
-    return Assumption(said.assuming, tuple(_axiom(x, f"{where}, axioms") for x in said.axioms), said.unused)
+    return motion.Assumption(
+        said.assuming, tuple(_axiom(x, f"{where}, axioms") for x in said.axioms), said.unused
+    )
 
 
-def _axiom(said: kept.Axiom, where: str) -> Axiom:
+def _axiom(said: kept.Axiom, where: str) -> motion.Axiom:
     schema = said.schema
-    if schema not in ALL_SCHEMAS:
-        raise InputError(f"{where}: {unknown('schema of motion', schema[:40], ALL_SCHEMAS)}")
-    if tuple(said.arguments) != ALL_SCHEMAS[schema]:
-        raise InputError(f"{where}: schema {schema} takes {', '.join(ALL_SCHEMAS[schema])}, in this order")
-    return Axiom(schema, tuple(said.arguments.values()))
+    if schema not in motion.ALL_SCHEMAS:
+        raise InputError(f"{where}: {unknown('schema of motion', schema[:40], motion.ALL_SCHEMAS)}")
+    if tuple(said.arguments) != motion.ALL_SCHEMAS[schema]:
+        raise InputError(
+            f"{where}: schema {schema} takes {', '.join(motion.ALL_SCHEMAS[schema])}, in this order"
+        )
+    return motion.Axiom(schema, tuple(said.arguments.values()))
 
 
 def _site(row: tuple[int, str, str] | tuple[int, str, str, str], table: Sequence[str], where: str) -> Site:

@@ -14,19 +14,10 @@ from typing import assert_never
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
+from roadproof.semantics.exact import truth as sets
 from roadproof.semantics.exact.algebraic import moved
 from roadproof.semantics.exact.exact import Judge, seconds
 from roadproof.semantics.exact.signals import AbstractSignals, Courses
-from roadproof.semantics.exact.truth import (
-    Cut,
-    TruthSet,
-    complement,
-    eventually,
-    intersection,
-    interval,
-    union,
-    until,
-)
 
 MOST_ROUNDS = 2000
 
@@ -44,7 +35,7 @@ class Loop:
         return self.start + self.period
 
 
-def judge_periodic(formula: Formula, given: Mapping[Formula, TruthSet], loop: Loop) -> TruthSet:
+def judge_periodic(formula: Formula, given: Mapping[Formula, sets.TruthSet], loop: Loop) -> sets.TruthSet:
     """When a bound formula is true before the end of the first round of ``loop``.
 
     ``given``: the truth of its comparisons there. Raises ``InputError`` for one that is not given, and for
@@ -59,24 +50,24 @@ class _PeriodicJudge(Judge):
 
     loop: Loop
 
-    def visit(self, formula: Formula) -> TruthSet:
+    def visit(self, formula: Formula) -> sets.TruthSet:
         if formula not in self.truths:
             self.truths[formula] = self._inside(Judge.visit(self, formula))
         return self.truths[formula]
 
-    def _visit(self, formula: Formula) -> TruthSet:
+    def _visit(self, formula: Formula) -> sets.TruthSet:
         match formula:
             case f.Eventually(window, body):
                 low, high = _within(window, self.loop)
-                return eventually(low, high, self._ahead(self.visit(body), low))
+                return sets.eventually(low, high, self._ahead(self.visit(body), low))
             case f.Always(window, body):
                 low, high = _within(window, self.loop)
-                failing = self._inside(complement(self.visit(body)))
-                return complement(eventually(low, high, self._ahead(failing, low)))
+                failing = self._inside(sets.complement(self.visit(body)))
+                return sets.complement(sets.eventually(low, high, self._ahead(failing, low)))
             case f.Until(left, window, right):
                 low, high = _within(window, self.loop)
                 held, reached = (self._ahead(self.visit(x), low) for x in (left, right))
-                return until(held, low, high, reached)
+                return sets.until(held, low, high, reached)
             case f.Truth() | f.Not() | f.And() | f.Or() | f.Application():
                 return Judge._visit(self, formula)
             case f.Compare() | f.Occupies() | f.Some() | f.Every():
@@ -84,24 +75,24 @@ class _PeriodicJudge(Judge):
             case _:
                 assert_never(formula)
 
-    def _inside(self, truth: TruthSet) -> TruthSet:
-        return intersection([truth, interval(Fraction(0), self.loop.end, "[)")])
+    def _inside(self, truth: sets.TruthSet) -> sets.TruthSet:
+        return sets.intersection([truth, sets.interval(Fraction(0), self.loop.end, "[)")])
 
-    def _ahead(self, truth: TruthSet, low: Fraction) -> TruthSet:
+    def _ahead(self, truth: sets.TruthSet, low: Fraction) -> sets.TruthSet:
         return unrolled(truth, self.loop, low + 2 * self.loop.end + self.loop.period)
 
 
-def unrolled(truth: TruthSet, loop: Loop, horizon: Fraction) -> TruthSet:
+def unrolled(truth: sets.TruthSet, loop: Loop, horizon: Fraction) -> sets.TruthSet:
     """A truth set of the first round in all rounds up to ``horizon`` (s), and false later."""
     rounds = max(1, ceil((horizon - loop.start) / loop.period))
     if rounds > MOST_ROUNDS:
         raise InputError(f"an interval reaches over {rounds} rounds of the trace; at most {MOST_ROUNDS}")
-    parts = [intersection([truth, interval(Fraction(0), loop.end, "[)")])]
-    again = intersection([truth, interval(loop.start, loop.end, "[)")])
+    parts = [sets.intersection([truth, sets.interval(Fraction(0), loop.end, "[)")])]
+    again = sets.intersection([truth, sets.interval(loop.start, loop.end, "[)")])
     for k in range(1, rounds):
-        later = (Cut(moved(cut.point, k * loop.period), cut.after) for cut in again.cuts)
-        parts.append(TruthSet(tuple(later)))
-    return union(parts)
+        later = (sets.Cut(moved(cut.point, k * loop.period), cut.after) for cut in again.cuts)
+        parts.append(sets.TruthSet(tuple(later)))
+    return sets.union(parts)
 
 
 def _within(window: f.Interval, loop: Loop) -> tuple[Fraction, Fraction]:

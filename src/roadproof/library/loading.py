@@ -20,24 +20,12 @@ from roadproof.library.specification import (
     read_specification,
     unknown,
 )
+from roadproof.logic import syntax
 from roadproof.logic.build_syntax import instances
 from roadproof.logic.parse import parse_bundled, parse_library
 from roadproof.logic.recover import ParseResult, parse_pieces
-from roadproof.logic.syntax import (
-    Binding,
-    Definition,
-    EachBlock,
-    LaneDeclaration,
-    OptionDeclaration,
-    ParameterDeclaration,
-    SetBlock,
-    SignalDeclaration,
-    Statement,
-    TitleDeclaration,
-    WhenBlock,
-)
 
-Parse: TypeAlias = Callable[[str, str], tuple[Statement, ...]]
+Parse: TypeAlias = Callable[[str, str], tuple[syntax.Statement, ...]]
 
 
 @cache
@@ -127,13 +115,13 @@ class _Builder:
     def library(self) -> Library:
         return Library(**{name: table for name, table in vars(self).items() if name != "refused"})
 
-    def add(self, statements: Iterable[Statement], source: Source) -> list[TextError]:
+    def add(self, statements: Iterable[syntax.Statement], source: Source) -> list[TextError]:
         """Add what a text says, and tell what of it cannot be added."""
         fresh: set[tuple[str, str]] = set()
-        blocks: list[SetBlock | WhenBlock] = []
+        blocks: list[syntax.SetBlock | syntax.WhenBlock] = []
         errors: list[TextError] = []
         for statement in statements:
-            if isinstance(statement, SetBlock | WhenBlock):
+            if isinstance(statement, syntax.SetBlock | syntax.WhenBlock):
                 blocks.append(statement)
                 continue
             try:
@@ -148,9 +136,9 @@ class _Builder:
                 errors.append(error.locate(source.name, source.text))
         return errors
 
-    def _add(self, statement: Statement, fresh: set[tuple[str, str]], source: Source) -> None:
+    def _add(self, statement: syntax.Statement, fresh: set[tuple[str, str]], source: Source) -> None:
         match statement:
-            case ParameterDeclaration():
+            case syntax.ParameterDeclaration():
                 _once(fresh, "parameter", statement.name, statement.at)
                 if not is_within(statement.bound, statement.value):
                     raise TextError(
@@ -163,30 +151,30 @@ class _Builder:
                     raise TextError(f"'{statement.name}' is a signal already", statement.at)
                 self.parameters[statement.name] = statement
                 self.sources[key_of(statement)] = source
-            case OptionDeclaration():
+            case syntax.OptionDeclaration():
                 _once(fresh, "option", statement.name, statement.at)
                 self.options[statement.name] = statement
-            case Definition():
+            case syntax.Definition():
                 self._define(statement, fresh, source)
-            case SignalDeclaration():
+            case syntax.SignalDeclaration():
                 self._declare(statement, fresh, source)
-            case EachBlock():
+            case syntax.EachBlock():
                 for definition in instances(statement):
                     self._define(definition, fresh, source)
-            case SetBlock() | WhenBlock():
+            case syntax.SetBlock() | syntax.WhenBlock():
                 raise AssertionError("blocks are added last")
-            case LaneDeclaration():
+            case syntax.LaneDeclaration():
                 for number in statement.scenarios:
                     _once(fresh, "lane of scenario", str(number), statement.at)
                     self.lanes[number] = statement
-            case TitleDeclaration():
+            case syntax.TitleDeclaration():
                 for number in statement.scenarios:
                     _once(fresh, "title of scenario", str(number), statement.at)
                     self.titles[number] = (statement, source)
             case _:
                 assert_never(statement)
 
-    def _define(self, definition: Definition, fresh: set[tuple[str, str]], source: Source) -> None:
+    def _define(self, definition: syntax.Definition, fresh: set[tuple[str, str]], source: Source) -> None:
         _once(fresh, "definition", definition.name, definition.at)
         if definition.name in BUILT_IN:
             raise TextError(f"'{definition.name}' is built in and cannot be defined", definition.at)
@@ -199,7 +187,7 @@ class _Builder:
         self.definitions[definition.name] = definition
         self.sources[key_of(definition)] = source
 
-    def _declare(self, signal: SignalDeclaration, fresh: set[tuple[str, str]], source: Source) -> None:
+    def _declare(self, signal: syntax.SignalDeclaration, fresh: set[tuple[str, str]], source: Source) -> None:
         """An own signal; one that is derived is a definition whose body has to be of its unit."""
         name, at = signal.name, signal.at
         _once(fresh, "signal", name, at)
@@ -215,12 +203,12 @@ class _Builder:
         self.signals[name] = signal
         self.sources[key_of(signal)] = source
         if signal.body is not None:
-            bindings = (Binding(signal.vehicle, "vehicle", at),) if signal.vehicle else ()
-            self.definitions[name] = Definition(name, bindings, signal.doc, signal.body, at)
+            bindings = (syntax.Binding(signal.vehicle, "vehicle", at),) if signal.vehicle else ()
+            self.definitions[name] = syntax.Definition(name, bindings, signal.doc, signal.body, at)
 
     def _override(
         self,
-        block: SetBlock | WhenBlock,
+        block: syntax.SetBlock | syntax.WhenBlock,
         fresh: set[tuple[str, str]],
         source: Source,
         errors: list[TextError],
@@ -236,7 +224,7 @@ class _Builder:
             except TextError as error:
                 errors.append(error.locate(source.name, source.text))
                 self.refused += _declares(definition)
-        if isinstance(block, SetBlock):
+        if isinstance(block, syntax.SetBlock):
             _once(fresh, "set", block.name, block.at)
             if block.parent and block.parent not in self.sets:
                 raise TextError(unknown("spec set", block.parent, self.sets), block.at)
@@ -253,8 +241,8 @@ class _Builder:
             self.variants[key] = (*self.variants.get(key, ()), *block.definitions)
 
 
-def _declares(statement: Statement) -> list[str]:
-    declares = Definition | ParameterDeclaration | SignalDeclaration
+def _declares(statement: syntax.Statement) -> list[str]:
+    declares = syntax.Definition | syntax.ParameterDeclaration | syntax.SignalDeclaration
     return [statement.name] if isinstance(statement, declares) else []
 
 

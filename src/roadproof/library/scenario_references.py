@@ -10,16 +10,8 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 
 from roadproof.errors import InputError, UsageError
+from roadproof.library import scenarios as s
 from roadproof.library.elaborate import apply_definition, read_claim
-from roadproof.library.scenarios import (
-    LANE,
-    Scenario,
-    are_numbers,
-    name_of,
-    number_in,
-    numbers_of,
-    vehicles_of,
-)
 from roadproof.library.specification import Query, Specification
 from roadproof.library.words import called
 from roadproof.logic import syntax
@@ -36,7 +28,7 @@ def read_numbers(specification: Specification, text: str) -> tuple[int, ...]:
     """
     numbers = set(numbers_called(specification, text))
     for piece in () if numbers else text.split(","):
-        number = number_in(piece.strip())
+        number = s.number_in(piece.strip())
         read = _RANGE.fullmatch(piece if number is None else str(number))
         if read is not None:
             numbers |= set(range(int(read[1]), int(read[2] or read[1]) + 1))
@@ -51,7 +43,7 @@ def read_numbers(specification: Specification, text: str) -> tuple[int, ...]:
 
 def refuse_unknown(specification: Specification, number: int) -> None:
     """Raises ``InputError`` for the number of no scenario."""
-    known = numbers_of(specification)
+    known = s.numbers_of(specification)
     if number not in known:
         raise InputError(f"there is no scenario {number}; {_listed(known)}")
 
@@ -72,7 +64,7 @@ def numbers_called(specification: Specification, text: str) -> tuple[int, ...]:
     An identifier is never a name: it may be that of a definition.
     """
     asked = {_plain(part) for part in text.split(",")}
-    if text.strip().isidentifier() or "" in asked or are_numbers(text):
+    if text.strip().isidentifier() or "" in asked or s.are_numbers(text):
         return ()
     names = {number: x.name for number, x in called(specification).items()}
     return tuple(number for number, name in names.items() if asked <= _parts(name))
@@ -99,7 +91,7 @@ def refuse_half_name(specification: Specification, text: str) -> None:
 
 def names_scenarios(specification: Specification, text: str) -> bool:
     """Whether ``read_numbers`` reads a text: as numbers, or as a name that scenarios have."""
-    return are_numbers(text) or bool(numbers_called(specification, text))
+    return s.are_numbers(text) or bool(numbers_called(specification, text))
 
 
 def one_called(specification: Specification, text: str) -> int | None:
@@ -124,20 +116,20 @@ def read_query(specification: Specification, text: str, source: str = "claim") -
     ``UsageError`` for a name that several scenarios have.
     """
     word = text.strip()
-    number = int(word) if word.isdecimal() and word.isascii() and len(word) < 7 else number_in(word)
+    number = int(word) if word.isdecimal() and word.isascii() and len(word) < 7 else s.number_in(word)
     if number is None:
         number = one_called(specification, word)
     if number is None:
         return None, read_claim(specification, text, source)
     refuse_unknown(specification, number)
-    return number, apply_definition(specification, name_of(number))
+    return number, apply_definition(specification, s.name_of(number))
 
 
 @dataclass(frozen=True)
 class Application:
     """A scenario applied to the names of vehicles and a lane."""
 
-    scenario: Scenario
+    scenario: s.Scenario
     arguments: tuple[str, ...]
 
 
@@ -146,20 +138,20 @@ def application_in(specification: Specification, said: syntax.Expression) -> App
     if not isinstance(said, syntax.Call):
         return None
     name, _, set_name = said.name.partition("@")
-    number = number_in(name)
+    number = s.number_in(name)
     arguments = tuple(x.name for x in said.arguments if isinstance(x, syntax.Name))
     if number is None or len(arguments) < len(said.arguments):
         return None
-    return Application(Scenario(number, set_name or specification.set_name), arguments)
+    return Application(s.Scenario(number, set_name or specification.set_name), arguments)
 
 
-def own_names(specification: Specification, claim: syntax.Claim, scenario: Scenario) -> dict[str, str]:
+def own_names(specification: Specification, claim: syntax.Claim, scenario: s.Scenario) -> dict[str, str]:
     """The vehicle of each role, where a claim is a scenario for L and for vehicles that it declares.
 
     Empty for every other claim, and where some of the vehicles are called as roles.
     """
-    found, known = application_in(specification, claim.body), vehicles_of(specification, scenario)
-    if found is None or found.scenario != scenario or found.arguments[len(known) :] != (LANE,):
+    found, known = application_in(specification, claim.body), s.vehicles_of(specification, scenario)
+    if found is None or found.scenario != scenario or found.arguments[len(known) :] != (s.LANE,):
         return {}
     vehicles = found.arguments[: len(known)]
     is_own = {x.name for x in claim.given} == {*vehicles} and len({*vehicles} - {*known}) == len(known)
@@ -173,11 +165,11 @@ def claimed(specification: Specification, said: int | str, where: str) -> str:
     """
     text = str(said).strip()
     numbers = numbers_called(specification, text)
-    if numbers or are_numbers(text):
+    if numbers or s.are_numbers(text):
         numbers = numbers or read_numbers(specification, text)
         if len(numbers) != 1:
             raise InputError(f"{where}: '{text}' names {len(numbers)} scenarios; name each by itself")
-        return name_of(numbers[0])
+        return s.name_of(numbers[0])
     if not text.isidentifier():
         raise InputError(f"{where}: '{text[:40]}' is no number of a scenario and no name")
     return text

@@ -19,15 +19,6 @@ from roadproof.logic import syntax
 from roadproof.logic.custom_names import freedom_of, own_signal
 from roadproof.logic.formula import Formula
 from roadproof.logic.show import text
-from roadproof.logic.syntax import (
-    Definition,
-    LaneDeclaration,
-    OptionDeclaration,
-    ParameterDeclaration,
-    SetBlock,
-    SignalDeclaration,
-    TitleDeclaration,
-)
 from roadproof.runtime.files import read_limited
 from roadproof.world.signals import FIXED, SIGNALS
 
@@ -52,16 +43,16 @@ class Library:
     order. ``signals``: own signals; one that is derived is a definition, too.
     """
 
-    parameters: Mapping[str, ParameterDeclaration] = field(default_factory=dict)
-    options: Mapping[str, OptionDeclaration] = field(default_factory=dict)
-    definitions: Mapping[str, Definition] = field(default_factory=dict)
-    sets: Mapping[str, SetBlock] = field(default_factory=dict)
-    variants: Mapping[tuple[str, str], tuple[Definition, ...]] = field(default_factory=dict)
+    parameters: Mapping[str, syntax.ParameterDeclaration] = field(default_factory=dict)
+    options: Mapping[str, syntax.OptionDeclaration] = field(default_factory=dict)
+    definitions: Mapping[str, syntax.Definition] = field(default_factory=dict)
+    sets: Mapping[str, syntax.SetBlock] = field(default_factory=dict)
+    variants: Mapping[tuple[str, str], tuple[syntax.Definition, ...]] = field(default_factory=dict)
     sources: Mapping[str, Source] = field(default_factory=dict)
-    lanes: Mapping[int, LaneDeclaration] = field(default_factory=dict)
-    titles: Mapping[int, tuple[TitleDeclaration, Source]] = field(default_factory=dict)
+    lanes: Mapping[int, syntax.LaneDeclaration] = field(default_factory=dict)
+    titles: Mapping[int, tuple[syntax.TitleDeclaration, Source]] = field(default_factory=dict)
     files: tuple[Source, ...] = ()
-    signals: Mapping[str, SignalDeclaration] = field(default_factory=dict)
+    signals: Mapping[str, syntax.SignalDeclaration] = field(default_factory=dict)
 
     @property
     def bounds(self) -> dict[str, str]:
@@ -113,11 +104,11 @@ class Library:
             definitions |= {d.name: d for d in self.variants.get(choice, ())}
         return Specification(self, set_name, chosen, definitions)
 
-    def _chain(self, set_name: str) -> list[SetBlock]:
+    def _chain(self, set_name: str) -> list[syntax.SetBlock]:
         """From the outermost ancestor to ``set_name``."""
         if set_name not in self.sets:
             raise InputError(f"set={set_name}: {unknown('spec set', set_name, self.sets)}")
-        chain: list[SetBlock] = []
+        chain: list[syntax.SetBlock] = []
         name = set_name
         while name:
             chain.append(self.sets[name])
@@ -132,7 +123,7 @@ class Specification:
     library: Library
     set_name: str
     options: Mapping[str, str]
-    definitions: Mapping[str, Definition]
+    definitions: Mapping[str, syntax.Definition]
 
     @cached_property
     def worked_out(self) -> dict[tuple[object, ...], Any]:
@@ -143,7 +134,7 @@ class Specification:
         """The same options under another set."""
         return self if set_name == self.set_name else self.library.select(set_name, self.options)
 
-    def describe(self, definition: Definition, depth: int = 4) -> str:
+    def describe(self, definition: syntax.Definition, depth: int = 4) -> str:
         """Its description, with each ``[name]`` in it replaced by the description of that definition."""
 
         def look_up(found: re.Match[str]) -> str:
@@ -198,12 +189,14 @@ def is_within(bound: str, value: Fraction) -> bool:
     return value > 0 if bound == ">" else value >= 0 if bound == ">=" else True
 
 
-def key_of(declared: Definition | ParameterDeclaration | SignalDeclaration) -> str:
+def key_of(declared: syntax.Definition | syntax.ParameterDeclaration | syntax.SignalDeclaration) -> str:
     """Under which a library has the text that a declaration was written in."""
     return f"{declared.name}:{declared.at.line}:{declared.at.column}"
 
 
-def source_of(library: Library, declared: Definition | ParameterDeclaration | SignalDeclaration) -> Source:
+def source_of(
+    library: Library, declared: syntax.Definition | syntax.ParameterDeclaration | syntax.SignalDeclaration
+) -> Source:
     """Where a definition or a parameter was written."""
     return library.sources.get(key_of(declared), Source("", ""))
 

@@ -8,14 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import groupby
 
-from roadproof.library.scenarios import (
-    behaviour_words,
-    declared_title,
-    numbers_named,
-    numbers_of,
-    own_words,
-    sector_words,
-)
+from roadproof.library import scenarios as s
 from roadproof.library.specification import Specification
 
 
@@ -54,13 +47,13 @@ Called = Mapping[int, Words]
 
 def words_of(specification: Specification, number: int) -> Words:
     """A scenario in words; one that the specification does not have has none."""
-    where = sector_words(specification, number)
-    sv, pov = behaviour_words(specification, number)
-    declared = declared_title(specification, number)
+    where = s.sector_words(specification, number)
+    sv, pov = s.behaviour_words(specification, number)
+    declared = s.declared_title(specification, number)
     if declared is not None:
         title, sentence = declared.title, declared.sentence or declared.title
     else:
-        title = own_words(specification, number) or ", ".join(filter(None, (sv, pov)))
+        title = s.own_words(specification, number) or ", ".join(filter(None, (sv, pov)))
         sentence = title
     told = ": ".join(filter(None, (where, sentence)))
     return Words(number, title, where, sv, pov, told and f"{told[0].upper()}{told[1:].rstrip('.')}.")
@@ -68,13 +61,13 @@ def words_of(specification: Specification, number: int) -> Words:
 
 def called(specification: Specification, numbers: Iterable[int] | None = None) -> Called:
     """Scenarios in words, in order; all of a specification where no ``numbers`` are given."""
-    chosen = numbers_of(specification) if numbers is None else numbers
+    chosen = s.numbers_of(specification) if numbers is None else numbers
     return {number: words_of(specification, number) for number in sorted(chosen)}
 
 
 def called_by(specification: Specification, texts: Iterable[str]) -> Called:
     """The scenarios that some texts name, in words."""
-    return called(specification, {number for text in texts for number in numbers_named(text)})
+    return called(specification, {number for text in texts for number in s.numbers_named(text)})
 
 
 def called_in(specification: Specification, sets: Iterable[str], numbers: Iterable[int]) -> Called:

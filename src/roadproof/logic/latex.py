@@ -5,21 +5,7 @@ from collections.abc import Iterable
 from fractions import Fraction
 from typing import assert_never
 
-from roadproof.logic import syntax
-from roadproof.logic.show import (
-    AND,
-    ATOM,
-    OR,
-    POWER,
-    PRODUCT,
-    QUANTIFIED,
-    SIGNED,
-    UNARY,
-    UNTIL,
-    decimal,
-    level,
-    operand_levels,
-)
+from roadproof.logic import show, syntax
 from roadproof.logic.syntax import Bounds, Claim, Definition, Expression
 from roadproof.logic.terms import SIGNAL_DIMENSIONS
 
@@ -44,11 +30,13 @@ def latex(tree: Expression | Claim | Definition) -> str:
     """``tree`` for LaTeX's mathematics mode; a definition is ``head \\;:=\\; body``."""
     match tree:
         case Claim(_, body):
-            return _show(body, QUANTIFIED)
+            return _show(body, show.QUANTIFIED)
         case Definition(name, parameters, _, body, _):
-            return rf"{_call(name, [symbol(b.name) for b in parameters])} \;:=\; {_show(body, QUANTIFIED)}"
+            return (
+                rf"{_call(name, [symbol(b.name) for b in parameters])} \;:=\; {_show(body, show.QUANTIFIED)}"
+            )
         case _:
-            return _show(tree, QUANTIFIED)
+            return _show(tree, show.QUANTIFIED)
 
 
 def align(definitions: Iterable[Definition]) -> str:
@@ -64,7 +52,11 @@ def _show(expression: Expression, wanted: int) -> str:
 
 def _level(expression: Expression) -> int:
     """As in text, but a fraction has its bar for parentheses."""
-    return POWER if isinstance(expression, syntax.Binary) and expression.op == "/" else level(expression)
+    return (
+        show.POWER
+        if isinstance(expression, syntax.Binary) and expression.op == "/"
+        else show.level(expression)
+    )
 
 
 def _operator(expression: Expression) -> str:
@@ -79,30 +71,30 @@ def _operator(expression: Expression) -> str:
         case syntax.Call():
             return _application(expression)
         case syntax.Prefix("not", body, _):
-            return rf"\neg {_show(body, UNARY)}"
+            return rf"\neg {_show(body, show.UNARY)}"
         case syntax.Prefix(_, body, _):
-            return f"-{_show(body, SIGNED)}"
+            return f"-{_show(body, show.SIGNED)}"
         case syntax.Binary("/", left, right, _):
-            return rf"\frac{{{_show(left, QUANTIFIED)}}}{{{_show(right, QUANTIFIED)}}}"
+            return rf"\frac{{{_show(left, show.QUANTIFIED)}}}{{{_show(right, show.QUANTIFIED)}}}"
         case syntax.Binary("^", left, right, _):
-            return f"{_show(left, ATOM)}^{{{_show(right, QUANTIFIED)}}}"
+            return f"{_show(left, show.ATOM)}^{{{_show(right, show.QUANTIFIED)}}}"
         case syntax.Binary("*", left, right, _):
             between = r" \cdot " if _begins_with_digit(right) else " "
-            return f"{_show(left, PRODUCT)}{between}{_show(right, SIGNED + 1)}"
+            return f"{_show(left, show.PRODUCT)}{between}{_show(right, show.SIGNED + 1)}"
         case syntax.Binary(op, left, right, _):
-            left_level, right_level = operand_levels(op)
+            left_level, right_level = show.operand_levels(op)
             return f"{_show(left, left_level)} {_RELATION[op]} {_show(right, right_level)}"
         case syntax.Chain(op, parts, _):
-            join, inner = (r" \wedge ", AND) if op == "and" else (r" \vee ", OR)
+            join, inner = (r" \wedge ", show.AND) if op == "and" else (r" \vee ", show.OR)
             return join.join(_show(part, inner + 1) for part in parts)
         case syntax.Temporal("U", bounds, left, right, _) if left is not None:
             until = rf"\mathbin{{\mathcal{{U}}{_bounds(bounds)}}}"
-            return f"{_show(left, UNARY)} {until} {_show(right, UNTIL)}"
+            return f"{_show(left, show.UNARY)} {until} {_show(right, show.UNTIL)}"
         case syntax.Temporal(op, bounds, _, right, _):
-            return rf"\mathcal{{{op}}}{_bounds(bounds)} {_show(right, UNARY)}"
+            return rf"\mathcal{{{op}}}{_bounds(bounds)} {_show(right, show.UNARY)}"
         case syntax.Quantified(kind, variable, domain, body, _):
             big = r"\bigvee" if kind == "some" else r"\bigwedge"
-            return rf"{big}_{{{_range(symbol(variable), domain)}}} {_show(body, UNARY)}"
+            return rf"{big}_{{{_range(symbol(variable), domain)}}} {_show(body, show.UNARY)}"
         case _:
             assert_never(expression)
 
@@ -114,7 +106,7 @@ def _begins_with_digit(expression: Expression) -> bool:
 
 
 def _application(call: syntax.Call) -> str:
-    shown = [_show(argument, QUANTIFIED) for argument in call.arguments]
+    shown = [_show(argument, show.QUANTIFIED) for argument in call.arguments]
     if call.name in SIGNAL_DIMENSIONS and len(shown) == 1:
         letter, _, direction = call.name.partition("_")
         return f"{letter}_{{{_italic(direction)},{shown[0]}}}" if direction else f"{letter}_{{{shown[0]}}}"
@@ -142,18 +134,18 @@ def _range(variable: str, domain: syntax.Name | syntax.Call | syntax.Group) -> s
         case syntax.Call("adjacentLanes", (syntax.Name(lane, _),), _):
             return rf"{variable}\in\mathit{{adjLanes}}({symbol(lane)})"
         case _:
-            return rf"{variable}\in {_show(domain, ATOM)}"
+            return rf"{variable}\in {_show(domain, show.ATOM)}"
 
 
 def _bounds(bounds: Bounds | None) -> str:
     if bounds is None:
         return ""
-    high = r"\infty" if bounds.high is None else _show(bounds.high, QUANTIFIED)
-    return rf"_{{[{_show(bounds.low, QUANTIFIED)},{high}]}}"
+    high = r"\infty" if bounds.high is None else _show(bounds.high, show.QUANTIFIED)
+    return rf"_{{[{_show(bounds.low, show.QUANTIFIED)},{high}]}}"
 
 
 def _number(value: Fraction) -> str:
-    return decimal(value) or rf"\frac{{{value.numerator}}}{{{value.denominator}}}"
+    return show.decimal(value) or rf"\frac{{{value.numerator}}}{{{value.denominator}}}"
 
 
 def symbol(name: str) -> str:

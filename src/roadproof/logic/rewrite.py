@@ -8,58 +8,27 @@ from typing import TypeAlias, assert_never
 
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.formula import (
-    Application,
-    Compare,
-    Domain,
-    Every,
-    Formula,
-    Interval,
-    Occupies,
-    Some,
-    children,
-    intervals,
-    share,
-    subformulas,
-    transform,
-    with_children,
-    with_intervals,
-)
-from roadproof.logic.terms import (
-    Leaf,
-    Number,
-    Own,
-    Parameter,
-    Signal,
-    Size,
-    Term,
-    constant_value,
-    leaves,
-    replace_leaves,
-)
-from roadproof.logic.terms import children as terms_in
-from roadproof.logic.terms import with_children as with_terms
 from roadproof.world.signals import SIGNALS, SignalName
 
 
-def map_terms(formula: Formula, change: Callable[[Term], Term]) -> Formula:
+def map_terms(formula: f.Formula, change: Callable[[t.Term], t.Term]) -> f.Formula:
     """``formula`` with ``change`` applied to both sides of every comparison and to every bound."""
-    return transform(formula, _changing_terms(change))
+    return f.transform(formula, _changing_terms(change))
 
 
-def _changing_terms(change: Callable[[Term], Term]) -> Callable[[Formula], Formula]:
-    def interval(old: Interval) -> Interval:
-        return Interval(change(old.low), None if old.high is None else change(old.high))
+def _changing_terms(change: Callable[[t.Term], t.Term]) -> Callable[[f.Formula], f.Formula]:
+    def interval(old: f.Interval) -> f.Interval:
+        return f.Interval(change(old.low), None if old.high is None else change(old.high))
 
-    def visit(current: Formula) -> Formula:
-        if isinstance(current, Compare):
-            return Compare(change(current.left), current.op, change(current.right))
-        return with_intervals(current, interval)
+    def visit(current: f.Formula) -> f.Formula:
+        if isinstance(current, f.Compare):
+            return f.Compare(change(current.left), current.op, change(current.right))
+        return f.with_intervals(current, interval)
 
     return visit
 
 
-def with_values(formula: Formula, values: Mapping[str, Fraction]) -> Formula:
+def with_values(formula: f.Formula, values: Mapping[str, Fraction]) -> f.Formula:
     """``formula`` with the named parameters replaced by numbers; others stay symbolic.
 
     One object stands for all sub-formulas that are equal, and for all such terms.
@@ -67,67 +36,67 @@ def with_values(formula: Formula, values: Mapping[str, Fraction]) -> Formula:
     return all_with_values([formula], values)[0] if values else formula
 
 
-def all_with_values(formulas: Iterable[Formula], values: Mapping[str, Fraction]) -> list[Formula]:
+def all_with_values(formulas: Iterable[f.Formula], values: Mapping[str, Fraction]) -> list[f.Formula]:
     """As ``with_values`` of each, with one object for what is equal in several, too."""
-    return share(formulas, _changing_terms(_giving(values)))
+    return f.share(formulas, _changing_terms(_giving(values)))
 
 
-def _giving(values: Mapping[str, Fraction]) -> Callable[[Term], Term]:
-    pool: dict[Term, Term] = {}
+def _giving(values: Mapping[str, Fraction]) -> Callable[[t.Term], t.Term]:
+    pool: dict[t.Term, t.Term] = {}
 
-    def give(term: Term) -> Term:
-        if isinstance(term, Parameter) and term.name in values:
-            made: Term = Number(values[term.name], term.dimension)
+    def give(term: t.Term) -> t.Term:
+        if isinstance(term, t.Parameter) and term.name in values:
+            made: t.Term = t.Number(values[term.name], term.dimension)
         else:
-            made = with_terms(term, tuple(map(give, terms_in(term))))
+            made = t.with_children(term, tuple(map(give, t.children(term))))
         return pool.setdefault(made, made)
 
     return give
 
 
-def without_names(formula: Formula) -> Formula:
+def without_names(formula: f.Formula) -> f.Formula:
     """``formula`` with every ``Application`` node replaced by its body."""
-    return transform(formula, lambda f: f.body if isinstance(f, Application) else f)
+    return f.transform(formula, lambda x: x.body if isinstance(x, f.Application) else x)
 
 
-def terms_of(*formulas: Formula) -> Iterator[Term]:
+def terms_of(*formulas: f.Formula) -> Iterator[t.Term]:
     """Both sides of every comparison and every interval bound."""
-    for current in subformulas(*formulas):
-        if isinstance(current, Compare):
+    for current in f.subformulas(*formulas):
+        if isinstance(current, f.Compare):
             yield current.left
             yield current.right
-        for interval in intervals(current):
+        for interval in f.intervals(current):
             yield interval.low
             if interval.high is not None:
                 yield interval.high
 
 
-def leaves_of(*formulas: Formula) -> Iterator[Leaf]:
+def leaves_of(*formulas: f.Formula) -> Iterator[t.Leaf]:
     """The leaves of every comparison and every interval bound, those of several once for each."""
     for term in terms_of(*formulas):
-        yield from leaves(term)
+        yield from t.leaves(term)
 
 
-def parameters_of(formula: Formula) -> tuple[str, ...]:
+def parameters_of(formula: f.Formula) -> tuple[str, ...]:
     """Names of the parameters that occur, sorted."""
-    return tuple(sorted({leaf.name for leaf in leaves_of(formula) if isinstance(leaf, Parameter)}))
+    return tuple(sorted({leaf.name for leaf in leaves_of(formula) if isinstance(leaf, t.Parameter)}))
 
 
-def vehicles_of(formula: Formula) -> tuple[str, ...]:
+def vehicles_of(formula: f.Formula) -> tuple[str, ...]:
     """Names of the vehicles that occur, sorted."""
-    found = {f.vehicle for f in subformulas(formula) if isinstance(f, Occupies)}
-    found |= {leaf.vehicle for leaf in leaves_of(formula) if isinstance(leaf, Signal | Size | Own)}
+    found = {x.vehicle for x in f.subformulas(formula) if isinstance(x, f.Occupies)}
+    found |= {leaf.vehicle for leaf in leaves_of(formula) if isinstance(leaf, t.Signal | t.Size | t.Own)}
     found -= {""}  # an own signal of no vehicle
     return tuple(sorted(found))
 
 
-def signals_of(formulas: Iterable[Formula]) -> tuple[SignalName, ...]:
+def signals_of(formulas: Iterable[f.Formula]) -> tuple[SignalName, ...]:
     """Names of the signals that occur, in the order of the list of signals."""
-    found = {leaf.name for leaf in leaves_of(*formulas) if isinstance(leaf, Signal)}
+    found = {leaf.name for leaf in leaves_of(*formulas) if isinstance(leaf, t.Signal)}
     return tuple(name for name in SIGNALS if name in found)
 
 
-def rename(formula: Formula, old: str, new: str) -> Formula:
+def rename(formula: f.Formula, old: str, new: str) -> f.Formula:
     """``formula`` with the free lane or lanelet variable ``old`` called ``new``.
 
     What a quantifier inside calls ``old`` stays as it is; one that calls something ``new`` has its
@@ -135,22 +104,22 @@ def rename(formula: Formula, old: str, new: str) -> Formula:
     """
 
     @cache
-    def visit(current: Formula) -> Formula:
+    def visit(current: f.Formula) -> f.Formula:
         match current:
-            case Occupies(vehicle, lanelet):
-                return Occupies(vehicle, new if lanelet == old else lanelet)
-            case Some(variable, domain, body) | Every(variable, domain, body):
-                inside = Domain(domain.kind, new if domain.of == old else domain.of)
+            case f.Occupies(vehicle, lanelet):
+                return f.Occupies(vehicle, new if lanelet == old else lanelet)
+            case f.Some(variable, domain, body) | f.Every(variable, domain, body):
+                inside = f.Domain(domain.kind, new if domain.of == old else domain.of)
                 if variable == old:
                     return type(current)(variable, inside, body)
                 if variable == new:
                     variable = _free_name(variable, road_names(body) | {old})
                     body = rename(body, new, variable)
                 return type(current)(variable, inside, visit(body))
-            case Application(name, arguments, body):
-                return Application(name, tuple(new if a == old else a for a in arguments), visit(body))
+            case f.Application(name, arguments, body):
+                return f.Application(name, tuple(new if a == old else a for a in arguments), visit(body))
             case _:
-                return with_children(current, tuple(visit(child) for child in children(current)))
+                return f.with_children(current, tuple(visit(child) for child in f.children(current)))
 
     return visit(formula)
 
@@ -161,38 +130,38 @@ def _free_name(name: str, taken: Set[str]) -> str:
     return name
 
 
-def road_names(formula: Formula) -> frozenset[str]:
+def road_names(formula: f.Formula) -> frozenset[str]:
     """Names of lanes and lanelets that ``formula`` speaks of or calls a variable by."""
     found: set[str] = set()
-    for part in subformulas(formula):
+    for part in f.subformulas(formula):
         match part:
-            case Occupies(_, lanelet):
+            case f.Occupies(_, lanelet):
                 found.add(lanelet)
-            case Some(variable, domain, _) | Every(variable, domain, _):
+            case f.Some(variable, domain, _) | f.Every(variable, domain, _):
                 found |= {variable, domain.of} if domain.kind in ("lanelets", "adjacent") else {variable}
             case _:
                 pass
     return frozenset(found)
 
 
-def free_roads(formula: Formula) -> frozenset[str]:
+def free_roads(formula: f.Formula) -> frozenset[str]:
     """Names of lanes and lanelets that ``formula`` speaks of and no quantifier in it binds."""
     return _free_names(formula, with_domains=True)
 
 
-def free_lanelets(formula: Formula) -> tuple[str, ...]:
+def free_lanelets(formula: f.Formula) -> tuple[str, ...]:
     """Names of lanelets that ``formula`` speaks of and no quantifier in it binds, sorted."""
     return tuple(sorted(_free_names(formula, with_domains=False)))
 
 
-def _free_names(formula: Formula, with_domains: bool) -> frozenset[str]:
+def _free_names(formula: f.Formula, with_domains: bool) -> frozenset[str]:
     @cache
-    def visit(current: Formula) -> frozenset[str]:
-        inside = frozenset[str]().union(*map(visit, children(current)))
+    def visit(current: f.Formula) -> frozenset[str]:
+        inside = frozenset[str]().union(*map(visit, f.children(current)))
         match current:
-            case Occupies(_, lanelet):
+            case f.Occupies(_, lanelet):
                 return frozenset({lanelet})
-            case Some(variable, domain, _) | Every(variable, domain, _):
+            case f.Some(variable, domain, _) | f.Every(variable, domain, _):
                 of = {domain.of} if with_domains and domain.kind in ("adjacent", "lanelets") else set()
                 return (inside - {variable}) | of
             case _:
@@ -201,35 +170,35 @@ def _free_names(formula: Formula, with_domains: bool) -> frozenset[str]:
     return visit(formula)
 
 
-def rename_vehicles(formula: Formula, roles: Mapping[str, str]) -> Formula:
+def rename_vehicles(formula: f.Formula, roles: Mapping[str, str]) -> f.Formula:
     """``formula`` with the vehicles in ``roles`` replaced, all at once; also in the arguments of names."""
 
-    def leaf(old: Leaf) -> Term:
-        if isinstance(old, Signal | Size):
+    def leaf(old: t.Leaf) -> t.Term:
+        if isinstance(old, t.Signal | t.Size):
             return type(old)(old.name, roles.get(old.vehicle, old.vehicle))  # type: ignore[arg-type]
-        if isinstance(old, Own):
+        if isinstance(old, t.Own):
             return replace(old, vehicle=roles.get(old.vehicle, old.vehicle))
         return old
 
-    def visit(current: Formula) -> Formula:
+    def visit(current: f.Formula) -> f.Formula:
         match current:
-            case Occupies(vehicle, lanelet):
-                return Occupies(roles.get(vehicle, vehicle), lanelet)
-            case Application(name, arguments, body):
-                return Application(name, tuple(roles.get(a, a) for a in arguments), body)
+            case f.Occupies(vehicle, lanelet):
+                return f.Occupies(roles.get(vehicle, vehicle), lanelet)
+            case f.Application(name, arguments, body):
+                return f.Application(name, tuple(roles.get(a, a) for a in arguments), body)
             case _:
                 return current
 
-    return transform(map_terms(formula, lambda term: replace_leaves(term, leaf)), visit)
+    return f.transform(map_terms(formula, lambda term: t.replace_leaves(term, leaf)), visit)
 
 
-def bounds_of(interval: Interval) -> tuple[Fraction, Fraction | None]:
+def bounds_of(interval: f.Interval) -> tuple[Fraction, Fraction | None]:
     """Both ends of an interval as rationals; None is unbounded.
 
     Raises ``ValueError`` where a bound still holds a parameter.
     """
-    low = constant_value(interval.low)
-    high = None if interval.high is None else constant_value(interval.high)
+    low = t.constant_value(interval.low)
+    high = None if interval.high is None else t.constant_value(interval.high)
     if low is None or (interval.high is not None and high is None):
         raise ValueError("an interval bound still holds a parameter: substitute values first")
     return low, high
@@ -238,20 +207,20 @@ def bounds_of(interval: Interval) -> tuple[Fraction, Fraction | None]:
 Seconds: TypeAlias = Fraction
 
 
-def horizon(formula: Formula) -> Seconds | None:
+def horizon(formula: f.Formula) -> Seconds | None:
     """How many seconds after an instant the truth of ``formula`` there may depend on; None: for ever.
 
     Raises ``ValueError`` where an interval bound still holds a parameter.
     """
 
     @cache
-    def visit(current: Formula) -> Seconds | None:
+    def visit(current: f.Formula) -> Seconds | None:
         return _reach(current, [visit(child) for child in f.children(current)])
 
     return visit(formula)
 
 
-def _reach(formula: Formula, below: list[Seconds | None]) -> Seconds | None:
+def _reach(formula: f.Formula, below: list[Seconds | None]) -> Seconds | None:
     farthest = _latest(below)
     match formula:
         case f.Until(_, interval, _) | f.Eventually(interval, _) | f.Always(interval, _):
@@ -274,12 +243,12 @@ def _latest(times: list[Seconds | None]) -> Seconds | None:
     return latest
 
 
-def intervals_of(formula: Formula) -> list[Interval]:
+def intervals_of(formula: f.Formula) -> list[f.Interval]:
     """The intervals of its temporal operators."""
     return [interval for current in f.subformulas(formula) for interval in f.intervals(current)]
 
 
-def signal_degree(term: Term) -> int | None:
+def signal_degree(term: t.Term) -> int | None:
     """The degree of ``term`` as a polynomial in the signals, at most; None where it is no polynomial.
 
     Products are not multiplied out, so v - v has degree 1 here.
@@ -307,7 +276,7 @@ def signal_degree(term: Term) -> int | None:
     return highest if isinstance(term, t.Sum) or highest == 0 else None
 
 
-def is_cubic_state(formula: Formula) -> bool:
+def is_cubic_state(formula: f.Formula) -> bool:
     """Whether it is about one instant and compares signals, sizes and parameters only, by cubes or more."""
     lanes = (f.Occupies, f.Some, f.Every)
     if not f.is_state(formula) or any(isinstance(x, lanes) for x in f.subformulas(formula)):

@@ -20,17 +20,8 @@ from roadproof.evidence.refutation import Countermodel
 from roadproof.evidence.settled import Settled
 from roadproof.evidence.sites import Lemma, Site, prefix_form
 from roadproof.evidence.times import ZERO
+from roadproof.library import motion
 from roadproof.library.bind import default_values
-from roadproof.library.motion import (
-    NOTHING,
-    Assumption,
-    axiom_formula,
-    is_moving,
-    limit_formulas,
-    limits_said,
-    value_texts,
-    values_said,
-)
 from roadproof.library.specification import Query, Specification, is_within
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
@@ -93,7 +84,7 @@ def prove(
     specification: Specification,
     query: Query,
     effort: Effort | None = None,
-    assumed: Assumption = NOTHING,
+    assumed: motion.Assumption = motion.NOTHING,
     shared: SharedPremise | None = None,
 ) -> Result:
     """Decide whether ``query`` holds at time 0 on all traces, for all values of its parameters.
@@ -107,14 +98,14 @@ def prove(
     """
     begun = now()
     meter = (effort or Effort()).meter()
-    here = values_said(specification, assumed.said)
+    here = motion.values_said(specification, assumed.said)
     demanded = _demanded(specification, query, here)
-    pinned = value_texts(specification, demanded)
+    pinned = motion.value_texts(specification, demanded)
     values = {**here, **demanded}
     learnt = None if shared is None else shared.learnt.setdefault(pinned, Learnt())
     states = _states(specification, values, learnt)
     premise, claim = goal_of(specification, query, assumed, states.atoms, pinned)
-    attempt = _Attempt(specification, query, states, meter, is_moving(assumed.said))
+    attempt = _Attempt(specification, query, states, meter, motion.is_moving(assumed.said))
 
     def result(verdict: ClaimVerdict, reason: str = "", certificate: Certificate | None = None) -> Result:
         spent, seconds = meter.spent, since(begun)
@@ -185,9 +176,9 @@ class ProofHeuristic:
         """Whether ``query`` is proved, and the units of work that it took. Raises ``BudgetExceeded``."""
         meter = effort.meter()
         values = _demanded(self.specification, query, {})
-        pinned = value_texts(self.specification, values)
+        pinned = motion.value_texts(self.specification, values)
         states = _states(self.specification, values, self.learnt.setdefault(pinned, Learnt()))
-        premise, claim = goal_of(self.specification, query, NOTHING, states.atoms, pinned)
+        premise, claim = goal_of(self.specification, query, motion.NOTHING, states.atoms, pinned)
         attempt = _Attempt(self.specification, query, states, meter, False)
         goals = (f.implication(premise, goal) for goal in conjuncts(claim))
         return all(isinstance(attempt.decide(goal), Proof) for goal in goals), meter.spent
@@ -298,7 +289,7 @@ class _Attempt:
         return InstanceSearch(goal, self.states, self.query.lanes, names, wishful, roster, self.moving)
 
     def certificate(
-        self, assumed: Assumption, pinned: tuple[str, ...], proofs: Sequence[Proof]
+        self, assumed: motion.Assumption, pinned: tuple[str, ...], proofs: Sequence[Proof]
     ) -> Certificate:
         """The proofs of all parts as one certificate. Raises ``InputError`` where they do not fit."""
         lemmas: dict[tuple[tuple[str, bool], ...], tuple[str, ...]] = {}
@@ -313,8 +304,8 @@ class _Attempt:
         return certify(self.specification, self.query, met, made, assumed=assumed, pinned=pinned)
 
     def needed(
-        self, assumed: Assumption, values: Mapping[str, Fraction], proofs: Sequence[Proof]
-    ) -> Assumption:
+        self, assumed: motion.Assumption, values: Mapping[str, Fraction], proofs: Sequence[Proof]
+    ) -> motion.Assumption:
         """The same with those premises alone of which a proof has instances, and which the claim has not.
 
         Each premise is a universal that holds at time 0.
@@ -328,9 +319,11 @@ class _Attempt:
             return site in instances and site not in own
 
         home, query = self.specification, self.query
-        axioms = tuple(x for x in assumed.axioms if is_used(axiom_formula(home, query, x)))
-        used = {x for x, made in limit_formulas(home, query, assumed).items() if is_used(made)}
-        return Assumption(assumed.said, axioms, tuple(x for x in limits_said(assumed.said) if x not in used))
+        axioms = tuple(x for x in assumed.axioms if is_used(motion.axiom_formula(home, query, x)))
+        used = {x for x, made in motion.limit_formulas(home, query, assumed).items() if is_used(made)}
+        return motion.Assumption(
+            assumed.said, axioms, tuple(x for x in motion.limits_said(assumed.said) if x not in used)
+        )
 
     def _met(
         self, claim: Formula, atoms: Atoms, proofs: Sequence[Proof]

@@ -18,18 +18,11 @@ from roadproof.errors import UsageError
 from roadproof.library.bind import bind, values_with
 from roadproof.library.specification import Library, Query
 from roadproof.logic import formula as f
+from roadproof.logic import rewrite
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import code_of, told_range, vehicles_with_kind
 from roadproof.logic.formula import Formula, subformulas
 from roadproof.logic.initial_conditions import conjuncts
-from roadproof.logic.rewrite import (
-    bounds_of,
-    intervals_of,
-    leaves_of,
-    parameters_of,
-    signals_of,
-    with_values,
-)
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.signals import AbstractSignals
@@ -61,7 +54,7 @@ def _is_about_kind(part: Formula, vehicle: str) -> bool:
     about = (f.Truth, f.Compare, f.Not, f.And, f.Or, f.Application)
     if not all(isinstance(x, about) for x in f.subformulas(part)):
         return False
-    leaves = [x for x in leaves_of(part) if not isinstance(x, t.Number)]
+    leaves = [x for x in rewrite.leaves_of(part) if not isinstance(x, t.Number)]
     return bool(leaves) and all(x == t.Size("kind", vehicle) for x in leaves)
 
 
@@ -127,7 +120,9 @@ def coarsest(step: Fraction, most: Fraction = COARSEST) -> Fraction:
 
 def durations(formula: Formula, values: Mapping[str, Fraction]) -> set[Fraction]:
     """The finite bounds of all intervals, in s, with parameters at ``values``."""
-    bounds = (bounds_of(interval) for interval in intervals_of(with_values(formula, values)))
+    bounds = (
+        rewrite.bounds_of(interval) for interval in rewrite.intervals_of(rewrite.with_values(formula, values))
+    )
     return {bound for pair in bounds for bound in pair if bound is not None}
 
 
@@ -196,7 +191,7 @@ class SearchProblem:
     def limits(self, shown: Iterable[str] = ()) -> Limits:
         """Within what a NONE-WITHIN says that there is none; ``shown``: how that was shown."""
         options = {name: {lanes[name] for lanes in self.lanes} for name in self.query.lanes}
-        spoken = parameters_of(self.query.formula)
+        spoken = rewrite.parameters_of(self.query.formula)
         return Limits(
             self.road.name,
             self.grid,
@@ -208,7 +203,7 @@ class SearchProblem:
             self.assumptions.collisions,
             tuple(sorted(set(shown))),
             self._own_ranges(),
-            "j_lon" in signals_of([self.query.formula]),
+            "j_lon" in rewrite.signals_of([self.query.formula]),
         )
 
     def _own_ranges(self) -> dict[str, str]:

@@ -3,22 +3,8 @@
 from collections.abc import Sequence
 
 from roadproof.evidence.answers.entry import Common
+from roadproof.library import scenarios as s
 from roadproof.library.compose import both, either, eventually, implication, in_some_lane, negation
-from roadproof.library.scenarios import (
-    LANE,
-    PAIR,
-    SUBJECT,
-    Scenario,
-    applied,
-    asked_between,
-    danger,
-    in_lane,
-    in_some_zone,
-    numbers_of,
-    safe,
-    sector,
-    vehicles_of,
-)
 from roadproof.library.specification import Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
@@ -30,7 +16,7 @@ def fault_of_gap(common: Common, numbers: Sequence[int], formula: str) -> str:
     said, home = common.formula(formula), common.specification
     conjuncts = {*said.parts} if isinstance(said, f.And) else {said}
     scenarios = (x for numbers in _sectors(home, numbers).values() for x in _in_either_role(home, numbers))
-    asked = [*_starts(home), *(negation(in_some_lane(x, LANE)) for x in scenarios)]
+    asked = [*_starts(home), *(negation(in_some_lane(x, s.LANE)) for x in scenarios)]
     missing = next((x for x in asked if x.formula not in conjuncts), None)
     return "" if missing is None else f"of a gap its formula has to say {missing.text}: {formula[:120]}"
 
@@ -40,15 +26,17 @@ def claims_of(specification: Specification, numbers: Sequence[int] = ()) -> list
 
     ``numbers``: of these scenarios alone.
     """
-    sectors = _sectors(specification, numbers or numbers_of(specification)).values()
+    sectors = _sectors(specification, numbers or s.numbers_of(specification)).values()
     claims: list[Formula] = []
     for those in sectors:
         premise = both(
-            sector(specification, those[0], PAIR), in_lane(specification, SUBJECT), *_starts(specification)
+            s.sector(specification, those[0], s.PAIR),
+            s.in_lane(specification, s.SUBJECT),
+            *_starts(specification),
         )
         claims.append(implication(premise, either(*_in_either_role(specification, those))).formula)
-    somewhere = both(*(in_some_zone(specification, vehicle) for vehicle in PAIR))
-    some_sector = either(*(sector(specification, those[0], PAIR) for those in sectors))
+    somewhere = both(*(s.in_some_zone(specification, vehicle) for vehicle in s.PAIR))
+    some_sector = either(*(s.sector(specification, those[0], s.PAIR) for those in sectors))
     return [*claims, implication(somewhere, some_sector).formula]
 
 
@@ -56,19 +44,19 @@ def _sectors(specification: Specification, numbers: Sequence[int]) -> dict[Formu
     """The scenarios of two vehicles by road sector."""
     sectors: dict[Formula, list[int]] = {}
     for number in numbers:
-        if len(vehicles_of(specification, Scenario(number, specification.set_name))) == len(PAIR):
-            meaning = without_names(sector(specification, number, PAIR).formula)
+        if len(s.vehicles_of(specification, s.Scenario(number, specification.set_name))) == len(s.PAIR):
+            meaning = without_names(s.sector(specification, number, s.PAIR).formula)
             sectors.setdefault(meaning, []).append(number)
     return sectors
 
 
 def _starts(specification: Specification) -> tuple[Query, ...]:
     """Safety, danger later, and what else drives are asked to begin with."""
-    later = eventually(danger(specification, *PAIR))
-    return safe(specification, *PAIR), later, *asked_between(specification, *PAIR)
+    later = eventually(s.danger(specification, *s.PAIR))
+    return s.safe(specification, *s.PAIR), later, *s.asked_between(specification, *s.PAIR)
 
 
 def _in_either_role(specification: Specification, numbers: Sequence[int]) -> list[Query]:
     """The scenarios for L, with the two vehicles in either role."""
-    scenarios = [Scenario(number, specification.set_name) for number in numbers]
-    return [applied(specification, x, roles) for roles in (PAIR, PAIR[::-1]) for x in scenarios]
+    scenarios = [s.Scenario(number, specification.set_name) for number in numbers]
+    return [s.applied(specification, x, roles) for roles in (s.PAIR, s.PAIR[::-1]) for x in scenarios]

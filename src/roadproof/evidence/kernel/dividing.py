@@ -7,21 +7,7 @@ decided by the constraints, they are divided by it.
 from collections.abc import Iterator
 from typing import TypeAlias
 
-from roadproof.evidence.kernel.branch import (
-    At,
-    Belongs,
-    Branch,
-    Fact,
-    Given,
-    Guards,
-    Means,
-    Move,
-    NotFoundError,
-    TrueInterval,
-    Universal,
-    two,
-    used,
-)
+from roadproof.evidence.kernel import branch as b
 from roadproof.evidence.kernel.linear import GOAL, Witness
 from roadproof.evidence.sites import Site
 from roadproof.evidence.times import ZERO, Moment, at, moment_of
@@ -30,10 +16,10 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import rename
 
 # How many sides are open, and what divides: a disjunction by its number, or an instance.
-_Choice: TypeAlias = tuple[int, int | tuple[Universal, Moment | str]]
+_Choice: TypeAlias = tuple[int, int | tuple[b.Universal, Moment | str]]
 
 
-def next_move(means: Means, branch: Branch) -> Move:
+def next_move(means: b.Means, branch: b.Branch) -> b.Move:
     """Raises ``NotFoundError`` where nothing is left to be done."""
     return _instance(means, branch) or _divide(means, branch)
 
@@ -41,32 +27,32 @@ def next_move(means: Means, branch: Branch) -> Move:
 # --- instances that do not divide ----------------------------------------------------------------
 
 
-def _instance(means: Means, branch: Branch) -> Move | None:
+def _instance(means: b.Means, branch: b.Branch) -> b.Move | None:
     for universal, moment in branch.waiting("all", "lemma"):
         if universal.kind == "lemma":
             universal.left.remove(moment)
-            lemma = At(True, moment, means.goal.lemmas[universal.number][0])
-            return Move("Fact", (universal.number, moment), (), [([lemma], [])])
+            lemma = b.At(True, moment, means.goal.lemmas[universal.number][0])
+            return b.Move("Fact", (universal.number, moment), (), [([lemma], [])])
         guards = _decided(means, branch, universal.number, moment)
         if guards is None:
             continue
         universal.left.remove(moment)
         fact = branch.facts[universal.number]
-        if isinstance(fact, At):
-            body = At(fact.sign, moment, f.children(fact.formula)[0])
+        if isinstance(fact, b.At):
+            body = b.At(fact.sign, moment, f.children(fact.formula)[0])
         else:
-            assert isinstance(fact, TrueInterval)
-            body = At(True, moment, fact.formula)
-        premises = {universal.number, *used(*guards)}
-        return Move("Inst", (universal.number, moment, *guards), premises, [([body], [])])
+            assert isinstance(fact, b.TrueInterval)
+            body = b.At(True, moment, fact.formula)
+        premises = {universal.number, *b.used(*guards)}
+        return b.Move("Inst", (universal.number, moment, *guards), premises, [([body], [])])
     return None
 
 
-def _guards(fact: Fact, moment: Moment) -> list[tuple[bool, Moment]]:
+def _guards(fact: b.Fact, moment: Moment) -> list[tuple[bool, Moment]]:
     """What has to be at least 0, or above it where True, for an instance at ``moment``."""
-    if isinstance(fact, TrueInterval):
+    if isinstance(fact, b.TrueInterval):
         return [(False, moment - fact.low), (True, fact.high - moment)]
-    assert isinstance(fact, At)
+    assert isinstance(fact, b.At)
     (interval,) = f.intervals(fact.formula)
     guards = [(False, moment - (fact.moment + moment_of(interval.low)))]
     if interval.high is not None:
@@ -74,7 +60,7 @@ def _guards(fact: Fact, moment: Moment) -> list[tuple[bool, Moment]]:
     return guards
 
 
-def _decided(means: Means, branch: Branch, number: int, moment: Moment) -> Guards | None:
+def _decided(means: b.Means, branch: b.Branch, number: int, moment: Moment) -> b.Guards | None:
     key = (number, moment)
     if key not in branch.decided:
         found: list[Witness] = []
@@ -90,7 +76,7 @@ def _decided(means: Means, branch: Branch, number: int, moment: Moment) -> Guard
 # --- what divides --------------------------------------------------------------------------------
 
 
-def _divide(means: Means, branch: Branch) -> Move:
+def _divide(means: b.Means, branch: b.Branch) -> b.Move:
     best = _best_choice(means, branch)
     if best is None or best[0] > 1:
         for choice in _dividing(means, branch):
@@ -99,15 +85,15 @@ def _divide(means: Means, branch: Branch) -> Move:
     if best is None:
         cut = _open_guard(means, branch) or _open_equality(means, branch)
         if cut is None:
-            raise NotFoundError("the instances of the certificate are used up")
-        return Move("Cut", (cut,), (), [([], [(False, cut)]), ([], [(True, ZERO - cut)])])
+            raise b.NotFoundError("the instances of the certificate are used up")
+        return b.Move("Cut", (cut,), (), [([], [(False, cut)]), ([], [(True, ZERO - cut)])])
     chosen = best[1]
     if isinstance(chosen, int):
         branch.choices.remove(chosen)
         fact = branch.at(chosen)
         assert isinstance(fact.formula, f.And | f.Or)
-        halves = [At(fact.sign, fact.moment, x) for x in two(fact.formula)]
-        return Move("Beta", (chosen,), (chosen,), [([x], []) for x in halves])
+        halves = [b.At(fact.sign, fact.moment, x) for x in b.two(fact.formula)]
+        return b.Move("Beta", (chosen,), (chosen,), [([x], []) for x in halves])
     universal, where = chosen
     universal.left.remove(where)
     if isinstance(where, Moment):
@@ -115,7 +101,7 @@ def _divide(means: Means, branch: Branch) -> Move:
     return _on_road(means, branch, universal, where)
 
 
-def _best_choice(means: Means, branch: Branch) -> _Choice | None:
+def _best_choice(means: b.Means, branch: b.Branch) -> _Choice | None:
     """A disjunction, by how many of its parts are open; those that hold already are dropped."""
     best: _Choice | None = None
     for number in list(branch.choices):
@@ -132,7 +118,7 @@ def _best_choice(means: Means, branch: Branch) -> _Choice | None:
     return best
 
 
-def _dividing(means: Means, branch: Branch) -> Iterator[_Choice]:
+def _dividing(means: b.Means, branch: b.Branch) -> Iterator[_Choice]:
     """Instances that divide, with how many sides are open."""
     for universal in branch.universals:
         if universal.kind == "until":
@@ -146,7 +132,7 @@ def _dividing(means: Means, branch: Branch) -> Iterator[_Choice]:
             yield from ((2, (universal, x)) for x in list(universal.left) if x in branch.elements)
 
 
-def _until_fails(means: Means, branch: Branch, universal: Universal, moment: Moment) -> Move:
+def _until_fails(means: b.Means, branch: b.Branch, universal: b.Universal, moment: Moment) -> b.Move:
     fact = branch.at(universal.number)
     guards = _decided(means, branch, universal.number, moment)
     assert isinstance(fact.formula, f.Until)
@@ -155,29 +141,29 @@ def _until_fails(means: Means, branch: Branch, universal: Universal, moment: Mom
     name = means.named(Site(universal.site.formula, False, universal.site.moment, str(moment)), "u")
     low = fact.moment + moment_of(fact.formula.interval.low)
     before = [(False, at(name) - low), (True, moment - at(name))]
-    return Move(
+    return b.Move(
         "InstUntil",
         (universal.number, moment, *guards),
-        (universal.number, *used(*guards)),
+        (universal.number, *b.used(*guards)),
         [
-            ([At(False, moment, fact.formula.right)], []),
-            ([At(False, at(name), fact.formula.left)], before),
+            ([b.At(False, moment, fact.formula.right)], []),
+            ([b.At(False, at(name), fact.formula.left)], before),
         ],
         name,
     )
 
 
-def _on_road(means: Means, branch: Branch, universal: Universal, name: str) -> Move:
+def _on_road(means: b.Means, branch: b.Branch, universal: b.Universal, name: str) -> b.Move:
     fact = branch.at(universal.number)
     formula = fact.formula
     assert isinstance(formula, f.Some | f.Every)
     inside = means.goal.atoms.abstract(rename(formula.body, formula.variable, name))
-    outside: list[Fact] = [Belongs(False, formula.domain, name)]
-    sides: list[Given] = [(outside, []), ([At(fact.sign, fact.moment, inside)], [])]
-    return Move("InstRoad", (universal.number, name), (universal.number,), sides)
+    outside: list[b.Fact] = [b.Belongs(False, formula.domain, name)]
+    sides: list[b.Given] = [(outside, []), ([b.At(fact.sign, fact.moment, inside)], [])]
+    return b.Move("InstRoad", (universal.number, name), (universal.number,), sides)
 
 
-def _open_guard(means: Means, branch: Branch) -> Moment | None:
+def _open_guard(means: b.Means, branch: b.Branch) -> Moment | None:
     """A guard of an instance that the constraints leave open; instances that they exclude are dropped."""
     for universal, moment in branch.waiting("all", "until"):
         guards = _guards(branch.facts[universal.number], moment)
@@ -191,7 +177,7 @@ def _open_guard(means: Means, branch: Branch) -> Moment | None:
     return None
 
 
-def _open_equality(means: Means, branch: Branch) -> Moment | None:
+def _open_equality(means: b.Means, branch: b.Branch) -> Moment | None:
     """Two moments that may be one, at which something is true and false."""
     linear = means.linear
     for entries in branch.known.values():
@@ -205,12 +191,12 @@ def _open_equality(means: Means, branch: Branch) -> Moment | None:
     return None
 
 
-def _holds(means: Means, branch: Branch, sign: bool, moment: Moment, formula: Formula) -> bool:
+def _holds(means: b.Means, branch: b.Branch, sign: bool, moment: Moment, formula: Formula) -> bool:
     known = branch.known.get(means.key(formula), ())
     return any(s == sign and m == moment for s, m, _ in known)
 
 
-def _refuted(means: Means, branch: Branch, sign: bool, moment: Moment, formula: Formula) -> bool:
+def _refuted(means: b.Means, branch: b.Branch, sign: bool, moment: Moment, formula: Formula) -> bool:
     """Whether ``formula`` with this sign would close a branch at once."""
     if isinstance(formula, f.Truth):
         return formula.value != sign

@@ -3,45 +3,31 @@
 from collections.abc import Sequence
 
 from roadproof.evidence.atoms import ZONES, is_rigid
-from roadproof.evidence.kernel.branch import (
-    At,
-    Belongs,
-    Branch,
-    Fact,
-    Means,
-    Move,
-    NotFoundError,
-    Proof,
-    Step,
-    TrueInterval,
-    Universal,
-    two,
-    used,
-)
+from roadproof.evidence.kernel import branch as b
 from roadproof.evidence.sites import Site, prefix_form
 from roadproof.evidence.times import ZERO, Moment, at, compared_times, moment_of
 from roadproof.logic import formula as f
 from roadproof.logic.rewrite import rename
 
 
-def read(means: Means, branch: Branch, number: int) -> Proof | Move | None:
+def read(means: b.Means, branch: b.Branch, number: int) -> b.Proof | b.Move | None:
     """What to do about a fact that is new on a branch; None where it is only remembered."""
     fact = branch.facts[number]
     match fact:
-        case Belongs():
+        case b.Belongs():
             return _no_road(branch, number, fact)
-        case TrueInterval(site=site):
-            branch.universals.append(Universal("all", number, site, means.listed(site)))
+        case b.TrueInterval(site=site):
+            branch.universals.append(b.Universal("all", number, site, means.listed(site)))
             return None
-        case At():
+        case b.At():
             return _read(means, branch, number, fact)
 
 
-def _read(means: Means, branch: Branch, number: int, fact: At) -> Proof | Move | None:
+def _read(means: b.Means, branch: b.Branch, number: int, fact: b.At) -> b.Proof | b.Move | None:
     sign, moment, formula = fact.sign, fact.moment, fact.formula
     if isinstance(formula, f.Truth):
         if formula.value != sign:
-            return Step("CloseTruth", (number,)), frozenset({number})
+            return b.Step("CloseTruth", (number,)), frozenset({number})
         return None
     closed = _close(means, branch, number, fact)
     if closed is not None:
@@ -53,21 +39,21 @@ def _read(means: Means, branch: Branch, number: int, fact: At) -> Proof | Move |
     return _expand(means, branch, number, fact)
 
 
-def _close(means: Means, branch: Branch, number: int, fact: At) -> Proof | None:
+def _close(means: b.Means, branch: b.Branch, number: int, fact: b.At) -> b.Proof | None:
     for sign, moment, other in branch.known.get(means.key(fact.formula), ()):
         if sign == fact.sign:
             continue
         true, false = (number, other) if fact.sign else (other, number)
         if f.is_state(fact.formula) and is_rigid(fact.formula):
-            return Step("Close", (true, false, (), ())), frozenset({true, false})
+            return b.Step("Close", (true, false, (), ())), frozenset({true, false})
         there, here = (fact.moment, moment) if fact.sign else (moment, fact.moment)
         equal = means.equal(there, here)
         if equal is not None:
-            return Step("Close", (true, false, *equal)), frozenset({true, false}) | used(*equal)
+            return b.Step("Close", (true, false, *equal)), frozenset({true, false}) | b.used(*equal)
     return None
 
 
-def _expand(means: Means, branch: Branch, number: int, fact: At) -> Move | None:
+def _expand(means: b.Means, branch: b.Branch, number: int, fact: b.At) -> b.Move | None:
     sign, moment, formula = fact.sign, fact.moment, fact.formula
     match formula:
         case f.Application(_, _, meaning):
@@ -76,10 +62,10 @@ def _expand(means: Means, branch: Branch, number: int, fact: At) -> Move | None:
                 return _timing(number, sign, times)
             return None
         case f.Not(body):
-            return _one("Alpha", number, [At(not sign, moment, body)])
+            return _one("Alpha", number, [b.At(not sign, moment, body)])
         case f.And(parts) | f.Or(parts):
             if isinstance(formula, f.And) == sign:
-                return _one("Alpha", number, [At(sign, moment, x) for x in two(formula)])
+                return _one("Alpha", number, [b.At(sign, moment, x) for x in b.two(formula)])
             if parts:
                 branch.choices.append(number)
             return None
@@ -87,17 +73,17 @@ def _expand(means: Means, branch: Branch, number: int, fact: At) -> Move | None:
             site = Site(prefix_form(formula), sign, str(moment))
             if isinstance(formula, f.Eventually) == sign:
                 name = means.named(site, "u")
-                return _exists(branch, number, name, moment, interval, [At(sign, at(name), body)])
-            branch.universals.append(Universal("all", number, site, means.listed(site)))
+                return _exists(branch, number, name, moment, interval, [b.At(sign, at(name), body)])
+            branch.universals.append(b.Universal("all", number, site, means.listed(site)))
             return None
         case f.Until(left, interval, right):
             site = Site(prefix_form(formula), sign, str(moment))
             if sign:
                 name = means.named(site, "u")
                 low = moment + moment_of(interval.low)
-                given: list[Fact] = [At(True, at(name), right), TrueInterval(low, at(name), left, site)]
+                given: list[b.Fact] = [b.At(True, at(name), right), b.TrueInterval(low, at(name), left, site)]
                 return _exists(branch, number, name, moment, interval, given)
-            branch.universals.append(Universal("until", number, site, means.listed(site)))
+            branch.universals.append(b.Universal("until", number, site, means.listed(site)))
             return None
         case f.Some(variable, domain, body) | f.Every(variable, domain, body):
             site = Site(prefix_form(formula), sign, str(moment))
@@ -105,61 +91,61 @@ def _expand(means: Means, branch: Branch, number: int, fact: At) -> Move | None:
                 name = means.named(site, "M")
                 branch.elements.add(name)
                 inside = means.goal.atoms.abstract(rename(body, variable, name))
-                met: list[Fact] = [Belongs(True, domain, name), At(sign, moment, inside)]
-                return Move("NewRoad", (number, name), (number,), [(met, [])])
-            branch.universals.append(Universal("road", number, site, means.listed(site, str)))
+                met: list[b.Fact] = [b.Belongs(True, domain, name), b.At(sign, moment, inside)]
+                return b.Move("NewRoad", (number, name), (number,), [(met, [])])
+            branch.universals.append(b.Universal("road", number, site, means.listed(site, str)))
             return None
         case _:
-            raise NotFoundError(f"no rule is for {type(formula).__name__}")
+            raise b.NotFoundError(f"no rule is for {type(formula).__name__}")
 
 
-def _one(rule: str, number: int, facts: Sequence[Fact]) -> Move:
-    return Move(rule, (number,), (number,), [(facts, [])])
+def _one(rule: str, number: int, facts: Sequence[b.Fact]) -> b.Move:
+    return b.Move(rule, (number,), (number,), [(facts, [])])
 
 
-def _timing(number: int, sign: bool, times: tuple[Moment, f.Comparison, Moment]) -> Move:
+def _timing(number: int, sign: bool, times: tuple[Moment, f.Comparison, Moment]) -> b.Move:
     left, op, right = times
     greater = right - left if op in ("<", "<=") else left - right
     strict = op in ("<", ">")
     constraint = (strict, greater) if sign else (not strict, ZERO - greater)
-    return Move("Timing", (number,), (number,), [([], [constraint])])
+    return b.Move("Timing", (number,), (number,), [([], [constraint])])
 
 
 def _exists(
-    branch: Branch, number: int, name: str, moment: Moment, interval: f.Interval, facts: Sequence[Fact]
-) -> Move:
+    branch: b.Branch, number: int, name: str, moment: Moment, interval: f.Interval, facts: Sequence[b.Fact]
+) -> b.Move:
     branch.times.add(name)
     window = [(False, at(name) - (moment + moment_of(interval.low)))]
     if interval.high is not None:
         window.append((False, moment + moment_of(interval.high) - at(name)))
-    return Move("New", (number,), (number,), [(facts, window)], name)
+    return b.Move("New", (number,), (number,), [(facts, window)], name)
 
 
 # --- roads ---------------------------------------------------------------------------------------
 
 
-def _no_road(branch: Branch, number: int, fact: Belongs) -> Proof | None:
+def _no_road(branch: b.Branch, number: int, fact: b.Belongs) -> b.Proof | None:
     """What no road has closes a branch."""
     kind, of, name = fact.domain.kind, fact.domain.of, fact.name
     alone = (kind == "lanes" or (kind == "lanelets" and of == name)) if not fact.sign else False
     if alone or (fact.sign and kind == "adjacent" and of == name):
-        return Step("CloseRoad", (number,)), frozenset({number})
+        return b.Step("CloseRoad", (number,)), frozenset({number})
     outside = {}
     for other, known in branch.facts.items():
-        if not isinstance(known, Belongs):
+        if not isinstance(known, b.Belongs):
             continue
         if not known.sign and known.domain.kind == "zone" and known.name == name:
             outside[known.domain.of] = other
         for (i, one), (j, another) in (((number, fact), (other, known)), ((other, known), (number, fact))):
             if _never_both(one, another):
-                return Step("CloseRoads", (i, j)), frozenset({i, j})
+                return b.Step("CloseRoads", (i, j)), frozenset({i, j})
     if set(outside) == set(ZONES):
         three = tuple(outside[zone] for zone in ZONES)
-        return Step("CloseZones", three), frozenset(three)
+        return b.Step("CloseZones", three), frozenset(three)
     return None
 
 
-def _never_both(one: Belongs, two: Belongs) -> bool:
+def _never_both(one: b.Belongs, two: b.Belongs) -> bool:
     """As ``no_roads`` of Tableau.v, in this order."""
     if one.sign and not two.sign and one.name == two.name and one.domain == two.domain:
         return True

@@ -8,20 +8,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from roadproof.evidence.kernel.branch import (
-    At,
-    Branch,
-    Given,
-    Goal,
-    Means,
-    Move,
-    NotFoundError,
-    Proof,
-    Step,
-    Universal,
-    numbered,
-    used,
-)
+from roadproof.evidence.kernel import branch as b
 from roadproof.evidence.kernel.dividing import next_move
 from roadproof.evidence.kernel.reading import read
 from roadproof.evidence.kernel.tableau import Tableau
@@ -31,12 +18,12 @@ MOST_STEPS = 20_000
 _DEEPEST = 200_000
 
 
-def find(goal: Goal, most_steps: int = MOST_STEPS) -> Tableau:
+def find(goal: b.Goal, most_steps: int = MOST_STEPS) -> Tableau:
     """A closed tableau for ``goal``. Raises ``NotFoundError``, and ``InputError`` for what is not read."""
     search = _Search(goal, most_steps)
     with _deep():
         step, _ = search.run()
-        return tuple(numbered(step, search.root, search.bounds, goal.parameters))
+        return tuple(b.numbered(step, search.root, search.bounds, goal.parameters))
 
 
 @contextmanager
@@ -50,38 +37,38 @@ def _deep() -> Iterator[None]:
 
 
 class _Search:
-    def __init__(self, goal: Goal, most_steps: int) -> None:
+    def __init__(self, goal: b.Goal, most_steps: int) -> None:
         self.goal = goal
         self.left = most_steps
-        self.means = Means(goal)
+        self.means = b.Means(goal)
         self.bounds: list[int] = []
         self.root = 0
 
-    def run(self) -> Proof:
-        branch = Branch(times=set(self.goal.parameters), elements=set(self.goal.lanes))
+    def run(self) -> b.Proof:
+        branch = b.Branch(times=set(self.goal.parameters), elements=set(self.goal.lanes))
         for name in self.goal.parameters:
             if name in self.goal.strict:
                 self.bounds.append(self.means.number())
                 self.means.linear.add(self.bounds[-1], self.goal.strict[name], at(name))
         self.root = self.means.number()
-        branch.add(self.root, At(False, ZERO, self.goal.claim))
+        branch.add(self.root, b.At(False, ZERO, self.goal.claim))
         for place, (_, moments) in enumerate(self.goal.lemmas):
-            branch.universals.append(Universal("lemma", place, None, [read_moment(x) for x in moments]))
+            branch.universals.append(b.Universal("lemma", place, None, [read_moment(x) for x in moments]))
         return self._prove(branch)
 
-    def _prove(self, branch: Branch) -> Proof:
+    def _prove(self, branch: b.Branch) -> b.Proof:
         self.left -= 1
         if self.left < 0:
-            raise NotFoundError("the search for a tableau came to its limit")
+            raise b.NotFoundError("the search for a tableau came to its limit")
         while branch.agenda:
             found = read(self.means, branch, branch.agenda.pop(0))
             if found is not None:
-                return self._apply(branch, found) if isinstance(found, Move) else found
+                return self._apply(branch, found) if isinstance(found, b.Move) else found
         return self._apply(branch, next_move(self.means, branch))
 
-    def _apply(self, branch: Branch, move: Move) -> Proof:
+    def _apply(self, branch: b.Branch, move: b.Move) -> b.Proof:
         """A rule with its children; a child that uses nothing of what it is given stands in its place."""
-        steps: list[Step] = []
+        steps: list[b.Step] = []
         added: list[tuple[tuple[int, ...], tuple[int, ...]]] = []
         needed = frozenset(move.premises)
         last = len(move.sides) - 1
@@ -98,19 +85,19 @@ class _Search:
             steps.append(step)
             added.append(numbers)
             needed |= uses - own
-        return Step(move.rule, move.arguments, tuple(steps), tuple(added), move.new), needed
+        return b.Step(move.rule, move.arguments, tuple(steps), tuple(added), move.new), needed
 
     def _extend(
-        self, branch: Branch, given: Given
-    ) -> tuple[tuple[tuple[int, ...], tuple[int, ...]], Proof | None]:
+        self, branch: b.Branch, given: b.Given
+    ) -> tuple[tuple[tuple[int, ...], tuple[int, ...]], b.Proof | None]:
         facts, constraints = given
-        conflict: Proof | None = None
+        conflict: b.Proof | None = None
         numbers: list[int] = []
         for strict, moment in constraints:
             numbers.append(self.means.number())
             witness = None if conflict else self.means.linear.add(numbers[-1], strict, moment)
             if witness is not None:
-                conflict = Step("CloseLinear", (witness,)), used(witness)
+                conflict = b.Step("CloseLinear", (witness,)), b.used(witness)
         places = [self.means.number() for _ in facts]
         for place, fact in zip(places, facts, strict=True):
             branch.add(place, fact)

@@ -11,22 +11,12 @@ from typing import TypeAlias, assert_never
 
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
+from roadproof.semantics.exact import truth as sets
 from roadproof.semantics.exact.algebraic import moved
 from roadproof.semantics.exact.exact import Judgement, seconds
-from roadproof.semantics.exact.truth import (
-    ALWAYS,
-    NEVER,
-    Cut,
-    Span,
-    TruthSet,
-    complement,
-    intersection,
-    interval,
-    union,
-)
 
-Blame: TypeAlias = Mapping[Formula, TruthSet]
-_Want: TypeAlias = Callable[[Formula, TruthSet, bool], None]
+Blame: TypeAlias = Mapping[Formula, sets.TruthSet]
+_Want: TypeAlias = Callable[[Formula, sets.TruthSet, bool], None]
 
 
 def blame(judgement: Judgement, formula: Formula | None = None, at: Fraction = Fraction(0)) -> Blame:
@@ -35,21 +25,22 @@ def blame(judgement: Judgement, formula: Formula | None = None, at: Fraction = F
     Parts that have no share in it are left out. Raises ``UsageError`` where it is no judged part.
     """
     asked = judgement.formula if formula is None else formula
-    wanted: dict[tuple[Formula, bool], TruthSet] = {}
+    wanted: dict[tuple[Formula, bool], sets.TruthSet] = {}
 
-    def want(part: Formula, instants: TruthSet, value: bool) -> None:
+    def want(part: Formula, instants: sets.TruthSet, value: bool) -> None:
         if instants.cuts:
-            wanted[part, value] = union([wanted.get((part, value), NEVER), instants])
+            wanted[part, value] = sets.union([wanted.get((part, value), sets.NEVER), instants])
 
-    want(asked, interval(at, at), judgement.truth(asked).at(at))
+    want(asked, sets.interval(at, at), judgement.truth(asked).at(at))
     for part in _parents_first(asked):
         for value in (True, False):
-            instants = wanted.get((part, value), NEVER)
+            instants = wanted.get((part, value), sets.NEVER)
             if instants.cuts:
                 _share(judgement, part, instants, value, want)
     parts = dict.fromkeys(part for part, _ in wanted)
     return {
-        part: union([wanted.get((part, True), NEVER), wanted.get((part, False), NEVER)]) for part in parts
+        part: sets.union([wanted.get((part, True), sets.NEVER), wanted.get((part, False), sets.NEVER)])
+        for part in parts
     }
 
 
@@ -69,7 +60,7 @@ def _parents_first(formula: Formula) -> Iterator[Formula]:
     return reversed(done)
 
 
-def _share(judgement: Judgement, part: Formula, instants: TruthSet, value: bool, want: _Want) -> None:
+def _share(judgement: Judgement, part: Formula, instants: sets.TruthSet, value: bool, want: _Want) -> None:
     """Ask of the direct parts what makes ``part`` have ``value`` at all of ``instants``."""
     match part:
         case f.Truth() | f.Compare():
@@ -89,7 +80,7 @@ def _share(judgement: Judgement, part: Formula, instants: TruthSet, value: bool,
             if isinstance(part, f.Always) is value:
                 want(body, window, value)
             else:
-                want(body, _first(instants, intersection([window, _is(judgement, body, value)])), value)
+                want(body, _first(instants, sets.intersection([window, _is(judgement, body, value)])), value)
         case f.Until():
             _until(judgement, part, instants, value, want)
         case f.Occupies() | f.Some() | f.Every():
@@ -99,73 +90,75 @@ def _share(judgement: Judgement, part: Formula, instants: TruthSet, value: bool,
 
 
 def _some_of(
-    judgement: Judgement, parts: tuple[Formula, ...], instants: TruthSet, value: bool, want: _Want
+    judgement: Judgement, parts: tuple[Formula, ...], instants: sets.TruthSet, value: bool, want: _Want
 ) -> None:
     """At each instant the first of ``parts`` that has ``value``."""
     left = instants
     for one in parts:
         here = _is(judgement, one, value)
-        want(one, intersection([left, here]), value)
-        left = intersection([left, complement(here)])
+        want(one, sets.intersection([left, here]), value)
+        left = sets.intersection([left, sets.complement(here)])
 
 
-def _until(judgement: Judgement, part: f.Until, instants: TruthSet, value: bool, want: _Want) -> None:
+def _until(judgement: Judgement, part: f.Until, instants: sets.TruthSet, value: bool, want: _Want) -> None:
     low, high = seconds(part.interval)
     window = _later(instants, low, high)
     left = _is(judgement, part.left, value)
     right = _is(judgement, part.right, value)
     if not _is_instant(instants):
-        want(part.left, intersection([window, left]), value)
-        want(part.right, intersection([window, right]), value)
+        want(part.left, sets.intersection([window, left]), value)
+        want(part.right, sets.intersection([window, right]), value)
     elif value:
-        reached = _first_span(intersection([window, right]))
+        reached = _first_span(sets.intersection([window, right]))
         want(part.right, reached, True)
-        want(part.left, intersection([_up_to(window, reached), left]), True)
+        want(part.left, sets.intersection([_up_to(window, reached), left]), True)
     else:
-        broken = _first_span(intersection([window, left]))
+        broken = _first_span(sets.intersection([window, left]))
         want(part.left, broken, False)
         want(part.right, _until_begin(window, broken), False)
 
 
-def _is(judgement: Judgement, part: Formula, value: bool) -> TruthSet:
+def _is(judgement: Judgement, part: Formula, value: bool) -> sets.TruthSet:
     truth = judgement.truth(part)
-    return truth if value else complement(truth)
+    return truth if value else sets.complement(truth)
 
 
-def _later(instants: TruthSet, low: Fraction, high: Fraction | None) -> TruthSet:
+def _later(instants: sets.TruthSet, low: Fraction, high: Fraction | None) -> sets.TruthSet:
     """All instants that are ``low`` to ``high`` seconds after one of ``instants``."""
-    return union([TruthSet(_moved(span, low, high)) for span in instants.spans()])
+    return sets.union([sets.TruthSet(_moved(span, low, high)) for span in instants.spans()])
 
 
-def _moved(span: Span, low: Fraction, high: Fraction | None) -> tuple[Cut, ...]:
-    begin = Cut(moved(span.begin.point, low), span.begin.after)
+def _moved(span: sets.Span, low: Fraction, high: Fraction | None) -> tuple[sets.Cut, ...]:
+    begin = sets.Cut(moved(span.begin.point, low), span.begin.after)
     if span.end is None or high is None:
         return (begin,)
-    return begin, Cut(moved(span.end.point, high), span.end.after)
+    return begin, sets.Cut(moved(span.end.point, high), span.end.after)
 
 
-def _is_instant(instants: TruthSet) -> bool:
+def _is_instant(instants: sets.TruthSet) -> bool:
     spans = instants.spans()
     return len(spans) == 1 and spans[0].end is not None and spans[0].begin.point == spans[0].end.point
 
 
-def _first(instants: TruthSet, found: TruthSet) -> TruthSet:
+def _first(instants: sets.TruthSet, found: sets.TruthSet) -> sets.TruthSet:
     """One stretch of ``found`` is enough for one instant; for more all of it is taken."""
     return _first_span(found) if _is_instant(instants) else found
 
 
-def _first_span(truth: TruthSet) -> TruthSet:
-    return TruthSet(truth.cuts[:2])
+def _first_span(truth: sets.TruthSet) -> sets.TruthSet:
+    return sets.TruthSet(truth.cuts[:2])
 
 
-def _up_to(window: TruthSet, reached: TruthSet) -> TruthSet:
+def _up_to(window: sets.TruthSet, reached: sets.TruthSet) -> sets.TruthSet:
     """The window up to the end of what was reached."""
     end = reached.cuts[1:2]
-    return intersection([window, ALWAYS if not end else complement(TruthSet(end))])
+    return sets.intersection([window, sets.ALWAYS if not end else sets.complement(sets.TruthSet(end))])
 
 
-def _until_begin(window: TruthSet, broken: TruthSet) -> TruthSet:
+def _until_begin(window: sets.TruthSet, broken: sets.TruthSet) -> sets.TruthSet:
     """The window up to the first instant of ``broken``, with it; all of it where there is none."""
     if not broken.cuts:
         return window
-    return intersection([window, complement(TruthSet((Cut(broken.cuts[0].point, True),)))])
+    return sets.intersection(
+        [window, sets.complement(sets.TruthSet((sets.Cut(broken.cuts[0].point, True),)))]
+    )

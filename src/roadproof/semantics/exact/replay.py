@@ -9,17 +9,8 @@ from fractions import Fraction
 from itertools import combinations
 
 from roadproof.errors import UsageError
+from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare, Comparison, Formula, boxes_overlap, conjunction
-from roadproof.logic.terms import (
-    SIGNAL_DIMENSIONS,
-    Number,
-    Product,
-    Signal,
-    SignalName,
-    Term,
-    number,
-    subtract,
-)
 from roadproof.semantics.exact.algebraic import Point, decimal
 from roadproof.semantics.exact.exact import LazyJudge, judge
 from roadproof.semantics.exact.truth import Cut, TruthSet, complement
@@ -84,19 +75,19 @@ def first_breach(drive: Drive, limits: Mapping[str, Vehicle], horizon: Fraction 
 
 def _rules(name: str, limits: Vehicle) -> Iterator[tuple[str, Formula]]:
     """Every limit in words and as a formula."""
-    zero = number(0, (1, -1))
-    ranges: dict[SignalName, Range] = {"v_lon": limits.v_lon, "v_lat": limits.v_lat}
+    zero = t.number(0, (1, -1))
+    ranges: dict[t.SignalName, Range] = {"v_lon": limits.v_lon, "v_lat": limits.v_lat}
     ranges |= {"a_lon": limits.a_lon, "a_lat": limits.a_lat}
     for signal, (low, high) in ranges.items():
-        unit = unit_text(SIGNAL_DIMENSIONS[signal]).replace("^2", "²")
+        unit = unit_text(t.SIGNAL_DIMENSIONS[signal]).replace("^2", "²")
         bounds: tuple[tuple[Comparison, Fraction], ...] = ((">=", low), ("<=", high))
         for op, limit in bounds:
-            bound = Number(limit, SIGNAL_DIMENSIONS[signal])
-            yield f"{signal} {op} {limit} {unit}", Compare(Signal(signal, name), op, bound)
-    yield "v_lon >= 0 m/s (no reversing)", Compare(Signal("v_lon", name), ">=", zero)
-    share: Term = Product((number(limits.lateral_share), Signal("v_lon", name)))
-    lateral = Signal("v_lat", name)
-    inside = conjunction(Compare(lateral, "<=", share), Compare(subtract(zero, share), "<=", lateral))
+            bound = t.Number(limit, t.SIGNAL_DIMENSIONS[signal])
+            yield f"{signal} {op} {limit} {unit}", Compare(t.Signal(signal, name), op, bound)
+    yield "v_lon >= 0 m/s (no reversing)", Compare(t.Signal("v_lon", name), ">=", zero)
+    share: t.Term = t.Product((t.number(limits.lateral_share), t.Signal("v_lon", name)))
+    lateral = t.Signal("v_lat", name)
+    inside = conjunction(Compare(lateral, "<=", share), Compare(t.subtract(zero, share), "<=", lateral))
     yield f"|v_lat| <= {limits.lateral_share}·v_lon (heading)", inside
 
 
