@@ -15,7 +15,8 @@ from pathlib import Path
 from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
 from roadproof.recordings.evaluate.questions import ask, default_settings
 from roadproof.recordings.formats.recording import Recording
-from roadproof.recordings.simulate.simulate import Traffic, simulate
+from roadproof.recordings.simulate.simulate import simulate
+from roadproof.recordings.simulate.traffic import Traffic
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from traffic.reference import Reference, Row

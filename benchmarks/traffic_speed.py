@@ -22,7 +22,8 @@ from roadproof.recordings.evaluate.questions import default_settings
 from roadproof.recordings.formats.highd import SAMPLE_KINDS
 from roadproof.recordings.formats.table import polars_module
 from roadproof.recordings.formats.write_highd import write_highd
-from roadproof.recordings.simulate.simulate import Traffic, simulate
+from roadproof.recordings.simulate.simulate import simulate
+from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.runtime.executors import Executor
 
 

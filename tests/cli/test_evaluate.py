@@ -16,7 +16,7 @@ import pytest
 from roadproof.evidence.drive_file import load_drive
 from roadproof.frontends.api import traces
 from roadproof.frontends.cli.main import main
-from roadproof.recordings.evaluate import results
+from roadproof.recordings.evaluate import results, totals
 from roadproof.recordings.evaluate.evaluate import evaluate_recording
 from roadproof.recordings.evaluate.questions import ask, default_settings
 from roadproof.recordings.export.csv_table import csv_of
@@ -118,13 +118,13 @@ def test_a_violated_fact_is_a_crosscheck_failure(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Matches of ext are lost between the monitor and the tables: exit 30, and it is said which."""
-    add = results.add_findings
+    add = totals.add_findings
 
-    def loses(totals: results.Totals, findings: results.Findings) -> None:
+    def loses(sums: totals.Totals, findings: results.Findings) -> None:
         kept = tuple(x for x in findings.matches if x.set_name != "ext")
-        add(totals, replace(findings, matches=kept))
+        add(sums, replace(findings, matches=kept))
 
-    monkeypatch.setattr(results, "add_findings", loses)
+    monkeypatch.setattr(totals, "add_findings", loses)
     assert main(["evaluate", str(folder), "--out", str(tmp_path), "--jobs", "1", "--no-pictures"]) == 30
     said = capsys.readouterr().out
     assert "CROSSCHECK-FAILED" in said

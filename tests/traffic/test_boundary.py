@@ -30,7 +30,8 @@ from roadproof.recordings.formats.commonroad import read_commonroad
 from roadproof.recordings.formats.pairs import DetectionRange, common_pairs
 from roadproof.recordings.formats.recording import ZONES, Floats, Recording, Slack, keep_vehicles
 from roadproof.recordings.simulate.planting import Place, plant
-from roadproof.recordings.simulate.simulate import Traffic, simulate
+from roadproof.recordings.simulate.simulate import simulate
+from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.recordings.simulate.traffic import Traffic as Simulated
 from roadproof.semantics.sampled.recursive import TraceReader
 from traffic.drives import braking, cut_in, swerve

@@ -475,8 +475,8 @@ def test_the_same_seed_gives_the_same_files(made: tuple[str, Path], tmp_path: Pa
 def test_planted_fault_a_ramp_that_nobody_has_to_leave_is_noticed(monkeypatch, tmp_path: Path) -> None:
     """Without the end of the lane in sight, vehicles drive beyond it."""
     never = np.inf
-    monkeypatch.setattr(simulating, "room_ahead", lambda traffic, lane, s, changing: np.full(len(s), never))
-    monkeypatch.setattr(simulating, "wish", lambda traffic, lane, side, leaves: np.full(len(lane), -99.0))
+    monkeypatch.setattr(simulating.t, "room_ahead", lambda traffic, lane, s, changing: np.full(len(s), never))
+    monkeypatch.setattr(simulating.t, "wish", lambda traffic, lane, side, leaves: np.full(len(lane), -99.0))
     rp.simulate(tmp_path, seconds=60, seed=3, ramp="merge", jobs=1)
     with pytest.raises(AssertionError):
         test_nobody_is_on_a_ramp_where_there_is_none(("merge", tmp_path))

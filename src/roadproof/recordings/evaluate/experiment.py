@@ -8,15 +8,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from roadproof.errors import InputError, SharedError
+from roadproof.recordings.evaluate import results
 from roadproof.recordings.evaluate.evaluate import Findings, evaluate_windows
 from roadproof.recordings.evaluate.questions import Questions, Settings, ask
-from roadproof.recordings.evaluate.results import (
-    fingerprint,
-    load_findings,
-    question_mark,
-    save_findings,
-    write_results,
-)
 from roadproof.recordings.evaluate.totals import Totals
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.source import RecordingSource
@@ -68,12 +62,12 @@ def run_experiment(
     shard = experiment.hands.shard
     if shard is not None:
         sources = tuple(shard.among(sources))
-    question = question_mark(experiment.settings)
+    question = results.question_mark(experiment.settings)
     with ThreadPoolExecutor(experiment.hands.processes or os.cpu_count() or 1) as threads:
         found = threads.map(RecordingSource.digests, sources)
         digests = {source.name: each for source, each in zip(sources, found, strict=True)}
     more = ["strict"] * experiment.strict
-    marks = {name: fingerprint(question, [*each, *more]) for name, each in digests.items()}
+    marks = {name: results.fingerprint(question, [*each, *more]) for name, each in digests.items()}
     failed = copies_among(sources, digests)
     waiting = [s for s in sources if s.name not in failed and _known(experiment, s, marks[s.name]) is None]
     kept = len(sources) - len(failed) - len(waiting)
@@ -111,7 +105,7 @@ def run_experiment(
             yield found
 
     in_order = {source.name: failed[source.name] for source in sources if source.name in failed}
-    totals = write_results(experiment.out, experiment.settings, findings(), in_order)
+    totals = results.write_results(experiment.out, experiment.settings, findings(), in_order)
     return ExperimentOutcome(totals, in_order, marks, tuple(lost))
 
 
@@ -131,7 +125,7 @@ def _path(out: Path, source: RecordingSource) -> Path:
 
 
 def _known(experiment: Experiment, source: RecordingSource, mark: str) -> Findings | None:
-    return load_findings(_path(experiment.out, source), mark)
+    return results.load_findings(_path(experiment.out, source), mark)
 
 
 def _evaluate_all(
@@ -179,7 +173,7 @@ def _evaluate(job: _Job) -> str | None:
         return told if told.startswith(file) else f"{file}: {told}"
     except Exception as error:
         raise RuntimeError(f"recording {job.source.name}: {type(error).__name__}: {error}") from error
-    save_findings(_path(job.out, job.source), findings, job.mark)
+    results.save_findings(_path(job.out, job.source), findings, job.mark)
     return None
 
 

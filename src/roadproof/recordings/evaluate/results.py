@@ -22,21 +22,12 @@ from roadproof.evidence.heading import heading
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.scenarios import MIN_DANGER
 from roadproof.library.words import Called, called_in
+from roadproof.recordings.evaluate import totals as sums
 from roadproof.recordings.evaluate.detectors import Detection
 from roadproof.recordings.evaluate.evaluate import Findings, Trace
 from roadproof.recordings.evaluate.foretelling import LABELS
 from roadproof.recordings.evaluate.matching import Match
 from roadproof.recordings.evaluate.questions import Settings
-from roadproof.recordings.evaluate.totals import (
-    Counts,
-    Foretold,
-    Repeat,
-    Row,
-    Totals,
-    add_findings,
-    begin_totals,
-    without_repeats,
-)
 from roadproof.recordings.formats.repeats import FramePair
 from roadproof.runtime.files import make_folder, whole_file
 from roadproof.version import VERSION
@@ -147,22 +138,22 @@ def whole_text(path: Path) -> Iterator[TextIO]:
 
 def write_results(
     folder: Path, settings: Settings, findings: Iterable[Findings], failed: Mapping[str, str]
-) -> Totals:
+) -> sums.Totals:
     """Write matches.csv, pairs.csv and results.json; ``findings`` gives the recordings in order.
 
     Recordings are taken one at a time, and what an earlier one shows too is left out. ``failed`` says which
     recordings are left out and why.
     """
-    totals = begin_totals(settings)
-    counted = Counts(repeats=totals.repeats)
+    totals = sums.begin_totals(settings)
+    counted = sums.Counts(repeats=totals.repeats)
     words = words_in(settings)
     with whole_text(folder / "matches.csv") as matches, whole_text(folder / "pairs.csv") as pairs:
         match_rows, pair_rows = (csv.writer(file, lineterminator="\n") for file in (matches, pairs))
         match_rows.writerow((*MATCH_COLUMNS, *driver_columns(settings)))
         pair_rows.writerow((*PAIR_COLUMNS, *settings.detectors, *settings.sets))
         for all_found in findings:
-            found = without_repeats(all_found, counted)
-            add_findings(totals, found)
+            found = sums.without_repeats(all_found, counted)
+            sums.add_findings(totals, found)
             match_rows.writerows(_match_rows(settings, words, found))
             pair_rows.writerows(_pair_rows(settings, found))
             if found.notes:
@@ -172,7 +163,7 @@ def write_results(
     return totals
 
 
-def as_json(totals: Totals, failed: Mapping[str, str]) -> JsonObject:
+def as_json(totals: sums.Totals, failed: Mapping[str, str]) -> JsonObject:
     """The totals as plain data; ``failed``: which recordings are left out, and why."""
     answer = kept.Answer(
         **heading(kept.SCHEMA, totals.settings.library),
@@ -196,7 +187,7 @@ def as_json(totals: Totals, failed: Mapping[str, str]) -> JsonObject:
     return write(answer)
 
 
-def _kept_row(row: Row, totals: Totals) -> kept.Row:
+def _kept_row(row: sums.Row, totals: sums.Totals) -> kept.Row:
     return kept.Row(
         sector=row.sector.name,
         min_danger=str(row.min_danger),
@@ -212,7 +203,7 @@ def _kept_row(row: Row, totals: Totals) -> kept.Row:
     )
 
 
-def _kept_repeat(repeat: Repeat, totals: Totals) -> kept.Repeat:
+def _kept_repeat(repeat: sums.Repeat, totals: sums.Totals) -> kept.Repeat:
     return kept.Repeat(
         recording=repeat.recording,
         pair=(repeat.first, repeat.second),
@@ -222,7 +213,7 @@ def _kept_repeat(repeat: Repeat, totals: Totals) -> kept.Repeat:
     )
 
 
-def foretold_rows(totals: Totals) -> Iterator[kept.Prediction]:
+def foretold_rows(totals: sums.Totals) -> Iterator[kept.Prediction]:
     """For each minDanger, set, scenario and model that speaks of it how many matches have each of LABELS.
 
     Scenarios of road sectors that no road has are left out.
@@ -233,7 +224,7 @@ def foretold_rows(totals: Totals) -> Iterator[kept.Prediction]:
         for number, driver in product(asked, settings.drivers):
             if course_in(number) in MODELS[driver].manoeuvres:
                 of = (k, set_name, number, driver)
-                counts = {x.replace(" ", "_"): totals.foretold[Foretold(*of, x)] for x in LABELS}
+                counts = {x.replace(" ", "_"): totals.foretold[sums.Foretold(*of, x)] for x in LABELS}
                 yield kept.Prediction(
                     min_danger=str(danger), set=set_name, scenario=number, driver=driver, **counts
                 )

@@ -18,17 +18,7 @@ import numpy.typing as npt
 from roadproof.recordings.formats.highd import LOWER, UPPER, lanes_of_markings
 from roadproof.recordings.formats.recording import Bools, Floats, Integers, Recording, offsets
 from roadproof.recordings.formats.straight import of_bands, record
-from roadproof.recordings.simulate.traffic import (
-    Drivers,
-    Random,
-    Traffic,
-    draw_arrivals,
-    in_time,
-    leavers,
-    may_change,
-    room_ahead,
-    wish,
-)
+from roadproof.recordings.simulate import traffic as t
 
 
 @dataclass(frozen=True)
@@ -55,7 +45,7 @@ class Movement:
     change_to: Integers
 
 
-def move_traffic(traffic: Traffic, random: Random) -> Movement:
+def move_traffic(traffic: t.Traffic, random: t.Random) -> Movement:
     """Simulate ``traffic``; the same seed gives the same movement, to the last bit."""
     return _Road(traffic, random).run()
 
@@ -73,14 +63,14 @@ _HARDEST_BRAKING = 9.0
 class _Road:
     """All vehicles of both carriageways; lanes are numbered through: direction * tracks + lane."""
 
-    def __init__(self, traffic: Traffic, random: Random) -> None:
+    def __init__(self, traffic: t.Traffic, random: t.Random) -> None:
         self.traffic = traffic
         self.random = random
         self.steps = _WARM_UP + int(np.ceil(traffic.seconds / STEP_SECONDS)) + 1
-        self.queues = draw_arrivals(traffic, self.steps * STEP_SECONDS, random)
+        self.queues = t.draw_arrivals(traffic, self.steps * STEP_SECONDS, random)
         count = sum(len(times) for times in self.queues)
         self.lane_of = np.repeat(np.arange(len(self.queues)), [len(times) for times in self.queues])
-        self.drivers = Drivers(self.lane_of, traffic, random)
+        self.drivers = t.Drivers(self.lane_of, traffic, random)
         self.s = np.zeros(count)
         self.v = np.zeros(count)
         self.change = np.full(count, -1)
@@ -91,7 +81,7 @@ class _Road:
         ends: list[int] = offsets(np.array([len(q) for q in self.queues])).tolist()
         self.next_in_queue, self.queue_ends = ends[:-1], ends[1:]
         self.changes: list[tuple[int, float, int, int]] = []  # step, seconds, to, vehicle
-        self.leaves = leavers(traffic, self.lane_of, random)
+        self.leaves = t.leavers(traffic, self.lane_of, random)
 
     def run(self) -> Movement:
         log: list[tuple[npt.NDArray[Any], ...]] = []
@@ -158,7 +148,7 @@ class _Road:
         a = np.full(len(now), np.inf)
         np.minimum.at(a, entry[order], followed)
         if self.traffic.ramp != "none":
-            room = room_ahead(self.traffic, self.lane_of[now], self.s[now], self.change[now] >= 0)
+            room = t.room_ahead(self.traffic, self.lane_of[now], self.s[now], self.change[now] >= 0)
             a = np.minimum(a, self._stop(now, room))
         a = self._brake_at_random(step, a)
         if len(now):
@@ -207,7 +197,7 @@ class _Road:
             allowed &= ~(self.drivers.truck[now] & (target % lanes == lanes - 1) & (self.traffic.lanes > 2))
             if self.traffic.ramp != "none":
                 leaves = self.leaves[now]
-                allowed &= may_change(self.traffic, lane, side, self.s[now], self.v[now], leaves)
+                allowed &= t.may_change(self.traffic, lane, side, self.s[now], self.v[now], leaves)
             spot = np.searchsorted(queue.key, target * 1e6 + self.s[now])
             ahead, after = queue.leader(spot, target), queue.follower(spot - 1, target)
             mine = self._follow(now, ahead)
@@ -218,7 +208,7 @@ class _Road:
             allowed &= (theirs > -_SAFE_BRAKING) & (mine > -_SAFE_BRAKING) & (room > 4) & (room_behind > 4)
             gain = mine - a + self.drivers.politeness[now] * (loss + relief) - side * 0.15
             if self.traffic.ramp != "none":
-                gain += wish(self.traffic, lane, side, self.leaves[now])
+                gain += t.wish(self.traffic, lane, side, self.leaves[now])
             better = allowed & (gain > 0.25) & (gain > best)
             best[better], goal[better] = gain[better], target[better]
         for way in (0, 1):
@@ -229,7 +219,7 @@ class _Road:
                 if self.traffic.ramp != "none":
                     who = now[chosen]
                     across = int(lane[chosen]), int(goal[chosen])
-                    seconds = in_time(self.traffic, across, seconds, self.s[who], self.v[who])
+                    seconds = t.in_time(self.traffic, across, seconds, self.s[who], self.v[who])
                 self.change[now[chosen]] = len(self.changes)
                 self.changes.append((step, seconds, int(goal[chosen]), int(now[chosen])))
 
@@ -253,7 +243,7 @@ def _where_known(vehicle: Integers, value: Floats, otherwise: float = 0.0) -> Fl
     return np.where(vehicle >= 0, value, otherwise)
 
 
-def simulate(traffic: Traffic, seed: int, number: int = 1) -> Recording:
+def simulate(traffic: t.Traffic, seed: int, number: int = 1) -> Recording:
     """Recording ``number`` (named 01, 02, …) of ``traffic``; it depends on ``seed`` and ``number`` only.
 
     Vehicles are in the recording while their whole box is within the section. All values are rounded
@@ -301,7 +291,7 @@ def _two_decimals(values: Floats) -> Floats:
     return np.round(values, 2) + 0.0  # no negative zero
 
 
-def markings_of(traffic: Traffic) -> tuple[tuple[float, ...], tuple[float, ...]]:
+def markings_of(traffic: t.Traffic) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """y of the markings: upper carriageway, 4.5 m, lower carriageway."""
 
     def lines(top: float, lanes: int) -> tuple[float, ...]:
@@ -311,11 +301,11 @@ def markings_of(traffic: Traffic) -> tuple[tuple[float, ...], tuple[float, ...]]
     return upper, lines(upper[-1] + 4.5, traffic.tracks)
 
 
-def _ticks(traffic: Traffic) -> int:
+def _ticks(traffic: t.Traffic) -> int:
     return round(STEP_SECONDS * traffic.rate)
 
 
-def _sample_rows(traffic: Traffic, movement: Movement) -> tuple[Integers, Integers]:
+def _sample_rows(traffic: t.Traffic, movement: Movement) -> tuple[Integers, Integers]:
     """Row of the movement and tick since it, for every sample in which the box is within the section."""
     ticks = _ticks(traffic)
     row = np.repeat(np.arange(len(movement.step)), ticks)
@@ -328,7 +318,7 @@ def _sample_rows(traffic: Traffic, movement: Movement) -> tuple[Integers, Intege
 
 
 def _drive_across(
-    traffic: Traffic, movement: Movement, row: Integers, after: Floats, random: np.random.Generator
+    traffic: t.Traffic, movement: Movement, row: Integers, after: Floats, random: np.random.Generator
 ) -> tuple[Floats, Floats, Floats]:
     """Left side from the right edge of the road, lateral velocity and acceleration, for every sample.
 
