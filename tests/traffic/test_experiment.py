@@ -27,7 +27,7 @@ from roadproof.recordings.evaluate.questions import default_settings
 from roadproof.recordings.evaluate.results import as_json
 from roadproof.recordings.evaluate.totals import add_findings, begin_totals
 from roadproof.recordings.formats.highd import read_highd
-from roadproof.recordings.formats.recording import Recording, keep_vehicles
+from roadproof.recordings.formats.recording import keep_vehicles
 from roadproof.recordings.formats.samples import read_columns
 from roadproof.recordings.formats.sources import find_sources
 from roadproof.recordings.formats.write_highd import write_highd
@@ -316,14 +316,3 @@ def test_coverage(folders: dict[str, Path]) -> None:
     assert not all(trace.missed for trace in expected)
     for name in ("CommonRoad", "CSV"):
         assert list(disturbances_in(basis, recordings_in(folders[name]))) == expected, name
-
-
-def test_classify(folders: dict[str, Path]) -> None:
-    """Shares are counted on what an evaluation reads."""
-    from roadproof.frontends.api.classifying import _recordings
-
-    for folder in folders.values():
-        source, recordings = _recordings(folder)
-        (recording,) = recordings
-        assert isinstance(recording, Recording)
-        assert source == str(folder)
