@@ -63,8 +63,7 @@ def reliable(
     part, wanted, found = _believable(recording)
     out = recording.vehicles - int(np.count_nonzero(wanted))
     if out > MOST_LEFT_OUT * recording.vehicles:
-        notes = _rejecting(recording, rows, out, doubts)
-        return with_notes(recording, notes)
+        return with_notes(recording, _rejecting(recording, rows, out, doubts))
     notes = [left_out_note(x.vehicles, recording.vehicles, x.reason) for x in found]
     kept = np.repeat(wanted, np.diff(recording.start))
     return with_notes(part, (*notes, *doubts(part, rows[kept])))
@@ -76,6 +75,8 @@ def _rejecting(
     try:
         return [*doubts(recording, rows)]
     except InputError as error:
+        if out == recording.vehicles:
+            raise  # it is a fault of all together
         told = f"{out} of {recording.vehicles} vehicles would be left out, more than half"
         raise InputError(f"{error}; {told}") from None
 
