@@ -16,6 +16,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from roadproof.runtime.memory import collect_rarely
 from roadproof.runtime.progress import Stage, listening
 
 if TYPE_CHECKING:
@@ -75,6 +76,7 @@ def work_for(parent: int, terminate: Callable[[int, object], object]) -> None:
 
     ``terminate`` is what it does then.
     """
+    collect_rarely()
     signal.signal(signal.SIGTERM, terminate)
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
