@@ -200,11 +200,17 @@ def test_people_and_parked_vehicles_are_left_out(tmp_path: Path) -> None:
 
 
 def test_vehicles_off_the_road(tmp_path: Path) -> None:
-    """They are left out where they would cost the recording, and noted where they are few."""
-    off = replace(car(9, 5.0, speed=3.0), centres=tuple((5.0 + 0.3 * k, 40.0) for k in range(STEPS)))
-    read, why = both(written(tmp_path, document((*GOOD, off))))
-    assert "dynamicObstacle 9: on no lanelet at any time" in why
-    assert note_in(read, "left out") == "left out 1 of 6 vehicles (9): on no lane at any time"
+    """They are left out, also where they are so few that strict reading only notes them."""
+    off = tuple(
+        replace(car(k, 5.0), centres=tuple((5.0 + 2.0 * n, 10.0 * k) for n in range(STEPS))) for k in (8, 9)
+    )
+    read, why = both(written(tmp_path, document((*GOOD, *off))))
+    assert "dynamicObstacle 8: on no lanelet at any time, like 2 obstacles" in why
+    assert note_in(read, "left out") == "left out 2 of 7 vehicles (8, 9): on no lane at any time"
+    many = tuple(car(10 + k, 10.0 * k, speed=3.0) for k in range(1, 10))
+    path = written(tmp_path, document((*many, off[0])))
+    assert find_source(path, strict=True).read().vehicles == 10
+    assert find_source(path).read().vehicles == 9
 
 
 def test_any_number_of_lanes(tmp_path: Path) -> None:

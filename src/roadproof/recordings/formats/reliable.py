@@ -1,8 +1,9 @@
 """The part of a recording that does not contradict itself: bad vehicles are left out, and the answer says so.
 
-Nothing is left out of a recording that stands as a whole. Where too much contradicts itself, each vehicle is
-asked alone: those that break a rule above the share that a recording may are left out. Accelerations that
-contradict the velocities are computed from these instead, since places confirm the velocities.
+Vehicles that are on no lane at any time are left out. Nothing else is left out of a recording that stands as
+a whole. Where too much contradicts itself, each vehicle is asked alone: those that break a rule above the
+share that a recording may are left out. Accelerations that contradict the velocities are computed from these
+instead, since places confirm the velocities.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -89,7 +90,7 @@ def _believable(recording: Recording) -> tuple[Recording, Bools, list[LeftOut]]:
         checks = check(part)
         rules = {_rule_of(x): x for x in checks.doubts() if x.refused}
         off = checks.off_road()
-        if off is not None and off.refused:
+        if off is not None:
             broken = np.logical_or.reduceat(part.occupancy != 0, part.start[:-1]) == 0
             reason = _OFF_ROAD
         elif rules:
