@@ -15,6 +15,7 @@ from typing import Any
 from roadproof.errors import InputError
 from roadproof.evidence.answers import drive as kept
 from roadproof.evidence.codec import read, write
+from roadproof.evidence.line_file import line_of, line_said
 from roadproof.evidence.strict import Fields, JsonObject, is_rational, rational, read_json
 from roadproof.library.roles import with_vehicles
 from roadproof.library.scenarios import LANE
@@ -76,7 +77,13 @@ def road_said(road: Road) -> kept.Road:
         for x in road.lanelets
     )
     beside = sorted(tuple(sorted(pair)) for pair in road.adjacent)
-    return kept.Road(name=road.name, lanelets=lanelets, adjacent=tuple((x, y) for x, y in beside))
+    return kept.Road(
+        name=road.name,
+        lanelets=lanelets,
+        adjacent=tuple((x, y) for x, y in beside),
+        line=line_said(road.line),
+        map=road.map,
+    )
 
 
 def _motion_said(motion: Motion, has_jerk: bool) -> Any:
@@ -178,7 +185,7 @@ def road_of(said: kept.Road, where: str) -> Road:
         if (one, other) in adjacent or (other, one) in adjacent:
             raise InputError(f"{where}: adjacent=['{one}', '{other}'] is given twice")
         adjacent.append((one, other))
-    return Road(said.name, lanelets, pairs(adjacent))
+    return Road(said.name, lanelets, pairs(adjacent), line_of(said.line, where), said.map)
 
 
 def _lanelet(said: kept.Lanelet, where: str) -> Lanelet:

@@ -15,7 +15,7 @@ from typing import TypeAlias, cast, get_args
 
 from roadproof.errors import InputError
 from roadproof.runtime.package_data import shipped
-from roadproof.world.opendrive import read_lanelets
+from roadproof.world.maps.selection import is_map, read_selection, select
 from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
 from roadproof.world.signals import KINDS, LIMITED, Kind
 from roadproof.world.vehicle import Range, Vehicle
@@ -30,12 +30,16 @@ def names_of(kind: str) -> tuple[str, ...]:
 
 
 def load_road(name_or_path: str | Path) -> Road:
-    """A bundled road by name, or a user's by path: TOML, or OpenDRIVE in .xodr. Raises ``InputError``."""
-    if Path(name_or_path).suffix == ".xodr":
-        path = Path(name_or_path)
-        lanelets = read_lanelets(path)
-        check_lanelets(lanelets, str(path))
-        return Road(path.stem, lanelets, shared_boundaries(lanelets))
+    """A bundled road by name, or a user's by path: TOML, or a stretch of a map in OpenDRIVE.
+
+    Raises ``InputError``; ``UsageError`` for a stretch that is not well said (``maps.selection``).
+    """
+    if is_map(name_or_path):
+        path, selection = read_selection(str(name_or_path))
+        found = select(path, selection)
+        check_lanelets(found.lanelets, str(path))
+        beside = shared_boundaries(found.lanelets)
+        return Road(path.stem, found.lanelets, beside, found.line, str(name_or_path))
     return load_recorded_road(name_or_path)[0]
 
 
@@ -65,8 +69,9 @@ def load_recorded_road(name_or_path: str | Path, directions: tuple[int, ...] = (
 def load_vehicle(name_or_path: str | Path) -> Vehicle:
     """A bundled vehicle by name, or a user's by path. Raises ``InputError``."""
     path, content = _read("vehicles", name_or_path)
-    fields = [field.name for field in dataclasses.fields(Vehicle) if field.name not in ("name", "kind")]
-    _only(content, {*fields, "name", "kind"}, str(path))
+    optional = ("name", "kind", "a_bend")
+    fields = [field.name for field in dataclasses.fields(Vehicle) if field.name not in optional]
+    _only(content, {*fields, *optional}, str(path))
     kind = cast(Kind | None, content.get("kind"))
     if kind is not None:
         require_one_of(f"{path}", "kind", kind, KINDS)
@@ -74,7 +79,8 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
         if field not in content:
             raise InputError(f"{path}: '{field}' is missing; a vehicle has {', '.join(fields)}")
     lists = [k for k in fields if isinstance(content[k], list)]
-    one = {k: _number(content[k], f"{path}, {k}") for k in fields if k not in lists}
+    numbers = [k for k in (*fields, "a_bend") if k in content and k not in lists]
+    one = {k: _number(content[k], f"{path}, {k}") for k in numbers}
     two = {k: _range(content[k], f"{path}, {k}") for k in lists}
     for field in fields:
         wanted = two if field in (*LIMITED, "cruise") else one

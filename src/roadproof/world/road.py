@@ -1,12 +1,15 @@
-"""Straight roads of rectangular lanelets (semantics §4; paper, appendix *Road Network*).
+"""Roads of lanelets, which are rectangles in s and d (semantics §4; paper, appendix *Road Network*).
 
-Coordinates: s along the road in driving direction, d across it to the left, in metres.
+Coordinates: s along the road in driving direction, d across it to the left, in metres. They are those of a
+straight road, or follow a reference line in the plane.
 """
 
 from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, TypeAlias
+
+from roadproof.world.reference_line import ReferenceLine
 
 Zone: TypeAlias = Literal["main", "merge", "depart"]
 Attribute: TypeAlias = Literal["main", "merge", "departure"]
@@ -26,16 +29,23 @@ class Lanelet:
 
 @dataclass(frozen=True)
 class Road:
-    """Lanelets and which lanes lie side by side (unordered pairs)."""
+    """Lanelets and which lanes lie side by side (unordered pairs).
+
+    ``line`` None: the road is straight, with s and d as coordinates of the plane. ``map``: the map that it is
+    from, and which stretch of it.
+    """
 
     name: str
     lanelets: tuple[Lanelet, ...]
     adjacent: frozenset[frozenset[str]]
+    line: ReferenceLine | None = None
+    map: str | None = None
 
     def __repr__(self) -> str:
         """The same in every process, as answers are kept under fingerprints of what was asked."""
         beside = sorted(sorted(pair) for pair in self.adjacent)
-        return f"Road(name={self.name!r}, lanelets={self.lanelets!r}, adjacent={beside!r})"
+        line = "" if self.line is None else f", line={self.line!r}, map={self.map!r}"
+        return f"Road(name={self.name!r}, lanelets={self.lanelets!r}, adjacent={beside!r}{line})"
 
     @property
     def lanes(self) -> tuple[str, ...]:

@@ -1,7 +1,7 @@
 """What a vehicle can do: its box and the limits of its motion (semantics §2)."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from roadproof.errors import UsageError
@@ -17,7 +17,8 @@ class Vehicle:
     ``lateral_share``: |v_lat| is at most this share of v_lon, which keeps the heading below
     arctan(share); ``cruise`` is the range of speeds that a natural drive starts with, and
     ``jump_lon`` and ``jump_lat`` bound how far the acceleration of a natural drive
-    changes from one piece to the next. ``kind`` None: the model does not say.
+    changes from one piece to the next. ``kind`` None: the model does not say. ``a_bend``: on a bend, the
+    greatest absolute value of the acceleration across in the plane (``world.bends``).
     """
 
     name: str
@@ -32,6 +33,7 @@ class Vehicle:
     jump_lon: Fraction
     jump_lat: Fraction
     kind: Kind | None = None
+    a_bend: Fraction = field(default=Fraction(4), repr=False)  # a search on bends has it in ``name``
 
 
 # Ranges whose ends can be moved, and their units.

@@ -30,7 +30,9 @@ def simplest(file: DriveFile, query: Query, library: Library) -> DriveFile:
 
     def good(name: str, motion: Motion) -> bool:
         drive = replace(file.drive, vehicles={**current, name: motion})
-        if not _stays(motion, file.road) or first_breach(drive, dict.fromkeys(current, limits), None):
+        if not _stays(motion, file.road) or first_breach(
+            drive, dict.fromkeys(current, limits), None, file.road.line
+        ):
             return False
         apart = file.overlaps_allowed or first_overlap(drive, file.horizon) is None
         return apart and judge(formula, drive).holds

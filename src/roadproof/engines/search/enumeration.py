@@ -143,7 +143,7 @@ class _Search:
         if self.within == "claim":
             return True
         if self.within == "model":
-            breach = first_breach(drive, self.question.vehicles, None)
+            breach = first_breach(drive, self.question.vehicles, None, self.question.road.line)
             return breach is None and first_overlap(drive, self.question.grid.horizon) is None
         return judge(_forward(drive), drive).holds and (
             first_overlap(drive, self.question.grid.horizon) is None

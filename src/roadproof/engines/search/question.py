@@ -26,6 +26,7 @@ from roadproof.logic.initial_conditions import conjuncts
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.signals import AbstractSignals
+from roadproof.world.bends import on_bends
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road, load_vehicle, names_of
 from roadproof.world.road import Road
@@ -261,7 +262,8 @@ def pose(library: Library, query: Query, setting: Setting) -> SearchProblem:
     }
     for name, model in models.items():
         refuse_unknown(query.formula, name, model)
-    vehicles = {name: with_limits(model, setting.limits.get(name, {})) for name, model in models.items()}
+    limited = {name: with_limits(model, setting.limits.get(name, {})) for name, model in models.items()}
+    vehicles = {name: on_bends(model, road.line) for name, model in limited.items()}
     values = values_with(library, setting.values)
     lanes = assignments(query, road, setting.lanes)
     assumptions = Assumptions(reach=setting.reach, collisions=setting.collisions)

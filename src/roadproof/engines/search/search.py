@@ -269,7 +269,7 @@ class _Search:
 
     def _complaint(self, formula: Formula, drive: Drive, grid: Grid, assumptions: Assumptions) -> str | None:
         """Why a drive is no witness, or None."""
-        breach = first_breach(drive, self.question.vehicles, None)
+        breach = first_breach(drive, self.question.vehicles, None, self.question.road.line)
         if breach is not None:
             return f"after rounding, {breach}"
         overlap = None if assumptions.collisions else first_overlap(drive, grid.horizon)

@@ -32,9 +32,37 @@ class Lanelet:
 KeptLanelet: TypeAlias = Annotated[Lanelet, Shared("lanelet")]
 
 
+_FOUR = Rule(least=4, most=4)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Curve:
+    """A part of the line in the plane along which s is measured, from where s, x, y and heading are."""
+
+    kind: Annotated[Literal["line", "spiral", "cubic", "polyline"], Doc("Its shape.")]
+    s: Annotated[Fraction, Doc("Where it begins, in m along the road.")]
+    length: Annotated[Fraction, Doc("In m.")]
+    x: Annotated[Fraction, Doc("In m; of the end where the road goes backward.")]
+    y: Annotated[Fraction, Doc("In m; of the end where the road goes backward.")]
+    heading: Annotated[Fraction, Doc("In rad, to the left from the x axis.")]
+    curvature: Annotated[
+        tuple[Fraction, Fraction] | None, LEFT_OUT, Doc("Of a spiral, at its beginning and its end, in 1/m.")
+    ] = None
+    u: Annotated[tuple[Fraction, ...], _FOUR, LEFT_OUT, Doc("Coefficients of a cubic along, in m.")] = ()
+    v: Annotated[
+        tuple[Fraction, ...], _FOUR, LEFT_OUT, Doc("Coefficients of a cubic to the left, in m.")
+    ] = ()
+    last: Annotated[Fraction | None, LEFT_OUT, Doc("Parameter at the end of a cubic.")] = None
+    points: Annotated[
+        tuple[tuple[Fraction, Fraction], ...], Rule(most=100_000), LEFT_OUT, Doc("Of a polyline, in m.")
+    ] = ()
+    backward: Annotated[bool, LEFT_OUT, Doc("Whether the road goes from its end to its beginning.")] = False
+    offset: Annotated[Fraction, LEFT_OUT, Doc("How far the line is to its left, in m.")] = Fraction(0)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Road:
-    """Straight lanelets: s grows in driving direction, d to the left, both in m."""
+    """Lanelets by s, which grows in driving direction, and d, which grows to the left, both in m."""
 
     name: Annotated[str, Doc("Name of the road.")]
     lanelets: Annotated[tuple[KeptLanelet, ...], Rule(most=1000), Doc("All lanelets.")]
@@ -43,6 +71,15 @@ class Road:
         Rule(most=1000),
         Doc("Pairs of names of lanes that lie beside each other."),
     ]
+    line: Annotated[
+        tuple[Curve, ...],
+        Rule(most=10_000),
+        LEFT_OUT,
+        Doc("Where the road is in the plane; none: s and d are x and y."),
+    ] = ()
+    map: Annotated[str | None, LEFT_OUT, Doc("The map that the road is from, and which stretch of it.")] = (
+        None
+    )
 
 
 KeptRoad: TypeAlias = Annotated[Road, Shared("road")]

@@ -21,7 +21,6 @@ from roadproof.recordings.formats.straight import of_road
 from roadproof.recordings.formats.table import Table
 from roadproof.runtime.xml_reader import Element, number_in, read_xml
 from roadproof.world.models import load_road
-from roadproof.world.opendrive import origin_of
 from roadproof.world.road import Road
 from roadproof.world.signals import RECORDED, SIZES
 
@@ -80,11 +79,12 @@ def read_columns(path: Path) -> tuple[Table, Road, Path]:
     if road.suffix != ".xodr":
         raise InputError(f"{path}: LogicFile filepath={road.name}: a road in OpenDRIVE (.xodr) is needed")
     boxes = dict(_boxes(path, root))
-    ways = {name: _in_road(x, boxes[name], road) for name, x in _vertices(path, root, boxes)}
+    known = load_road(road)
+    ways = {name: _in_road(x, boxes[name], known) for name, x in _vertices(path, root, boxes)}
     for name in boxes:
         if name not in ways:
             raise InputError(f"{path}: ScenarioObject {name} follows no trajectory; each vehicle needs one")
-    return _sampled(path, boxes, ways), load_road(road), road
+    return _sampled(path, boxes, ways), known, road
 
 
 def read_recording(path: Path, strict: bool = True) -> Recording:
@@ -208,15 +208,16 @@ def _polyline(path: Path, follow: Element, told: str) -> Floats:
     return found
 
 
-def _in_road(vertices: Floats, box: Box, road: Path) -> CentreLine:
-    """The centre of the box, along and beside the reference line of a straight road."""
-    x0, y0, along = origin_of(road)
+def _in_road(vertices: Floats, box: Box, road: Road) -> CentreLine:
+    """The centre of the box, along and beside the reference line of the road."""
     time, x, y, heading = vertices.T
     ahead, left = box.centre
-    x = x + ahead * np.cos(heading) - left * np.sin(heading) - x0
-    y = y + ahead * np.sin(heading) + left * np.cos(heading) - y0
-    turn = math.cos(along), math.sin(along)
-    return CentreLine(time, x * turn[0] + y * turn[1], y * turn[0] - x * turn[1])
+    x = x + ahead * np.cos(heading) - left * np.sin(heading)
+    y = y + ahead * np.sin(heading) + left * np.cos(heading)
+    if road.line is None:
+        return CentreLine(time, x, y)
+    s, d = np.array([road.line.locate(float(a), float(b)) for a, b in zip(x, y, strict=True)]).T
+    return CentreLine(time, s, d)
 
 
 def _sampled(path: Path, boxes: dict[str, Box], ways: dict[str, CentreLine]) -> Table:

@@ -10,11 +10,19 @@ from itertools import combinations
 
 from roadproof.errors import UsageError
 from roadproof.logic import terms as t
-from roadproof.logic.formula import Compare, Comparison, Formula, boxes_overlap, conjunction
+from roadproof.logic.formula import (
+    Compare,
+    Comparison,
+    Formula,
+    boxes_overlap,
+    conjunction,
+    implication,
+)
 from roadproof.semantics.exact.algebraic import Point, decimal
 from roadproof.semantics.exact.exact import LazyJudge, judge
 from roadproof.semantics.exact.truth import Cut, TruthSet, complement
 from roadproof.world.drive import Drive
+from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.units import unit_text
 from roadproof.world.vehicle import Range, Vehicle
 
@@ -55,18 +63,24 @@ def first_overlap(drive: Drive, horizon: Fraction | None) -> Overlap | None:
     return None if found is None else Overlap(*found[1], *found[0])
 
 
-def first_breach(drive: Drive, limits: Mapping[str, Vehicle], horizon: Fraction | None) -> Breach | None:
+def first_breach(
+    drive: Drive,
+    limits: Mapping[str, Vehicle],
+    horizon: Fraction | None,
+    line: ReferenceLine | None = None,
+) -> Breach | None:
     """The first instant within [0, horizon] at which a vehicle leaves its limits, or None.
 
-    Speeds and accelerations in their ranges, no reversing, |v_lat| <= lateral_share·v_lon. Raises
-    ``UsageError`` for a vehicle without limits.
+    Speeds and accelerations in their ranges, no reversing, |v_lat| <= lateral_share·v_lon, and on the bends
+    of ``line`` |v_lon²·κ + a_lat| <= a_bend. Raises ``UsageError`` for a vehicle without limits.
     """
 
     def broken() -> Iterator[tuple[tuple[str, str], TruthSet]]:
         for name in sorted(drive.vehicles):
             if name not in limits:
                 raise UsageError(f"vehicle={name} has no limits to be checked against: name its model")
-            for rule, formula in _rules(name, limits[name]):
+            bends = () if line is None else _bend_rules(name, limits[name], line)
+            for rule, formula in (*_rules(name, limits[name]), *bends):
                 yield (name, rule), complement(judge(formula, drive).truth(formula))
 
     found = _earliest(broken(), horizon)

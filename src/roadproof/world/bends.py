@@ -1,0 +1,47 @@
+"""What a vehicle can do on a bend: the road's curvature κ adds v_lon²·κ to its acceleration across.
+
+On a road with a reference line, the acceleration of a vehicle to its left in the plane is v_lon²·κ + a_lat
+at d = 0; elsewhere the factor is at most 1 + |κ·d| (``length_error``). Its absolute value is at most
+``Vehicle.a_bend``.
+"""
+
+from dataclasses import replace
+from fractions import Fraction
+from math import isqrt
+
+from roadproof.errors import UsageError
+from roadproof.world.reference_line import ReferenceLine
+from roadproof.world.vehicle import Vehicle
+
+_HUNDREDTHS = 100
+
+
+def on_bends(vehicle: Vehicle, line: ReferenceLine | None) -> Vehicle:
+    """``vehicle`` as a search has it on a road: so slow that it can have every ``a_lat`` of its range anywhere.
+
+    That is sufficient, and the name says it, as a search without result is about such vehicles only. Raises
+    ``UsageError`` where the vehicle would have to be slower than it can.
+    """
+    sharpest = (
+        max((x.greatest for x in line.bends()), default=Fraction(0)) if line is not None else Fraction(0)
+    )
+    if sharpest == 0:
+        return vehicle
+    across = min(max(map(abs, vehicle.a_lat)), vehicle.a_bend / 2)
+    a_lat = max(vehicle.a_lat[0], -across), min(vehicle.a_lat[1], across)
+    square = (vehicle.a_bend - across) / sharpest
+    most = Fraction(isqrt(int(square * _HUNDREDTHS**2)), _HUNDREDTHS)
+    slow, fast = vehicle.v_lon
+    radius = f"{float(1 / sharpest):.4g} m"
+    if most <= slow:
+        raise UsageError(
+            f"vehicle {vehicle.name}: on a bend of radius {radius} it drives at most {float(most):g} m/s, as "
+            f"|v_lon²·κ + a_lat| <= {vehicle.a_bend} m/s², but at least {slow} m/s: choose another stretch or "
+            "a vehicle with another a_bend"
+        )
+    rule = f"|v_lon²·κ + a_lat| <= {vehicle.a_bend} m/s²"
+    told = f"{vehicle.name} on bends of radius {radius} or more ({rule})"
+    fast = min(fast, most)
+    cruise = max(slow, vehicle.cruise[0]), min(fast, vehicle.cruise[1])
+    cruise = cruise if cruise[0] < cruise[1] else (slow, fast)
+    return replace(vehicle, name=told, v_lon=(slow, fast), a_lat=a_lat, cruise=cruise)

@@ -1,0 +1,38 @@
+"""How far lengths along the lanes of a bent road are from those in s."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+
+from roadproof.world.reference_line import ReferenceLine
+from roadproof.world.road import Lanelet
+
+
+@dataclass(frozen=True)
+class LengthError:
+    """How much longer or shorter lanes are than their s says; formulas and RSS distances measure in s.
+
+    ``share``: at one place, the greatest |κ·d|. ``metres``: on the whole way along a lane, the greatest sum.
+    """
+
+    share: Fraction
+    metres: Fraction
+
+    def __str__(self) -> str:
+        return f"{float(100 * self.share):.2g} %, {float(self.metres):.2g} m on the whole length"
+
+
+def length_error(line: ReferenceLine, lanelets: Iterable[Lanelet]) -> LengthError:
+    """The greatest error of lengths on lanelets: an edge at d is 1 - κ·d times as long as the line."""
+    share, metres = Fraction(0), dict[str, Fraction]()
+    bends = [x for x in line.bends() if x.greatest]
+    for lanelet in lanelets:
+        across = max(map(abs, lanelet.d))
+        for bend in bends:
+            begin = bend.begin if lanelet.s[0] is None else max(bend.begin, lanelet.s[0])
+            end = bend.end if lanelet.s[1] is None else min(bend.end, lanelet.s[1])
+            if begin < end:
+                share = max(share, bend.greatest * across)
+                more = bend.greatest * across * (end - begin)
+                metres[lanelet.lane] = metres.get(lanelet.lane, Fraction(0)) + more
+    return LengthError(share, max(metres.values(), default=Fraction(0)))
