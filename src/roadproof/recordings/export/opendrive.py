@@ -3,12 +3,16 @@
 The reference line is the left edge of the leftmost lanelet, so that all lanes lie to its right and drive
 along it; x = s and y = d. A merge lane is an ``entry`` lane, a departure lane an ``exit`` lane. What
 OpenDRIVE has no word for, the lane and the zone of a lanelet, is in its ``userData``.
+
+A road that is from a map in OpenDRIVE is exported as that map, byte for byte.
 """
 
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from math import ceil
+from pathlib import Path
 
+from roadproof.errors import InputError
 from roadproof.recordings.export.subject import WRITTEN, Layout, Section, Subject, together
 from roadproof.recordings.export.xml import Element, decimal, document, element
 from roadproof.world.motion import monotone_starts, state_at
@@ -21,8 +25,21 @@ SPEED = 130
 
 
 def files(subject: Subject) -> dict[str, bytes]:
-    """NAME.xodr. Raises ``InputError`` for roads that have no lanes side by side."""
+    """NAME.xodr, or the map of the road. Raises ``InputError`` for roads that have no lanes side by side."""
+    road = subject.file.road
+    if road.map is not None:
+        return _map_file(road.map)
     return {f"{subject.name}.xodr": road_file(subject)}
+
+
+def _map_file(said: str) -> dict[str, bytes]:
+    """The map that a road is from. Raises ``InputError``."""
+    path = Path(said.partition("#")[0])
+    try:
+        return {path.name: path.read_bytes()}
+    except OSError as error:
+        told = f"the map of the road cannot be read ({error.strerror}); put it there, or run where it is"
+        raise InputError(f"{path}: {told}") from None
 
 
 def road_file(subject: Subject) -> bytes:

@@ -13,20 +13,25 @@ n = v_lon·a_lat - v_lat·a_lon and n' = -v_lat·j with the jerk j along: θ' = 
 too, which moves the centre by l·|θ''|·h²/8 at most. All together: h²/8·(|a| + l·(2·|θ''| + θ'²)), for the
 axle and for the centre, each with the greatest value between the vertices or more. A heading is nowhere
 greater than at a vertex by more than |θ''|·h²/8, and not at all where n keeps its sign, as without jerk.
+
+On a road with a reference line the bound is that of the distances at seven instants between two vertices.
 """
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from roadproof.errors import InputError
 from roadproof.recordings.export import opendrive
-from roadproof.recordings.export.points import OVERHANG, axle_to_centre, heading, rear_axle
+from roadproof.recordings.export.points import OVERHANG, axle_to_centre, heading, rear_axle_in_plane
 from roadproof.recordings.export.subject import WRITTEN, Subject, kind_of
 from roadproof.recordings.export.xml import Element, decimal, document, element
 from roadproof.world.drive import Motion
+from roadproof.world.maps.selection import STRETCH
 from roadproof.world.motion import State, advance, monotone_starts
+from roadproof.world.reference_line import ReferenceLine
+from roadproof.world.road import Road
 from roadproof.world.signals import Kind
 
 WITHIN = 0.0099
@@ -34,6 +39,7 @@ WITHIN = 0.0099
 ROUNDING = 1e-6
 _SHORTEST = Fraction(1, 1024)
 _SAME = 1e-9
+_INSTANTS = 8
 
 
 @dataclass(frozen=True)
@@ -51,7 +57,9 @@ class Polyline:
     pulls: tuple[Fraction, ...]
 
 
-def polyline_of(motion: Motion, horizon: Fraction, within: float = WITHIN) -> Polyline:
+def polyline_of(
+    motion: Motion, horizon: Fraction, within: float = WITHIN, line: ReferenceLine | None = None
+) -> Polyline:
     """Vertices from time 0 to ``horizon``, at every change of acceleration and as many between as needed.
 
     There is one where the speed along is least or greatest, so that it is nowhere below 0 if it is so at none
@@ -63,7 +71,7 @@ def polyline_of(motion: Motion, horizon: Fraction, within: float = WITHIN) -> Po
     parts = [
         part
         for start, end in zip(starts, ends, strict=True)
-        for part in _halved(start, end - start.time, motion.length, within)
+        for part in _halved(start, end - start.time, motion, within, line)
     ]
     vertices = (*(x.begin for x in parts), parts[-1].end)
     headings = _headings(vertices)
@@ -117,16 +125,37 @@ class _Part:
         return advance(self.begin, self.duration)
 
 
-def _halved(state: State, duration: Fraction, length: Fraction, within: float) -> Iterator[_Part]:
+def _halved(
+    state: State, duration: Fraction, motion: Motion, within: float, line: ReferenceLine | None
+) -> Iterator[_Part]:
     """Parts of a stretch in which the speed along grows or falls, halved until the bound is small enough."""
-    part = _part(state, duration, length)
+    part = _part(state, duration, motion.length)
+    if line is not None and part.bound <= within:
+        part = replace(part, bound=max(part.bound, _apart(part, motion, line)))
     if part.bound <= within:
         yield part
         return
     if duration <= _SHORTEST:
         raise _turns(state)
-    yield from _halved(state, duration / 2, length, within)
-    yield from _halved(advance(state, duration / 2), duration / 2, length, within)
+    yield from _halved(state, duration / 2, motion, within, line)
+    yield from _halved(advance(state, duration / 2), duration / 2, motion, within, line)
+
+
+def _apart(part: _Part, motion: Motion, line: ReferenceLine) -> float:
+    """How far (m) the rear axle and the centre are from straight lines, at seven instants of a part."""
+    ends = part.begin, part.end
+    first, last = (rear_axle_in_plane(x, motion, heading(x) or 0.0, line) for x in ends)
+    turn = math.remainder(last[2] - first[2], math.tau)
+    ahead = float(axle_to_centre(motion.length))
+    furthest = 0.0
+    for k in range(1, _INSTANTS):
+        state = advance(part.begin, part.duration * k / _INSTANTS)
+        x, y, turned = rear_axle_in_plane(state, motion, heading(state) or 0.0, line)
+        share = k / _INSTANTS
+        x1, y1 = first[0] + share * (last[0] - first[0]), first[1] + share * (last[1] - first[1])
+        swung = abs(math.remainder(turned - first[2] - share * turn, math.tau))
+        furthest = max(furthest, math.hypot(x - x1, y - y1) + ahead * swung)
+    return furthest
 
 
 def _part(state: State, duration: Fraction, length: Fraction) -> _Part:
@@ -168,13 +197,19 @@ _CATEGORIES: Mapping[Kind, str] = {"motorcycle": "motorbike", "other": "van"}
 
 def files(subject: Subject) -> dict[str, bytes]:
     """NAME.xosc, and NAME.xodr, which it names. Raises ``InputError``."""
-    return {f"{subject.name}.xosc": scenario_file(subject), **opendrive.files(subject)}
+    roads = opendrive.files(subject)
+    return {f"{subject.name}.xosc": scenario_file(subject, next(iter(roads))), **roads}
 
 
-def scenario_file(subject: Subject) -> bytes:
-    """The drive; its heading says how far from it straight lines between vertices are."""
-    horizon = subject.file.horizon
-    lines = {name: polyline_of(motion, horizon) for name, motion in subject.vehicles.items()}
+def scenario_file(subject: Subject, road_name: str) -> bytes:
+    """The drive; its heading says how far from it straight lines between vertices are.
+
+    ``road_name``: of the file of the road.
+    """
+    horizon, road = subject.file.horizon, subject.file.road
+    lines = {
+        name: polyline_of(motion, horizon, WITHIN, road.line) for name, motion in subject.vehicles.items()
+    }
     header = element(
         "FileHeader",
         revMajor="1",
@@ -183,22 +218,30 @@ def scenario_file(subject: Subject) -> bytes:
         description=_said(subject, lines),
         author="roadproof",
     )
-    network = element("RoadNetwork", element("LogicFile", filepath=f"{subject.name}.xodr"))
+    network = element("RoadNetwork", element("LogicFile", filepath=road_name))
     entities = [
         element("ScenarioObject", _vehicle(motion, lines[name]), name=name)
         for name, motion in subject.vehicles.items()
     ]
     story = element("Story", _act(subject, lines), name="drive")
-    actions = [_init(name, motion, lines[name]) for name, motion in subject.vehicles.items()]
+    actions = [_init(name, motion, lines[name], road.line) for name, motion in subject.vehicles.items()]
     board = element(
         "Storyboard",
         element("Init", element("Actions", *actions)),
         story,
         element("StopTrigger", _at(horizon, "end")),
     )
-    root = element("OpenSCENARIO", header, element("ParameterDeclarations"), element("CatalogLocations"))
+    declared = element("ParameterDeclarations", *_stretch(road))
+    root = element("OpenSCENARIO", header, declared, element("CatalogLocations"))
     root.extend([network, element("Entities", *entities), board])
     return document(root)
+
+
+def _stretch(road: Road) -> Iterator[Element]:
+    """The stretch of the map, which a player does not need and a reader of s and d does."""
+    _, _, chosen = (road.map or "").partition("#")
+    if chosen:
+        yield element("ParameterDeclaration", name=STRETCH, parameterType="string", value=chosen)
 
 
 def _said(subject: Subject, lines: dict[str, Polyline]) -> str:
@@ -249,9 +292,10 @@ def _axle(tag: str, motion: Motion, place: Fraction) -> Element:
     )
 
 
-def _init(name: str, motion: Motion, line: Polyline) -> Element:
+def _init(name: str, motion: Motion, line: Polyline, road: ReferenceLine | None) -> Element:
     first = line.vertices[0]
-    place = element("PrivateAction", element("TeleportAction", _position(first, line.headings[0], motion)))
+    begin = _position(first, line.headings[0], motion, road)
+    place = element("PrivateAction", element("TeleportAction", begin))
     step = element("SpeedActionDynamics", dynamicsShape="step", value="0", dynamicsDimension="time")
     speed = decimal(math.hypot(first.v_lon, first.v_lat))
     target = element("SpeedActionTarget", element("AbsoluteTargetSpeed", value=speed))
@@ -259,29 +303,31 @@ def _init(name: str, motion: Motion, line: Polyline) -> Element:
     return element("Private", place, element("PrivateAction", moving), entityRef=name)
 
 
-def _position(state: State, turned: float, motion: Motion) -> Element:
-    x, y = rear_axle(state, motion, turned)
-    return element("Position", element("WorldPosition", x=decimal(x), y=decimal(y), h=decimal(turned)))
+def _position(state: State, turned: float, motion: Motion, road: ReferenceLine | None) -> Element:
+    x, y, heading = rear_axle_in_plane(state, motion, turned, road)
+    return element("Position", element("WorldPosition", x=decimal(x), y=decimal(y), h=decimal(heading)))
 
 
 def _act(subject: Subject, lines: dict[str, Polyline]) -> Element:
-    groups = [_group(name, motion, lines[name]) for name, motion in subject.vehicles.items()]
+    road = subject.file.road.line
+    groups = [_group(name, motion, lines[name], road) for name, motion in subject.vehicles.items()]
     start = element("StartTrigger", _at(Fraction(0), "begin"))
     return element("Act", *groups, start, name="all")
 
 
-def _group(name: str, motion: Motion, line: Polyline) -> Element:
+def _group(name: str, motion: Motion, line: Polyline, road: ReferenceLine | None) -> Element:
     actors = element("Actors", element("EntityRef", entityRef=name), selectTriggeringEntities="false")
-    action = element("Action", element("PrivateAction", _follow(name, motion, line)), name=f"{name} follows")
+    follow = _follow(name, motion, line, road)
+    action = element("Action", element("PrivateAction", follow), name=f"{name} follows")
     start = element("StartTrigger", _at(Fraction(0), f"{name} begins"))
     event = element("Event", action, start, name=f"{name} drives", priority="override")
     manoeuvre = element("Maneuver", event, name=f"{name} moves")
     return element("ManeuverGroup", actors, manoeuvre, name=f"{name} acts", maximumExecutionCount="1")
 
 
-def _follow(name: str, motion: Motion, line: Polyline) -> Element:
+def _follow(name: str, motion: Motion, line: Polyline, road: ReferenceLine | None) -> Element:
     vertices = [
-        element("Vertex", _position(state, turned, motion), time=decimal(state.time))
+        element("Vertex", _position(state, turned, motion, road), time=decimal(state.time))
         for state, turned in zip(line.vertices, line.headings, strict=True)
     ]
     shape = element("Shape", element("Polyline", *vertices))

@@ -20,6 +20,7 @@ from roadproof.recordings.formats.source import Files, Format, with_suffix
 from roadproof.recordings.formats.straight import of_road
 from roadproof.recordings.formats.table import Table
 from roadproof.runtime.xml_reader import Element, number_in, read_xml
+from roadproof.world.maps.selection import STRETCH
 from roadproof.world.models import load_road
 from roadproof.world.road import Road
 from roadproof.world.signals import RECORDED, SIZES
@@ -79,7 +80,10 @@ def read_columns(path: Path) -> tuple[Table, Road, Path]:
     if road.suffix != ".xodr":
         raise InputError(f"{path}: LogicFile filepath={road.name}: a road in OpenDRIVE (.xodr) is needed")
     boxes = dict(_boxes(path, root))
-    known = load_road(road)
+    stretch = next(
+        (x.get("value") for x in root.iter("ParameterDeclaration") if x.get("name") == STRETCH), None
+    )
+    known = load_road(f"{road}#{stretch}" if stretch else road)
     ways = {name: _in_road(x, boxes[name], known) for name, x in _vertices(path, root, boxes)}
     for name in boxes:
         if name not in ways:

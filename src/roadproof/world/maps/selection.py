@@ -16,6 +16,8 @@ from roadproof.world.maps.opendrive import MapRoad, read_map
 from roadproof.world.reference_line import Part, ReferenceLine
 from roadproof.world.road import Lanelet
 
+STRETCH = "roadproof_stretch"
+"""The parameter of a scenario in OpenSCENARIO that has what is selected of its map."""
 STEP = Fraction(1, 4)
 _KEYS = ("road", "route", "lanes", "from", "to", "step")
 _JOINED, _TURN = 0.5, 0.2
