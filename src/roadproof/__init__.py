@@ -38,6 +38,8 @@ if TYPE_CHECKING:
     from roadproof.frontends.api.driving import motion as motion
     from roadproof.frontends.api.exploring import explore as explore
     from roadproof.frontends.api.exporting import export as export
+    from roadproof.frontends.api.maps import road as road
+    from roadproof.frontends.api.maps import stretches as stretches
     from roadproof.frontends.api.phrases import POV as POV
     from roadproof.frontends.api.phrases import POV1 as POV1
     from roadproof.frontends.api.phrases import POV2 as POV2
@@ -110,6 +112,8 @@ _HOMES = {
     "trace": "frontends.api.traces",
     "evaluate": "frontends.api.recordings",
     "roads": "frontends.api.recordings",
+    "road": "frontends.api.maps",
+    "stretches": "frontends.api.maps",
     "convert": "frontends.api.converting",
     "simulate": "frontends.api.simulating",
     "export": "frontends.api.exporting",

@@ -20,7 +20,6 @@ from roadproof.recordings.formats.commonroad import read_commonroad
 from roadproof.recordings.formats.recording import ZONES, Recording
 from roadproof.world.models import load_road, names_of
 from roadproof.world.motion import State, state_at
-from roadproof.world.opendrive import read_lanelets
 from roadproof.world.road import Lanelet, Road
 from roadproof.world.signals import RECORDED
 
@@ -105,7 +104,7 @@ def test_our_own_reader_of_such_roads_finds_the_same_lanes(name: str, tmp_path: 
                 left + x.d[0],
                 left + x.d[1],
             ): x.zone
-            for x in read_lanelets(path)
+            for x in load_road(path).lanelets
         }
 
     path = tmp_path / "made.xodr"

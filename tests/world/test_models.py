@@ -14,7 +14,8 @@ import roadproof as rp
 from roadproof.errors import InputError
 from roadproof.frontends.cli.main import main
 from roadproof.runtime.package_data import shipped
-from roadproof.world.models import load_road, load_vehicle, names_of, shared_boundaries
+from roadproof.world.lanelet_rules import shared_boundaries
+from roadproof.world.models import load_road, load_vehicle, names_of
 from roadproof.world.road import Lanelet, Road
 from tables import read_table
 

@@ -29,7 +29,7 @@ from roadproof.logic.rewrite import bounds_of, leaves_of, map_terms, without_nam
 from roadproof.semantics.exact import TruthSet, judge
 from roadproof.semantics.exact.signals import AbstractSignals
 from roadproof.semantics.exact.truth import from_switches
-from roadproof.world.models import check_lanelets, shared_boundaries
+from roadproof.world.lanelet_rules import check_lanelets, shared_boundaries
 from roadproof.world.road import Road
 from roadproof.world.signals import FIXED
 

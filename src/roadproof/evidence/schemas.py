@@ -24,6 +24,7 @@ from roadproof.evidence.answers import (
     plates,
     proofs,
     redundancy,
+    road_map,
     shared,
     show,
     traffic,
@@ -76,6 +77,7 @@ TITLES: Mapping[type, str] = {
         "roadproof preventable --json, and index.json of its folder: from which initial values a driver "
         "prevents a collision"
     ),
+    road_map.Answer: "roadproof road --json: the roads of a map",
     redundancy.Index: (
         "roadproof redundancy --json, and index.json of its folder: which parts could be left out"
     ),

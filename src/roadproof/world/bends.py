@@ -17,14 +17,13 @@ _HUNDREDTHS = 100
 
 
 def on_bends(vehicle: Vehicle, line: ReferenceLine | None) -> Vehicle:
-    """``vehicle`` as a search has it on a road: so slow that it can have every ``a_lat`` of its range anywhere.
+    """``vehicle`` as a search has it on a road: so slow that it can have any ``a_lat`` of its range.
 
     That is sufficient, and the name says it, as a search without result is about such vehicles only. Raises
     ``UsageError`` where the vehicle would have to be slower than it can.
     """
-    sharpest = (
-        max((x.greatest for x in line.bends()), default=Fraction(0)) if line is not None else Fraction(0)
-    )
+    bends = () if line is None else line.bends()
+    sharpest = max((x.greatest for x in bends), default=Fraction(0))
     if sharpest == 0:
         return vehicle
     across = min(max(map(abs, vehicle.a_lat)), vehicle.a_bend / 2)
@@ -36,8 +35,8 @@ def on_bends(vehicle: Vehicle, line: ReferenceLine | None) -> Vehicle:
     if most <= slow:
         raise UsageError(
             f"vehicle {vehicle.name}: on a bend of radius {radius} it drives at most {float(most):g} m/s, as "
-            f"|v_lon²·κ + a_lat| <= {vehicle.a_bend} m/s², but at least {slow} m/s: choose another stretch or "
-            "a vehicle with another a_bend"
+            f"|v_lon²·κ + a_lat| <= {vehicle.a_bend} m/s², but at least {slow} m/s: choose another stretch "
+            "or a vehicle with another a_bend"
         )
     rule = f"|v_lon²·κ + a_lat| <= {vehicle.a_bend} m/s²"
     told = f"{vehicle.name} on bends of radius {radius} or more ({rule})"

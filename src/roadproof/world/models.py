@@ -9,12 +9,12 @@ import dataclasses
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
-from itertools import combinations, pairwise
 from pathlib import Path
 from typing import TypeAlias, cast, get_args
 
 from roadproof.errors import InputError
 from roadproof.runtime.package_data import shipped
+from roadproof.world.lanelet_rules import check_lanelets, shared_boundaries
 from roadproof.world.maps.selection import is_map, read_selection, select
 from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
 from roadproof.world.signals import KINDS, LIMITED, Kind
@@ -37,7 +37,6 @@ def load_road(name_or_path: str | Path) -> Road:
     if is_map(name_or_path):
         path, selection = read_selection(str(name_or_path))
         found = select(path, selection)
-        check_lanelets(found.lanelets, str(path))
         beside = shared_boundaries(found.lanelets)
         return Road(path.stem, found.lanelets, beside, found.line, str(name_or_path))
     return load_recorded_road(name_or_path)[0]
@@ -194,47 +193,6 @@ def _lanelet(entry: object, where: str) -> Lanelet:
     if low is not None and high is not None and low >= high:
         raise InputError(f"{where}: s=[{low}, {high}] is empty; the first number must be the smaller one")
     return Lanelet(str(name), str(lane), zone, attribute, (low, high), _range(across, f"{where}, d"))
-
-
-def check_lanelets(lanelets: tuple[Lanelet, ...], where: str) -> None:
-    """Raise ``InputError`` unless ids are unique and each lane is one chain with one attribute."""
-    seen: set[str] = set()
-    for lanelet in lanelets:
-        if lanelet.id in seen:
-            raise InputError(f"{where}: lanelet id '{lanelet.id}' is given twice")
-        seen.add(lanelet.id)
-    for lane in dict.fromkeys(x.lane for x in lanelets):
-        ours = (x for x in lanelets if x.lane == lane)
-        chain = sorted(ours, key=lambda x: (x.s[0] is not None, x.s[0] or Fraction(0)))
-        for before, after in pairwise(chain):
-            if before.attribute != after.attribute:
-                raise InputError(
-                    f"{where}: lane '{lane}' has lanelets of attributes {before.attribute} and "
-                    f"{after.attribute}; a lane has one attribute"
-                )
-            if before.s[1] is None or after.s[0] is None or before.s[1] != after.s[0]:
-                raise InputError(
-                    f"{where}: in lane '{lane}', lanelet '{after.id}' does not begin where '{before.id}' ends"
-                )
-            if before.d[0] >= after.d[1] or after.d[0] >= before.d[1]:
-                raise InputError(
-                    f"{where}: in lane '{lane}', '{before.id}' and '{after.id}' do not meet across the road"
-                )
-
-
-def shared_boundaries(lanelets: tuple[Lanelet, ...]) -> frozenset[frozenset[str]]:
-    """Pairs of lanes with lanelets that share a boundary line but do not overlap."""
-    return pairs(
-        (a.lane, b.lane)
-        for a, b in combinations(lanelets, 2)
-        if a.lane != b.lane and (a.d[1] == b.d[0] or b.d[1] == a.d[0]) and _alongside(a, b)
-    )
-
-
-def _alongside(a: Lanelet, b: Lanelet) -> bool:
-    starts = [x.s[0] for x in (a, b) if x.s[0] is not None]
-    ends = [x.s[1] for x in (a, b) if x.s[1] is not None]
-    return not starts or not ends or max(starts) < min(ends)
 
 
 def _check_declared(entries: object, geometric: frozenset[frozenset[str]], where: str) -> None:

@@ -18,7 +18,7 @@ from roadproof.evidence.derivation import free_prefix
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import free_lanelets, road_names
-from roadproof.world.models import shared_boundaries
+from roadproof.world.lanelet_rules import shared_boundaries
 from roadproof.world.road import Lanelet, Road, Zone
 
 FEWEST_LANES = 2

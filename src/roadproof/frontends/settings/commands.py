@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from roadproof.frontends.settings.groups import Answered, Readings, Workers, folder_for, strict_reading
 from roadproof.frontends.settings.option import Settings, option, output
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,6 +20,13 @@ class Show(Readings):
 
     expand: bool = option(False, "--expand", "write every definition out, as one formula")
     format: str = output("text", "--format", "default: text", choices=("text", "latex", "json"))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Road(Answered):
+    """Options of ``roadproof road``."""
+
+    out: str | Path | None = output(None, "--out FILE", "draw the road to FILE, .svg or .png", read=Path)
 
 
 @dataclass(frozen=True, kw_only=True)

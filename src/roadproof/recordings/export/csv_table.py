@@ -10,7 +10,7 @@ from roadproof.evidence.drive_file import DriveFile
 from roadproof.recordings.export.subject import Subject, kind_of
 from roadproof.recordings.export.xml import decimal
 from roadproof.world.drive import value_at
-from roadproof.world.models import check_lanelets, shared_boundaries
+from roadproof.world.lanelet_rules import check_lanelets, shared_boundaries
 from roadproof.world.road import Lanelet, Road
 from roadproof.world.signals import RECORDED, SIZES
 

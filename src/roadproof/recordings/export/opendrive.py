@@ -26,17 +26,23 @@ SPEED = 130
 
 def files(subject: Subject) -> dict[str, bytes]:
     """NAME.xodr, or the map of the road. Raises ``InputError`` for roads that have no lanes side by side."""
-    road = subject.file.road
-    if road.map is not None:
-        return _map_file(road.map)
-    return {f"{subject.name}.xodr": road_file(subject)}
+    return {file_name(subject): _map_file(subject) or road_file(subject)}
 
 
-def _map_file(said: str) -> dict[str, bytes]:
-    """The map that a road is from. Raises ``InputError``."""
+def file_name(subject: Subject) -> str:
+    """Of the road: NAME.xodr, or that of the map which it is from."""
+    said = subject.file.road.map
+    return f"{subject.name}.xodr" if said is None else Path(said.partition("#")[0]).name
+
+
+def _map_file(subject: Subject) -> bytes | None:
+    """The map that the road is from, None where there is none. Raises ``InputError``."""
+    said = subject.file.road.map
+    if said is None:
+        return None
     path = Path(said.partition("#")[0])
     try:
-        return {path.name: path.read_bytes()}
+        return path.read_bytes()
     except OSError as error:
         told = f"the map of the road cannot be read ({error.strerror}); put it there, or run where it is"
         raise InputError(f"{path}: {told}") from None

@@ -197,15 +197,11 @@ _CATEGORIES: Mapping[Kind, str] = {"motorcycle": "motorbike", "other": "van"}
 
 def files(subject: Subject) -> dict[str, bytes]:
     """NAME.xosc, and NAME.xodr, which it names. Raises ``InputError``."""
-    roads = opendrive.files(subject)
-    return {f"{subject.name}.xosc": scenario_file(subject, next(iter(roads))), **roads}
+    return {f"{subject.name}.xosc": scenario_file(subject), **opendrive.files(subject)}
 
 
-def scenario_file(subject: Subject, road_name: str) -> bytes:
-    """The drive; its heading says how far from it straight lines between vertices are.
-
-    ``road_name``: of the file of the road.
-    """
+def scenario_file(subject: Subject) -> bytes:
+    """The drive; its heading says how far from it straight lines between vertices are."""
     horizon, road = subject.file.horizon, subject.file.road
     lines = {
         name: polyline_of(motion, horizon, WITHIN, road.line) for name, motion in subject.vehicles.items()
@@ -218,7 +214,7 @@ def scenario_file(subject: Subject, road_name: str) -> bytes:
         description=_said(subject, lines),
         author="roadproof",
     )
-    network = element("RoadNetwork", element("LogicFile", filepath=road_name))
+    network = element("RoadNetwork", element("LogicFile", filepath=opendrive.file_name(subject)))
     entities = [
         element("ScenarioObject", _vehicle(motion, lines[name]), name=name)
         for name, motion in subject.vehicles.items()

@@ -1,7 +1,8 @@
 """Where formats have the reference point of a vehicle; ours is the front-left corner of the box.
 
-On a straight road the plane has x = s along the road and y = d to the left; where the road has a reference line,
-a place (s, d) is d to the left of the line at s, and headings are from its direction there. Our boxes are aligned with the road (semantics §2);
+On a straight road the plane has x = s along the road and y = d to the left. Where a road has a reference
+line, a place (s, d) is d to the left of the line at s, and headings are from its direction there. Our boxes
+are aligned with the road (semantics §2);
 a box that is turned by ``heading`` is turned about its centre, which stays where it is.
 """
 

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from roadproof.errors import UsageError
 from roadproof.recordings.formats.highd import LOWER
 from roadproof.recordings.formats.recording import Bools, Floats, Integers
-from roadproof.world.models import shared_boundaries
+from roadproof.world.lanelet_rules import shared_boundaries
 from roadproof.world.road import Attribute, Lanelet, Road, Zone
 
 Random: TypeAlias = np.random.Generator

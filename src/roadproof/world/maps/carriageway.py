@@ -37,8 +37,8 @@ NO_LANES = frozenset(
 )
 _ZONES: Mapping[Attribute, Zone] = {"main": "main", "merge": "merge", "departure": "depart"}
 _ROUNDED = 1000
-_SHORTEST = Fraction(1, 2)
-"""Metres: steps of a width are no shorter."""
+_SHORTEST = Fraction(1, 4)
+"""Metres: steps of a width are hardly shorter."""
 
 
 @dataclass(frozen=True)
@@ -176,7 +176,7 @@ def _divided(
     low, high = part
     moved = [total([(1, Piece(Fraction(0), x))], low) for x in edges]
     changes = (extremes(x, high - low) for x in moved)
-    if high - low < 2 * _SHORTEST or all(most - least <= step for least, most in changes):
+    if high - low <= _SHORTEST or all(most - least <= step for least, most in changes):
         return [begin + high]
     middle = (low + high) / 2
     return [

@@ -11,6 +11,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from roadproof.errors import InputError, UsageError
+from roadproof.world.lanelet_rules import check_lanelets
 from roadproof.world.maps.carriageway import Carriageway, DirectedRoad, carriageway, driven
 from roadproof.world.maps.opendrive import MapRoad, read_map
 from roadproof.world.reference_line import Part, ReferenceLine
@@ -106,7 +107,9 @@ def stretch_of(path: Path, roads: tuple[MapRoad, ...], selection: Selection) -> 
             f"{chosen[0].where}: no lane is driven on in this direction; try lanes=left or right"
         )
     line = ReferenceLine(tuple(part for way in ways for part in _parts(way)))
-    return Stretch(tuple(_cut(path, made, _span(ways, selection))), line, made.width_error)
+    lanelets = tuple(_cut(path, made, _span(ways, selection)))
+    check_lanelets(lanelets, chosen[0].where)
+    return Stretch(lanelets, line, made.width_error)
 
 
 def _single(road: MapRoad, selection: Selection) -> DirectedRoad:

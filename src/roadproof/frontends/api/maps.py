@@ -1,0 +1,72 @@
+"""Roads of maps: what a file has to offer, and a stretch of it."""
+
+from pathlib import Path
+
+from roadproof.errors import UsageError
+from roadproof.evidence.answers import road_map as kept
+from roadproof.evidence.codec import write
+from roadproof.evidence.drive_file import road_said
+from roadproof.evidence.strict import JsonObject
+from roadproof.frontends.report.road_map import draw_stretches
+from roadproof.runtime.files import write_whole
+from roadproof.version import VERSION
+from roadproof.world.maps.opendrive import read_map
+from roadproof.world.maps.overview import MapStretch, describe, stretches_of
+from roadproof.world.maps.selection import read_selection, stretch_of
+from roadproof.world.models import load_road
+from roadproof.world.road import Road
+
+PICTURES = (".svg", ".png")
+
+
+def road(name_or_path: str | Path) -> Road:
+    """A shipped road by name, or one from a file: TOML, or OpenDRIVE such as ``map.xodr#road=12,from=300``.
+
+    Raises ``InputError``, ``UsageError``.
+    """
+    return load_road(name_or_path)
+
+
+def stretches(map_file: str | Path, out: str | Path | None = None) -> tuple[MapStretch, ...]:
+    """The roads of a map in OpenDRIVE in each direction, or the one stretch that is selected after ``#``.
+
+    ``out``: a picture of them, .svg or .png. Raises ``InputError``, ``UsageError``; ``MissingSolverError``
+    for a picture without matplotlib.
+    """
+    path, selection = read_selection(str(map_file))
+    roads = read_map(path)
+    if "#" in str(map_file):
+        one = describe(str(map_file), "", "", stretch_of(path, roads, selection))
+        found: tuple[MapStretch, ...] = (one,)
+    else:
+        found = stretches_of(path, roads)
+    if out is not None:
+        kind = Path(out).suffix
+        if kind not in PICTURES:
+            raise UsageError(f"out={out}: name a file that ends in {' or '.join(PICTURES)}")
+        write_whole(Path(out), draw_stretches(path.name, found)[kind[1:]])
+    return found
+
+
+def as_data(map_file: str | Path, found: tuple[MapStretch, ...]) -> JsonObject:
+    """The stretches of a map as plain data."""
+    return write(kept.Answer(roadproof=VERSION, map=str(map_file), stretches=tuple(_said(x) for x in found)))
+
+
+def _said(stretch: MapStretch) -> kept.Stretch:
+    spans = tuple(kept.Span(zone=x.zone, begin=float(x.begin), end=float(x.end)) for x in stretch.zones)
+    lanelets = road_said(Road("", stretch.lanelets, frozenset())).lanelets
+    return kept.Stretch(
+        select=stretch.select,
+        name=stretch.name,
+        length=float(stretch.length),
+        direction=stretch.direction,
+        lanes=stretch.lanes,
+        zones=spans,
+        radius=None if stretch.radius is None else float(stretch.radius),
+        width_error=float(stretch.width_error),
+        length_share=float(stretch.length_error.share),
+        length_metres=float(stretch.length_error.metres),
+        lanelets=lanelets,
+        refused=stretch.refused or None,
+    )
