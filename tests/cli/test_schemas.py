@@ -49,7 +49,7 @@ INTERNAL = {
     "roadproof/division/1",
     "roadproof/shown/1",
 }
-NOT_HEADED = {"drive.json", "certificate.json", "question.json", "answer.json", "common.json"}
+NOT_HEADED = {"road.json", "drive.json", "certificate.json", "question.json", "answer.json", "common.json"}
 
 STRANGE = {"stranger": [[7]]}  # is nowhere what is wanted
 OPTIONAL = {
@@ -173,6 +173,11 @@ def traffic(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 # --- commands -------------------------------------------------------------------------------------
+
+
+def of_road(run: Run, out: Path, traffic: Path) -> None:
+    motorway = ROOT / "examples/maps/motorway.xodr"
+    examine(run("road", str(motorway)), run("road", f"{motorway}#lanes=left,from=100"))
 
 
 def of_list(run: Run, out: Path, traffic: Path) -> None:

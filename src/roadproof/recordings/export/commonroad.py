@@ -2,24 +2,29 @@
 
 A vehicle's reference point is the centre of its box, which is aligned with the road as it was judged:
 ``velocity`` and ``acceleration`` are along the box and so along the road, ``velocityY`` is to its left. The
-format has no place for the acceleration across.
+format has no place for the acceleration across. On a bend the speed along is v_lon·(1 - κ·d), with d and the
+curvature κ at the centre, and the acceleration along is the rate of that less v_lat·v_lon·κ.
 """
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from roadproof.recordings.export.points import centre
+from roadproof.recordings.export.points import centre, centre_in_plane
 from roadproof.recordings.export.subject import WRITTEN, Layout, Section, Subject, kind_of, together
 from roadproof.recordings.export.xml import Element, decimal, document, element
 from roadproof.world.drive import Motion
 from roadproof.world.motion import State
+from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.road import Attribute, Lanelet
 from roadproof.world.signals import Kind
 
 _TYPES: Mapping[Attribute, str] = {"main": "mainCarriageWay", "merge": "accessRamp", "departure": "exitRamp"}
 MOTORCYCLE_WIDTH = Fraction(6, 5)
 """A vehicle as narrow as that (m) is a motorcycle: cars are 1.4 m wide or more."""
+_CHORD = 0.005
+"""Metres between a bend and a line that stands for a part of it."""
 FIRST_LANELET, PROBLEM = 1001, 9001
 """Ids: vehicles count from 1, lanelets from 1001; ids differ among all of them."""
 
@@ -80,8 +85,8 @@ def _lanelets(layout: Layout) -> Iterator[Element]:
             ]
             yield element(
                 "lanelet",
-                _bound("leftBound", cell, cell.lanelet.d[1], "left" in near),
-                _bound("rightBound", cell, cell.lanelet.d[0], "right" in near),
+                _bound("leftBound", cell, cell.lanelet.d[1], "left" in near, layout.road.line),
+                _bound("rightBound", cell, cell.lanelet.d[0], "right" in near, layout.road.line),
                 *refs,
                 element("laneletType", text="highway"),
                 element("laneletType", text=_TYPES[cell.lanelet.attribute]),
@@ -89,13 +94,26 @@ def _lanelets(layout: Layout) -> Iterator[Element]:
             )
 
 
-def _bound(tag: str, cell: _Cell, across: Fraction, crossed: bool) -> Element:
+def _bound(tag: str, cell: _Cell, across: Fraction, crossed: bool, line: ReferenceLine | None) -> Element:
+    """A side of a lanelet; on a bend its points are so near that lines are within ``_CHORD`` of it."""
     low, high = cell.section.low, cell.section.high
-    points = [_point(s, across) for s in (low, (low + high) / 2, high)]
+    if line is None:
+        points = [_point(s, across) for s in (low, (low + high) / 2, high)]
+    else:
+        count = _points_between(low, high, line)
+        places = (float(low + (high - low) * k / count) for k in range(count + 1))
+        points = [_point(x, y) for x, y in (line.place(s, float(across)) for s in places)]
     return element(tag, *points, element("lineMarking", text="dashed" if crossed else "solid"))
 
 
-def _point(x: Fraction, y: Fraction, tag: str = "point") -> Element:
+def _points_between(low: Fraction, high: Fraction, line: ReferenceLine) -> int:
+    """Into how many parts a lanelet is divided."""
+    sharpest = max((x.greatest for x in line.bends() if x.end > low and x.begin < high), default=0)
+    longest = math.sqrt(8 * _CHORD / float(sharpest)) if sharpest else math.inf
+    return max(2, math.ceil(float(high - low) / longest))
+
+
+def _point(x: Fraction | float, y: Fraction | float, tag: str = "point") -> Element:
     return element(tag, element("x", text=decimal(x)), element("y", text=decimal(y)))
 
 
@@ -107,7 +125,7 @@ def _box(motion: Motion) -> Element:
 def _obstacle(subject: Subject, name: str, motion: Motion) -> Element:
     box = _box(motion)
     first, *others = (
-        _state("state" if k else "initialState", k, state, motion)
+        _state("state" if k else "initialState", k, state, motion, subject.file.road.line)
         for k, state in enumerate(subject.samples[name])
     )
     return element(
@@ -128,19 +146,42 @@ def _type(motion: Motion) -> str:
     return _OBSTACLES.get(kind, kind)
 
 
-def _state(tag: str, step: int, state: State, motion: Motion) -> Element:
-    return element(
-        tag,
-        element("position", _point(*centre(state, motion.length, motion.width))),
-        _exact("orientation", Fraction(0)),
-        _exact("time", Fraction(step)),
-        _exact("velocity", state.v_lon),
-        _exact("velocityY", state.v_lat),
-        _exact("acceleration", state.a_lon),
+@dataclass(frozen=True)
+class _Moving:
+    """A state as the format has it: the centre of the box in the plane, and what is along its direction."""
+
+    place: tuple[Fraction, Fraction] | tuple[float, float]
+    orientation: Fraction | float
+    velocity: Fraction | float
+    acceleration: Fraction | float
+
+
+def _moving(state: State, motion: Motion, line: ReferenceLine | None) -> _Moving:
+    middle = centre(state, motion.length, motion.width)
+    if line is None:
+        return _Moving(middle, Fraction(0), state.v_lon, state.a_lon)
+    pose = centre_in_plane(state, motion, line)
+    shorter = 1 - pose.curvature * float(middle[1])
+    swing = 2 * float(state.v_lon * state.v_lat) * pose.curvature
+    return _Moving(
+        (pose.x, pose.y), pose.along, float(state.v_lon) * shorter, float(state.a_lon) * shorter - swing
     )
 
 
-def _exact(tag: str, value: Fraction) -> Element:
+def _state(tag: str, step: int, state: State, motion: Motion, line: ReferenceLine | None) -> Element:
+    moving = _moving(state, motion, line)
+    return element(
+        tag,
+        element("position", _point(*moving.place)),
+        _exact("orientation", moving.orientation),
+        _exact("time", Fraction(step)),
+        _exact("velocity", moving.velocity),
+        _exact("velocityY", state.v_lat),
+        _exact("acceleration", moving.acceleration),
+    )
+
+
+def _exact(tag: str, value: Fraction | float) -> Element:
     return element(tag, element("exact", text=decimal(value)))
 
 
@@ -149,19 +190,19 @@ def _problem(subject: Subject) -> Element:
     name = next(iter(subject.vehicles))
     motion = subject.vehicles[name]
     states = subject.samples[name]
-    start, end = states[0], states[-1]
+    start, end = (_moving(x, motion, subject.file.road.line) for x in (states[0], states[-1]))
     initial = element(
         "initialState",
-        element("position", _point(*centre(start, motion.length, motion.width))),
-        _exact("velocity", start.v_lon),
-        _exact("orientation", Fraction(0)),
+        element("position", _point(*start.place)),
+        _exact("velocity", start.velocity),
+        _exact("orientation", start.orientation),
         _exact("yawRate", Fraction(0)),
         _exact("slipAngle", Fraction(0)),
         _exact("time", Fraction(0)),
     )
     place = _box(motion)
-    place.append(element("orientation", text="0"))
-    place.append(_point(*centre(end, motion.length, motion.width), "center"))
+    place.append(element("orientation", text=decimal(end.orientation)))
+    place.append(_point(end.place[0], end.place[1], "center"))
     steps = len(states) - 1
     begin, last = element("intervalStart", text=str(steps)), element("intervalEnd", text=str(steps + 1))
     goal = element("goalState", element("time", begin, last), element("position", place))

@@ -10,14 +10,7 @@ from itertools import combinations
 
 from roadproof.errors import UsageError
 from roadproof.logic import terms as t
-from roadproof.logic.formula import (
-    Compare,
-    Comparison,
-    Formula,
-    boxes_overlap,
-    conjunction,
-    implication,
-)
+from roadproof.logic.formula import Compare, Comparison, Formula, boxes_overlap, conjunction, implication
 from roadproof.semantics.exact.algebraic import Point, decimal
 from roadproof.semantics.exact.exact import LazyJudge, judge
 from roadproof.semantics.exact.truth import Cut, TruthSet, complement
@@ -103,6 +96,33 @@ def _rules(name: str, limits: Vehicle) -> Iterator[tuple[str, Formula]]:
     lateral = t.Signal("v_lat", name)
     inside = conjunction(Compare(lateral, "<=", share), Compare(t.subtract(zero, share), "<=", lateral))
     yield f"|v_lat| <= {limits.lateral_share}·v_lon (heading)", inside
+
+
+def _bend_rules(name: str, limits: Vehicle, line: ReferenceLine) -> Iterator[tuple[str, Formula]]:
+    """For each bend: while the front of the vehicle is on it, |v_lon²·κ + a_lat| <= a_bend.
+
+    Where only bounds of κ are known, it holds for both.
+    """
+    place, speed = t.Signal("s", name), t.Signal("v_lon", name)
+    zero, most = t.number(0, (1, -2)), t.number(limits.a_bend, (1, -2))
+    for bend in (x for x in line.bends() if x.greatest):
+        there = conjunction(
+            Compare(place, ">=", t.number(bend.begin, (1, 0))),
+            Compare(place, "<=", t.number(bend.end, (1, 0))),
+        )
+        for begin, end in dict.fromkeys((bend.low, bend.high)):
+            growth = (end - begin) / (bend.end - bend.begin)
+            curvature = t.Sum(
+                (
+                    t.number(begin - growth * bend.begin, (-1, 0)),
+                    t.Product((t.number(growth, (-2, 0)), place)),
+                )
+            )
+            across = t.Sum((t.Product((speed, speed, curvature)), t.Signal("a_lat", name)))
+            kept = conjunction(Compare(across, "<=", most), Compare(t.subtract(zero, most), "<=", across))
+            stretch = f"from s={float(bend.begin):g} m to {float(bend.end):g} m"
+            told = f"|v_lon²·κ + a_lat| <= {limits.a_bend} m/s² {stretch}"
+            yield told, implication(there, kept)
 
 
 def _earliest(
