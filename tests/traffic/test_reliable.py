@@ -15,7 +15,11 @@ from roadproof.frontends.cli.main import main
 from roadproof.recordings.evaluate.one_trace import read_pair
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.sources import find_source
+from roadproof.recordings.formats.write_highd import write_highd
 from roadproof.verdict import ExitCode
+from roadproof.world.models import load_road
+from traffic.make_recording import Track, cruise, make_recording
+from traffic.planar_exid import write_exid
 from traffic.tiny_commonroad import Car, document, lanelet
 
 STEPS = 41
@@ -260,6 +264,56 @@ def test_samples_without_bad_vehicles(tmp_path: Path) -> None:
     assert np.array_equal(read.s, good.s)
     with pytest.raises(InputError, match="column v_lon=300"):
         find_source(samples(tmp_path, {"8": wild, "1": rows["1"], "7": wild, "6": wild})).read()
+
+
+# --- tracks in several files ------------------------------------------------------------------------
+
+
+def cell(path: Path, row: int, column: str, value: str) -> None:
+    """Another value in a cell; data rows count from 1."""
+    lines = path.read_text("utf-8").splitlines()
+    place = lines[0].split(",").index(column)
+    lines[row] = ",".join(value if k == place else x for k, x in enumerate(lines[row].split(",")))
+    path.write_text("\n".join(lines) + "\n", "utf-8")
+
+
+@pytest.mark.parametrize(
+    ("file", "column", "value", "told"),
+    [
+        ("tracks", "xVelocity", "-999", "must lie between -250 and 250"),
+        ("tracks", "xAcceleration", "500", "must lie between -100 and 100"),
+        ("tracksMeta", "width", "0", "the size of a vehicle is greater than zero; people have none"),
+        ("tracksMeta", "length", "90", "no vehicle is larger than 50 m"),
+    ],
+)
+def test_exid_without_bad_vehicles(file: str, column: str, value: str, told: str, tmp_path: Path) -> None:
+    tracks = [Track(2, 0, cruise(30.0 * k, 20, 20, 2.7)) for k in range(3)]
+    path = write_exid(make_recording(tracks), load_road("main-2"), tmp_path)
+    good = find_source(path).read()
+    cell(tmp_path / f"07_{file}.csv", 25 if file == "tracks" else 2, column, value)
+    read, why = both(path)
+    assert told in why
+    assert read.vehicle_id.tolist() == [0, 2]
+    assert note_in(read, "left out").startswith("left out 1 of 3 vehicles (1): row ")
+    assert note_in(read, "left out").endswith(told)
+    for k, v in ((0, 0), (1, 2)):
+        ours, theirs = (x.s[x.start[n] : x.start[n + 1]] for x, n in ((read, k), (good, v)))
+        assert np.array_equal(ours, theirs)
+
+
+def test_highd_without_bad_vehicles(tmp_path: Path) -> None:
+    tracks = [Track(2, 0, cruise(30.0 * k, 20, 20)) for k in range(3)]
+    write_highd(make_recording(tracks), tmp_path)
+    path = tmp_path / "01_tracks.csv"
+    good = find_source(path).read()
+    cell(path, 25, "xVelocity", "999")
+    read, why = both(path)
+    assert "row 26, column xVelocity=999.0: must lie between -250 and 250" in why
+    assert read.vehicle_id.tolist() == [1, 3]
+    assert note_in(read, "left out").startswith(
+        "left out 1 of 3 vehicles (2): row 26, column xVelocity=999.0"
+    )
+    assert np.array_equal(read.s, np.concatenate((good.s[:20], good.s[40:])))
 
 
 # --- answers say what was left out ------------------------------------------------------------------

@@ -42,6 +42,7 @@ from roadproof.recordings.formats.tracks import (
     match_vehicles,
     rate_of,
     read_tracks,
+    usable,
     vehicles_by_id,
 )
 from roadproof.runtime.xml_reader import Element, by_id, number_in, read_xml
@@ -233,15 +234,15 @@ LARGEST_PLACE = 10_000.0
 def read_exid(folder: Path, name: str, strict: bool = True) -> Recording:
     """Recording ``name`` of ``folder``; unless ``strict``, bad vehicles are left out.
 
-    Raises ``InputError`` that names file, element, value and rule."""
+    Raises ``InputError`` that names file, element, value and rule.
+    """
     about = read_named(folder / f"{name}_recordingMeta.csv", RECORDING_KINDS)
     rate = rate_of(about, "recordingId", int(name), f"the file is of recording {name}")
     meta = _read_vehicles(folder / f"{name}_tracksMeta.csv", int(name))
     tracks, notes = in_order(read_named(folder / f"{name}_tracks.csv", SAMPLE_KINDS), "trackId")
     tracks.require(tracks["recordingId"] == int(name), "recordingId", f"the file is of recording {name}")
-    start = match_vehicles(meta, tracks, "trackId", 0)
-    _check_cells(tracks)
-    notes += tuple(_check_velocities(tracks))
+    meta, tracks, start, left_out = usable(meta, tracks, "trackId", strict, _check_cells)
+    notes += (*left_out, *_check_velocities(tracks))
     path = _map_of(folder, int(about["locationId"][0]), about)
     lanelets, told = read_osm(path, (about["xUtmOrigin"][0], about["yUtmOrigin"][0]))
     heading = np.radians(tracks["heading"])
@@ -268,19 +269,21 @@ def read_exid(folder: Path, name: str, strict: bool = True) -> Recording:
 def _read_vehicles(path: Path, recording: int) -> Table:
     meta = read_named(path, VEHICLE_KINDS)
     meta.require(meta["recordingId"] == recording, "recordingId", f"the file is of recording {recording}")
+    return vehicles_by_id(meta, "trackId")
+
+
+def _check_cells(meta: Table, tracks: Table) -> Integers:
+    """Where each vehicle's samples start; no cell may say what no vehicle is or does."""
     for column in ("width", "length"):
         size = meta[column]
         meta.require(size > 0, column, "the size of a vehicle is greater than zero; people have none")
         meta.require(size <= LARGEST_SIZE, column, f"no vehicle is larger than {LARGEST_SIZE:g} m")
-    return vehicles_by_id(meta, "trackId")
-
-
-def _check_cells(tracks: Table) -> None:
-    """No cell may say what no vehicle does."""
+    start = match_vehicles(meta, tracks, "trackId", 0)
     tracks.require_within(LARGEST_PLACE, "xCenter", "yCenter")
     tracks.require_within(LARGEST_SPEED, "xVelocity", "yVelocity", "lonVelocity", "latVelocity")
     tracks.require_within(LARGEST_ACCELERATION, "xAcceleration", "yAcceleration")
     tracks.require_within(360.0, "heading")
+    return start
 
 
 def _check_velocities(tracks: Table) -> Iterator[str]:

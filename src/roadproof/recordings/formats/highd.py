@@ -41,6 +41,7 @@ from roadproof.recordings.formats.tracks import (
     match_vehicles,
     rate_of,
     read_tracks,
+    usable,
     vehicles_by_id,
 )
 from roadproof.world.models import load_recorded_road
@@ -92,11 +93,12 @@ SAMPLE_KINDS = kinds_of(
 )
 
 
-def _check_cells(meta: Table, tracks: Table, start: Integers) -> None:
-    """Both files must say the same of the size of a vehicle, and no cell what no vehicle does.
+def _check_cells(meta: Table, tracks: Table) -> Integers:
+    """Where each vehicle's samples start. No cell may say what no vehicle does.
 
-    One of them would decide the pairs that are looked at.
+    Both files must say the same of sizes: one of them would decide the pairs that are looked at.
     """
+    start = match_vehicles(meta, tracks, "id", 1)
     for column in ("width", "height"):
         expected = np.repeat(meta[column], np.diff(start))
         tracks.require(tracks[column] > 0, column, "the size of a vehicle is greater than zero")
@@ -106,6 +108,7 @@ def _check_cells(meta: Table, tracks: Table, start: Integers) -> None:
     tracks.require_within(LARGEST_SPEED, "xVelocity", "yVelocity")
     tracks.require_within(LARGEST_ACCELERATION, "xAcceleration", "yAcceleration")
     tracks.require_within(LARGEST_SIZE, "width", "height")
+    return start
 
 
 def _check_direction(meta: Table, tracks: Table, s: Floats, start: Integers) -> None:
@@ -193,9 +196,8 @@ def read_highd(folder: Path, name: str, strict: bool = True) -> Recording:
     meta = _read_vehicles(folder / f"{name}_tracksMeta.csv", counts)
     tracks = read_table(folder / f"{name}_tracks.csv", SAMPLE_COLUMNS, SAMPLE_KINDS)
     tracks, notes = in_order(tracks, "id")
-    start = match_vehicles(meta, tracks, "id", 1)
-    sizes = np.diff(start)
-    _check_cells(meta, tracks, start)
+    meta, tracks, start, left_out = usable(meta, tracks, "id", strict, _check_cells)
+    sizes, notes = np.diff(start), (*left_out, *notes)
     road, way = _read_road(folder / f"{name}_road.toml", bands)
 
     direction = np.repeat(meta["drivingDirection"], sizes)

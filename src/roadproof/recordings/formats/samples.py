@@ -221,10 +221,7 @@ def _readable_part(
                 raise next(iter(faults.values()), error) from None
             faults[str(names[error.place])] = error
             wanted &= names != names[error.place]
-    left_out = (
-        left_out_note([vehicle], known, str(x).removeprefix(f"{columns.path}, "))
-        for vehicle, x in faults.items()
-    )
+    left_out = (left_out_note([vehicle], known, x.told) for vehicle, x in faults.items())
     return table, recording, (*left_out, *numbered, *clock.notes)
 
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, BinaryIO, Literal, TypeAlias, cast
+from typing import TYPE_CHECKING, Any, BinaryIO, Literal, Self, TypeAlias, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -42,11 +42,14 @@ RULES: Mapping[Kind, str] = {
 
 
 class CellError(InputError):
-    """A cell breaks a rule; ``place``: its row among the data rows of the file, from 0."""
+    """A cell of the file ``path`` breaks a rule; ``place``: its row among the data rows, from 0."""
 
-    def __init__(self, message: str, place: int) -> None:
-        super().__init__(message)
-        self.place = place
+    def __init__(self, path: Path, told: str, place: int) -> None:
+        super().__init__(f"{path}, {told}")
+        self.path, self.told, self.place = path, told, place
+
+    def __reduce__(self) -> tuple[type[Self], tuple[Path, str, int]]:
+        return type(self), (self.path, self.told, self.place)
 
 
 @dataclass(frozen=True)
@@ -66,7 +69,7 @@ class Table:
 
     def refuse(self, row: int, column: str, rule: str) -> CellError:
         """The error for the cell in data row ``row`` (from 0)."""
-        return CellError(f"{self.path}, {self.cell(row, column)}: {rule}", self.place(row))
+        return CellError(self.path, f"{self.cell(row, column)}: {rule}", self.place(row))
 
     def place(self, row: int) -> int:
         """The place in the file of the data row ``row``, both from 0."""

@@ -1,14 +1,15 @@
 """Samples of tracks in one file and what another says of each track, as highD and exiD have them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from pathlib import Path
 
 import numpy as np
 
 from roadproof.errors import InputError
 from roadproof.recordings.formats.recording import Integers, Recording
+from roadproof.recordings.formats.reliable import MOST_LEFT_OUT, left_out_note
 from roadproof.recordings.formats.source import TRACK_FILES, Files, first_line, with_suffix
-from roadproof.recordings.formats.table import Table
+from roadproof.recordings.formats.table import CellError, Table
 
 TRACKS = "_tracks.csv"
 RATE_AT = "{2}, row 2, column frameRate={rate}"
@@ -78,6 +79,36 @@ def in_order(tracks: Table, column: str) -> tuple[Table, tuple[str, ...]]:
     return tracks.at(order), (
         f"{tracks.path.name}: rows were not in order of {column} and frame; they were sorted",
     )
+
+
+def usable(
+    meta: Table, tracks: Table, column: str, strict: bool, check: Callable[[Table, Table], Integers]
+) -> tuple[Table, Table, Integers, tuple[str, ...]]:
+    """The tables, where each vehicle starts as ``check`` says, and notes on vehicles that they are without.
+
+    Unless it is ``strict``, these are vehicles of which ``check`` refuses a cell; ``column`` has their ids.
+    Raises ``InputError``, also where these are more than half.
+    """
+    faults: dict[int, CellError] = {}
+    while True:
+        known, samples = (_without(table, column, faults) for table in (meta, tracks))
+        try:
+            start = check(known, samples)
+            break
+        except CellError as error:
+            if strict or len(faults) + 1 > MOST_LEFT_OUT * meta.rows:
+                raise next(iter(faults.values()), error) from None
+            table = known if error.path == meta.path else samples
+            row = error.place if table.places is None else int(np.argmax(table.places == error.place))
+            faults[int(table[column][row])] = error
+    notes = (left_out_note([vehicle], meta.rows, x.told) for vehicle, x in faults.items())
+    return known, samples, start, tuple(notes)
+
+
+def _without(table: Table, column: str, vehicles: Collection[int]) -> Table:
+    if not vehicles:
+        return table
+    return table.at(np.flatnonzero(~np.isin(table[column], [*vehicles])))
 
 
 def match_vehicles(meta: Table, tracks: Table, column: str, least: int) -> Integers:
