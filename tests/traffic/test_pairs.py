@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import roadproof as rp
 from roadproof.errors import InputError
-from roadproof.recordings.formats import large, topology
+from roadproof.recordings.formats import large
 from roadproof.recordings.formats import pairs as module
 from roadproof.recordings.formats.believable import _check_lanelets
 from roadproof.recordings.formats.content import plain_text
@@ -35,6 +35,7 @@ from roadproof.recordings.formats.samples import HEADER
 from roadproof.recordings.formats.sources import find_sources
 from roadproof.recordings.simulate.simulate import simulate
 from roadproof.recordings.simulate.traffic import Traffic
+from roadproof.world.maps import topology
 from roadproof.world.signals import KINDS
 from traffic.make_recording import Track, cruise, make_recording, near_pairs
 

@@ -13,7 +13,7 @@ from roadproof.recordings.evaluate.one_trace import read_pair
 from roadproof.recordings.formats.commonroad import read_commonroad
 from roadproof.recordings.formats.lanelets import network_of
 from roadproof.recordings.formats.sources import find_source
-from roadproof.recordings.formats.topology import MeasuredLanelet, attributes_of, chains_of, main_way
+from roadproof.world.maps.topology import MeasuredLanelet, attributes_of, chains_of, main_way
 from roadproof.world.models import load_road
 from roadproof.world.road import Lanelet, Road
 from tables import read_table

@@ -4,7 +4,7 @@
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
@@ -14,7 +14,7 @@ import numpy as np
 
 from roadproof.errors import InputError
 from roadproof.recordings.formats.commonroad_obstacles import Obstacle, ObstacleRules, read_obstacles
-from roadproof.recordings.formats.lanelets import ZONES_ENDING, network_of
+from roadproof.recordings.formats.lanelets import network_of
 from roadproof.recordings.formats.measured_roads import MeasuredTraffic, place_traffic
 from roadproof.recordings.formats.neighbours import describe_overlaps
 from roadproof.recordings.formats.plausible import SHARE, check
@@ -29,16 +29,9 @@ from roadproof.recordings.formats.recording import (
 from roadproof.recordings.formats.reliable import named, reliable
 from roadproof.recordings.formats.repeats import moments_of
 from roadproof.recordings.formats.source import Format, find_files
-from roadproof.recordings.formats.topology import MeasuredLanelet
-from roadproof.runtime.xml_reader import Element, by_id, number_in, read_xml
-from roadproof.world.road import Attribute
-
-ATTRIBUTES: Mapping[str, Attribute] = {
-    "accessRamp": "merge",
-    "exitRamp": "departure",
-    "mainCarriageWay": "main",
-}
-"""Lanelet types that say what is main road and what is not, and the paper's attribute for them."""
+from roadproof.runtime.xml_reader import Element, number_in, read_xml
+from roadproof.world.maps.commonroad import lanelets_of
+from roadproof.world.maps.network import ZONES_ENDING
 
 
 def read_commonroad(path: Path, strict: bool = True, truck_length: float = 7.0) -> Recording:
@@ -59,11 +52,7 @@ def read_commonroad(path: Path, strict: bool = True, truck_length: float = 7.0) 
     rate = round(1 / step) if step > 0 else 0
     if rate < 1 or not math.isclose(rate * step, 1):
         raise InputError(f"{path}: timeStepSize={step}: a whole number of steps a second is needed")
-    nodes = by_id(path, root.findall("lanelet"))
-    if not nodes:
-        raise InputError(f"{path}: the file has no lanelet; a road is needed to place vehicles on")
-    lanelets = {name: _read_lanelet(path, node, nodes) for name, node in nodes.items()}
-    network = network_of(path, lanelets, strict)
+    network = network_of(path, lanelets_of(path, root), strict)
     obstacles, notes = read_obstacles(path, root, ObstacleRules(rate, truck_length, strict))
     traffic = _traffic(path.stem, rate, obstacles, notes)
     if _is_made(root):
@@ -175,35 +164,6 @@ def _describe(recording: Recording) -> Iterator[str]:
     off = int(np.count_nonzero(recording.lane < 0))
     if off:
         yield f"{off} of {len(recording.s)} samples have the centre of the box on no lane"
-
-
-def _read_lanelet(path: Path, node: Element, known: Mapping[str, Element]) -> MeasuredLanelet:
-    name = node.get("id", "")
-    where = f"lanelet {name}"
-    left, right = (_read_line(path, node.find(x), f"{x} of {where}") for x in ("leftBound", "rightBound"))
-    if len(left) != len(right):
-        raise InputError(f"{path}: {where} has bounds of {len(left)} and {len(right)} points; must be equal")
-    types = {(x.text or "").strip() for x in node.findall("laneletType")}
-
-    def refs(*tags: str) -> tuple[str, ...]:
-        found = [x for tag in tags for x in node.findall(tag)]
-        for x in found:
-            if x.get("ref") not in known:
-                raise InputError(f"{path}: {where}: {x.tag} {x.get('ref')} is no lanelet of the file")
-        return tuple(x.get("ref", "") for x in found if x.get("drivingDir", "same") == "same")
-
-    refs("predecessor")
-    attribute = next((ATTRIBUTES[x] for x in sorted(types) if x in ATTRIBUTES), None)
-    return MeasuredLanelet(
-        name, left, right, attribute, refs("successor"), refs("adjacentLeft", "adjacentRight")
-    )
-
-
-def _read_line(path: Path, node: Element | None, what: str) -> Floats:
-    points = [] if node is None else node.findall("point")
-    if len(points) < 2:
-        raise InputError(f"{path}: {what} has {len(points)} points; at least two are needed")
-    return np.array([[number_in(path, p.findtext(x), f"{x} in {what}") for x in "xy"] for p in points])
 
 
 FORMAT = Format(

@@ -26,14 +26,13 @@ import numpy as np
 
 from roadproof.errors import InputError
 from roadproof.recordings.formats.contradictions import contradictions, seldom
-from roadproof.recordings.formats.lanelets import ZONES_ENDING, network_of
+from roadproof.recordings.formats.lanelets import network_of
 from roadproof.recordings.formats.measured_roads import MeasuredTraffic, place_traffic
 from roadproof.recordings.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED, check
 from roadproof.recordings.formats.recording import Floats, Integers, Recording, with_notes
 from roadproof.recordings.formats.reliable import reliable
 from roadproof.recordings.formats.source import Files, Format, beside
 from roadproof.recordings.formats.table import Table, kinds_of, read_named
-from roadproof.recordings.formats.topology import MeasuredLanelet
 from roadproof.recordings.formats.tracks import (
     RATE_AT,
     files_of,
@@ -46,6 +45,8 @@ from roadproof.recordings.formats.tracks import (
     vehicles_by_id,
 )
 from roadproof.runtime.xml_reader import Element, by_id, number_in, read_xml
+from roadproof.world.maps.network import ZONES_ENDING
+from roadproof.world.maps.topology import MeasuredLanelet
 
 LEFT_OUT = frozenset(
     "emergency_lane walkway shared_walkway crosswalk stairs bicycle_lane rail parking".split()  # noqa: SIM905

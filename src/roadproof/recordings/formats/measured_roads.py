@@ -13,7 +13,7 @@ from fractions import Fraction
 import numpy as np
 import numpy.typing as npt
 
-from roadproof.recordings.formats.lanelets import Network, used_lanes
+from roadproof.recordings.formats.lanelets import used_lanes
 from roadproof.recordings.formats.recording import (
     ZONES,
     Bools,
@@ -24,6 +24,7 @@ from roadproof.recordings.formats.recording import (
     Recording,
     Slack,
 )
+from roadproof.world.maps.network import Network
 from roadproof.world.road import Lanelet
 
 BLOCK = 10_000

@@ -16,11 +16,14 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
+from typing import TypeAlias
 
 import numpy as np
+import numpy.typing as npt
 
-from roadproof.recordings.formats.recording import Floats
 from roadproof.world.road import Attribute
+
+Floats: TypeAlias = npt.NDArray[np.float64]
 
 EQUAL = 0.9
 """Chains that have this share of what the best one has beside them are lanes of the main road alike."""
