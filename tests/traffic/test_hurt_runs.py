@@ -88,9 +88,9 @@ def test_a_cell_that_breaks_the_evaluation_is_named(
     cells[column] = value
     lines[row] = ",".join(cells)
     (ours / file).write_text("\n".join(lines) + "\n")
-    assert evaluate(ours, tmp_path / "a") == 3
+    assert evaluate(ours, tmp_path / "a", "--strict") == 3
     assert f"{ours / file}, {said}" in capsys.readouterr().err
-    assert evaluate(ours, tmp_path / "b", "--keep-going") == 0
+    assert evaluate(ours, tmp_path / "b", "--strict", "--keep-going") == 0
     printed = capsys.readouterr()
     assert "left out: 02" in printed.out
     assert said in printed.err
