@@ -1,6 +1,7 @@
 """Curves and reference lines against integrations that share nothing with them."""
 
 import math
+from dataclasses import replace
 from fractions import Fraction as F
 from itertools import pairwise
 
@@ -86,7 +87,8 @@ def test_a_polyline_is_near_to_the_circle_it_is_sampled_from() -> None:
     assert float(length) == pytest.approx(120, abs=1e-4)
     pose = line.pose(60.0, length)
     assert math.hypot(pose.x - radius * math.sin(0.15), pose.y - radius * (1 - math.cos(0.15))) < 1e-3
-    assert pose.heading == pytest.approx(0.15, abs=2e-3)
+    assert pose.heading == pytest.approx(0.15, abs=1e-4)
+    assert line.pose(60.9, length).heading == pytest.approx(60.9 / radius, abs=1e-4)
     inner = [x for x in line.bends(length) if 2 < x.begin < 118]
     assert all(float(x.low[0]) == pytest.approx(1 / radius, rel=0.01) for x in inner)
 
@@ -130,6 +132,8 @@ def test_a_line_beside_a_curve_bends_more_on_the_inside() -> None:
     assert bend.low[0] == bend.high[1] == F(1, 80)
     pose = arc.pose(0.0)
     assert (pose.x, pose.y) == pytest.approx((0, 20))
+    turned = replace(arc, heading=F(1)).pose(0.0)
+    assert (turned.x, turned.y) == pytest.approx((-20 * math.sin(1), 20 * math.cos(1)))
 
 
 def test_the_error_of_lengths_is_that_of_the_outer_edge() -> None:
