@@ -22,6 +22,7 @@ from roadproof.analysis.catalogue.asked import Questions, ScenarioQuestion
 from roadproof.analysis.catalogue.completing import complete
 from roadproof.analysis.catalogue.entries import Abstract, Concrete, Freedom
 from roadproof.analysis.catalogue.fact import Fact
+from roadproof.analysis.catalogue.formula_facts import FormulaFacts
 from roadproof.analysis.catalogue.gaps import NO_SINGLE
 from roadproof.analysis.catalogue.meaning import Meanings
 from roadproof.analysis.catalogue.nearest import first_false_part
@@ -373,13 +374,10 @@ def test_doubts_have_the_names_of_the_answers_that_they_stand_for() -> None:
 def test_a_test_without_a_drive_says_why(said: str, told: str, monkeypatch: pytest.MonkeyPatch) -> None:
     asked = asked_about(1)
     entry = Abstract("x", asked.query_of("scenario_1"))
-    study = Meanings(Basis(HOME.specification), (entry,), asked)
-    outcome: Any = SimpleNamespace(drives=(), impossibility=None, told=lambda options: said)
-    monkeypatch.setattr(Meanings, "_search", lambda *_, **__: outcome)
-    for fact in (
-        study._without_drive(entry, outcome),
-        study._looked_for(entry, "scenario_1", asked.query_of("scenario_1")),
-    ):
+    facts = FormulaFacts(Basis(HOME.specification), asked, entry)
+    outcome: Any = SimpleNamespace(drives=(), impossibility=None, told=lambda options: said, exhausted=False)
+    monkeypatch.setattr(FormulaFacts, "_search", lambda *_, **__: outcome)
+    for fact in (*facts.all(), facts._looked_for("scenario_1", asked.query_of("scenario_1"))):
         assert (fact.relation, fact.reason) == ("open", told)
 
 
