@@ -23,6 +23,7 @@ from roadproof.recordings.formats import openscenario
 from roadproof.recordings.formats.openscenario import RATE, read_columns, read_recording
 from roadproof.recordings.formats.sources import find_source
 from roadproof.world.motion import state_at
+from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.signals import RECORDED
 from tables import read_table
 
@@ -133,26 +134,28 @@ def exchanged(old: str, new: str) -> Callable[[str], str]:
         (exchanged("drive.xodr", "none.xodr"), "none.xodr"),
         (without("Entities"), "there is no ScenarioObject"),
         (exchanged('<ScenarioObject name="SV"', '<ScenarioObject name="POV"'), "two ScenarioObjects"),
-        (without("Vehicle"), "no Vehicle that is written out"),
+        (without("Vehicle"), "is no Vehicle"),
         (exchanged('vehicleCategory="car"', 'vehicleCategory="tram"'), "vehicleCategory=tram is none of"),
         (
             exchanged('length="4.5"', 'length="long"'),
             "length of the Dimensions of ScenarioObject SV is 'long'",
         ),
-        (exchanged('length="4.5"', 'length="$l"'), "parameters are not supported"),
-        (without("ManeuverGroup"), "ScenarioObject SV follows no trajectory"),
+        (exchanged('length="4.5"', 'length="$l"'), "there is no parameter l"),
         (
             exchanged('<EntityRef entityRef="SV"', '<EntityRef entityRef="NN"'),
             "there is no ScenarioObject NN",
         ),
-        (exchanged('<EntityRef entityRef="POV"', '<EntityRef entityRef="SV"'), "SV follows two trajectories"),
+        (
+            exchanged('<EntityRef entityRef="POV"', '<EntityRef entityRef="SV"/><EntityRef entityRef="POV"'),
+            "SV follows two trajectories",
+        ),
         (without("TimeReference"), "a Timing with domainAbsoluteRelative=absolute"),
         (exchanged('domainAbsoluteRelative="absolute"', 'domainAbsoluteRelative="relative"'), "absolute"),
         (lambda text: text.replace("Polyline", "Nurbs"), "Shape Nurbs; a Polyline is needed"),
-        (lambda text: text.replace("WorldPosition", "LanePosition"), "a WorldPosition is needed"),
+        (lambda text: text.replace("WorldPosition", "RelativeWorldPosition"), "a WorldPosition is needed"),
         (exchanged('<Vertex time="0"', '<Vertex time="100"'), "each later than the one before"),
         (exchanged('<Vertex time="0"', '<Vertex time="nan"'), "a finite number is needed"),
-        (without("RoutingAction"), "is no FollowTrajectoryAction"),
+        (without("RoutingAction"), "PrivateAction: it has 0 elements"),
         (exchanged("<OpenSCENARIO>", "<!DOCTYPE x><OpenSCENARIO>"), "document type"),
         (lambda text: text[:900], "no well-formed XML"),
         (lambda text: text.replace("OpenSCENARIO", "OpenDRIVE"), "OpenSCENARIO is needed"),
@@ -192,7 +195,7 @@ def speeds_of_the_last_vertex(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def the_road_is_not_where_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(openscenario, "origin_of", lambda path: (0.0, 0.0, 0.0))
+    monkeypatch.setattr(ReferenceLine, "locate", lambda line, x, y: (x, y))
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,15 @@
-"""Scenarios in OpenSCENARIO XML (ASAM, 1.0 to 1.3) in which every vehicle follows a polyline in time.
+"""Scenarios in OpenSCENARIO XML (ASAM, 1.0 to 1.3): vehicles that follow polylines, or a storyboard.
 
-The road is the straight one in OpenDRIVE that the file names. Between vertices places are interpolated by
-cubics through them with the speeds that three vertices in a row have, which is exact where accelerations are
-constant across them. Speeds and accelerations are those of the cubics. A box is aligned with the road; its
-centre is where that of the file's box is.
+The road is that in OpenDRIVE that the file names. Between vertices places are interpolated by cubics through
+them with the speeds that three vertices in a row have, which is exact where accelerations are constant across
+them. Speeds and accelerations are those of the cubics. Files with other actions, or with vehicles that keep
+their initial state, are run (``storyboard``). A box is aligned with the road; its centre is where that of the
+file's box is, and in a storyboard where it is when the vehicle is aligned with the road. Speeds are those of
+s and d, which differ on a bend by the factor 1 - κd from those of the vehicle.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,10 +19,15 @@ from roadproof.errors import InputError
 from roadproof.recordings.formats.recording import Floats, Recording
 from roadproof.recordings.formats.samples import DIRECTION, LABEL, recording_of
 from roadproof.recordings.formats.source import Files, Format, with_suffix
+from roadproof.recordings.formats.storyboard.actions import Trajectory, TrajectoryReader
+from roadproof.recordings.formats.storyboard.box import Box
+from roadproof.recordings.formats.storyboard.conditions import TICKS
+from roadproof.recordings.formats.storyboard.document import Document, open_document
+from roadproof.recordings.formats.storyboard.positions import State, stretch_of
+from roadproof.recordings.formats.storyboard.run import Play, run_storyboard
 from roadproof.recordings.formats.straight import of_road
-from roadproof.recordings.formats.table import Table
-from roadproof.runtime.xml_reader import Element, number_in, read_xml
-from roadproof.world.maps.selection import STRETCH
+from roadproof.recordings.formats.table import Column, Table
+from roadproof.runtime.xml_reader import Element, number_in
 from roadproof.world.models import load_road
 from roadproof.world.road import Road
 from roadproof.world.signals import RECORDED, SIZES
@@ -40,20 +47,6 @@ _PLACES = "PrivateAction/RoutingAction/FollowTrajectoryAction"
 
 
 @dataclass(frozen=True)
-class Box:
-    """A vehicle's class, what the file calls it, and its box.
-
-    ``centre`` is that of the box, ahead and left of the reference point (m).
-    """
-
-    kind: str
-    label: str
-    length: float
-    width: float
-    centre: tuple[float, float]
-
-
-@dataclass(frozen=True)
 class CentreLine:
     """Vertices of the centre of a box in road coordinates, by time (s, m)."""
 
@@ -70,41 +63,85 @@ class Samples(Table):
         return f"vehicle {vehicle} at {time:g} s, {column}={self.columns[column][row]:g}"
 
 
+@dataclass(frozen=True)
+class Scenario:
+    """Samples of all vehicles, RATE a second, the road with its file, and notes on them."""
+
+    table: Table
+    road: Road
+    road_path: Path
+    notes: tuple[str, ...]
+
+
+def read_scenario(path: Path) -> Scenario:
+    """The vehicles of a file. Raises ``InputError`` that names element and rule."""
+    document = open_document(path)
+    root = document.root
+    road_path = path.parent / _text(path, root.find("RoadNetwork/LogicFile"), "filepath", "a LogicFile")
+    if road_path.suffix != ".xodr":
+        raise InputError(
+            f"{path}: LogicFile filepath={road_path.name}: a road in OpenDRIVE (.xodr) is needed"
+        )
+    boxes = dict(_boxes(path, root))
+    road = load_road(stretch_of(document, road_path))
+    if _follows_polylines(root):
+        ways = {name: _in_road(x, boxes[name], road) for name, x in _vertices(path, root, boxes)}
+        note = f"speeds and accelerations are those of curves through the vertices, {RATE} samples a second"
+        return Scenario(_sampled(path, boxes, ways), road, road_path, (note,))
+    play = run_storyboard(document, boxes, road, _trajectory_reader(document, boxes, road))
+    if len(play.states) < 2 * TICKS // RATE:
+        raise InputError(f"{path}: the storyboard ends at {len(play.states) / TICKS:g} s: {play.ending}")
+    told = f"the storyboard ends at {(len(play.states) - 1) / TICKS:g} s: {play.ending}"
+    note = f"the storyboard was run with conditions evaluated {TICKS} times a second, {RATE} samples a second"
+    return Scenario(_of_play(path, boxes, play), road, road_path, (note, told))
+
+
 def read_columns(path: Path) -> tuple[Table, Road, Path]:
     """Samples of all vehicles, RATE a second, and the road with its file.
 
     Raises ``InputError`` that names element and rule.
     """
-    root = read_xml(path, "OpenSCENARIO")
-    road = path.parent / _text(path, root.find("RoadNetwork/LogicFile"), "filepath", "a LogicFile")
-    if road.suffix != ".xodr":
-        raise InputError(f"{path}: LogicFile filepath={road.name}: a road in OpenDRIVE (.xodr) is needed")
-    boxes = dict(_boxes(path, root))
-    stretch = next(
-        (x.get("value") for x in root.iter("ParameterDeclaration") if x.get("name") == STRETCH), None
-    )
-    known = load_road(f"{road}#{stretch}" if stretch else road)
-    ways = {name: _in_road(x, boxes[name], known) for name, x in _vertices(path, root, boxes)}
-    for name in boxes:
-        if name not in ways:
-            raise InputError(f"{path}: ScenarioObject {name} follows no trajectory; each vehicle needs one")
-    return _sampled(path, boxes, ways), known, road
+    found = read_scenario(path)
+    return found.table, found.road, found.road_path
 
 
 def read_recording(path: Path, strict: bool = True) -> Recording:
     """The vehicles of a file as a recording; unless ``strict``, without bad ones. Raises ``InputError``."""
-    table, road, road_path = read_columns(path)
-    note = f"speeds and accelerations are those of curves through the vertices, {RATE} samples a second"
-    return recording_of(table, of_road(road, DIRECTION, road_path), path.stem, (note,), strict)
+    found = read_scenario(path)
+    road = of_road(found.road, DIRECTION, found.road_path)
+    return recording_of(found.table, road, path.stem, found.notes, strict)
+
+
+def _follows_polylines(root: Element) -> bool:
+    """Whether all that happens is that each vehicle follows a trajectory."""
+    actions = root.findall("Storyboard/Story/Act/ManeuverGroup/Maneuver/Event/Action")
+    actors = {x.get("entityRef") for x in root.findall("Storyboard/Story/Act/ManeuverGroup/Actors/EntityRef")}
+    names = {x.get("name") for x in root.findall("Entities/ScenarioObject")}
+    return names <= actors and all(x.find(_PLACES) is not None for x in actions)
+
+
+def _trajectory_reader(document: Document, boxes: Mapping[str, Box], road: Road) -> TrajectoryReader:
+    """Reads a FollowTrajectoryAction of a storyboard."""
+
+    def read(follow: Element, name: str) -> Trajectory:
+        told, box = document.places[follow], boxes[name]
+        way = _in_road(_polyline(document.path, follow, told), box, road)
+
+        def state(time: float) -> State:
+            at = np.array([time])
+            s, v_lon, a_lon = (float(x[0]) for x in _curve(way.time, way.s, at))
+            d, v_lat, a_lat = (float(x[0]) for x in _curve(way.time, way.d, at))
+            return State(s - box.centre[0], d - box.centre[1], v_lon, v_lat, a_lon, a_lat)
+
+        return Trajectory(float(way.time[0]), float(way.time[-1]), state)
+
+    return read
 
 
 def _text(path: Path, node: Element | None, attribute: str, what: str) -> str:
     value = None if node is None else node.get(attribute)
     if not value:
         raise InputError(f"{path}: {what} with {attribute} is needed")
-    if "$" in value:
-        told = f"{what} has {attribute}={value}"
-        raise InputError(f"{path}: {told}: parameters are not supported; write it out")
     return value
 
 
@@ -122,7 +159,7 @@ def _boxes(path: Path, root: Element) -> Iterator[tuple[str, Box]]:
         told = f"ScenarioObject {name}"
         vehicle = node.find("Vehicle")
         if vehicle is None:
-            raise InputError(f"{path}: {told} is no Vehicle that is written out; catalogues are not read")
+            raise InputError(f"{path}: {told} is no Vehicle")
         category = vehicle.get("vehicleCategory", "car")
         if category not in _KINDS:
             raise InputError(f"{path}: {told}: vehicleCategory={category} is none of {', '.join(_KINDS)}")
@@ -225,26 +262,45 @@ def _in_road(vertices: Floats, box: Box, road: Road) -> CentreLine:
 
 
 def _sampled(path: Path, boxes: dict[str, Box], ways: dict[str, CentreLine]) -> Table:
-    columns: dict[str, list[Floats]] = {}
+    tables = []
     for name, way in ways.items():
-        box = boxes[name]
         first, last = math.ceil(way.time[0] * RATE - 1e-6), math.floor(way.time[-1] * RATE + 1e-6)
         times = np.clip(np.arange(first, last + 1) / RATE, way.time[0], way.time[-1])
         s, v_lon, a_lon = _curve(way.time, way.s, times)
         d, v_lat, a_lat = _curve(way.time, way.d, times)
-        moving = (s + box.length / 2, d + box.width / 2, v_lon, v_lat, a_lon, a_lat)
-        told = {
-            "time": np.arange(first, last + 1) / RATE,
-            "vehicle": np.full(len(times), name),
-            "kind": np.full(len(times), box.kind),
-            LABEL: np.full(len(times), box.label),
-        }
-        told |= zip(map(str, RECORDED), moving, strict=True)
-        told |= {str(x): np.full(len(times), getattr(box, x)) for x in SIZES}
-        for column, values in told.items():
-            columns.setdefault(column, []).append(values)
-    joined = {column: np.concatenate(values) for column, values in columns.items()}
-    return Samples(path, joined, len(joined["time"]))
+        moving = (s, d, v_lon, v_lat, a_lon, a_lat)
+        tables.append(_rows(name, boxes[name], np.arange(first, last + 1) / RATE, moving))
+    return _joined(path, tables)
+
+
+def _of_play(path: Path, boxes: dict[str, Box], play: Play) -> Table:
+    """The states of a storyboard, RATE a second."""
+    states = play.states[:: TICKS // RATE]
+    tables = []
+    for name, box in boxes.items():
+        moving = np.array([[getattr(x[name], y) for x in states] for y in map(str, RECORDED)])
+        moving[:2] += np.array(box.centre)[:, None]
+        tables.append(_rows(name, box, np.arange(len(states)) / RATE, tuple(moving)))
+    return _joined(path, tables)
+
+
+def _rows(name: str, box: Box, times: Floats, moving: tuple[Floats, ...]) -> dict[str, Column]:
+    """The samples of a vehicle whose middle moves so: its front-left corner, as in all recordings."""
+    s, d, *rates = moving
+    told: dict[str, Column] = {
+        "time": times,
+        "vehicle": np.full(len(times), name),
+        "kind": np.full(len(times), box.kind),
+        LABEL: np.full(len(times), box.label),
+    }
+    corner = (s + box.length / 2, d + box.width / 2, *rates)
+    told |= zip(map(str, RECORDED), corner, strict=True)
+    return told | {str(x): np.full(len(times), getattr(box, x)) for x in SIZES}
+
+
+def _joined(path: Path, tables: list[dict[str, Column]]) -> Table:
+    columns = {column: np.concatenate([x[column] for x in tables]) for column in tables[0]}
+    return Samples(path, columns, len(columns["time"]))
 
 
 def _curve(knots: Floats, places: Floats, times: Floats) -> tuple[Floats, Floats, Floats]:
@@ -276,7 +332,7 @@ def _find(path: Path) -> dict[str, Files]:
 
 FORMAT = Format(
     "OpenSCENARIO",
-    "NAME.xosc, in which all vehicles follow polylines in time",
+    "NAME.xosc, whose storyboard is run",
     _find,
     read_recording,
     "{0}, sampled {rate} times a second",

@@ -1,0 +1,1 @@
+"""Motions of vehicles in an OpenSCENARIO file whose storyboard has actions and triggers."""

@@ -1,0 +1,197 @@
+"""Conditions of triggers, evaluated TICKS times a second.
+
+Distances along the road are those between reference points, or between boxes where ``freespace`` is true. A
+time to collision needs vehicles that come closer. Headway and distance have no sign, as in esmini.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from roadproof.recordings.formats.storyboard.box import Box
+from roadproof.recordings.formats.storyboard.document import Document
+from roadproof.recordings.formats.storyboard.positions import Positions, State, States
+from roadproof.runtime.xml_reader import Element
+
+TICKS = 100
+"""A second is divided into so many steps, at which conditions are evaluated."""
+_RULES: Mapping[str, Callable[[float, float], bool]] = {
+    "greaterThan": lambda x, y: x > y,
+    "lessThan": lambda x, y: x < y,
+    "equalTo": lambda x, y: math.isclose(x, y, abs_tol=1e-6),
+    "notEqualTo": lambda x, y: not math.isclose(x, y, abs_tol=1e-6),
+    "greaterOrEqual": lambda x, y: x >= y,
+    "lessOrEqual": lambda x, y: x <= y,
+}
+_EDGES = ("none", "rising", "falling", "risingOrFalling")
+_SLOWEST = 1e-3
+"""m/s: slower vehicles have no headway."""
+
+
+@dataclass(frozen=True)
+class Situation:
+    """What conditions can see: the tick, vehicles and how far they went, and states of storyboard elements.
+
+    ``still``: since when each vehicle stands, in ticks. ``elements``: their states and
+    transitions by type and name.
+    """
+
+    tick: int
+    states: States
+    travelled: Mapping[str, float]
+    still: Mapping[str, int]
+    elements: Mapping[tuple[str, str], frozenset[str]]
+
+
+@dataclass(frozen=True)
+class ConditionReader:
+    """Evaluates conditions of a document."""
+
+    document: Document
+    boxes: Mapping[str, Box]
+    positions: Positions
+
+    def holds(self, condition: Element, now: Situation) -> bool:
+        """Whether a Condition holds, without its edge and delay. Raises ``InputError``."""
+        kind = self.document.only(condition)
+        if kind.tag == "ByValueCondition":
+            return self._by_value(self.document.only(kind), now)
+        if kind.tag != "ByEntityCondition":
+            raise self.document.error(kind, "this condition is not supported")
+        triggering = self.document.child(kind, "TriggeringEntities")
+        names = [self.document.text(x, "entityRef") for x in triggering.findall("EntityRef")]
+        node = self.document.only(self.document.child(kind, "EntityCondition"))
+        for name in names:
+            if name not in now.states:
+                raise self.document.error(triggering, f"there is no ScenarioObject {name}")
+        found = [self._by_entity(node, name, now) for name in names]
+        return all(found) if triggering.get("triggeringEntitiesRule") == "all" else any(found)
+
+    def _by_value(self, node: Element, now: Situation) -> bool:
+        read = self.document
+        if node.tag == "SimulationTimeCondition":
+            return self._compare(node, now.tick / TICKS)
+        if node.tag != "StoryboardElementStateCondition":
+            raise read.error(node, "this condition is not supported")
+        kind, name = (read.text(node, f"storyboardElement{x}") for x in ("Type", "Ref"))
+        name = name.replace("::", "/").rsplit("/", 1)[-1]
+        if (kind, name) not in now.elements:
+            raise read.error(node, f"there is no {kind} {name}")
+        return read.text(node, "state") in now.elements[kind, name]
+
+    def _by_entity(self, node: Element, name: str, now: Situation) -> bool:
+        read, state = self.document, now.states[name]
+        match node.tag:
+            case "TraveledDistanceCondition":
+                return now.travelled[name] >= read.number(node, "value")
+            case "SpeedCondition":
+                return self._compare(node, state.v_lon)
+            case "AccelerationCondition":
+                return self._compare(node, state.a_lon)
+            case "RelativeSpeedCondition":
+                return self._compare(node, state.v_lon - self._other(node, now)[1].v_lon)
+            case "StandStillCondition":
+                stands = now.still.get(name)
+                return stands is not None and now.tick - stands >= read.number(node, "duration") * TICKS
+            case "ReachPositionCondition":
+                s, d = self.positions.find(read.child(node, "Position"), now.states)
+                return math.hypot(state.s - s, state.d - d) <= read.number(node, "tolerance")
+            case "DistanceCondition":
+                s, d = self.positions.find(read.child(node, "Position"), now.states)
+                return self._compare(node, self._distance(node, name, State(s, d, 0, 0, 0, 0), None, now))
+            case "RelativeDistanceCondition":
+                other, there = self._other(node, now)
+                return self._compare(node, self._distance(node, name, there, other, now))
+            case "TimeHeadwayCondition":
+                other, there = self._other(node, now)
+                distance = self._distance(node, name, there, other, now)
+                return abs(state.v_lon) > _SLOWEST and self._compare(node, distance / abs(state.v_lon))
+            case "TimeToCollisionCondition":
+                return self._time_to_collision(node, name, now)
+        raise read.error(node, "this condition is not supported")
+
+    def _time_to_collision(self, node: Element, name: str, now: Situation) -> bool:
+        target = self.document.only(self.document.child(node, "TimeToCollisionConditionTarget"))
+        state = now.states[name]
+        if target.tag == "EntityRef":
+            other, there = self._other(target, now)
+            distance = self._distance(node, name, there, other, now)
+        else:
+            s, d = self.positions.find(target, now.states)
+            there = State(s, d, 0, 0, 0, 0)
+            distance = self._distance(node, name, there, None, now)
+        closing = (state.v_lon - there.v_lon) * math.copysign(1.0, there.s - state.s)
+        return closing > _SLOWEST and self._compare(node, distance / closing)
+
+    def _distance(self, node: Element, name: str, there: State, other: str | None, now: Situation) -> float:
+        """The distance as ``relativeDistanceType``, ``freespace`` and ``alongRoute`` say, at least 0."""
+        state, box = now.states[name], self.boxes[name]
+        kind = node.get("relativeDistanceType") or (
+            "longitudinal" if node.get("alongRoute", "true") in ("true", "1") else "euclidianDistance"
+        )
+        s, d = there.s - state.s, there.d - state.d
+        if node.get("freespace") in ("true", "1"):
+            beyond = self.boxes[other] if other else Box("", "", 0.0, 0.0, (0.0, 0.0))
+            s += beyond.centre[0] - box.centre[0]
+            d += beyond.centre[1] - box.centre[1]
+            s = max(abs(s) - (box.length + beyond.length) / 2, 0.0)
+            d = max(abs(d) - (box.width + beyond.width) / 2, 0.0)
+        match kind:
+            case "longitudinal":
+                return abs(s)
+            case "lateral":
+                return abs(d)
+            case "euclidianDistance" | "cartesianDistance" | "euclideanDistance":
+                return math.hypot(s, d)
+        raise self.document.error(node, f"relativeDistanceType={kind} is not supported")
+
+    def _other(self, node: Element, now: Situation) -> tuple[str, State]:
+        name = self.document.text(node, "entityRef")
+        if name not in now.states:
+            raise self.document.error(node, f"there is no ScenarioObject {name}")
+        return name, now.states[name]
+
+    def _compare(self, node: Element, value: float) -> bool:
+        rule = self.document.text(node, "rule")
+        if rule not in _RULES:
+            raise self.document.error(node, f"rule={rule}: one of {', '.join(_RULES)} is needed")
+        return _RULES[rule](value, self.document.number(node, "value"))
+
+
+class Trigger:
+    """A trigger with what its conditions were: one group of which all conditions hold fires it."""
+
+    def __init__(self, node: Element, reader: ConditionReader) -> None:
+        self._reader = reader
+        self._groups = [x.findall("Condition") for x in node.findall("ConditionGroup")]
+        self._was: dict[Element, bool] = {}
+        self._fired: dict[Element, set[int]] = {}
+
+    @property
+    def can_fire(self) -> bool:
+        return bool(self._groups)
+
+    def fires(self, now: Situation) -> bool:
+        """Whether it fires now; to be asked at every tick, as edges and delays need what was before."""
+        found = [[self._now(x, now) for x in group] for group in self._groups]
+        return any(group and all(group) for group in found)
+
+    def _now(self, condition: Element, now: Situation) -> bool:
+        document = self._reader.document
+        edge = condition.get("conditionEdge", "none")
+        if edge not in _EDGES:
+            raise document.error(condition, f"conditionEdge={edge}: one of {', '.join(_EDGES)} is needed")
+        holds = self._reader.holds(condition, now)
+        was = self._was.get(condition, holds)
+        self._was[condition] = holds
+        fired = {
+            "none": holds,
+            "rising": holds and not was,
+            "falling": was and not holds,
+            "risingOrFalling": holds != was,
+        }[edge]
+        delay = round(document.number(condition, "delay", 0.0) * TICKS)
+        ticks = self._fired.setdefault(condition, set())
+        if fired:
+            ticks.add(now.tick)
+        return now.tick - delay in ticks if delay else fired
