@@ -123,28 +123,6 @@ def shares(outcome: Outcome) -> dict[str, float]:
     return {name: float(part) for name, _, part in rows}
 
 
-def shares_of_base(outcome: Outcome) -> tuple[object, ...]:
-    """Those of classes 3 and 4, 1, 7, 6; how many others there are, with the most; those without any."""
-    part = shares(outcome)
-    del part["2"]
-    first = [part.pop(name) for name in ("3", "4", "1", "7", "6")]
-    threes = (
-        f"{first[0]:.0f}" if f"{first[0]:.0f}" == f"{first[1]:.0f}" else f"{first[0]:.0f} and {first[1]:.0f}"
-    )
-    none = [
-        name.replace("_", " with ") if "_" in name else f"{name} alone"
-        for name, share in sorted(part.items(), key=lambda x: len(x[0]))
-        if share == 0
-    ]
-    return (
-        threes,
-        *(f"{x:.0f}" for x in first[2:]),
-        len(part),
-        max(part.values()),
-        ", ".join(none),
-    )
-
-
 def accepted(outcome: Outcome) -> str:
     """How many files ``roadproof check`` accepts, if that is all of them."""
     found = re.search(r"(\d+) of (\d+) accepted", outcome.printed)
