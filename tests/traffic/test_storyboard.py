@@ -244,6 +244,71 @@ def test_lane_changes_are_those_of_an_integration(shape: str, by: str, value: fl
         assert np.allclose(np.gradient(found[place], time)[smooth], found[rate][smooth], atol=0.02)
 
 
+# --- actions that look at other vehicles ------------------------------------------------------------
+
+
+def longitudinal(action: str) -> str:
+    return f"<PrivateAction><LongitudinalAction>{action}</LongitudinalAction></PrivateAction>"
+
+
+def test_a_distance_is_kept_as_a_damped_spring_does(tmp_path: Path) -> None:
+    """Against an integration of the same law in far smaller steps."""
+    keep = longitudinal(
+        '<LongitudinalDistanceAction entityRef="Ego" distance="30" freespace="true" continuous="true">'
+        '<DynamicConstraints maxAcceleration="2" maxDeceleration="4" maxSpeed="40"/>'
+        "</LongitudinalDistanceAction>"
+    )
+    stop = when(at_time(30), tag="StopTrigger")
+    begin = {"Ego": EGO, "Other": init("Other", lane(-2, 40), 25)}
+    path = put(tmp_path, begin, maneuver("Other", event("keep", keep, when(at_time(1)))), stop=stop)
+    found = rows(path)["Other"]
+    s, v, step, expected = 40.0, 25.0, 1e-4, {}
+    for k in range(300_001):
+        time = k * step
+        expected[round(time, 4)] = s, v
+        error, pull = (100 + 20 * time) - s - 34, 0.0
+        if time >= 1:
+            stiffness = 0.4 * (2 if error < 0 else 4)
+            pull = min(max(error * stiffness - (v - 20) * 2 * math.sqrt(stiffness), -4), 2)
+        s, v = s + v * step, v + pull * step
+    there = np.array([expected[round(float(x), 4)] for x in found["time"]])
+    assert np.allclose(found["s"] - 2, there[:, 0], atol=0.2)
+    assert np.allclose(found["v_lon"], there[:, 1], atol=0.1)
+    assert 100 + 20 * 30 - (found["s"][-1] - 2) == pytest.approx(34, abs=0.2)
+
+
+@pytest.mark.parametrize(
+    ("final", "speed"),
+    [
+        ('<AbsoluteSpeed value="12"/>', 12),
+        ('<AbsoluteSpeed value="30"/>', 30),
+        ('<RelativeSpeedToMaster value="-5" speedTargetValueType="delta"/>', 15),
+        ('<RelativeSpeedToMaster value="0.5" speedTargetValueType="factor"/>', 10),
+    ],
+)
+@pytest.mark.parametrize("place", [400, 210, 150])
+def test_vehicles_arrive_at_the_same_time(final: str, speed: float, place: float, tmp_path: Path) -> None:
+    """Ego is at s = 300 after 10 s; the other one begins at 100 with 18 m/s."""
+    action = (
+        '<PrivateAction><SynchronizeAction masterEntityRef="Ego"><TargetPositionMaster>'
+        f"{lane(-2, 300)[10:-11]}</TargetPositionMaster><TargetPosition>{lane(-1, place)[10:-11]}"
+        f"</TargetPosition><FinalSpeed>{final}</FinalSpeed></SynchronizeAction></PrivateAction>"
+    )
+    begin = {"Ego": EGO, "Other": init("Other", lane(-1, 100), 18)}
+    found = rows(put(tmp_path, begin, maneuver("Other", event("meet", action, when(at_time(0))))))["Other"]
+    assert at(found, 10, "s") == pytest.approx(place + 2, abs=0.05)
+    assert at(found, 12, "v_lon") == pytest.approx(speed, abs=0.05)
+    assert found["v_lon"].min() > -1e-6
+    way = np.concatenate(([0], np.cumsum((found["v_lon"][1:] + found["v_lon"][:-1]) / 2 * 0.04)))
+    assert np.allclose(found["s"] - found["s"][0], way, atol=0.02)
+
+
+def test_no_vehicle_drives_against_the_road(tmp_path: Path) -> None:
+    x = '<Position><WorldPosition x="80" y="40" h="3.4"/></Position>'
+    with pytest.raises(InputError, match="drives against the others"):
+        rows(put(tmp_path, {"Ego": EGO, "Other": init("Other", x, 10)}))
+
+
 # --- what else is read ------------------------------------------------------------------------------
 
 

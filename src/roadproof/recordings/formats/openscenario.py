@@ -60,7 +60,9 @@ class Samples(Table):
 
     def cell(self, row: int, column: str) -> str:
         vehicle, time = self.columns["vehicle"][row], self.columns["time"][row]
-        return f"vehicle {vehicle} at {time:g} s, {column}={self.columns[column][row]:g}"
+        value = self.columns[column][row]
+        shown = value if isinstance(value, str) else f"{value:g}"
+        return f"vehicle {vehicle} at {time:g} s, {column}={shown}"
 
 
 @dataclass(frozen=True)
@@ -117,7 +119,7 @@ def _follows_polylines(root: Element) -> bool:
     actions = root.findall("Storyboard/Story/Act/ManeuverGroup/Maneuver/Event/Action")
     actors = {x.get("entityRef") for x in root.findall("Storyboard/Story/Act/ManeuverGroup/Actors/EntityRef")}
     names = {x.get("name") for x in root.findall("Entities/ScenarioObject")}
-    return names <= actors and all(x.find(_PLACES) is not None for x in actions)
+    return bool(actions) and names <= actors and all(x.find(_PLACES) is not None for x in actions)
 
 
 def _trajectory_reader(document: Document, boxes: Mapping[str, Box], road: Road) -> TrajectoryReader:

@@ -9,6 +9,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from roadproof.recordings.formats.storyboard.box import Box
+from roadproof.recordings.formats.storyboard.controllers import Arrive, KeepDistance, Limits
 from roadproof.recordings.formats.storyboard.courses import (
     SHAPES,
     Course,
@@ -64,6 +66,7 @@ class ActionReader:
     """Reads actions of a document as courses."""
 
     document: Document
+    boxes: Mapping[str, Box]
     positions: Positions
     trajectory: TrajectoryReader
 
@@ -81,10 +84,15 @@ class ActionReader:
             case "TeleportAction":
                 place = self.document.child(node, "Position")
                 s, d = self.positions.find(place, scene.states)
+                self.positions.check_direction(place)
                 speed = scene.states[actor.name].v_lon if actor.name in scene.states else 0.0
                 return {"along": Steady(scene.time, s, speed), "across": Steady(scene.time, d)}
             case "SpeedAction":
                 return {"along": self._speed(node, actor, scene)}
+            case "LongitudinalDistanceAction":
+                return {"along": self._keep_distance(node, actor, scene)}
+            case "SynchronizeAction":
+                return {"along": self._synchronize(node, actor, scene)}
             case "LaneChangeAction":
                 return {"across": self._lane_change(node, actor, scene)}
             case "LaneOffsetAction":
@@ -134,6 +142,56 @@ class ActionReader:
             raise read.error(node, f"dynamicsDimension={dimension}: one of time, distance, rate is needed")
         value = abs(read.number(node, "value"))
         return (shape if value else "step"), dimension, value
+
+    def _keep_distance(self, node: Element, actor: Actor, scene: Scene) -> Course:
+        read, state, other = self.document, scene.states[actor.name], self._state(node, scene)
+        name, seconds = read.text(node, "entityRef"), node.get("timeGap") is not None
+        distance = abs(read.number(node, "timeGap" if seconds else "distance"))
+        kind, ahead = node.get("displacement", "any"), other.s < state.s
+        if kind not in ("any", "trailingReferencedEntity", "leadingReferencedEntity"):
+            raise read.error(node, f"displacement={kind} is not supported")
+        ahead = ahead if kind == "any" else kind == "leadingReferencedEntity"
+        apart = 0.0
+        if node.get("freespace") in ("true", "1"):
+            box, beyond = self.boxes[actor.name], self.boxes[name]
+            shift = box.centre[0] - beyond.centre[0]
+            apart = (box.length + beyond.length) / 2 + (-shift if ahead else shift)
+        most = Limits()
+        limits = node.find("DynamicConstraints")
+        if limits is not None:
+            for rate in ("maxAccelerationRate", "maxDecelerationRate"):
+                if limits.get(rate):
+                    raise read.error(limits, f"{rate} is not supported")
+            names = ("maxAcceleration", "maxDeceleration", "maxSpeed")
+            most = Limits(*(read.number(limits, x) if limits.get(x) else math.inf for x in names))
+        now = Steady(scene.time, state.s, state.v_lon)
+        continuous = read.text(node, "continuous") in ("true", "1")
+        signed = -distance if ahead else distance
+        course = KeepDistance(now, actor.name, name, signed, seconds, apart, most, continuous)
+        return course.next(scene.time, scene.states)
+
+    def _synchronize(self, node: Element, actor: Actor, scene: Scene) -> Course:
+        """Tolerances are not used: both vehicles arrive at the positions themselves."""
+        read, state = self.document, scene.states[actor.name]
+        other = read.text(node, "masterEntityRef")
+        there, here = (
+            self.positions.find(read.child(node, x), scene.states)[0]
+            for x in ("TargetPositionMaster", "TargetPosition")
+        )
+        if here <= state.s or there <= scene.states[other].s:
+            raise read.error(node, "a target position is behind its vehicle")
+        final, share = None, 0.0
+        if node.find("FinalSpeed") is not None:
+            speed = read.only(read.child(node, "FinalSpeed"))
+            if len(speed):
+                raise read.error(speed[0], "a steady state is not supported")
+            final = read.number(speed, "value")
+            if speed.tag == "RelativeSpeedToMaster":
+                factor = speed.get("speedTargetValueType") == "factor"
+                final, share = (0.0, final) if factor else (final, 1.0)
+        now = Steady(scene.time, state.s, state.v_lon)
+        course = Arrive(now, actor.name, other, here, there, final, share)
+        return course.next(scene.time, scene.states)
 
     def _lane_change(self, node: Element, actor: Actor, scene: Scene) -> Course:
         read, state = self.document, scene.states[actor.name]

@@ -82,6 +82,8 @@ class ConditionReader:
     def _by_entity(self, node: Element, name: str, now: Situation) -> bool:
         read, state = self.document, now.states[name]
         match node.tag:
+            case "EndOfRoadCondition":  # a recording ends before
+                return False
             case "TraveledDistanceCondition":
                 return now.travelled[name] >= read.number(node, "value")
             case "SpeedCondition":
