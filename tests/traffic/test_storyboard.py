@@ -371,7 +371,7 @@ def test_parameters_and_catalogues(tmp_path: Path) -> None:
     found = rows(put(tmp_path, begin, more=more, entity=entity))["Ego"]
     assert at(found, 0, "v_lon") == pytest.approx(25)
     assert at(found, 0, "s") == pytest.approx(103)
-    with pytest.raises(InputError, match="no Vehicle bus in a catalogue cars"):
+    with pytest.raises(InputError, match="no bus in a catalogue cars"):
         rows(put(tmp_path, begin, more=more, entity=entity.replace('"car"', '"bus"')))
 
 
@@ -390,6 +390,84 @@ def test_expressions(text: str, value: float) -> None:
 def test_what_is_no_expression(text: str) -> None:
     with pytest.raises(ValueError, match=r"expression|supported|number"):
         expression_value(text)
+
+
+def test_objects_that_are_no_vehicles_are_left_out(tmp_path: Path) -> None:
+    begin = {"Ego": EGO, "Box": init("Box", lane(-2, 400), 0)}
+    path = put(tmp_path, begin)
+    text = path.read_text("utf-8")
+    thing = f'<ScenarioObject name="Box">{CAR}'
+    assert thing in text
+    path.write_text(text.replace(thing, thing.replace("Vehicle", "MiscObject")), "utf-8")
+    recording = read_recording(path)
+    assert recording.vehicles == 1
+    assert "left out, as they are no motor vehicles: Box" in recording.notes
+    move = maneuver("Box", event("go", to_speed(3), when(at_time(1))))
+    path = put(tmp_path, begin, move)
+    path.write_text(path.read_text("utf-8").replace(thing, thing.replace("Vehicle", "Pedestrian")), "utf-8")
+    with pytest.raises(InputError, match="ManeuverGroup group of Box: Box is no motor vehicle"):
+        rows(path)
+
+
+def test_a_collision_ends_it(tmp_path: Path) -> None:
+    """The gap of 46 m between boxes closes with 10 m/s."""
+    hit = of("Ego", '<CollisionCondition><EntityRef entityRef="Other"/></CollisionCondition>')
+    begin = {"Ego": EGO, "Other": init("Other", lane(-2, 150), 10)}
+    found = rows(put(tmp_path, begin, stop=when(hit, tag="StopTrigger")))["Ego"]
+    assert found["time"][-1] == pytest.approx(4.6, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("condition", "time"),
+    [
+        (
+            '<RelativeDistanceCondition entityRef="Other" relativeDistanceType="longitudinal" value="20" '
+            'freespace="false" rule="lessThan"/>',
+            3,
+        ),
+        (
+            '<RelativeDistanceCondition entityRef="Other" relativeDistanceType="longitudinal" value="20" '
+            'freespace="true" rule="lessThan"/>',
+            2.6,
+        ),
+        ('<TimeHeadwayCondition entityRef="Other" value="2" freespace="false" rule="lessThan"/>', 1),
+        (
+            '<TimeToCollisionCondition value="1" freespace="true" rule="lessThan">'
+            '<TimeToCollisionConditionTarget><EntityRef entityRef="Other"/></TimeToCollisionConditionTarget>'
+            "</TimeToCollisionCondition>",
+            3.6,
+        ),
+        (f'<ReachPositionCondition tolerance="2">{lane(-2, 182)}</ReachPositionCondition>', 4),
+        (
+            f'<DistanceCondition value="2" freespace="false" rule="lessThan">{lane(-2, 182)}'
+            "</DistanceCondition>",
+            4,
+        ),
+        ('<RelativeSpeedCondition entityRef="Other" value="9" rule="greaterThan"/>', 0),
+    ],
+)
+def test_triggers_fire_when_they_should(condition: str, time: float, tmp_path: Path) -> None:
+    """Ego is 50 m behind and 10 m/s faster; by hand, the condition holds from ``time`` on."""
+    brake = event("brake", to_speed(10, "step"), when(of("Ego", condition)))
+    begin = {"Ego": EGO, "Other": init("Other", lane(-2, 150), 10)}
+    found = rows(put(tmp_path, begin, maneuver("Ego", brake)))["Ego"]
+    changed = found["time"][np.argmax(found["v_lon"] < 15)]
+    assert changed == pytest.approx(time, abs=0.051)
+
+
+@pytest.mark.parametrize(
+    ("priority", "speeds"), [("skip", (15, 10)), ("override", (15, 30)), ("parallel", (15, 30))]
+)
+def test_priorities(priority: str, speeds: tuple[float, float], tmp_path: Path) -> None:
+    """A second event fires at 2.5 s, while the first one brakes with 2 m/s² from 0 to 5 s."""
+    first = event("first", to_speed(10, "linear", "time", 5), when(at_time(0)))
+    clock = of("Ego", '<TraveledDistanceCondition value="43.74"/>')
+    second = event("second", to_speed(30, "step"), when(clock, "rising"), priority)
+    found = rows(
+        put(tmp_path, {"Ego": EGO}, maneuver("Ego", first, second), stop=when(at_time(8), tag="StopTrigger"))
+    )
+    assert at(found["Ego"], 2.48, "v_lon") == pytest.approx(speeds[0], abs=0.1)
+    assert at(found["Ego"], 6, "v_lon") == pytest.approx(speeds[1])
 
 
 def test_relative_speed_and_an_action_that_ends_another(tmp_path: Path) -> None:

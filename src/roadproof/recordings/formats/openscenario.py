@@ -43,6 +43,7 @@ _KINDS = {
     "bus": "Truck",
     "motorbike": "Motorcycle",
 }
+_OTHERS = ("Pedestrian", "MiscObject")
 _PLACES = "PrivateAction/RoutingAction/FollowTrajectoryAction"
 
 
@@ -85,6 +86,8 @@ def read_scenario(path: Path) -> Scenario:
             f"{path}: LogicFile filepath={road_path.name}: a road in OpenDRIVE (.xodr) is needed"
         )
     boxes = dict(_boxes(path, root))
+    if not boxes:
+        raise InputError(f"{path}: no ScenarioObject is a motor vehicle")
     road = load_road(stretch_of(document, road_path))
     if _follows_polylines(root):
         ways = {name: _in_road(x, boxes[name], road) for name, x in _vertices(path, root, boxes)}
@@ -95,7 +98,9 @@ def read_scenario(path: Path) -> Scenario:
         raise InputError(f"{path}: the storyboard ends at {len(play.states) / TICKS:g} s: {play.ending}")
     told = f"the storyboard ends at {(len(play.states) - 1) / TICKS:g} s: {play.ending}"
     note = f"the storyboard was run with conditions evaluated {TICKS} times a second, {RATE} samples a second"
-    return Scenario(_of_play(path, boxes, play), road, road_path, (note, told))
+    others = sorted({x.get("name", "") for x in root.findall("Entities/ScenarioObject")} - {*boxes})
+    left_out = [f"left out, as they are no motor vehicles: {', '.join(others)}"] if others else []
+    return Scenario(_of_play(path, boxes, play), road, road_path, (note, told, *left_out))
 
 
 def read_columns(path: Path) -> tuple[Table, Road, Path]:
@@ -152,6 +157,7 @@ def _number(path: Path, node: Element | None, attribute: str, what: str) -> floa
 
 
 def _boxes(path: Path, root: Element) -> Iterator[tuple[str, Box]]:
+    """The motor vehicles by name."""
     seen: set[str] = set()
     for node in root.findall("Entities/ScenarioObject"):
         name = _text(path, node, "name", "a ScenarioObject")
@@ -160,9 +166,13 @@ def _boxes(path: Path, root: Element) -> Iterator[tuple[str, Box]]:
         seen.add(name)
         told = f"ScenarioObject {name}"
         vehicle = node.find("Vehicle")
+        if vehicle is None and any(node.find(x) is not None for x in _OTHERS):
+            continue
         if vehicle is None:
             raise InputError(f"{path}: {told} is no Vehicle")
         category = vehicle.get("vehicleCategory", "car")
+        if category == "bicycle":
+            continue
         if category not in _KINDS:
             raise InputError(f"{path}: {told}: vehicleCategory={category} is none of {', '.join(_KINDS)}")
         size, centre = vehicle.find("BoundingBox/Dimensions"), vehicle.find("BoundingBox/Center")

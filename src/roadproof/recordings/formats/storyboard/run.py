@@ -125,9 +125,11 @@ class _Runner:
                 for x in private.findall("PrivateAction")
             ]
         )
+        known = {x.get("name") for x in self.document.root.iter("ScenarioObject")}
         for name, action in actions:
-            if name not in self.boxes:
+            if name not in known:
                 raise self.document.error(action, f"there is no ScenarioObject {name}")
+        actions = [x for x in actions if x[0] in self.boxes]
         teleports = [x for x in actions if x[1].find("TeleportAction") is not None]
         self._begin_all(teleports)
         for name in self.boxes:
