@@ -303,6 +303,62 @@ def test_vehicles_arrive_at_the_same_time(final: str, speed: float, place: float
     assert np.allclose(found["s"] - found["s"][0], way, atol=0.02)
 
 
+@pytest.mark.parametrize(
+    "steady", ['<TargetTimeSteadyState time="2"/>', '<TargetDistanceSteadyState distance="36"/>']
+)
+def test_the_final_speed_may_be_reached_before(steady: str, tmp_path: Path) -> None:
+    """18 m/s in the last 2 s, which are 36 m, before s = 260 at 10 s."""
+    action = (
+        '<PrivateAction><SynchronizeAction masterEntityRef="Ego"><TargetPositionMaster>'
+        f"{lane(-2, 300)[10:-11]}</TargetPositionMaster><TargetPosition>{lane(-1, 260)[10:-11]}"
+        f'</TargetPosition><FinalSpeed><AbsoluteSpeed value="18">{steady}</AbsoluteSpeed></FinalSpeed>'
+        "</SynchronizeAction></PrivateAction>"
+    )
+    begin = {"Ego": EGO, "Other": init("Other", lane(-1, 100), 10)}
+    found = rows(put(tmp_path, begin, maneuver("Other", event("meet", action, when(at_time(0))))))["Other"]
+    last = (found["time"] > 8.05) & (found["time"] < 9.95)
+    assert np.allclose(found["v_lon"][last], 18, atol=0.02)
+    assert at(found, 8, "s") == pytest.approx(260 - 36 + 2, abs=0.05)
+    assert at(found, 10, "s") == pytest.approx(262, abs=0.05)
+
+
+def test_a_speed_profile(tmp_path: Path) -> None:
+    """From 2 s on: to 30 m/s in 4 s, then to 10 m/s in 5 s, by hand."""
+    entries = "".join(f'<SpeedProfileEntry speed="{v}" time="{t}"/>' for v, t in ((30, 4), (10, 5)))
+    profile = longitudinal(f'<SpeedProfileAction followingMode="position">{entries}</SpeedProfileAction>')
+    found = rows(put(tmp_path, {"Ego": EGO}, maneuver("Ego", event("go", profile, when(at_time(2))))))["Ego"]
+    assert at(found, 4, "v_lon") == pytest.approx(25)
+    assert at(found, 6, "s") == pytest.approx(102 + 40 + 100)
+    assert at(found, 8, "a_lon") == pytest.approx(-4)
+    assert at(found, 11, "s") == pytest.approx(102 + 40 + 100 + 100)
+    assert at(found, 13, "v_lon") == pytest.approx(10)
+
+
+def test_a_trajectory_within_a_story(tmp_path: Path) -> None:
+    """Relative times: from 2 s to 6 s along s with 15 m/s and 1 m/s to the right; then straight on."""
+
+    def vertex(k: int) -> str:
+        s, d = 140 + 15 * k, -6 - k
+        x, y = 30 + s * math.cos(0.3) - d * math.sin(0.3), 40 + s * math.sin(0.3) + d * math.cos(0.3)
+        place = f'<Position><WorldPosition x="{x}" y="{y}" h="0.3"/></Position>'
+        return f'<Vertex time="{k}">{place}</Vertex>'
+
+    shape = f"<Shape><Polyline>{''.join(map(vertex, range(5)))}</Polyline></Shape>"
+    follow = (
+        "<PrivateAction><RoutingAction><FollowTrajectoryAction><TrajectoryRef>"
+        f'<Trajectory name="t" closed="false">{shape}</Trajectory></TrajectoryRef><TimeReference><Timing '
+        'domainAbsoluteRelative="relative" scale="1" offset="0"/></TimeReference><TrajectoryFollowingMode '
+        'followingMode="position"/></FollowTrajectoryAction></RoutingAction></PrivateAction>'
+    )
+    begin = {"Ego": EGO, "Other": init("Other", lane(-1, 90), 25)}
+    found = rows(put(tmp_path, begin, maneuver("Ego", event("go", follow, when(at_time(2))))))["Ego"]
+    assert at(found, 4, "s") == pytest.approx(142 + 30, abs=1e-6)
+    assert at(found, 4, "d") == pytest.approx(-5 - 2, abs=1e-6)
+    assert at(found, 4, "v_lat") == pytest.approx(-1, abs=1e-6)
+    assert at(found, 8, "s") == pytest.approx(142 + 60 + 30, abs=1e-6)
+    assert at(found, 8, "d") == pytest.approx(-5 - 4, abs=1e-6)
+
+
 def test_no_vehicle_drives_against_the_road(tmp_path: Path) -> None:
     x = '<Position><WorldPosition x="80" y="40" h="3.4"/></Position>'
     with pytest.raises(InputError, match="drives against the others"):
@@ -499,7 +555,7 @@ def test_it_is_read_as_a_recording(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        ("SpeedAction>", "SpeedProfileAction>", "SpeedProfileAction: this action is not supported"),
+        ("SpeedAction>", "TrailerAction>", "TrailerAction: this action is not supported"),
         ("SimulationTimeCondition", "TimeOfDayCondition", "TimeOfDayCondition: this condition is not"),
         ('laneId="-2"', 'laneId="-5"', "road 7 has no lane -5 at s=100.00"),
         ('dynamicsShape="linear"', 'dynamicsShape="round"', "dynamicsShape=round: one of step, linear"),

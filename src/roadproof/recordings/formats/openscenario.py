@@ -130,9 +130,9 @@ def _follows_polylines(root: Element) -> bool:
 def _trajectory_reader(document: Document, boxes: Mapping[str, Box], road: Road) -> TrajectoryReader:
     """Reads a FollowTrajectoryAction of a storyboard."""
 
-    def read(follow: Element, name: str) -> Trajectory:
+    def read(follow: Element, name: str, begin: float) -> Trajectory:
         told, box = document.places[follow], boxes[name]
-        way = _in_road(_polyline(document.path, follow, told), box, road)
+        way = _in_road(_polyline(document.path, follow, told, begin), box, road)
 
         def state(time: float) -> State:
             at = np.array([time])
@@ -236,12 +236,15 @@ def _check_exact(path: Path, follow: Element, told: str) -> None:
         raise InputError(f"{path}: {told}: closed=true: write out the way back as vertices with times")
 
 
-def _polyline(path: Path, follow: Element, told: str) -> Floats:
+def _polyline(path: Path, follow: Element, told: str, begin: float | None = None) -> Floats:
+    """Rows of time, x, y and heading; times may be relative where the action begins at ``begin`` (s)."""
     _check_exact(path, follow, told)
     timing = follow.find("TimeReference/Timing")
-    if timing is None or timing.get("domainAbsoluteRelative") != "absolute":
+    domain = None if timing is None else timing.get("domainAbsoluteRelative")
+    if timing is None or (domain != "absolute" and (begin is None or domain != "relative")):
         raise InputError(f"{path}: {told}: a Timing with domainAbsoluteRelative=absolute is needed")
     scale, offset = (_number(path, timing, x, f"the Timing of {told}") for x in ("scale", "offset"))
+    offset += begin if begin is not None and domain == "relative" else 0.0
     shape = next((x for x in follow.iter("Shape")), None)
     shapes = [] if shape is None else [x.tag for x in shape]
     if shape is None or shapes != ["Polyline"]:

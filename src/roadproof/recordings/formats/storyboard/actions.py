@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
 from roadproof.recordings.formats.storyboard.box import Box
-from roadproof.recordings.formats.storyboard.controllers import Arrive, KeepDistance, Limits
+from roadproof.recordings.formats.storyboard.controllers import Arrive, KeepDistance, Limits, Phases
 from roadproof.recordings.formats.storyboard.courses import (
     SHAPES,
     Course,
@@ -42,7 +42,8 @@ class Trajectory:
     state: Callable[[float], State]
 
 
-TrajectoryReader: TypeAlias = Callable[[Element, str], Trajectory]
+TrajectoryReader: TypeAlias = Callable[[Element, str, float], Trajectory]
+"""Reads a FollowTrajectoryAction that begins at a time (s), for a vehicle by name."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +90,8 @@ class ActionReader:
                 return {"along": Steady(scene.time, s, speed), "across": Steady(scene.time, d)}
             case "SpeedAction":
                 return {"along": self._speed(node, actor, scene)}
+            case "SpeedProfileAction":
+                return {"along": self._speed_profile(node, actor, scene)}
             case "LongitudinalDistanceAction":
                 return {"along": self._keep_distance(node, actor, scene)}
             case "SynchronizeAction":
@@ -131,6 +134,26 @@ class ActionReader:
         if kind not in ("delta", "factor"):
             raise read.error(target, f"speedTargetValueType={kind}: one of delta, factor is needed")
         return other + value if kind == "delta" else other * value
+
+    def _speed_profile(self, node: Element, actor: Actor, scene: Scene) -> Course:
+        """Speeds that are reached linearly, each in its time; the first one at once where its time is 0."""
+        read, state = self.document, scene.states[actor.name]
+        if read.text(node, "followingMode") != "position":
+            raise read.error(node, f"followingMode={node.get('followingMode')}: position is needed")
+        if node.get("entityRef"):
+            raise read.error(node, "speeds that are relative to a vehicle are not supported")
+        begin = speed = state.v_lon
+        phases = []
+        for k, entry in enumerate(node.findall("SpeedProfileEntry")):
+            target, duration = (read.number(entry, x) for x in ("speed", "time"))
+            if duration > 0:
+                phases.append((duration, (target - speed) / duration))
+            elif k or duration < 0:
+                raise read.error(entry, f"time={duration:g} must be above 0")
+            else:
+                begin = target
+            speed = target
+        return Phases(scene.time, state.s, begin, tuple(phases))
 
     def _dynamics(self, node: Element) -> tuple[str, str, float]:
         """Shape, dimension and value, which is positive unless the shape is a step."""
@@ -180,17 +203,21 @@ class ActionReader:
         )
         if here <= state.s or there <= scene.states[other].s:
             raise read.error(node, "a target position is behind its vehicle")
-        final, share = None, 0.0
+        final, share, steady = None, 0.0, (0.0, 0.0)
         if node.find("FinalSpeed") is not None:
             speed = read.only(read.child(node, "FinalSpeed"))
-            if len(speed):
-                raise read.error(speed[0], "a steady state is not supported")
+            for x in speed:
+                kinds = {"TargetDistanceSteadyState": "distance", "TargetTimeSteadyState": "time"}
+                if x.tag not in kinds:
+                    raise read.error(x, "this steady state is not supported")
+                value = read.number(x, kinds[x.tag])
+                steady = (value, 0.0) if kinds[x.tag] == "distance" else (0.0, value)
             final = read.number(speed, "value")
             if speed.tag == "RelativeSpeedToMaster":
                 factor = speed.get("speedTargetValueType") == "factor"
                 final, share = (0.0, final) if factor else (final, 1.0)
         now = Steady(scene.time, state.s, state.v_lon)
-        course = Arrive(now, actor.name, other, here, there, final, share)
+        course = Arrive(now, actor.name, other, here, there, final, share, steady)
         return course.next(scene.time, scene.states)
 
     def _lane_change(self, node: Element, actor: Actor, scene: Scene) -> Course:
@@ -241,7 +268,7 @@ class ActionReader:
         return PlaceTransition(scene.time, (state.d, d), duration, SHAPES[shape])
 
     def _follow(self, node: Element, actor: Actor, scene: Scene) -> dict[Axis, Course]:
-        found = self.trajectory(node, actor.name)
+        found = self.trajectory(node, actor.name, scene.time)
         if found.begin < scene.time - 0.011:
             told = f"it begins at {scene.time:g} s, after the first Vertex at {found.begin:g} s"
             raise self.document.error(node, told)

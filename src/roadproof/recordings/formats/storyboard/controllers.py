@@ -107,7 +107,8 @@ class Arrive:
 
     With ``final_speed``: two phases of the same acceleration, or with a stop between; otherwise constant
     speed. A plan is made again where the other vehicle changes its speed. ``share``: the final speed is
-    ``final_speed`` plus so many times that of the other one.
+    ``final_speed`` plus so many times that of the other one. ``steady``: it has this speed in the last so
+    many metres, and in the last so many seconds.
     """
 
     now: Course
@@ -117,6 +118,7 @@ class Arrive:
     other_place: float
     final_speed: float | None
     share: float = 0.0
+    steady: tuple[float, float] = (0.0, 0.0)
     planned: float | None = None
     over: bool = False
 
@@ -140,7 +142,13 @@ class Arrive:
             course: Course = Steady(time, state.s, way / duration)
         else:
             final = self.final_speed + self.share * other.v_lon
-            course = Phases(time, state.s, state.v_lon, arrival(way, duration, (state.v_lon, final)))
+            last = self.steady[1] + (self.steady[0] / final if final > _SLOWEST else 0.0)
+            way, duration = way - last * final, duration - last
+            if way <= 0 or duration <= 0:
+                course = Phases(time, state.s, final, ())
+            else:
+                phases = arrival(way, duration, (state.v_lon, final))
+                course = Phases(time, state.s, state.v_lon, phases)
         return replace(self, now=course, planned=other.v_lon)
 
 

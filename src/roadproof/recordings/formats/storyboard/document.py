@@ -120,6 +120,8 @@ class Document:
 def open_document(path: Path) -> Document:
     """The file with its parameters and catalogues put in. Raises ``InputError``."""
     root = read_xml(path, "OpenSCENARIO")
+    if root.find("ParameterValueDistribution") is not None:
+        raise InputError(f"{path}: ParameterValueDistribution: name a scenario with values in place of it")
     places = dict[Element, str]()
     _put_values(path, root, {}, "", places)
     document = Document(path, root, places)
