@@ -39,6 +39,7 @@ def test_page(path: Path, tmp_path: Path) -> None:
         shutil.copytree(path.parent, folder)
     else:
         folder.mkdir()
+        folder.joinpath("examples").symlink_to(ROOT / "examples")
     page = path.read_text("utf-8")
     for name, text in files_of(page).items():
         (folder / name).write_text(text, "utf-8")

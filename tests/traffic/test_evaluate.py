@@ -37,6 +37,7 @@ from roadproof.recordings.evaluate.questions import (
     default_settings,
 )
 from roadproof.recordings.evaluate.recheck import recheck
+from roadproof.recordings.formats import pairs as recorded_pairs
 from roadproof.recordings.formats.neighbours import NONE, find_neighbours
 from roadproof.recordings.formats.pairs import Pairs
 from roadproof.recordings.formats.recording import Recording, keep_vehicles
@@ -154,7 +155,7 @@ def _lane_at_the_end(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Q
 
 
 def _own_lane_for_scenario_7(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Questions:
-    monkeypatch.setattr(module, "lane_owner", lambda specification, scenario: "SV")
+    monkeypatch.setattr(module.s, "lane_owner", lambda specification, scenario: "SV")
     return ask(questions.settings, 25)
 
 
@@ -169,7 +170,7 @@ def _short_reach(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Quest
 
 
 def _swapped_names(questions: Questions, monkeypatch: pytest.MonkeyPatch) -> Questions:
-    monkeypatch.setattr(evaluate, "TRIPLE", ("SV", "POV2", "POV1"))
+    monkeypatch.setattr(recorded_pairs, "TRIPLE", ("SV", "POV2", "POV1"))
     return questions
 
 

@@ -1,11 +1,11 @@
 """How far lengths along the lanes of a bent road are from those in s."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
 from roadproof.world.reference_line import ReferenceLine
-from roadproof.world.road import Lanelet
+from roadproof.world.road import Lanelet, Road
 
 
 @dataclass(frozen=True)
@@ -20,6 +20,15 @@ class LengthError:
 
     def __str__(self) -> str:
         return f"{float(100 * self.share):.2g} %, {float(self.metres):.2g} m on the whole length"
+
+
+def told_bends(road: Road) -> Iterator[str]:
+    """How far lengths in the lanes of a road are from those in s, in a line; nothing where it is straight."""
+    if road.line is None:
+        return
+    error = length_error(road.line, road.lanelets)
+    if error.share:
+        yield f"road {road.name} bends: lengths in its lanes differ from those in s by up to {error}"
 
 
 def length_error(line: ReferenceLine, lanelets: Iterable[Lanelet]) -> LengthError:

@@ -176,7 +176,9 @@ class Models(Settings):
 class SearchPlace(Models):
     """Where, with whom and for how long drives are looked for."""
 
-    road: RoadLike | None = search(None, "--road R", "road, or .toml or .xodr file (default: by formula)")
+    road: RoadLike | None = search(
+        None, "--road R", "road, .toml file or map: a.xodr#road=1 (default: by formula)"
+    )
     lanes: Mapping[str, str] | None = search(
         None,
         "--lane [L=]LANE",
