@@ -20,7 +20,19 @@ from roadproof.logic.custom_names import own_of
 from roadproof.logic.formula import Application, Compare, Formula
 from roadproof.logic.rewrite import bounds_of, intervals_of, signals_of, terms_of, without_names
 from roadproof.logic.terms import Own
-from roadproof.semantics.sampled import answers as a
+from roadproof.semantics.sampled.answers import (
+    Convention,
+    Key,
+    Margins,
+    TruthArrays,
+    Verdicts,
+    When,
+    check_starts,
+    no_margin,
+    read_bits,
+    store_margin,
+    views,
+)
 from roadproof.semantics.sampled.arithmetic import Program, margin_program, truth_program
 from roadproof.semantics.sampled.batch import Array, Batch, Integers
 from roadproof.semantics.sampled.boolean import BITS, TRUTH, observe_truth, pack, packed_inside
@@ -52,15 +64,15 @@ class Observation:
 
 
 @dataclass(frozen=True)
-class Monitor(Generic[a.Key]):
+class Monitor(Generic[Key]):
     """``formulas`` as they were given; ``plain`` are the same without names, sharing sub-trees.
 
     ``named``: sub-formulas that have names, and what each is without. ``signals``: what they speak of, of
     any vehicle; own signals of some vehicle stand for all.
     """
 
-    formulas: Mapping[a.Key, Formula]
-    plain: Mapping[a.Key, Formula]
+    formulas: Mapping[Key, Formula]
+    plain: Mapping[Key, Formula]
     states: frozenset[Formula]
     signals: tuple[SignalName | Own, ...]
     programs: dict[tuple[Compare, ...], Program] = field(default_factory=dict, repr=False, compare=False)
@@ -87,12 +99,12 @@ class Monitor(Generic[a.Key]):
     def evaluate(
         self,
         batch: Batch | Observation,
-        semantics: a.Convention = "truncated",
-        at: a.When = "start",
+        semantics: Convention = "truncated",
+        at: When = "start",
         starts: Integers | None = None,
         named: bool = False,
         threads: int = 1,
-    ) -> a.Verdicts[a.Key]:
+    ) -> Verdicts[Key]:
         """The answer to every formula at the start of each trace, or ``at`` all samples.
 
         ``starts`` gives the sample at which each trace starts (0 if not given). With ``named``,
@@ -100,17 +112,17 @@ class Monitor(Generic[a.Key]):
         bounds that are no multiple of the step, and for signals and lanes that the batch has not.
         """
         seen = self.observe(batch, threads=threads) if isinstance(batch, Batch) else batch
-        a.check_starts(starts, seen.lengths)
+        check_starts(starts, seen.lengths)
         shape = (seen.samples, -(-len(seen.lengths) // BITS))
         end = packed_inside(seen.lengths, seen.samples)
         evaluation = Evaluation(TRUTH, seen.leaves, end, seen.dt, shape, self.states)
 
-        def answer(formula: Formula, when: a.When) -> a.TruthArrays:
-            strong, weak = (evaluation.value(formula, view) for view in a.views(semantics))
-            true = a.read_bits(strong, seen.lengths, when, starts)
-            return a.TruthArrays(true, a.read_bits(~weak, seen.lengths, when, starts))
+        def answer(formula: Formula, when: When) -> TruthArrays:
+            strong, weak = (evaluation.value(formula, view) for view in views(semantics))
+            true = read_bits(strong, seen.lengths, when, starts)
+            return TruthArrays(true, read_bits(~weak, seen.lengths, when, starts))
 
-        return a.Verdicts(
+        return Verdicts(
             semantics,
             {name: answer(formula, at) for name, formula in self.plain.items()},
             {name: answer(body, "all") for name, body in self.named.items()} if named else {},
@@ -119,33 +131,33 @@ class Monitor(Generic[a.Key]):
     def measure(
         self,
         batch: Batch,
-        semantics: a.Convention = "truncated",
-        at: a.When = "start",
+        semantics: Convention = "truncated",
+        at: When = "start",
         starts: Integers | None = None,
         named: bool = False,
         threads: int = 1,
         samples_in_block: int = 24_000,
-    ) -> a.Margins[a.Key]:
+    ) -> Margins[Key]:
         """The margin of every formula; arguments and errors as in ``evaluate``."""
-        a.check_starts(starts, batch.lengths)
+        check_starts(starts, batch.lengths)
         given = _given(batch)
         comparisons = tuple(self._comparisons(given))
         program = margin_program(comparisons)
-        margins = {name: a.no_margin(batch, at) for name in self.plain}
-        named_margins = {name: a.no_margin(batch, "all") for name in self.named} if named else {}
+        margins = {name: no_margin(batch, at) for name in self.plain}
+        named_margins = {name: no_margin(batch, "all") for name in self.named} if named else {}
 
         def measure_block(columns: slice) -> None:
             evaluation = self._margin_evaluation(batch, given, comparisons, program, columns)
             begin = None if starts is None else starts[columns]
             for name, formula in self.plain.items():
-                a.store_margin(margins[name], evaluation, formula, semantics, batch, columns, at, begin)
+                store_margin(margins[name], evaluation, formula, semantics, batch, columns, at, begin)
             for node, made in named_margins.items():
-                a.store_margin(made, evaluation, self.named[node], semantics, batch, columns, "all", begin)
+                store_margin(made, evaluation, self.named[node], semantics, batch, columns, "all", begin)
 
         with ThreadPoolExecutor(threads) as pool:
             for _ in pool.map(measure_block, trace_blocks(batch, samples_in_block)):
                 pass
-        return a.Margins(semantics, margins, named_margins)
+        return Margins(semantics, margins, named_margins)
 
     def rests_on(self, given: Iterable[Formula]) -> bool:
         """Whether the truth of these state formulas is all that a batch has to say. Raises ``InputError``."""
@@ -186,7 +198,7 @@ class Monitor(Generic[a.Key]):
                     waiting.extend(f.children(current))
 
 
-def compile(formulas: Mapping[a.Key, Formula]) -> Monitor[a.Key]:
+def compile(formulas: Mapping[Key, Formula]) -> Monitor[Key]:
     """A monitor for some formulas, by names or values of the caller's choice; mistakes show them as text.
 
     Every parameter must have its value (``with_values``); lanes may be open where the batch gives
@@ -203,7 +215,7 @@ def _unnamed(formula: Formula) -> Formula:
     return formula.body if isinstance(formula, Application) else formula
 
 
-def _check_closed(formulas: Mapping[a.Key, Formula]) -> None:
+def _check_closed(formulas: Mapping[Key, Formula]) -> None:
     whole = tuple(formulas.values())
     fine = all(map(_has_value, terms_of(*whole))) and all(
         map(_is_interval, (bounds_of(x) for part in f.subformulas(*whole) for x in f.intervals(part)))
