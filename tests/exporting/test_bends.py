@@ -18,6 +18,7 @@ from roadproof.library.loading import bundled_library
 from roadproof.recordings.export import commonroad, openscenario
 from roadproof.recordings.export.points import centre
 from roadproof.recordings.export.subject import subject_of
+from roadproof.recordings.formats.commonroad import read_commonroad
 from roadproof.recordings.formats.openscenario import read_columns
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.replay import first_breach
@@ -136,6 +137,25 @@ def test_exports_agree_with_an_integration() -> None:
     assert np.abs(np.hypot(speeds, aside)[:-1] - measured).max() < 0.05  # means over 0.1 s
     middle = (np.hypot(speeds, aside)[1:] + np.hypot(speeds, aside)[:-1]) / 2
     assert np.abs(middle - measured).max() < 0.02
+
+
+def test_motion_is_read_back_from_commonroad(tmp_path: Path) -> None:
+    drive = turning("30", "0.5")
+    subject = subject_of("one", 1, file_of(drive), 25)
+    (tmp_path / "one.xml").write_bytes(commonroad.files(subject)["one.xml"])
+    found = read_commonroad(tmp_path / "one.xml")
+    states = subject.samples["SV"]
+    v_lon, v_lat, a_lat = (
+        np.array([float(getattr(x, v)) for x in states]) for v in ("v_lon", "v_lat", "a_lat")
+    )
+    assert np.abs(np.gradient(found.s, 1 / 25) - found.v_lon).max() < 0.01
+    # s is measured along the middle of the right lane, 1.875 m outside of the map's line.
+    bend = np.interp(
+        found.s - float(drive.vehicles["SV"].length) / 2, [300, 420, 1020], [0, 1 / 400, 1 / 400]
+    )
+    assert np.abs(found.v_lon - v_lon * (1 + 1.875 * bend)).max() < 0.01
+    assert np.abs(found.v_lat - v_lat).max() < 0.02
+    assert np.abs(found.a_lat - a_lat).max() < 0.001
 
 
 def test_a_scenario_is_read_back_where_it_was(tmp_path: Path) -> None:

@@ -121,6 +121,7 @@ def _traffic(name: str, rate: int, obstacles: Sequence[Obstacle], notes: tuple[s
         heading=heading,
         velocity=speed[:, None] * forward + drift[:, None] * aside,
         acceleration=pull[:, None] * forward + _change(drift, start, rate)[:, None] * aside,
+        acceleration_turns=False,
         notes=notes,
         moments=moments_of(np.column_stack((speed, pull, sizes)), start),
     )

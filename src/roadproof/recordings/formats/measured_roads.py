@@ -14,6 +14,13 @@ import numpy as np
 import numpy.typing as npt
 
 from roadproof.recordings.formats.lanelets import used_lanes
+from roadproof.recordings.formats.line_coordinates import (
+    BLOCK,
+    LineCoordinates,
+    even_line,
+    motion_along,
+    project,
+)
 from roadproof.recordings.formats.recording import (
     ZONES,
     Bools,
@@ -26,115 +33,6 @@ from roadproof.recordings.formats.recording import (
 )
 from roadproof.world.maps.network import Network
 from roadproof.world.road import Lanelet
-
-BLOCK = 10_000
-"""Points that are projected at once, so that memory does not grow with a recording."""
-AROUND = 6
-"""Segments of a line before and after the vertex nearest to a point, among which it is projected."""
-
-
-@dataclass(frozen=True)
-class LineCoordinates:
-    """Points in the coordinates of a line: s along it, d to its left (m), and its direction there (rad).
-
-    ``stretch`` is how much longer a way of one metre is at the point than on the line, as a share: d times
-    the curvature, positive on the outer side. ``turn`` is how much the line has turned up to there (rad),
-    to both sides together.
-    """
-
-    s: Floats
-    d: Floats
-    heading: Floats
-    stretch: Floats
-    turn: Floats
-
-
-def even_line(line: Floats, step: float = 5.0) -> Floats:
-    """The polyline (m, 2) with vertices about ``step`` metres apart, so that its kinks are those of the road.
-
-    Lanelets have vertices centimetres apart, whose rounded coordinates turn the line by a degree and back.
-    """
-    way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))))
-    at = np.linspace(0, way[-1], 1 + max(1, round(float(way[-1]) / step)))
-    return np.stack((np.interp(at, way, line[:, 0]), np.interp(at, way, line[:, 1])), axis=1)
-
-
-def project(line: Floats, points: Floats) -> LineCoordinates:
-    """Coordinates of ``points`` (n, 2) along the polyline ``line`` (m, 2), straight on beyond its ends.
-
-    The direction of the line turns evenly from vertex to vertex (at a vertex it is that of the chord
-    between its neighbours), and a point belongs to the nearest place that it is square to; so s, d and
-    heading have no jumps at the kinks of the line (Héry, Xu, Bonnifait: *Map-based curvilinear coordinates
-    for autonomous vehicles*, IV 2017).
-    """
-    blocks = [_project(line, points[k : k + BLOCK]) for k in range(0, max(1, len(points)), BLOCK)]
-    return LineCoordinates(
-        *(np.concatenate([getattr(block, x.name) for block in blocks]) for x in fields(LineCoordinates))
-    )
-
-
-def _project(line: Floats, points: Floats) -> LineCoordinates:
-    step = np.diff(line, axis=0)
-    length = np.hypot(step[:, 0], step[:, 1])
-    unit = step / length[:, None]
-    direction = np.concatenate((unit[:1], line[2:] - line[:-2], unit[-1:]))
-    direction /= np.hypot(direction[:, 0], direction[:, 1])[:, None]
-    turn = np.diff(direction, axis=0)
-    near = _near(line, points)
-    offset = points[:, None, :] - line[near]
-    share = _square_to(offset, step[near], direction[near], turn[near])
-    straight = (offset * unit[near]).sum(axis=2) / length[near]
-    first, last = near == 0, near == len(length) - 1
-    share = np.where(first, np.where(straight < 0, straight, np.maximum(share, 0)), share)
-    share = np.where(last, np.where(straight > 1, straight, np.minimum(share, 1)), share)
-    held = np.clip(share, np.where(first, -np.inf, 0), np.where(last, np.inf, 1))
-    beyond = np.abs(share - held) * length[near]
-    away = offset - held[:, :, None] * step[near]
-    # A vertex may be nearer than the place beside it that the point is square to.
-    best = np.argmin(np.hypot(away[:, :, 0], away[:, :, 1]) + beyond, axis=1)
-    rows = np.arange(len(points))
-    nearest, on, off = near[rows, best], held[rows, best], away[rows, best]
-    ahead = direction[nearest] + np.clip(on, 0, 1)[:, None] * turn[nearest]
-    ahead /= np.hypot(ahead[:, 0], ahead[:, 1])[:, None]
-    d = ahead[:, 0] * off[:, 1] - ahead[:, 1] * off[:, 0]
-    begin = np.concatenate(([0.0], np.cumsum(length)[:-1]))
-    angle = unit[:, 0] * turn[:, 1] - unit[:, 1] * turn[:, 0]
-    turned = np.concatenate(([0.0], np.cumsum(np.abs(angle))))
-    return LineCoordinates(
-        begin[nearest] + on * length[nearest],
-        d,
-        np.arctan2(ahead[:, 1], ahead[:, 0]),
-        np.where((on >= 0) & (on <= 1), -d * (angle / length)[nearest], 0.0),
-        turned[nearest] + np.clip(on, 0, 1) * np.abs(angle)[nearest],
-    )
-
-
-def _near(line: Floats, points: Floats) -> Integers:
-    """For each point the segments (n, k) around the vertex that is nearest, or all where they are few."""
-    segments = len(line) - 1
-    if segments <= 2 * AROUND:
-        return np.broadcast_to(np.arange(segments), (len(points), segments))
-    middle = line.mean(axis=0)
-    vertices = line - middle
-    square = (vertices**2).sum(axis=1) - 2 * (points - middle) @ vertices.T
-    first = np.clip(np.argmin(square, axis=1) - AROUND, 0, segments - 2 * AROUND)
-    chosen: Integers = first[:, None] + np.arange(2 * AROUND)
-    return chosen
-
-
-def _square_to(offset: Floats, step: Floats, direction: Floats, turn: Floats) -> Floats:
-    """Where on each segment, from 0 to 1, the line's direction is square to the way to each point.
-
-    That is (offset - x·step)·(direction + x·turn) = 0, of whose two solutions the one is taken that is there
-    for straight segments too.
-    """
-    constant = (offset * direction).sum(axis=2)
-    linear = (offset * turn).sum(axis=2) - (step * direction).sum(axis=2)
-    square = -(step * turn).sum(axis=2)
-    root = np.sqrt(np.maximum(linear**2 - 4 * square * constant, 0))
-    below = root - linear
-    share: Floats = np.divide(2 * constant, below, out=np.full_like(constant, np.inf), where=below > 0)
-    return share
 
 
 def boxes_of(centre: Floats, heading: Floats, length: Floats, width: Floats) -> Floats:
@@ -219,6 +117,7 @@ class MeasuredTraffic:
     """Vehicles in the plane. Per vehicle and per sample as in ``Recording``, but for these.
 
     ``centre`` of the box (n, 2) in m, ``heading`` of the box (rad), ``velocity`` and ``acceleration`` (n, 2).
+    ``acceleration_turns``: whether the acceleration has the part across that is due to the vehicle's turning.
     """
 
     name: str
@@ -233,12 +132,13 @@ class MeasuredTraffic:
     heading: Floats
     velocity: Floats
     acceleration: Floats
+    acceleration_turns: bool = True
     notes: tuple[str, ...] = ()
     moments: Integers = field(default_factory=lambda: np.zeros(0, np.int64))
     label: npt.NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, np.str_))
 
 
-_IN_PLANE = ("centre", "heading", "velocity", "acceleration", "notes")
+_IN_PLANE = ("centre", "heading", "velocity", "acceleration", "acceleration_turns", "notes")
 
 
 def place_traffic(traffic: MeasuredTraffic, network: Network) -> Recording:
@@ -258,8 +158,8 @@ def place_traffic(traffic: MeasuredTraffic, network: Network) -> Recording:
     corners = _along_main_ways(network, boxes.reshape(-1, 2), np.repeat(direction, counts * 4))
     s, d = along.s + length / 2, along.d + width / 2
     slack = _slack(along, corners, traffic.heading, s, d, length, width)
-    v_lon, v_lat = _turned(traffic.velocity, along.heading)
-    a_lon, a_lat = _turned(traffic.acceleration, along.heading)
+    boxes_without_turn = None if traffic.acceleration_turns else traffic.heading
+    motion = motion_along(along, traffic.velocity, traffic.acceleration, boxes_without_turn)
     notes = (
         *traffic.notes,
         *network.notes,
@@ -273,10 +173,7 @@ def place_traffic(traffic: MeasuredTraffic, network: Network) -> Recording:
         direction=direction,
         s=s,
         d=d,
-        v_lon=v_lon,
-        v_lat=v_lat,
-        a_lon=a_lon,
-        a_lat=a_lat,
+        **vars(motion),
         occupancy=occupancy,
         lane=lane,
         zones=zones,
@@ -297,7 +194,7 @@ def _lanelets(network: Network) -> Iterator[Lanelet]:
 
 def _along_main_ways(network: Network, points: Floats, direction: Integers) -> LineCoordinates:
     """Each point along the main way of its carriageway."""
-    made = LineCoordinates(*(np.zeros(len(points)) for _ in range(5)))
+    made = LineCoordinates(*(np.zeros(len(points)) for _ in fields(LineCoordinates)))
     for way, chain in enumerate(network.main, start=1):
         ours = np.flatnonzero(direction == way)
         if len(ours):
@@ -333,13 +230,6 @@ def _slack(
         along.turn,
         np.abs(left).max(axis=1),
     )
-
-
-def _turned(vectors: Floats, heading: Floats) -> tuple[Floats, Floats]:
-    """Vectors (n, 2) along directions, and to their left."""
-    along, across = np.cos(heading), np.sin(heading)
-    x, y = vectors[:, 0], vectors[:, 1]
-    return x * along + y * across, y * along - x * across
 
 
 def _say_off(along: LineCoordinates, slack: Slack, start: Integers, ids: Integers) -> Iterator[str]:
