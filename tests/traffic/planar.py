@@ -16,6 +16,23 @@ def straight(s: Floats, d: Floats) -> tuple[Floats, Floats, Floats]:
     return s, d, np.zeros_like(s)
 
 
+def moving(
+    recording: Recording, rows: slice, bend: Bend, s: Floats, d: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """The speed along the line in the plane, its rate and the line's yaw rate, by differences over 2 m."""
+
+    def lengths(ahead: float, aside: float) -> Floats:
+        """How long a metre of the line is there, in the plane."""
+        (x, y, _), (u, v, _) = (bend(s + ahead + step, d + aside) for step in (-1.0, 1.0))
+        return np.asarray(np.hypot(u - x, v - y) / 2)
+
+    v_lon, here = recording.v_lon[rows], lengths(0, 0)
+    along, across = ((lengths(*x) - lengths(-x[0], -x[1])) / 2 for x in ((1.0, 0.0), (0.0, 1.0)))
+    rate = recording.a_lon[rows] * here + v_lon * (along * v_lon + across * recording.v_lat[rows])
+    yaw = (bend(s + 1, d)[2] - bend(s - 1, d)[2]) / 2 * v_lon
+    return v_lon * here, rate, yaw
+
+
 TYPES = {"main": "highway", "merge": "accessRamp", "departure": "exitRamp"}
 
 
@@ -96,11 +113,13 @@ def lanelet_xml(
 def obstacle_xml(recording: Recording, v: int, bend: Bend) -> str:
     rows = slice(recording.start[v], recording.start[v + 1])
     length, width = recording.length[v], recording.width[v]
-    x, y, heading = bend(recording.s[rows] - length / 2, recording.d[rows] - width / 2)
-    v_lon, v_lat = recording.v_lon[rows], recording.v_lat[rows]
-    turned = heading + np.arctan2(v_lat, v_lon)
-    pull = recording.a_lon[rows] / np.cos(turned - heading)
-    speed = np.hypot(v_lon, v_lat)
+    s, d = recording.s[rows] - length / 2, recording.d[rows] - width / 2
+    x, y, heading = bend(s, d)
+    v_lat = recording.v_lat[rows]
+    along, rate, _ = moving(recording, rows, bend, s, d)
+    turned = heading + np.arctan2(v_lat, along)
+    pull = rate / np.cos(turned - heading)
+    speed = np.hypot(along, v_lat)
     first = int(recording.first_frame[v])
     columns: Sequence[Floats] = (x, y, turned, speed, pull)
     states = [state_xml(first + k, *values) for k, values in enumerate(zip(*columns, strict=True))]

@@ -7,7 +7,7 @@ import numpy as np
 
 from roadproof.recordings.formats.recording import Floats, Recording
 from roadproof.world.road import Lanelet, Road
-from traffic.planar import Bend, straight
+from traffic.planar import Bend, moving, straight
 
 LOCATION, RECORDING = 3, 7
 META = "recordingId,locationId,frameRate,speedLimit,numTracks,latLocation,lonLocation,xUtmOrigin,yUtmOrigin"
@@ -50,10 +50,11 @@ def _rows(recording: Recording, v: int, road: Road, bend: Bend) -> list[str]:
     length, width = recording.length[v], recording.width[v]
     s, d = recording.s[rows] - length / 2, recording.d[rows] - width / 2
     x, y, way = bend(s, d)
-    v_lon, v_lat = recording.v_lon[rows], recording.v_lat[rows]
-    heading = way + np.arctan2(v_lat, v_lon)
-    velocity = turned(v_lon, v_lat, way)
-    pull = turned(recording.a_lon[rows], recording.a_lat[rows], way)
+    v_lat = recording.v_lat[rows]
+    along, rate, yaw = moving(recording, rows, bend, s, d)
+    heading = way + np.arctan2(v_lat, along)
+    velocity = turned(along, v_lat, way)
+    pull = turned(rate - yaw * v_lat, recording.a_lat[rows] + yaw * along, way)
     own = [turned(*vector, -heading) for vector in (velocity, pull)]
     made = []
     for k in range(len(s)):
