@@ -16,14 +16,8 @@ from hypothesis import strategies as st
 
 from roadproof.errors import InputError
 from roadproof.recordings.formats.commonroad import read_commonroad
-from roadproof.recordings.formats.measured_roads import (
-    boxes_of,
-    even_line,
-    inside,
-    overlap,
-    project,
-    triangles_of,
-)
+from roadproof.recordings.formats.line_coordinates import even_line, project
+from roadproof.recordings.formats.measured_roads import boxes_of, inside, overlap, triangles_of
 from roadproof.recordings.formats.neighbours import find_overlaps
 from roadproof.recordings.formats.plausible import LARGEST_SIZE
 from tables import read_table
