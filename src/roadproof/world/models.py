@@ -30,7 +30,7 @@ def names_of(kind: str) -> tuple[str, ...]:
 
 
 def load_road(name_or_path: str | Path) -> Road:
-    """A bundled road by name, or a user's by path: TOML, or a stretch of a map in OpenDRIVE.
+    """A bundled road by name, or a user's by path: TOML, or a stretch of a map.
 
     Raises ``InputError``; ``UsageError`` for a stretch that is not well said (``maps.selection``).
     """
@@ -126,7 +126,7 @@ def _read(kind: str, name_or_path: str | Path) -> tuple[Path, Content]:
         if len(path.parts) != 1 or str(name_or_path) not in names_of(kind):
             raise InputError(
                 f"there is no {kind[:-1]} '{name_or_path}'; there are {', '.join(names_of(kind))}, "
-                f"or give the path of a .toml {'or .xodr ' if kind == 'roads' else ''}file"
+                f"or give the path of a .toml {'or map ' if kind == 'roads' else ''}file"
             )
         path = shipped("models") / kind / f"{name_or_path}.toml"
     return path, read_toml(path)

@@ -104,9 +104,14 @@ class ReferenceLine:
         pose = self.pose(s)
         return pose.x - d * math.sin(pose.heading), pose.y + d * math.cos(pose.heading)
 
-    def locate(self, x: float, y: float) -> tuple[float, float]:
-        """s and d of a point of the plane (m): those of the nearest place of the line."""
-        s = min(self._samples, key=lambda known: math.hypot(known[1] - x, known[2] - y))[0]
+    def locate(self, x: float, y: float, near: float | None = None) -> tuple[float, float]:
+        """s and d of a point of the plane (m): those of the nearest place of the line.
+
+        ``near``: s of a place some metres from it, if it is known.
+        """
+        s = near
+        if s is None:
+            s = min(self.samples, key=lambda known: math.hypot(known[1] - x, known[2] - y))[0]
         for _ in range(_STEPS):
             along = self._seen(s, x, y)[0]
             ahead = self._seen(s + _STEP, x, y)[0]
@@ -125,7 +130,7 @@ class ReferenceLine:
         return x * cos + y * sin, y * cos - x * sin
 
     @cached_property
-    def _samples(self) -> list[tuple[float, float, float]]:
+    def samples(self) -> list[tuple[float, float, float]]:
         """s and places of points ``_SPACING`` m from each other or less."""
         begin, end = float(self.begin), float(self.end)
         count = max(math.ceil((end - begin) / _SPACING), 1)

@@ -10,9 +10,8 @@ from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.report.road_map import draw_stretches
 from roadproof.runtime.files import write_whole
 from roadproof.version import VERSION
-from roadproof.world.maps.opendrive import read_map
-from roadproof.world.maps.overview import MapStretch, describe, stretches_of
-from roadproof.world.maps.selection import read_selection, stretch_of
+from roadproof.world.maps.overview import MapStretch, all_stretches, describe
+from roadproof.world.maps.selection import read_selection, select
 from roadproof.world.models import load_road
 from roadproof.world.road import Road
 
@@ -20,7 +19,7 @@ PICTURES = (".svg", ".png")
 
 
 def road(name_or_path: str | Path) -> Road:
-    """A shipped road by name, or one from a file: TOML, or OpenDRIVE such as ``map.xodr#road=12,from=300``.
+    """A shipped road by name, or one from a file: TOML, or a map such as ``map.xodr#road=12,from=300``.
 
     Raises ``InputError``, ``UsageError``.
     """
@@ -28,18 +27,16 @@ def road(name_or_path: str | Path) -> Road:
 
 
 def stretches(map_file: str | Path, out: str | Path | None = None) -> tuple[MapStretch, ...]:
-    """The roads of a map in OpenDRIVE in each direction, or the one stretch that is selected after ``#``.
+    """The roads of a map in each direction, or the one stretch that is selected after ``#``.
 
     ``out``: a picture of them, .svg or .png. Raises ``InputError``, ``UsageError``; ``MissingSolverError``
     for a picture without matplotlib.
     """
     path, selection = read_selection(str(map_file))
-    roads = read_map(path)
     if "#" in str(map_file):
-        one = describe(str(map_file), "", "", stretch_of(path, roads, selection))
-        found: tuple[MapStretch, ...] = (one,)
+        found: tuple[MapStretch, ...] = (describe(str(map_file), "", "", select(path, selection)),)
     else:
-        found = stretches_of(path, roads)
+        found = all_stretches(path)
     if out is not None:
         kind = Path(out).suffix
         if kind not in PICTURES:

@@ -111,7 +111,7 @@ class Prove(groups.Definitions, groups.Models, groups.Budget, groups.Run):
         "dense: for all time (default); smt, milp: drives up to a horizon",
         choices=("dense", "smt", "milp"),
     )
-    road: RoadLike | None = search(None, "--road R", "with smt, milp: reference road, .toml or .xodr file")
+    road: RoadLike | None = search(None, "--road R", "with smt, milp: reference road, .toml file or map")
     horizon: Number = search(
         Fraction(6), "--horizon S", "with smt, milp: seconds to search (default: 6)", read=seconds
     )

@@ -4,7 +4,8 @@ The reference line is the left edge of the leftmost lanelet, so that all lanes l
 along it; x = s and y = d. A merge lane is an ``entry`` lane, a departure lane an ``exit`` lane. What
 OpenDRIVE has no word for, the lane and the zone of a lanelet, is in its ``userData``.
 
-A road that is from a map in OpenDRIVE is exported as that map, byte for byte.
+A road that is from a map in OpenDRIVE is exported as that map, byte for byte. From another map it has that
+map's reference line, as cubics, and its s from where the drive needs the road.
 """
 
 from collections.abc import Iterator, Mapping
@@ -13,10 +14,11 @@ from math import ceil
 from pathlib import Path
 
 from roadproof.errors import InputError
+from roadproof.recordings.export import plan_view
 from roadproof.recordings.export.subject import WRITTEN, Layout, Section, Subject, together
 from roadproof.recordings.export.xml import Element, decimal, document, element
 from roadproof.world.motion import monotone_starts, state_at
-from roadproof.world.road import Attribute, Lanelet
+from roadproof.world.road import Attribute, Lanelet, Road
 
 _TYPES: Mapping[Attribute, str] = {"main": "driving", "merge": "entry", "departure": "exit"}
 _GAP = "none"
@@ -31,16 +33,21 @@ def files(subject: Subject) -> dict[str, bytes]:
 
 def file_name(subject: Subject) -> str:
     """Of the road: NAME.xodr, or that of the map which it is from."""
-    said = subject.file.road.map
-    return f"{subject.name}.xodr" if said is None else Path(said.partition("#")[0]).name
+    path = map_path(subject.file.road)
+    return f"{subject.name}.xodr" if path is None else path.name
+
+
+def map_path(road: Road) -> Path | None:
+    """The map in OpenDRIVE that a road is from, None where there is none."""
+    path = Path((road.map or "").partition("#")[0])
+    return path if path.suffix == ".xodr" else None
 
 
 def _map_file(subject: Subject) -> bytes | None:
     """The map that the road is from, None where there is none. Raises ``InputError``."""
-    said = subject.file.road.map
-    if said is None:
+    path = map_path(subject.file.road)
+    if path is None:
         return None
-    path = Path(said.partition("#")[0])
     try:
         return path.read_bytes()
     except OSError as error:
@@ -79,18 +86,21 @@ def _limit(subject: Subject) -> int:
 
 
 def _road(layout: Layout, left: Fraction, limit: int) -> Element:
-    length = decimal(layout.high - layout.low)
-    line = element("geometry", element("line"), s="0", x=decimal(layout.low), y=decimal(left), hdg="0")
-    line.set("length", length)
+    line = layout.road.line
+    if line is None:
+        plan, offset = plan_view.straight(layout.low, layout.high, left), []
+    else:
+        plan = plan_view.along(line, layout.low, layout.high)
+        offset = [element("laneOffset", s="0", a=decimal(left), b="0", c="0", d="0")]
     kind = element("type", element("speed", max=str(limit), unit="km/h"), s="0", type="motorway")
     sections = list(_sections(layout, left, limit))
     return element(
         "road",
         kind,
-        element("planView", line),
-        element("lanes", *sections),
+        plan,
+        element("lanes", *offset, *sections),
         name=layout.road.name,
-        length=length,
+        length=decimal(layout.high - layout.low),
         id="1",
         junction="-1",
         rule="RHT",

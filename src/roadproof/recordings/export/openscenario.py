@@ -236,7 +236,7 @@ def scenario_file(subject: Subject) -> bytes:
 def _stretch(road: Road) -> Iterator[Element]:
     """The stretch of the map, which a player does not need and a reader of s and d does."""
     _, _, chosen = (road.map or "").partition("#")
-    if chosen:
+    if chosen and opendrive.map_path(road) is not None:
         yield element("ParameterDeclaration", name=STRETCH, parameterType="string", value=chosen)
 
 

@@ -42,16 +42,6 @@ class LineCoordinates:
     curvature_rate: Floats
 
 
-def even_line(line: Floats, step: float = 5.0) -> Floats:
-    """The polyline (m, 2) with vertices about ``step`` metres apart, so that its kinks are those of the road.
-
-    Lanelets have vertices centimetres apart, whose rounded coordinates turn the line by a degree and back.
-    """
-    way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))))
-    at = np.linspace(0, way[-1], 1 + max(1, round(float(way[-1]) / step)))
-    return np.stack((np.interp(at, way, line[:, 0]), np.interp(at, way, line[:, 1])), axis=1)
-
-
 def project(line: Floats, points: Floats) -> LineCoordinates:
     """Coordinates of ``points`` (n, 2) along the polyline ``line`` (m, 2), straight on beyond its ends.
 

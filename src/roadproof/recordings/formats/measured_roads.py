@@ -17,7 +17,6 @@ from roadproof.recordings.formats.lanelets import used_lanes
 from roadproof.recordings.formats.line_coordinates import (
     BLOCK,
     LineCoordinates,
-    even_line,
     motion_along,
     project,
 )
@@ -31,6 +30,7 @@ from roadproof.recordings.formats.recording import (
     Recording,
     Slack,
 )
+from roadproof.world.maps.lines import even_line, joined
 from roadproof.world.maps.network import Network
 from roadproof.world.road import Lanelet
 
@@ -198,16 +198,10 @@ def _along_main_ways(network: Network, points: Floats, direction: Integers) -> L
     for way, chain in enumerate(network.main, start=1):
         ours = np.flatnonzero(direction == way)
         if len(ours):
-            found = project(even_line(_centre_line(network, chain)), points[ours])
+            found = project(even_line(joined([network.lanelets[x].centre for x in chain])), points[ours])
             for name, values in vars(found).items():
                 getattr(made, name)[ours] = values
     return made
-
-
-def _centre_line(network: Network, chain: tuple[str, ...]) -> Floats:
-    points = np.concatenate([network.lanelets[x].centre for x in chain])
-    apart = np.concatenate(([True], np.hypot(*np.diff(points, axis=0).T) > 1e-3))
-    return points[apart]
 
 
 def _slack(

@@ -8,8 +8,8 @@ from pathlib import Path
 from roadproof.errors import InputError
 from roadproof.world.length_error import LengthError, length_error
 from roadproof.world.maps.carriageway import DRIVEN, RAMPS
-from roadproof.world.maps.opendrive import MapRoad
-from roadproof.world.maps.selection import STEP, Selection, Stretch, stretch_of
+from roadproof.world.maps.opendrive import MapRoad, read_map
+from roadproof.world.maps.selection import LANELETS, STEP, Selection, Stretch, stretch_of
 from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.road import Lanelet, Zone
 
@@ -60,6 +60,15 @@ def stretches_of(path: Path, roads: tuple[MapRoad, ...]) -> tuple[MapStretch, ..
             if stretch is not None:
                 found.append(stretch)
     return tuple(found)
+
+
+def all_stretches(path: Path) -> tuple[MapStretch, ...]:
+    """What can be selected of the map of a file. Raises ``InputError``."""
+    if path.suffix not in LANELETS:
+        return stretches_of(path, read_map(path))
+    from roadproof.world.maps.lanelet_overview import ways_of
+
+    return ways_of(path)
 
 
 def describe(select: str, name: str, direction: str, stretch: Stretch) -> MapStretch:

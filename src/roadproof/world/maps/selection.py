@@ -1,5 +1,7 @@
 """The part of a map that is meant: ``map.xodr#road=12,from=300,to=900`` or ``map.xodr#route=12+40+13``.
 
+In CommonRoad and Lanelet2: ``map.xml#road=2`` or ``map.osm#way=1204``, see ``lanelet_map``.
+
 ``road``: the id of a road. ``lanes=left``: the lanes that are driven against s of the map, where there are
 lanes on both sides. ``from``, ``to``: along s (m). ``route``: roads in the order in which they are driven.
 ``step``: how much the edge of a lane changes at most on one lanelet (m).
@@ -20,7 +22,9 @@ from roadproof.world.road import Lanelet
 STRETCH = "roadproof_stretch"
 """The parameter of a scenario in OpenSCENARIO that has what is selected of its map."""
 STEP = Fraction(1, 4)
-_KEYS = ("road", "route", "lanes", "from", "to", "step")
+_KEYS = ("road", "route", "way", "lanes", "from", "to", "step")
+LANELETS = (".xml",)
+"""Endings of maps of measured lanelets."""
 _JOINED, _TURN = 0.5, 0.2
 """Metres along and radians between the end of a road and the beginning of the next one of a route."""
 _MILLI = 1000
@@ -28,12 +32,16 @@ _MILLI = 1000
 
 @dataclass(frozen=True)
 class Selection:
-    """``roads``: ids, none for the only one; ``against``: lanes that are driven against s of the map."""
+    """``roads``: ids, none for the only one; ``against``: lanes that are driven against s of the map.
+
+    ``way``: a lanelet on whose way s is measured.
+    """
 
     roads: tuple[str, ...] = ()
     against: bool | None = None
     span: tuple[Fraction | None, Fraction | None] = (None, None)
     step: Fraction = STEP
+    way: str | None = None
 
 
 @dataclass(frozen=True)
@@ -47,7 +55,7 @@ class Stretch:
 
 def is_map(text: str | Path) -> bool:
     """Whether a road is a map, with a selection or without one."""
-    return Path(str(text).partition("#")[0]).suffix == ".xodr"
+    return Path(str(text).partition("#")[0]).suffix in (".xodr", *LANELETS)
 
 
 def read_selection(text: str) -> tuple[Path, Selection]:
@@ -57,11 +65,13 @@ def read_selection(text: str) -> tuple[Path, Selection]:
     for piece in said.split(",") if mark else ():
         key, equals, value = piece.partition("=")
         if not equals or key not in _KEYS or key in given or not value:
-            rule = "road=ID, route=ID+ID, lanes=left|right, from=M, to=M, step=M"
+            rule = "road=ID, route=ID+ID, way=ID, lanes=left|right, from=M, to=M, step=M"
             raise UsageError(f"road {text}: '{piece}': after # write {rule}, with commas between")
         given[key] = value
-    if "road" in given and "route" in given:
-        raise UsageError(f"road {text}: road and route: name one of them")
+    if len(named := [x for x in ("road", "route", "way") if x in given]) > 1:
+        raise UsageError(f"road {text}: {' and '.join(named)}: name one of them")
+    if "way" in given and Path(name).suffix not in LANELETS:
+        raise UsageError(f"road {text}: way={given['way']}: a road in OpenDRIVE is named by road=ID")
     lanes = given.get("lanes")
     if lanes not in (None, "left", "right"):
         raise UsageError(f"road {text}: lanes={lanes}: one of left, right is needed")
@@ -74,7 +84,9 @@ def read_selection(text: str) -> tuple[Path, Selection]:
     if step is not None and step < Fraction(1, 100):
         raise UsageError(f"road {text}: step={given['step']}: at least 0.01 m is needed")
     against = None if lanes is None else lanes == "left"
-    return Path(name), Selection(roads, against, (low, high), STEP if step is None else step)
+    return Path(name), Selection(
+        roads, against, (low, high), STEP if step is None else step, given.get("way")
+    )
 
 
 def _metres(text: str, key: str, value: str | None) -> Fraction | None:
@@ -86,6 +98,10 @@ def _metres(text: str, key: str, value: str | None) -> Fraction | None:
 
 def select(path: Path, selection: Selection) -> Stretch:
     """The stretch of a map. Raises ``InputError`` that names the file, the element and the rule."""
+    if path.suffix in LANELETS:  # such maps need numpy
+        from roadproof.world.maps import lanelet_map
+
+        return lanelet_map.stretch_of(lanelet_map.read_lanelets(path), selection)
     return stretch_of(path, read_map(path), selection)
 
 
@@ -107,7 +123,7 @@ def stretch_of(path: Path, roads: tuple[MapRoad, ...], selection: Selection) -> 
             f"{chosen[0].where}: no lane is driven on in this direction; try lanes=left or right"
         )
     line = ReferenceLine(tuple(part for way in ways for part in _parts(way)))
-    lanelets = tuple(_cut(path, made, _span(ways, selection)))
+    lanelets = tuple(cut(path, made, _span(ways, selection)))
     check_lanelets(lanelets, chosen[0].where)
     return Stretch(lanelets, line, made.width_error)
 
@@ -130,7 +146,8 @@ def _span(ways: tuple[DirectedRoad, ...], selection: Selection) -> tuple[Fractio
     return (None if high is None else ways[0].s(high)), (None if low is None else ways[0].s(low))
 
 
-def _cut(path: Path, made: Carriageway, span: tuple[Fraction | None, Fraction | None]) -> list[Lanelet]:
+def cut(path: Path, made: Carriageway, span: tuple[Fraction | None, Fraction | None]) -> list[Lanelet]:
+    """The lanelets between two places, None for the ends of the road. Raises ``InputError``."""
     found = []
     for x in made.lanelets:
         begin, end = x.s

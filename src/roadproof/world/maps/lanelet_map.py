@@ -1,0 +1,159 @@
+"""Maps of measured lanelets (CommonRoad, Lanelet2): their ways, and the road that is beside one of them.
+
+A way is a chain of lanelets that follow each other. Its road are these lanelets and their neighbours, lane
+beside lane; ``road=K`` means the main way of carriageway K, ``way=ID`` that with lanelet ID. s is measured on
+the middle of the way. Lanelets that lead away or come from aside are no part of the road; traffic that
+crosses it is refused.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from roadproof.errors import InputError, UsageError
+from roadproof.world.lanelet_rules import check_lanelets
+from roadproof.world.maps import commonroad
+from roadproof.world.maps.lanelet_steps import MapLanelet, edges_along, lanelets_of
+from roadproof.world.maps.lines import crossing, joined, reference_line, thinned
+from roadproof.world.maps.network import Network, network_of, zones_of
+from roadproof.world.maps.selection import Selection, Stretch, cut
+from roadproof.world.maps.topology import Floats, chains_of, closure, length_of
+from roadproof.world.reference_line import ReferenceLine
+from roadproof.world.road import Attribute, Lanelet, Zone
+
+_SPACING, _ENDS = 2.0, 1.0
+"""Metres between points of lines that may cross, and from their ends, where lanelets part or join."""
+
+
+@dataclass(frozen=True)
+class LaneletMap:
+    """``left_out``: how many lanelets are no road, by their type."""
+
+    path: Path
+    network: Network
+    left_out: tuple[tuple[str, int], ...] = ()
+
+    @cached_property
+    def chains(self) -> tuple[tuple[str, ...], ...]:
+        """All ways."""
+        return chains_of(self.network.lanelets)
+
+    @cached_property
+    def across(self) -> dict[str, tuple[str, ...]]:
+        """For each lanelet those that are across the road from it, itself included."""
+        lanelets = self.network.lanelets
+        return closure(lanelets, ((x.id, other) for x in lanelets.values() for other in x.beside))
+
+    @cached_property
+    def middles(self) -> dict[str, Floats]:
+        """The middle of each lanelet, with points some metres apart."""
+        return {name: thinned(x.centre, _SPACING) for name, x in self.network.lanelets.items()}
+
+    def beside(self, way: tuple[str, ...]) -> tuple[str, ...]:
+        """The lanelets of the road along a way."""
+        return tuple(dict.fromkeys(other for name in way for other in self.across[name]))
+
+    def metres(self, way: tuple[str, ...]) -> float:
+        """The length of a way."""
+        return length_of(self.network.lanelets, way)
+
+
+def read_lanelets(path: Path) -> LaneletMap:
+    """The map of a file, by its ending. Raises ``InputError``."""
+    return LaneletMap(path, network_of(path, commonroad.read_map(path)))
+
+
+def way_of(known: LaneletMap, selection: Selection) -> tuple[str, ...]:
+    """The way that is selected. Raises ``InputError``, ``UsageError``."""
+    path, main = known.path, known.network.main
+    if selection.against is not None or len(selection.roads) > 1:
+        raise UsageError(f"road {path}: lanes and route are for OpenDRIVE; name a way as {path}#way=ID")
+    if selection.way is not None:
+        for way in known.chains:
+            if selection.way in way:
+                return way
+        raise InputError(f"{path}: there is no lanelet {selection.way}; roadproof road {path} lists the ways")
+    if not selection.roads and len(main) > 1:
+        told = f"{len(main)} roads; name one as {path}#road=K, K from 1 to {len(main)}, or {path}#way=ID"
+        raise InputError(f"{path}: {told}; roadproof road {path} lists them")
+    number = selection.roads[0] if selection.roads else "1"
+    if not number.isdecimal() or not 0 < int(number) <= len(main):
+        raise InputError(f"{path}: road={number}: a number from 1 to {len(main)} is needed, or way=ID")
+    return main[int(number) - 1]
+
+
+def stretch_of(known: LaneletMap, selection: Selection) -> Stretch:
+    """The stretch that is selected. Raises ``InputError``, ``UsageError``."""
+    way = way_of(known, selection)
+    where = f"{known.path}, way of lanelet {way[0]}"
+    lanelets = known.network.lanelets
+    if way[0] in lanelets[way[-1]].successors:
+        raise InputError(
+            f"{where}: lanelet {way[-1]} leads back to {way[0]}: a ring road is not supported, only traffic "
+            "along one road; cut the file"
+        )
+    line = reference_line(joined([lanelets[x].centre for x in way]))
+    made = lanelets_of(_measured(known, way, line, where), way, selection.step, where)
+    found = cut(known.path, made, selection.span)
+    _refuse_crossing(known, way, line, found)
+    check_lanelets(tuple(found), where)
+    return Stretch(tuple(found), line, made.width_error)
+
+
+def _measured(
+    known: LaneletMap, way: tuple[str, ...], line: ReferenceLine, where: str
+) -> tuple[MapLanelet, ...]:
+    """The lanelets of the road along a way, each with its lane."""
+    network, names = known.network, known.beside(way)
+    attributes, zones = _kinds(known, way)
+    lanes: dict[str, str] = {}
+    for chain in known.chains:
+        for k, name in enumerate(chain):
+            goes_on = k and chain[k - 1] in lanes and attributes.get(chain[k - 1]) == attributes.get(name)
+            if name in attributes:
+                lanes[name] = lanes[chain[k - 1]] if goes_on else name
+    return tuple(
+        MapLanelet(
+            x,
+            lanes[x],
+            attributes[x],
+            zones[x],
+            edges_along(line, network.lanelets[x].right, f"{where}: right bound of lanelet {x}"),
+            edges_along(line, network.lanelets[x].left, f"{where}: left bound of lanelet {x}"),
+        )
+        for x in names
+    )
+
+
+def _kinds(known: LaneletMap, way: tuple[str, ...]) -> tuple[dict[str, Attribute], dict[str, Zone]]:
+    """Attributes and zones: on a way that is not the main one of its carriageway as types say, else main."""
+    network, names = known.network, known.beside(way)
+    if way in network.main:
+        return {x: network.attributes[x] for x in names}, {x: network.zones[x] for x in names}
+    attributes: dict[str, Attribute] = {x: network.lanelets[x].attribute or "main" for x in names}
+    if "main" not in attributes.values():
+        attributes = dict.fromkeys(names, "main")
+    across = {name: network.lanelets[name] for name in names}
+    return attributes, zones_of(across, attributes)
+
+
+def _refuse_crossing(
+    known: LaneletMap, way: tuple[str, ...], line: ReferenceLine, found: list[Lanelet]
+) -> None:
+    """Raises ``InputError`` where a lanelet of the map crosses the part of the road that is selected."""
+    lanelets, ours = known.network.lanelets, set(known.beside(way))
+    ends = [float(s) for x in found for s in x.s if s is not None]
+    joining = {x.id for x in lanelets.values() if ours & set(x.successors)}
+    parting = {other for x in ours for other in lanelets[x].successors}
+    roads = [joined([known.middles[name] for name in way])]
+    roads += [known.middles[x] for x in ours - set(way)]
+    for name in lanelets:
+        if name in ours or name in joining or name in parting:
+            continue
+        for road in roads:
+            met = crossing(road, known.middles[name], _ENDS)
+            s = line.locate(*met)[0] if met else None
+            if s is not None and min(ends) <= s <= max(ends):
+                rule = "only traffic along one road is supported; cut a part with from=M and to=M"
+                told = f"lanelet {name} crosses it at s = {s:.0f} m: {rule}"
+                raise InputError(f"{known.path}, way of lanelet {way[0]}: {told}")
