@@ -244,6 +244,127 @@ def test_lane_changes_are_those_of_an_integration(shape: str, by: str, value: fl
         assert np.allclose(np.gradient(found[place], time)[smooth], found[rate][smooth], atol=0.02)
 
 
+# --- actions that look at other vehicles ------------------------------------------------------------
+
+
+def longitudinal(action: str) -> str:
+    return f"<PrivateAction><LongitudinalAction>{action}</LongitudinalAction></PrivateAction>"
+
+
+def test_a_distance_is_kept_as_a_damped_spring_does(tmp_path: Path) -> None:
+    """Against an integration of the same law in far smaller steps."""
+    keep = longitudinal(
+        '<LongitudinalDistanceAction entityRef="Ego" distance="30" freespace="true" continuous="true">'
+        '<DynamicConstraints maxAcceleration="2" maxDeceleration="4" maxSpeed="40"/>'
+        "</LongitudinalDistanceAction>"
+    )
+    stop = when(at_time(30), tag="StopTrigger")
+    begin = {"Ego": EGO, "Other": init("Other", lane(-2, 40), 25)}
+    path = put(tmp_path, begin, maneuver("Other", event("keep", keep, when(at_time(1)))), stop=stop)
+    found = rows(path)["Other"]
+    s, v, step, expected = 40.0, 25.0, 1e-4, {}
+    for k in range(300_001):
+        time = k * step
+        expected[round(time, 4)] = s, v
+        error, pull = (100 + 20 * time) - s - 34, 0.0
+        if time >= 1:
+            stiffness = 0.4 * (2 if error < 0 else 4)
+            pull = min(max(error * stiffness - (v - 20) * 2 * math.sqrt(stiffness), -4), 2)
+        s, v = s + v * step, v + pull * step
+    there = np.array([expected[round(float(x), 4)] for x in found["time"]])
+    assert np.allclose(found["s"] - 2, there[:, 0], atol=0.2)
+    assert np.allclose(found["v_lon"], there[:, 1], atol=0.1)
+    assert 100 + 20 * 30 - (found["s"][-1] - 2) == pytest.approx(34, abs=0.2)
+
+
+@pytest.mark.parametrize(
+    ("final", "speed"),
+    [
+        ('<AbsoluteSpeed value="12"/>', 12),
+        ('<AbsoluteSpeed value="30"/>', 30),
+        ('<RelativeSpeedToMaster value="-5" speedTargetValueType="delta"/>', 15),
+        ('<RelativeSpeedToMaster value="0.5" speedTargetValueType="factor"/>', 10),
+    ],
+)
+@pytest.mark.parametrize("place", [400, 210, 150])
+def test_vehicles_arrive_at_the_same_time(final: str, speed: float, place: float, tmp_path: Path) -> None:
+    """Ego is at s = 300 after 10 s; the other one begins at 100 with 18 m/s."""
+    action = (
+        '<PrivateAction><SynchronizeAction masterEntityRef="Ego"><TargetPositionMaster>'
+        f"{lane(-2, 300)[10:-11]}</TargetPositionMaster><TargetPosition>{lane(-1, place)[10:-11]}"
+        f"</TargetPosition><FinalSpeed>{final}</FinalSpeed></SynchronizeAction></PrivateAction>"
+    )
+    begin = {"Ego": EGO, "Other": init("Other", lane(-1, 100), 18)}
+    found = rows(put(tmp_path, begin, maneuver("Other", event("meet", action, when(at_time(0))))))["Other"]
+    assert at(found, 10, "s") == pytest.approx(place + 2, abs=0.05)
+    assert at(found, 12, "v_lon") == pytest.approx(speed, abs=0.05)
+    assert found["v_lon"].min() > -1e-6
+    way = np.concatenate(([0], np.cumsum((found["v_lon"][1:] + found["v_lon"][:-1]) / 2 * 0.04)))
+    assert np.allclose(found["s"] - found["s"][0], way, atol=0.02)
+
+
+@pytest.mark.parametrize(
+    "steady", ['<TargetTimeSteadyState time="2"/>', '<TargetDistanceSteadyState distance="36"/>']
+)
+def test_the_final_speed_may_be_reached_before(steady: str, tmp_path: Path) -> None:
+    """18 m/s in the last 2 s, which are 36 m, before s = 260 at 10 s."""
+    action = (
+        '<PrivateAction><SynchronizeAction masterEntityRef="Ego"><TargetPositionMaster>'
+        f"{lane(-2, 300)[10:-11]}</TargetPositionMaster><TargetPosition>{lane(-1, 260)[10:-11]}"
+        f'</TargetPosition><FinalSpeed><AbsoluteSpeed value="18">{steady}</AbsoluteSpeed></FinalSpeed>'
+        "</SynchronizeAction></PrivateAction>"
+    )
+    begin = {"Ego": EGO, "Other": init("Other", lane(-1, 100), 10)}
+    found = rows(put(tmp_path, begin, maneuver("Other", event("meet", action, when(at_time(0))))))["Other"]
+    last = (found["time"] > 8.05) & (found["time"] < 9.95)
+    assert np.allclose(found["v_lon"][last], 18, atol=0.02)
+    assert at(found, 8, "s") == pytest.approx(260 - 36 + 2, abs=0.05)
+    assert at(found, 10, "s") == pytest.approx(262, abs=0.05)
+
+
+def test_a_speed_profile(tmp_path: Path) -> None:
+    """From 2 s on: to 30 m/s in 4 s, then to 10 m/s in 5 s, by hand."""
+    entries = "".join(f'<SpeedProfileEntry speed="{v}" time="{t}"/>' for v, t in ((30, 4), (10, 5)))
+    profile = longitudinal(f'<SpeedProfileAction followingMode="position">{entries}</SpeedProfileAction>')
+    found = rows(put(tmp_path, {"Ego": EGO}, maneuver("Ego", event("go", profile, when(at_time(2))))))["Ego"]
+    assert at(found, 4, "v_lon") == pytest.approx(25)
+    assert at(found, 6, "s") == pytest.approx(102 + 40 + 100)
+    assert at(found, 8, "a_lon") == pytest.approx(-4)
+    assert at(found, 11, "s") == pytest.approx(102 + 40 + 100 + 100)
+    assert at(found, 13, "v_lon") == pytest.approx(10)
+
+
+def test_a_trajectory_within_a_story(tmp_path: Path) -> None:
+    """Relative times: from 2 s to 6 s along s with 15 m/s and 1 m/s to the right; then straight on."""
+
+    def vertex(k: int) -> str:
+        s, d = 140 + 15 * k, -6 - k
+        x, y = 30 + s * math.cos(0.3) - d * math.sin(0.3), 40 + s * math.sin(0.3) + d * math.cos(0.3)
+        place = f'<Position><WorldPosition x="{x}" y="{y}" h="0.3"/></Position>'
+        return f'<Vertex time="{k}">{place}</Vertex>'
+
+    shape = f"<Shape><Polyline>{''.join(map(vertex, range(5)))}</Polyline></Shape>"
+    follow = (
+        "<PrivateAction><RoutingAction><FollowTrajectoryAction><TrajectoryRef>"
+        f'<Trajectory name="t" closed="false">{shape}</Trajectory></TrajectoryRef><TimeReference><Timing '
+        'domainAbsoluteRelative="relative" scale="1" offset="0"/></TimeReference><TrajectoryFollowingMode '
+        'followingMode="position"/></FollowTrajectoryAction></RoutingAction></PrivateAction>'
+    )
+    begin = {"Ego": EGO, "Other": init("Other", lane(-1, 90), 25)}
+    found = rows(put(tmp_path, begin, maneuver("Ego", event("go", follow, when(at_time(2))))))["Ego"]
+    assert at(found, 4, "s") == pytest.approx(142 + 30, abs=1e-6)
+    assert at(found, 4, "d") == pytest.approx(-5 - 2, abs=1e-6)
+    assert at(found, 4, "v_lat") == pytest.approx(-1, abs=1e-6)
+    assert at(found, 8, "s") == pytest.approx(142 + 60 + 30, abs=1e-6)
+    assert at(found, 8, "d") == pytest.approx(-5 - 4, abs=1e-6)
+
+
+def test_no_vehicle_drives_against_the_road(tmp_path: Path) -> None:
+    x = '<Position><WorldPosition x="80" y="40" h="3.4"/></Position>'
+    with pytest.raises(InputError, match="drives against the others"):
+        rows(put(tmp_path, {"Ego": EGO, "Other": init("Other", x, 10)}))
+
+
 # --- what else is read ------------------------------------------------------------------------------
 
 
@@ -306,8 +427,47 @@ def test_parameters_and_catalogues(tmp_path: Path) -> None:
     found = rows(put(tmp_path, begin, more=more, entity=entity))["Ego"]
     assert at(found, 0, "v_lon") == pytest.approx(25)
     assert at(found, 0, "s") == pytest.approx(103)
-    with pytest.raises(InputError, match="no Vehicle bus in a catalogue cars"):
+    with pytest.raises(InputError, match="no bus in a catalogue cars"):
         rows(put(tmp_path, begin, more=more, entity=entity.replace('"car"', '"bus"')))
+
+
+def test_maneuvers_of_catalogues(tmp_path: Path) -> None:
+    """The maneuver is called with another speed than its own."""
+    (tmp_path / "cars").mkdir()
+    go = event("go", to_speed("$v", "linear", "time", 2), when(at_time(1)))
+    declared = '<ParameterDeclarations><ParameterDeclaration name="v" value="1"/></ParameterDeclarations>'
+    catalogue = f'<Catalog name="all"><Maneuver name="m">{declared}{go}</Maneuver></Catalog>'
+    (tmp_path / "cars/any.xosc").write_text(f"<OpenSCENARIO>{catalogue}</OpenSCENARIO>", "utf-8")
+    more = '<CatalogLocations><ManeuverCatalog><Directory path="cars"/></ManeuverCatalog></CatalogLocations>'
+    path = put(tmp_path, {"Ego": EGO}, maneuver("Ego"), more=more)
+    reference = (
+        '<CatalogReference catalogName="all" entryName="m"><ParameterAssignments><ParameterAssignment '
+        'parameterRef="v" value="26"/></ParameterAssignments></CatalogReference>'
+    )
+    text = path.read_text("utf-8")
+    path.write_text(text.replace('<Maneuver name="maneuver of Ego"></Maneuver>', reference), "utf-8")
+    found = rows(path)["Ego"]
+    assert at(found, 2, "v_lon") == pytest.approx(23)
+    assert at(found, 4, "v_lon") == pytest.approx(26)
+    with pytest.raises(InputError, match="this is a catalogue"):
+        read_scenario(tmp_path / "cars/any.xosc")
+
+
+def test_positions_on_roads_that_follow_each_other(tmp_path: Path) -> None:
+    """Road 8 goes on where road 7 ends, after 2000 m; the order is found."""
+    begin = {"Ego": EGO, "Other": init("Other", lane(-2, 50).replace('"7"', '"8"'), 10)}
+    path = put(tmp_path, begin, hdg=0)
+    text = (tmp_path / "map.xodr").read_text("utf-8")
+    road = text[text.index("<road ") : text.index("</OpenDRIVE>")]
+    other = road.replace('id="7"', 'id="8"').replace('x="30"', 'x="2030"')
+    (tmp_path / "map.xodr").write_text(text.replace(road, other + road), "utf-8")
+    found = rows(path)
+    assert at(found["Ego"], 0, "s") == pytest.approx(102)
+    assert at(found["Other"], 0, "s") == pytest.approx(2052)
+    assert at(found["Other"], 4, "d") == pytest.approx(-5)
+    (tmp_path / "map.xodr").write_text(text.replace(road, other.replace("2030", "2050") + road), "utf-8")
+    with pytest.raises(InputError, match="that are not one route"):
+        rows(path)
 
 
 @pytest.mark.parametrize(
@@ -325,6 +485,84 @@ def test_expressions(text: str, value: float) -> None:
 def test_what_is_no_expression(text: str) -> None:
     with pytest.raises(ValueError, match=r"expression|supported|number"):
         expression_value(text)
+
+
+def test_objects_that_are_no_vehicles_are_left_out(tmp_path: Path) -> None:
+    begin = {"Ego": EGO, "Box": init("Box", lane(-2, 400), 0)}
+    path = put(tmp_path, begin)
+    text = path.read_text("utf-8")
+    thing = f'<ScenarioObject name="Box">{CAR}'
+    assert thing in text
+    path.write_text(text.replace(thing, thing.replace("Vehicle", "MiscObject")), "utf-8")
+    recording = read_recording(path)
+    assert recording.vehicles == 1
+    assert "left out, as they are no motor vehicles: Box" in recording.notes
+    move = maneuver("Box", event("go", to_speed(3), when(at_time(1))))
+    path = put(tmp_path, begin, move)
+    path.write_text(path.read_text("utf-8").replace(thing, thing.replace("Vehicle", "Pedestrian")), "utf-8")
+    with pytest.raises(InputError, match="ManeuverGroup group of Box: Box is no motor vehicle"):
+        rows(path)
+
+
+def test_a_collision_ends_it(tmp_path: Path) -> None:
+    """The gap of 46 m between boxes closes with 10 m/s."""
+    hit = of("Ego", '<CollisionCondition><EntityRef entityRef="Other"/></CollisionCondition>')
+    begin = {"Ego": EGO, "Other": init("Other", lane(-2, 150), 10)}
+    found = rows(put(tmp_path, begin, stop=when(hit, tag="StopTrigger")))["Ego"]
+    assert found["time"][-1] == pytest.approx(4.6, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("condition", "time"),
+    [
+        (
+            '<RelativeDistanceCondition entityRef="Other" relativeDistanceType="longitudinal" value="20" '
+            'freespace="false" rule="lessThan"/>',
+            3,
+        ),
+        (
+            '<RelativeDistanceCondition entityRef="Other" relativeDistanceType="longitudinal" value="20" '
+            'freespace="true" rule="lessThan"/>',
+            2.6,
+        ),
+        ('<TimeHeadwayCondition entityRef="Other" value="2" freespace="false" rule="lessThan"/>', 1),
+        (
+            '<TimeToCollisionCondition value="1" freespace="true" rule="lessThan">'
+            '<TimeToCollisionConditionTarget><EntityRef entityRef="Other"/></TimeToCollisionConditionTarget>'
+            "</TimeToCollisionCondition>",
+            3.6,
+        ),
+        (f'<ReachPositionCondition tolerance="2">{lane(-2, 182)}</ReachPositionCondition>', 4),
+        (
+            f'<DistanceCondition value="2" freespace="false" rule="lessThan">{lane(-2, 182)}'
+            "</DistanceCondition>",
+            4,
+        ),
+        ('<RelativeSpeedCondition entityRef="Other" value="9" rule="greaterThan"/>', 0),
+    ],
+)
+def test_triggers_fire_when_they_should(condition: str, time: float, tmp_path: Path) -> None:
+    """Ego is 50 m behind and 10 m/s faster; by hand, the condition holds from ``time`` on."""
+    brake = event("brake", to_speed(10, "step"), when(of("Ego", condition)))
+    begin = {"Ego": EGO, "Other": init("Other", lane(-2, 150), 10)}
+    found = rows(put(tmp_path, begin, maneuver("Ego", brake)))["Ego"]
+    changed = found["time"][np.argmax(found["v_lon"] < 15)]
+    assert changed == pytest.approx(time, abs=0.051)
+
+
+@pytest.mark.parametrize(
+    ("priority", "speeds"), [("skip", (15, 10)), ("override", (15, 30)), ("parallel", (15, 30))]
+)
+def test_priorities(priority: str, speeds: tuple[float, float], tmp_path: Path) -> None:
+    """A second event fires at 2.5 s, while the first one brakes with 2 m/s² from 0 to 5 s."""
+    first = event("first", to_speed(10, "linear", "time", 5), when(at_time(0)))
+    clock = of("Ego", '<TraveledDistanceCondition value="43.74"/>')
+    second = event("second", to_speed(30, "step"), when(clock, "rising"), priority)
+    found = rows(
+        put(tmp_path, {"Ego": EGO}, maneuver("Ego", first, second), stop=when(at_time(8), tag="StopTrigger"))
+    )
+    assert at(found["Ego"], 2.48, "v_lon") == pytest.approx(speeds[0], abs=0.1)
+    assert at(found["Ego"], 6, "v_lon") == pytest.approx(speeds[1])
 
 
 def test_relative_speed_and_an_action_that_ends_another(tmp_path: Path) -> None:
@@ -356,7 +594,7 @@ def test_it_is_read_as_a_recording(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        ("SpeedAction>", "SpeedProfileAction>", "SpeedProfileAction: this action is not supported"),
+        ("SpeedAction>", "TrailerAction>", "TrailerAction: this action is not supported"),
         ("SimulationTimeCondition", "TimeOfDayCondition", "TimeOfDayCondition: this condition is not"),
         ('laneId="-2"', 'laneId="-5"', "road 7 has no lane -5 at s=100.00"),
         ('dynamicsShape="linear"', 'dynamicsShape="round"', "dynamicsShape=round: one of step, linear"),

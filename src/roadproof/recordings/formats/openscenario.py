@@ -43,6 +43,7 @@ _KINDS = {
     "bus": "Truck",
     "motorbike": "Motorcycle",
 }
+_OTHERS = ("Pedestrian", "MiscObject")
 _PLACES = "PrivateAction/RoutingAction/FollowTrajectoryAction"
 
 
@@ -60,7 +61,9 @@ class Samples(Table):
 
     def cell(self, row: int, column: str) -> str:
         vehicle, time = self.columns["vehicle"][row], self.columns["time"][row]
-        return f"vehicle {vehicle} at {time:g} s, {column}={self.columns[column][row]:g}"
+        value = self.columns[column][row]
+        shown = value if isinstance(value, str) else f"{value:g}"
+        return f"vehicle {vehicle} at {time:g} s, {column}={shown}"
 
 
 @dataclass(frozen=True)
@@ -83,6 +86,8 @@ def read_scenario(path: Path) -> Scenario:
             f"{path}: LogicFile filepath={road_path.name}: a road in OpenDRIVE (.xodr) is needed"
         )
     boxes = dict(_boxes(path, root))
+    if not boxes:
+        raise InputError(f"{path}: no ScenarioObject is a motor vehicle")
     road = load_road(stretch_of(document, road_path))
     if _follows_polylines(root):
         ways = {name: _in_road(x, boxes[name], road) for name, x in _vertices(path, root, boxes)}
@@ -93,7 +98,9 @@ def read_scenario(path: Path) -> Scenario:
         raise InputError(f"{path}: the storyboard ends at {len(play.states) / TICKS:g} s: {play.ending}")
     told = f"the storyboard ends at {(len(play.states) - 1) / TICKS:g} s: {play.ending}"
     note = f"the storyboard was run with conditions evaluated {TICKS} times a second, {RATE} samples a second"
-    return Scenario(_of_play(path, boxes, play), road, road_path, (note, told))
+    others = sorted({x.get("name", "") for x in root.findall("Entities/ScenarioObject")} - {*boxes})
+    left_out = [f"left out, as they are no motor vehicles: {', '.join(others)}"] if others else []
+    return Scenario(_of_play(path, boxes, play), road, road_path, (note, told, *left_out))
 
 
 def read_columns(path: Path) -> tuple[Table, Road, Path]:
@@ -117,15 +124,15 @@ def _follows_polylines(root: Element) -> bool:
     actions = root.findall("Storyboard/Story/Act/ManeuverGroup/Maneuver/Event/Action")
     actors = {x.get("entityRef") for x in root.findall("Storyboard/Story/Act/ManeuverGroup/Actors/EntityRef")}
     names = {x.get("name") for x in root.findall("Entities/ScenarioObject")}
-    return names <= actors and all(x.find(_PLACES) is not None for x in actions)
+    return bool(actions) and names <= actors and all(x.find(_PLACES) is not None for x in actions)
 
 
 def _trajectory_reader(document: Document, boxes: Mapping[str, Box], road: Road) -> TrajectoryReader:
     """Reads a FollowTrajectoryAction of a storyboard."""
 
-    def read(follow: Element, name: str) -> Trajectory:
+    def read(follow: Element, name: str, begin: float) -> Trajectory:
         told, box = document.places[follow], boxes[name]
-        way = _in_road(_polyline(document.path, follow, told), box, road)
+        way = _in_road(_polyline(document.path, follow, told, begin), box, road)
 
         def state(time: float) -> State:
             at = np.array([time])
@@ -150,6 +157,7 @@ def _number(path: Path, node: Element | None, attribute: str, what: str) -> floa
 
 
 def _boxes(path: Path, root: Element) -> Iterator[tuple[str, Box]]:
+    """The motor vehicles by name."""
     seen: set[str] = set()
     for node in root.findall("Entities/ScenarioObject"):
         name = _text(path, node, "name", "a ScenarioObject")
@@ -158,9 +166,13 @@ def _boxes(path: Path, root: Element) -> Iterator[tuple[str, Box]]:
         seen.add(name)
         told = f"ScenarioObject {name}"
         vehicle = node.find("Vehicle")
+        if vehicle is None and any(node.find(x) is not None for x in _OTHERS):
+            continue
         if vehicle is None:
             raise InputError(f"{path}: {told} is no Vehicle")
         category = vehicle.get("vehicleCategory", "car")
+        if category == "bicycle":
+            continue
         if category not in _KINDS:
             raise InputError(f"{path}: {told}: vehicleCategory={category} is none of {', '.join(_KINDS)}")
         size, centre = vehicle.find("BoundingBox/Dimensions"), vehicle.find("BoundingBox/Center")
@@ -224,12 +236,15 @@ def _check_exact(path: Path, follow: Element, told: str) -> None:
         raise InputError(f"{path}: {told}: closed=true: write out the way back as vertices with times")
 
 
-def _polyline(path: Path, follow: Element, told: str) -> Floats:
+def _polyline(path: Path, follow: Element, told: str, begin: float | None = None) -> Floats:
+    """Rows of time, x, y and heading; times may be relative where the action begins at ``begin`` (s)."""
     _check_exact(path, follow, told)
     timing = follow.find("TimeReference/Timing")
-    if timing is None or timing.get("domainAbsoluteRelative") != "absolute":
+    domain = None if timing is None else timing.get("domainAbsoluteRelative")
+    if timing is None or (domain != "absolute" and (begin is None or domain != "relative")):
         raise InputError(f"{path}: {told}: a Timing with domainAbsoluteRelative=absolute is needed")
     scale, offset = (_number(path, timing, x, f"the Timing of {told}") for x in ("scale", "offset"))
+    offset += begin if begin is not None and domain == "relative" else 0.0
     shape = next((x for x in follow.iter("Shape")), None)
     shapes = [] if shape is None else [x.tag for x in shape]
     if shape is None or shapes != ["Polyline"]:

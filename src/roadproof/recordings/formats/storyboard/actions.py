@@ -9,6 +9,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from roadproof.recordings.formats.storyboard.box import Box
+from roadproof.recordings.formats.storyboard.controllers import Arrive, KeepDistance, Limits, Phases
 from roadproof.recordings.formats.storyboard.courses import (
     SHAPES,
     Course,
@@ -40,7 +42,8 @@ class Trajectory:
     state: Callable[[float], State]
 
 
-TrajectoryReader: TypeAlias = Callable[[Element, str], Trajectory]
+TrajectoryReader: TypeAlias = Callable[[Element, str, float], Trajectory]
+"""Reads a FollowTrajectoryAction that begins at a time (s), for a vehicle by name."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,7 @@ class ActionReader:
     """Reads actions of a document as courses."""
 
     document: Document
+    boxes: Mapping[str, Box]
     positions: Positions
     trajectory: TrajectoryReader
 
@@ -81,10 +85,17 @@ class ActionReader:
             case "TeleportAction":
                 place = self.document.child(node, "Position")
                 s, d = self.positions.find(place, scene.states)
+                self.positions.check_direction(self.document.only(place))
                 speed = scene.states[actor.name].v_lon if actor.name in scene.states else 0.0
                 return {"along": Steady(scene.time, s, speed), "across": Steady(scene.time, d)}
             case "SpeedAction":
                 return {"along": self._speed(node, actor, scene)}
+            case "SpeedProfileAction":
+                return {"along": self._speed_profile(node, actor, scene)}
+            case "LongitudinalDistanceAction":
+                return {"along": self._keep_distance(node, actor, scene)}
+            case "SynchronizeAction":
+                return {"along": self._synchronize(node, actor, scene)}
             case "LaneChangeAction":
                 return {"across": self._lane_change(node, actor, scene)}
             case "LaneOffsetAction":
@@ -124,6 +135,26 @@ class ActionReader:
             raise read.error(target, f"speedTargetValueType={kind}: one of delta, factor is needed")
         return other + value if kind == "delta" else other * value
 
+    def _speed_profile(self, node: Element, actor: Actor, scene: Scene) -> Course:
+        """Speeds that are reached linearly, each in its time; the first one at once where its time is 0."""
+        read, state = self.document, scene.states[actor.name]
+        if read.text(node, "followingMode") != "position":
+            raise read.error(node, f"followingMode={node.get('followingMode')}: position is needed")
+        if node.get("entityRef"):
+            raise read.error(node, "speeds that are relative to a vehicle are not supported")
+        begin = speed = state.v_lon
+        phases = []
+        for k, entry in enumerate(node.findall("SpeedProfileEntry")):
+            target, duration = (read.number(entry, x) for x in ("speed", "time"))
+            if duration > 0:
+                phases.append((duration, (target - speed) / duration))
+            elif k or duration < 0:
+                raise read.error(entry, f"time={duration:g} must be above 0")
+            else:
+                begin = target
+            speed = target
+        return Phases(scene.time, state.s, begin, tuple(phases))
+
     def _dynamics(self, node: Element) -> tuple[str, str, float]:
         """Shape, dimension and value, which is positive unless the shape is a step."""
         read = self.document
@@ -134,6 +165,60 @@ class ActionReader:
             raise read.error(node, f"dynamicsDimension={dimension}: one of time, distance, rate is needed")
         value = abs(read.number(node, "value"))
         return (shape if value else "step"), dimension, value
+
+    def _keep_distance(self, node: Element, actor: Actor, scene: Scene) -> Course:
+        read, state, other = self.document, scene.states[actor.name], self._state(node, scene)
+        name, seconds = read.text(node, "entityRef"), node.get("timeGap") is not None
+        distance = abs(read.number(node, "timeGap" if seconds else "distance"))
+        kind, ahead = node.get("displacement", "any"), other.s < state.s
+        if kind not in ("any", "trailingReferencedEntity", "leadingReferencedEntity"):
+            raise read.error(node, f"displacement={kind} is not supported")
+        ahead = ahead if kind == "any" else kind == "leadingReferencedEntity"
+        apart = 0.0
+        if node.get("freespace") in ("true", "1"):
+            box, beyond = self.boxes[actor.name], self.boxes[name]
+            shift = box.centre[0] - beyond.centre[0]
+            apart = (box.length + beyond.length) / 2 + (-shift if ahead else shift)
+        most = Limits()
+        limits = node.find("DynamicConstraints")
+        if limits is not None:
+            for rate in ("maxAccelerationRate", "maxDecelerationRate"):
+                if limits.get(rate):
+                    raise read.error(limits, f"{rate} is not supported")
+            names = ("maxAcceleration", "maxDeceleration", "maxSpeed")
+            most = Limits(*(read.number(limits, x) if limits.get(x) else math.inf for x in names))
+        now = Steady(scene.time, state.s, state.v_lon)
+        continuous = read.text(node, "continuous") in ("true", "1")
+        signed = -distance if ahead else distance
+        course = KeepDistance(now, actor.name, name, signed, seconds, apart, most, continuous)
+        return course.next(scene.time, scene.states)
+
+    def _synchronize(self, node: Element, actor: Actor, scene: Scene) -> Course:
+        """Tolerances are not used: both vehicles arrive at the positions themselves."""
+        read, state = self.document, scene.states[actor.name]
+        other = read.text(node, "masterEntityRef")
+        there, here = (
+            self.positions.find(read.child(node, x), scene.states)[0]
+            for x in ("TargetPositionMaster", "TargetPosition")
+        )
+        if here <= state.s or there <= scene.states[other].s:
+            raise read.error(node, "a target position is behind its vehicle")
+        final, share, steady = None, 0.0, (0.0, 0.0)
+        if node.find("FinalSpeed") is not None:
+            speed = read.only(read.child(node, "FinalSpeed"))
+            for x in speed:
+                kinds = {"TargetDistanceSteadyState": "distance", "TargetTimeSteadyState": "time"}
+                if x.tag not in kinds:
+                    raise read.error(x, "this steady state is not supported")
+                value = read.number(x, kinds[x.tag])
+                steady = (value, 0.0) if kinds[x.tag] == "distance" else (0.0, value)
+            final = read.number(speed, "value")
+            if speed.tag == "RelativeSpeedToMaster":
+                factor = speed.get("speedTargetValueType") == "factor"
+                final, share = (0.0, final) if factor else (final, 1.0)
+        now = Steady(scene.time, state.s, state.v_lon)
+        course = Arrive(now, actor.name, other, here, there, final, share, steady)
+        return course.next(scene.time, scene.states)
 
     def _lane_change(self, node: Element, actor: Actor, scene: Scene) -> Course:
         read, state = self.document, scene.states[actor.name]
@@ -183,7 +268,7 @@ class ActionReader:
         return PlaceTransition(scene.time, (state.d, d), duration, SHAPES[shape])
 
     def _follow(self, node: Element, actor: Actor, scene: Scene) -> dict[Axis, Course]:
-        found = self.trajectory(node, actor.name)
+        found = self.trajectory(node, actor.name, scene.time)
         if found.begin < scene.time - 0.011:
             told = f"it begins at {scene.time:g} s, after the first Vertex at {found.begin:g} s"
             raise self.document.error(node, told)

@@ -82,6 +82,8 @@ class ConditionReader:
     def _by_entity(self, node: Element, name: str, now: Situation) -> bool:
         read, state = self.document, now.states[name]
         match node.tag:
+            case "EndOfRoadCondition":  # a recording ends before
+                return False
             case "TraveledDistanceCondition":
                 return now.travelled[name] >= read.number(node, "value")
             case "SpeedCondition":
@@ -106,6 +108,9 @@ class ConditionReader:
                 other, there = self._other(node, now)
                 distance = self._distance(node, name, there, other, now)
                 return abs(state.v_lon) > _SLOWEST and self._compare(node, distance / abs(state.v_lon))
+            case "CollisionCondition":
+                other, there = self._other(read.child(node, "EntityRef"), now)
+                return all(x <= 0 for x in self._gaps(name, other, (there.s - state.s, there.d - state.d)))
             case "TimeToCollisionCondition":
                 return self._time_to_collision(node, name, now)
         raise read.error(node, "this condition is not supported")
@@ -125,17 +130,13 @@ class ConditionReader:
 
     def _distance(self, node: Element, name: str, there: State, other: str | None, now: Situation) -> float:
         """The distance as ``relativeDistanceType``, ``freespace`` and ``alongRoute`` say, at least 0."""
-        state, box = now.states[name], self.boxes[name]
+        state = now.states[name]
         kind = node.get("relativeDistanceType") or (
             "longitudinal" if node.get("alongRoute", "true") in ("true", "1") else "euclidianDistance"
         )
         s, d = there.s - state.s, there.d - state.d
         if node.get("freespace") in ("true", "1"):
-            beyond = self.boxes[other] if other else Box("", "", 0.0, 0.0, (0.0, 0.0))
-            s += beyond.centre[0] - box.centre[0]
-            d += beyond.centre[1] - box.centre[1]
-            s = max(abs(s) - (box.length + beyond.length) / 2, 0.0)
-            d = max(abs(d) - (box.width + beyond.width) / 2, 0.0)
+            s, d = (max(x, 0.0) for x in self._gaps(name, other, (s, d)))
         match kind:
             case "longitudinal":
                 return abs(s)
@@ -144,6 +145,13 @@ class ConditionReader:
             case "euclidianDistance" | "cartesianDistance" | "euclideanDistance":
                 return math.hypot(s, d)
         raise self.document.error(node, f"relativeDistanceType={kind} is not supported")
+
+    def _gaps(self, name: str, other: str | None, apart: tuple[float, float]) -> tuple[float, float]:
+        """Gaps between boxes whose reference points are so far apart; negative where they overlap."""
+        box = self.boxes[name]
+        beyond = self.boxes[other] if other else Box("", "", 0.0, 0.0, (0.0, 0.0))
+        s, d = (abs(x + b - a) for x, a, b in zip(apart, box.centre, beyond.centre, strict=True))
+        return s - (box.length + beyond.length) / 2, d - (box.width + beyond.width) / 2
 
     def _other(self, node: Element, now: Situation) -> tuple[str, State]:
         name = self.document.text(node, "entityRef")

@@ -36,7 +36,9 @@ _FUNCTIONS: Mapping[str, Callable[..., float]] = {
     "min": lambda x, y: min(x, y),
     "max": lambda x, y: max(x, y),
 }
-CATALOGS = {"VehicleCatalog": "Vehicle"}
+_OWNERS = ("ScenarioObject", "ManeuverGroup", "TrajectoryRef")
+"""Elements that may have a CatalogReference in place of an element that is written out."""
+_FOLDERS = "CatalogLocations/*/Directory"
 
 
 def expression_value(text: str) -> float:
@@ -86,7 +88,7 @@ class Document:
 
     path: Path
     root: Element
-    places: Mapping[Element, str]
+    places: dict[Element, str]
 
     def error(self, node: Element, rule: str) -> InputError:
         """The error for an element that breaks a rule."""
@@ -120,10 +122,14 @@ class Document:
 def open_document(path: Path) -> Document:
     """The file with its parameters and catalogues put in. Raises ``InputError``."""
     root = read_xml(path, "OpenSCENARIO")
+    if root.find("Catalog") is not None:
+        raise InputError(f"{path}: this is a catalogue, which has no storyboard; name a scenario")
+    if root.find("ParameterValueDistribution") is not None:
+        raise InputError(f"{path}: ParameterValueDistribution: name a scenario with values in place of it")
     places = dict[Element, str]()
     _put_values(path, root, {}, "", places)
     document = Document(path, root, places)
-    for owner in root.findall("Entities/ScenarioObject"):
+    for owner in [x for x in root.iter() if x.tag in _OWNERS]:
         reference = owner.find("CatalogReference")
         if reference is not None:
             owner.remove(reference)
@@ -156,26 +162,26 @@ def _put_values(
 
 
 def _entry(document: Document, reference: Element) -> Element:
-    """The vehicle of a catalogue that a CatalogReference names."""
+    """The element of a catalogue that a CatalogReference names."""
     catalog, name = (document.text(reference, x) for x in ("catalogName", "entryName"))
     given = {
         document.text(x, "parameterRef").lstrip("$"): document.text(x, "value")
         for x in reference.findall("ParameterAssignments/ParameterAssignment")
     }
-    folders = document.root.findall("CatalogLocations/VehicleCatalog/Directory")
-    if not folders:
-        raise document.error(reference, "no VehicleCatalog in CatalogLocations")
-    for folder in folders:
-        place = document.path.parent / document.text(folder, "path")
-        for file in [place] if place.suffix == ".xosc" else sorted(place.glob("*.xosc")):
-            root = read_xml(file, "OpenSCENARIO")
-            for entry in root.findall("Catalog/Vehicle"):
-                if entry.get("name") != name or root.find(f"Catalog[@name='{catalog}']") is None:
-                    continue
+    folders = [document.path.parent / document.text(x, "path") for x in document.root.findall(_FOLDERS)]
+    for file in (file for folder in dict.fromkeys(folders) for file in _files(folder)):
+        for known in read_xml(file, "OpenSCENARIO").findall("Catalog"):
+            entry = next((x for x in known if x.get("name") == name), None)
+            if known.get("name") == catalog and entry is not None:
                 for declaration in entry.findall("ParameterDeclarations/ParameterDeclaration"):
                     declared = (declaration.get("name") or "").lstrip("$")
                     declaration.set("value", given.get(declared, declaration.get("value") or ""))
-                _put_values(file, entry, {}, "", {})
+                where = f"{document.places[reference]} {name}"
+                _put_values(file, entry, {}, where, document.places)
                 return entry
-    shown = ", ".join(str(document.path.parent / (x.get("path") or "")) for x in folders)
-    raise document.error(reference, f"no Vehicle {name} in a catalogue {catalog} in {shown}")
+    shown = ", ".join(map(str, folders)) or "CatalogLocations"
+    raise document.error(reference, f"no {name} in a catalogue {catalog} in {shown}")
+
+
+def _files(folder: Path) -> list[Path]:
+    return [folder] if folder.suffix == ".xosc" else sorted(folder.glob("*.xosc"))

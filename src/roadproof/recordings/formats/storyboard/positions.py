@@ -8,15 +8,21 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import permutations
 from pathlib import Path
 
+from roadproof.errors import InputError
 from roadproof.recordings.formats.storyboard.document import Document
 from roadproof.runtime.xml_reader import Element
+from roadproof.world.maps.carriageway import DRIVEN, RAMPS
 from roadproof.world.maps.opendrive import MapRoad, MapSection, read_map, value_at
 from roadproof.world.maps.selection import STRETCH, is_map, read_selection
+from roadproof.world.models import load_road
 from roadproof.world.road import Road
 
 _LANE = "LanePosition"
+_MOST_ROADS = 4
+"""Of so many roads the order is found."""
 
 
 @dataclass(frozen=True)
@@ -41,19 +47,35 @@ def stretch_of(document: Document, path: Path) -> str:
     )
     if declared:
         return f"{path}#{declared}"
-    places = [*document.root.iter(_LANE)]
-    roads = {document.text(x, "roadId") for x in places}
-    sides = {document.number(x, "laneId") > 0 for x in places}
-    if len(roads) > 1:
-        shown = ", ".join(sorted(roads))
-        rule = f"name the route as a parameter {STRETCH} with a value such as route=1+2"
-        raise document.error(places[0], f"positions on several roads ({shown}); {rule}")
-    if len(sides) > 1:
-        raise document.error(places[0], "positions in lanes of both directions; one direction is supported")
+    places = document.root.findall(f"Storyboard/Init//{_LANE}") or [*document.root.iter(_LANE)]
     if not places:
         return str(path)
-    (road,), (left,) = roads, sides
-    return f"{path}#road={road},lanes={'left' if left else 'right'}"
+    roads = {document.text(x, "roadId") for x in places}
+    if len(roads) > 1:
+        return _route(document, path, sorted(roads), places[0])
+    left = (document.number(places[0], "laneId") > 0) != _turned(document, places[0])
+    return f"{path}#road={roads.pop()},lanes={'left' if left else 'right'}"
+
+
+def _route(document: Document, path: Path, roads: list[str], place: Element) -> str:
+    """The roads in the order in which the vehicle at ``place`` drives on them. Raises ``InputError``."""
+    for order in permutations(roads) if len(roads) <= _MOST_ROADS else ():
+        route = f"{path}#route={'+'.join(order)}"
+        try:
+            found = positions_on(document, load_road(route))
+            found.check_direction(place)
+        except InputError:
+            continue
+        return route
+    shown = ", ".join(roads)
+    rule = f"name the route as a parameter {STRETCH} with a value such as route=1+2"
+    raise document.error(place, f"positions on several roads ({shown}) that are not one route; {rule}")
+
+
+def _turned(document: Document, place: Element) -> bool:
+    """Whether an Orientation turns a vehicle against its lane."""
+    orientation = place.find("Orientation")
+    return orientation is not None and math.cos(document.number(orientation, "h", 0.0)) < 0
 
 
 @dataclass(frozen=True)
@@ -97,40 +119,52 @@ class Positions:
                 return other.s + read.number(place, "dx"), other.d + read.number(place, "dy")
         raise read.error(place, "this kind of position is not supported")
 
+    def check_direction(self, place: Element) -> None:
+        """Raise ``InputError`` where a vehicle with this kind of position would drive against the road."""
+        against = False
+        if place.tag == _LANE and self.document.text(place, "laneId") != "0":
+            road, s = self._road(place), self.document.number(place, "s")
+            side = -1 if road.rule == "RHT" else 1
+            forward = self.document.number(place, "laneId") * side > 0
+            against = (forward != _turned(self.document, place)) != (self._heading_sign(road, s) > 0)
+        elif place.tag == "WorldPosition" and place.get("h") and self.road.line is not None:
+            s, _ = self.place(self.document.number(place, "x"), self.document.number(place, "y"))
+            against = math.cos(self.document.number(place, "h") - self.road.line.pose(s).heading) < 0
+        if against:
+            raise self.document.error(
+                place, "a vehicle drives against the others; one direction is supported"
+            )
+
     def lane_beside(self, node: Element, at: tuple[float, float], number: int) -> float:
         """d of the middle of the lane so many to the left of that at a place."""
-        bounds = sorted(
-            (float(x.d[0]), float(x.d[1]))
-            for x in self.road.lanelets
-            if (x.s[0] is None or float(x.s[0]) <= at[0]) and (x.s[1] is None or at[0] <= float(x.s[1]))
-        )
-        bounds = [x for k, x in enumerate(bounds) if not k or x != bounds[k - 1]]
-        here = [k for k, (right, left) in enumerate(bounds) if right <= at[1] <= left]
-        if not here:
-            raise self.document.error(node, f"there is no lane at s={at[0]:.2f}, d={at[1]:.2f}")
-        if not 0 <= here[0] + number < len(bounds):
+        road, s = self._road_at(node, at)
+        ids = [x.id for x in _section(road, s).lanes.values() if x.type in DRIVEN or x.type in RAMPS]
+        middles = sorted(self._on_map(road, s, self._middle(node, road, s, x))[1] for x in ids)
+        here = min(range(len(middles)), key=lambda k: abs(middles[k] - at[1]), default=None)
+        if here is None or not 0 <= here + number < len(middles):
             side = "left" if number > 0 else "right"
             told = f"there is no lane {abs(number)} to the {side} at s={at[0]:.2f}, d={at[1]:.2f}"
             raise self.document.error(node, told)
-        return sum(bounds[here[0] + number]) / 2
+        return middles[here + number]
 
     def lane_called(self, node: Element, at: tuple[float, float], lane: int) -> float:
         """d of the middle of a lane of the map, beside a place of the road."""
-        if self.road.line is None:
-            raise self.document.error(node, "lanes with numbers need a map")
+        road, s = self._road_at(node, at)
+        return self._on_map(road, s, self._middle(node, road, s, lane))[1]
+
+    def _road_at(self, node: Element, at: tuple[float, float]) -> tuple[MapRoad, float]:
+        """The map's road at a place, and s there."""
+        if self.road.line is None or not self.roads:
+            raise self.document.error(node, "lanes need a map")
         x, y = self.road.line.place(*at)
         nearest = min(self.roads.values(), key=lambda road: _distance(road, x, y))
-        s = nearest.line.locate(x, y)[0]
-        return self._on_map(nearest, s, self._middle(node, nearest, s, lane))[1]
+        return nearest, nearest.line.locate(x, y)[0]
 
     def _lane_position(self, place: Element) -> tuple[float, float]:
         read, road = self.document, self._road(place)
         s, lane = read.number(place, "s"), round(read.number(place, "laneId"))
-        side = math.copysign(1.0, lane) if self.road.line is None else self._heading_sign(road, s)
         offset = read.number(place, "offset", 0.0)
-        middle = self._middle(place, road, s, lane)
-        found = self._on_map(road, s, middle)
-        return found[0], found[1] + offset * side
+        return self._on_map(road, s, self._middle(place, road, s, lane) + offset)
 
     def _heading_sign(self, road: MapRoad, s: float) -> float:
         """1 where the map's road goes the way that is driven, else -1."""
@@ -140,6 +174,8 @@ class Positions:
     def _middle(self, node: Element, road: MapRoad, s: float, lane: int) -> float:
         """t of the middle of a lane."""
         section = _section(road, s)
+        if lane == 0:
+            return float(value_at(road.offset, Fraction(s)))
         if lane not in section.lanes:
             raise self.document.error(node, f"road {road.id} has no lane {lane} at s={s:.2f}")
         at = Fraction(s)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from roadproof.recordings.formats.storyboard.actions import ActionReader, Actor, Axis, Scene, TrajectoryReader
 from roadproof.recordings.formats.storyboard.box import Box
 from roadproof.recordings.formats.storyboard.conditions import TICKS, ConditionReader, Situation, Trigger
+from roadproof.recordings.formats.storyboard.controllers import Arrive, KeepDistance
 from roadproof.recordings.formats.storyboard.courses import Course, Point, Steady
 from roadproof.recordings.formats.storyboard.document import Document
 from roadproof.recordings.formats.storyboard.elements import StoryElement, read_element, starts
@@ -22,6 +23,7 @@ from roadproof.world.road import Road
 LONGEST, REST = 120, 5
 _STANDS = 1e-6
 """m/s"""
+_ANYWHERE = Point(0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,7 @@ class _Runner:
     ) -> None:
         self.document, self.boxes = document, boxes
         positions = positions_on(document, road)
-        self.actions = ActionReader(document, positions, trajectory)
+        self.actions = ActionReader(document, boxes, positions, trajectory)
         conditions = ConditionReader(document, boxes, positions)
         board = document.child(document.root, "Storyboard")
         self.stories = [read_element(x, conditions) for x in board.findall("Story")]
@@ -75,6 +77,7 @@ class _Runner:
             now = self._situation(states)
             if self.stop.fires(now):
                 return Play(tuple(found), "its StopTrigger fires")
+            self._steer(states)
             for story in self.stories:
                 self._advance(story, now)
             found[-1] = self._states()  # steps of speed
@@ -87,6 +90,14 @@ class _Runner:
     def _states(self) -> dict[str, State]:
         time = self.tick / TICKS
         return {name: _state(actor, time) for name, actor in self.actors.items()}
+
+    def _steer(self, states: Mapping[str, State]) -> None:
+        """Let vehicles react to others."""
+        for name, actor in self.actors.items():
+            course = actor.courses["along"]
+            if isinstance(course, KeepDistance | Arrive) and not course.ended(0.0, _ANYWHERE):
+                steered = course.next(self.tick / TICKS, states)
+                self.actors[name] = Actor(name, {**actor.courses, "along": steered})
 
     def _count(self, before: Mapping[str, State], states: Mapping[str, State]) -> None:
         """Add up distances and times at rest."""
@@ -114,9 +125,11 @@ class _Runner:
                 for x in private.findall("PrivateAction")
             ]
         )
+        known = {x.get("name") for x in self.document.root.iter("ScenarioObject")}
         for name, action in actions:
-            if name not in self.boxes:
+            if name not in known:
                 raise self.document.error(action, f"there is no ScenarioObject {name}")
+        actions = [x for x in actions if x[0] in self.boxes]
         teleports = [x for x in actions if x[1].find("TeleportAction") is not None]
         self._begin_all(teleports)
         for name in self.boxes:
@@ -223,7 +236,7 @@ class _Runner:
 
 
 def _along(actor: Actor, time: float) -> Point:
-    return actor.courses["along"].at(time, Point(0.0, 0.0))
+    return actor.courses["along"].at(time, _ANYWHERE)
 
 
 def _state(actor: Actor, time: float) -> State:

@@ -1,0 +1,173 @@
+"""Actions that look at another vehicle at each tick: distances that are kept, and arrivals at the same time.
+
+Both are courses whose ``next`` is the course from the next tick on. Accelerations are constant in a tick.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import TypeAlias
+
+from roadproof.recordings.formats.storyboard.courses import Course, Point, Steady
+from roadproof.recordings.formats.storyboard.positions import States
+
+_NEAR = 0.1
+"""m: a distance that is to be reached once is reached, as in esmini."""
+_SPRING = 0.4
+_SLOWEST = 1e-6
+_STEP = 0.01
+
+Phase: TypeAlias = tuple[float, float]
+"""Duration (s) and acceleration (m/s²)."""
+
+
+@dataclass(frozen=True)
+class Phases:
+    """Constant accelerations one after the other, then constant speed."""
+
+    begin: float
+    start: float
+    speed: float
+    phases: tuple[Phase, ...]
+
+    def at(self, time: float, along: Point) -> Point:
+        place, speed, left = self.start, self.speed, time - self.begin
+        for duration, acceleration in self.phases:
+            u = min(left, duration)
+            place += speed * u + acceleration * u * u / 2
+            speed += acceleration * u
+            left -= u
+            if left <= 0:
+                return Point(place, speed, acceleration if u < duration else 0.0)
+        return Point(place + speed * left, speed)
+
+    def ended(self, time: float, along: Point) -> bool:
+        return time >= self.begin + sum(x for x, _ in self.phases)
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Of acceleration, deceleration (m/s²) and speed (m/s)."""
+
+    acceleration: float = math.inf
+    deceleration: float = math.inf
+    speed: float = math.inf
+
+
+@dataclass(frozen=True)
+class KeepDistance:
+    """Keeps ``distance`` (m, or s of the other one's speed) behind another vehicle, or ahead where negative.
+
+    Without limits of acceleration it is there at once. With them it is a spring with critical damping, as in
+    esmini: stiffness 0.4 times the limit of acceleration. ``apart``: what is between reference points where
+    the distance is 0.
+    """
+
+    now: Course
+    name: str
+    other: str
+    distance: float
+    seconds: bool
+    apart: float
+    limits: Limits
+    continuous: bool
+    reached: bool = False
+
+    def at(self, time: float, along: Point) -> Point:
+        return self.now.at(time, along)
+
+    def ended(self, time: float, along: Point) -> bool:
+        return self.reached
+
+    def next(self, time: float, states: States) -> "KeepDistance":
+        """From ``time`` on, where all vehicles are as ``states`` say."""
+        state, other = states[self.name], states[self.other]
+        wanted = self.distance * (abs(other.v_lon) if self.seconds else 1.0)
+        wanted += math.copysign(self.apart, self.distance)
+        error = other.s - state.s - wanted
+        reached = not self.continuous and abs(error) < _NEAR
+        most = self.limits
+        if math.isinf(most.acceleration) and math.isinf(most.deceleration):
+            there = Phases(time, other.s - wanted, other.v_lon, ((_STEP, other.a_lon),))
+            return replace(self, now=there, reached=not self.continuous)
+        tension = most.acceleration if error < 0 else most.deceleration
+        tension = tension if math.isfinite(tension) else min(most.acceleration, most.deceleration)
+        stiffness = _SPRING * tension
+        pull = error * stiffness - (state.v_lon - other.v_lon) * 2 * math.sqrt(stiffness)
+        pull = min(max(pull, -most.deceleration), most.acceleration)
+        low, high = (-most.speed - state.v_lon) / _STEP, (most.speed - state.v_lon) / _STEP
+        pull = min(max(pull, low), high)
+        course = Phases(time, state.s, state.v_lon, ((_STEP, 0.0 if reached else pull),))
+        return replace(self, now=course, reached=reached)
+
+
+@dataclass(frozen=True)
+class Arrive:
+    """Is at ``place`` when another vehicle, if it keeps its speed, is at ``other_place``.
+
+    With ``final_speed``: two phases of the same acceleration, or with a stop between; otherwise constant
+    speed. A plan is made again where the other vehicle changes its speed. ``share``: the final speed is
+    ``final_speed`` plus so many times that of the other one. ``steady``: it has this speed in the last so
+    many metres, and in the last so many seconds.
+    """
+
+    now: Course
+    name: str
+    other: str
+    place: float
+    other_place: float
+    final_speed: float | None
+    share: float = 0.0
+    steady: tuple[float, float] = (0.0, 0.0)
+    planned: float | None = None
+    over: bool = False
+
+    def at(self, time: float, along: Point) -> Point:
+        return self.now.at(time, along)
+
+    def ended(self, time: float, along: Point) -> bool:
+        return self.over
+
+    def next(self, time: float, states: States) -> "Arrive":
+        """From ``time`` on, where all vehicles are as ``states`` say."""
+        state, other = states[self.name], states[self.other]
+        way, left = self.place - state.s, self.other_place - other.s
+        over = way <= _STEP * abs(state.v_lon) / 2 or left <= _STEP * abs(other.v_lon) / 2
+        if over or other.v_lon == self.planned:
+            return replace(self, over=over)
+        if other.v_lon <= _SLOWEST:
+            return replace(self, now=Steady(time, state.s), planned=other.v_lon)
+        duration = left / other.v_lon
+        if self.final_speed is None:
+            course: Course = Steady(time, state.s, way / duration)
+        else:
+            final = self.final_speed + self.share * other.v_lon
+            last = self.steady[1] + (self.steady[0] / final if final > _SLOWEST else 0.0)
+            way, duration = way - last * final, duration - last
+            if way <= 0 or duration <= 0:
+                course = Phases(time, state.s, final, ())
+            else:
+                phases = arrival(way, duration, (state.v_lon, final))
+                course = Phases(time, state.s, state.v_lon, phases)
+        return replace(self, now=course, planned=other.v_lon)
+
+
+def arrival(way: float, duration: float, speeds: tuple[float, float]) -> tuple[Phase, ...]:
+    """Phases in which a vehicle goes ``way`` m in ``duration`` s from one speed to another.
+
+    Two with the same acceleration, one of them negative; where this were backwards, a stop between.
+    """
+    low, high = speeds
+    change, more = high - low, way - low * duration
+    half = change * duration - 2 * more  # of duration² a² + 2 half a - change² = 0
+    root = math.sqrt(half * half + (duration * change) ** 2)
+    a = (-half - root if half > 0 else root - half) / duration**2
+    if abs(a) < _SLOWEST:
+        return ((duration, 0.0),)
+    first = min(max((duration + change / a) / 2, 0.0), duration)
+    if low + a * first >= 0 or low <= 0 or high <= 0:
+        return ((first, a), (duration - first, -a))
+    a = (low * low + high * high) / (2 * way)
+    ends = (0.0, low / a, duration - high / a, duration)
+    moves = (-a, 0.0, a)
+    return tuple((end - begin, x) for (begin, end), x in zip(pairwise(ends), moves, strict=True))
