@@ -137,6 +137,10 @@ def test_exports_agree_with_an_integration() -> None:
     assert np.abs(np.hypot(speeds, aside)[:-1] - measured).max() < 0.05  # means over 0.1 s
     middle = (np.hypot(speeds, aside)[1:] + np.hypot(speeds, aside)[:-1]) / 2
     assert np.abs(middle - measured).max() < 0.02
+    along = [float(node.findtext("acceleration/exact", "")) for node in places]
+    yaw = np.gradient(turned, 0.1)  # the rate of the speed along the box, less the speed aside times this
+    inner = np.abs(np.subtract.outer(s, [300, 420])).min(axis=1) > 6  # where no curve ends
+    assert np.abs(along - (np.gradient(speeds, 0.1) - aside * yaw))[inner].max() < 0.005
 
 
 def test_motion_is_read_back_from_commonroad(tmp_path: Path) -> None:
@@ -156,6 +160,9 @@ def test_motion_is_read_back_from_commonroad(tmp_path: Path) -> None:
     assert np.abs(found.v_lon - v_lon * (1 + 1.875 * bend)).max() < 0.01
     assert np.abs(found.v_lat - v_lat).max() < 0.02
     assert np.abs(found.a_lat - a_lat).max() < 0.001
+    smooth = np.abs(np.subtract.outer(found.s, [300, 420])).min(axis=1) > 30  # where no curve ends
+    assert np.abs(found.a_lon - np.gradient(v_lon * (1 + 1.875 * bend), 1 / 25))[smooth].max() < 0.01
+    assert np.count_nonzero(smooth & (found.s > 330) & (found.s < 390)) > 40
 
 
 def test_a_scenario_is_read_back_where_it_was(tmp_path: Path) -> None:

@@ -99,6 +99,15 @@ class ReferenceLine:
             pose.x + beyond * math.cos(pose.heading), pose.y + beyond * math.sin(pose.heading), pose.heading
         )
 
+    def curvature_rate(self, s: float) -> float:
+        """The change of curvature per metre at ``s`` (1/m²), by its bounds; 0 beyond the ends."""
+        part = next((x for x in self.parts if x.s <= s < x.end), None)
+        bend = next((x for x in part.bends() if x.begin <= s < x.end), None) if part else None
+        if bend is None:
+            return 0.0
+        change = sum(bend.low[1:] + bend.high[1:]) - sum(bend.low[:1] + bend.high[:1])
+        return float(change / 2 / (bend.end - bend.begin))
+
     def place(self, s: float, d: float) -> tuple[float, float]:
         """Where (s, d) is in the plane (m)."""
         pose = self.pose(s)

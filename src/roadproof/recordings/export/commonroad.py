@@ -161,11 +161,10 @@ def _moving(state: State, motion: Motion, line: ReferenceLine | None) -> _Moving
     if line is None:
         return _Moving(middle, Fraction(0), state.v_lon, state.a_lon)
     pose = centre_in_plane(state, motion, line)
-    shorter = 1 - pose.curvature * float(middle[1])
-    swing = 2 * float(state.v_lon * state.v_lat) * pose.curvature
-    return _Moving(
-        (pose.x, pose.y), pose.along, float(state.v_lon) * shorter, float(state.a_lon) * shorter - swing
-    )
+    speed, aside = float(state.v_lon), float(middle[1])
+    shorter = 1 - pose.curvature * aside
+    swing = 2 * speed * float(state.v_lat) * pose.curvature + speed**2 * pose.curvature_rate * aside
+    return _Moving((pose.x, pose.y), pose.along, speed * shorter, float(state.a_lon) * shorter - swing)
 
 
 def _state(tag: str, step: int, state: State, motion: Motion, line: ReferenceLine | None) -> Element:

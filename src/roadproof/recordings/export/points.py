@@ -39,12 +39,16 @@ def rear_axle(state: State, motion: Motion, turned: float) -> tuple[float, float
 
 @dataclass(frozen=True)
 class PlanePose:
-    """A place in the plane (m), the direction of the road there and the curvature of its line (rad, 1/m)."""
+    """A place in the plane (m) and the direction of the road there (rad).
+
+    ``curvature`` of its line (1/m), and what that changes by in a metre (1/m²).
+    """
 
     x: float
     y: float
     along: float
     curvature: float
+    curvature_rate: float
 
 
 def centre_in_plane(state: State, motion: Motion, line: ReferenceLine) -> PlanePose:
@@ -52,7 +56,8 @@ def centre_in_plane(state: State, motion: Motion, line: ReferenceLine) -> PlaneP
     s, d = map(float, centre(state, motion.length, motion.width))
     pose, ahead = line.pose(s), line.pose(s + _STEP)
     x, y = line.place(s, d)
-    return PlanePose(x, y, pose.heading, math.remainder(ahead.heading - pose.heading, math.tau) / _STEP)
+    curvature = math.remainder(ahead.heading - pose.heading, math.tau) / _STEP
+    return PlanePose(x, y, pose.heading, curvature, line.curvature_rate(s))
 
 
 def rear_axle_in_plane(
