@@ -578,6 +578,19 @@ def test_relative_speed_and_an_action_that_ends_another(tmp_path: Path) -> None:
     assert at(found, 4, "s") == pytest.approx(92 + 18 + 60)
 
 
+def test_a_transition_and_parameters_of_a_story(tmp_path: Path) -> None:
+    """The act's start is seen one tick later; the story's parameter is beside that of the file."""
+    start = when(element_is("act", "act", "startTransition"))
+    go = event("go", to_speed("${$v + $w}"), start)
+    declared = '<ParameterDeclarations><ParameterDeclaration name="{}" value="{}"/></ParameterDeclarations>'
+    path = put(tmp_path, {"Ego": EGO}, maneuver("Ego", go), more=declared.format("v", 20))
+    story = '<Story name="story">'
+    path.write_text(path.read_text("utf-8").replace(story, story + declared.format("w", 5)), "utf-8")
+    found = rows(path)["Ego"]
+    assert at(found, 0, "v_lon") == pytest.approx(20)
+    assert at(found, 0.04, "v_lon") == pytest.approx(25)
+
+
 def test_a_stop_trigger_ends_it(tmp_path: Path) -> None:
     stop = when(of("Ego", '<SpeedCondition value="15" rule="lessThan"/>'), "rising", 0.5, "StopTrigger")
     brake = event("brake", to_speed(0, "linear", "rate", 5), when(at_time(1)))
