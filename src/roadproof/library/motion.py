@@ -11,12 +11,12 @@ and limits a value is one more of what is assumed. What is proved is the claim w
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from fractions import Fraction
 
 from roadproof.errors import InputError, Position, TextError
 from roadproof.library import arithmetic
+from roadproof.library.assumed_text import located, parsed
 from roadproof.library.bind import values_with
 from roadproof.library.compose import always, both, implication
 from roadproof.library.elaborate import elaborate, read_claim
@@ -28,7 +28,6 @@ from roadproof.logic import motion, syntax
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.initial_conditions import pins
-from roadproof.logic.parse import parse_claim
 from roadproof.logic.restore import as_syntax, term_as_syntax
 from roadproof.logic.rewrite import leaves_of, parameters_of, vehicles_of
 from roadproof.logic.show import text
@@ -38,7 +37,6 @@ from roadproof.world.units import UNITS
 from roadproof.world.vehicle import Vehicle
 
 MOTION = "motion"
-SOURCE = "what is assumed"
 _HEAD = re.compile(r"\s*(?:assuming\s+(?P<motion>motion\b[^:]*)|at\s+(?P<values>\w+\s*=[^:]*)):", re.ASCII)
 _VALUE = re.compile(r"\s*\w+\s*=(?!=)", re.ASCII)
 _ASSUMING = re.compile(r"\s*assuming\s+(?=\w|:)", re.ASCII)
@@ -219,8 +217,8 @@ def values_said(specification: Specification, said: Sequence[str]) -> dict[str, 
 
 def _read(specification: Specification, written: str) -> tuple[str, Fraction]:
     """A parameter and its value in SI units. Raises ``InputError``."""
-    with _located(written):
-        read = elaborate(specification, syntax.Claim((), _parsed(written)))
+    with located(written):
+        read = elaborate(specification, syntax.Claim((), parsed(written)))
     found = pins(f.negation(read.formula))
     if [read.formula] != [x.formula for x in _equalities(specification, found)]:
         raise InputError(
@@ -374,8 +372,8 @@ def _alike(one: Quantity, dimension: t.Dimension | None) -> None:
 
 def _elaborated(specification: Specification, query: Query, written: str) -> Query:
     """A formula about what ``query`` speaks of. Raises ``InputError``."""
-    body = _parsed(written)
-    with _located(written):
+    body = parsed(written)
+    with located(written):
         made = elaborate(specification, syntax.Claim(query.claim.given, body))
     _refuse({*vehicles_of(made.formula)} - {*query.vehicles} or {*made.lanes} - {*query.lanes}, written)
     return Query(syntax.Claim((), body), made.formula, made.vehicles, made.lanes)
@@ -384,8 +382,8 @@ def _elaborated(specification: Specification, query: Query, written: str) -> Que
 def _term(specification: Specification, query: Query, written: str) -> Quantity:
     """A term about what ``query`` speaks of. Raises ``InputError``."""
     walk = Elaborator(specification)
-    with _located(written):
-        made = walk.term(_parsed(written), walk.given(query.claim))
+    with located(written):
+        made = walk.term(parsed(written), walk.given(query.claim))
     moving = {x.vehicle for x in t.leaves(made.term) if isinstance(x, t.Signal | t.Size | t.Own)}
     _refuse(moving - {*query.vehicles, ""}, written)
     return made
@@ -394,18 +392,3 @@ def _term(specification: Specification, query: Query, written: str) -> Quantity:
 def _refuse(strangers: set[str], written: str) -> None:
     if strangers:
         raise InputError(f"'{written[:80]}' speaks of {min(strangers)}, but the claim does not")
-
-
-@contextmanager
-def _located(written: str) -> Iterator[None]:
-    try:
-        yield
-    except TextError as error:
-        raise error.locate(SOURCE, written) from None
-
-
-def _parsed(written: str) -> syntax.Expression:
-    claim = parse_claim(written, SOURCE)
-    if claim.given:
-        raise InputError(f"'{written[:80]}' may declare nothing: it is read with the names of the claim")
-    return claim.body

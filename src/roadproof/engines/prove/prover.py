@@ -133,8 +133,8 @@ def prove(
         return replace(result(Verdict.UNKNOWN, why), stop=Stop.CERTIFICATE)
     rejected = _rejection(certificate, proofs, meter)
     if rejected is not None:
-        verdict, why = rejected
-        return replace(result(verdict, why), stop=Stop.CERTIFICATE if verdict is Verdict.UNKNOWN else None)
+        stop = Stop.CERTIFICATE if rejected[0] is Verdict.UNKNOWN else None
+        return replace(result(*rejected), stop=stop)
     if premise != f.TRUE and attempt.never_holds(premise, f.TRUE):
         return result(Verdict.VACUOUS, CONTRADICTION, certificate)
     condition = None if shared is not None else _premise(query, claim)
