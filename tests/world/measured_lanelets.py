@@ -1,7 +1,7 @@
 """Small maps of measured lanelets along an arc or a straight line, as files of other formats."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 Point = tuple[float, float]
@@ -65,3 +65,41 @@ def _lanelet(lane: MapLane, curvature: float) -> str:
         f'<lanelet id="{lane.id}"><leftBound>{left}</leftBound><rightBound>{right}</rightBound>'
         f"{refs}<laneletType>{lane.kind}</laneletType></lanelet>"
     )
+
+
+def lanelet2(
+    lanes: Sequence[MapLane],
+    curvature: float = 0.0,
+    node: Callable[[Point], str] | None = None,
+    subtype: str = "road",
+) -> str:
+    """The lanelets with a way for each bound, which neighbours share; every second way is turned.
+
+    ``node``: what a node has, its tags and attributes; by default its place in the plane.
+    """
+    nodes: dict[Point, int] = {}
+    ways: dict[tuple[int, ...], int] = {}
+    relations = []
+    for lane in lanes:
+        sides = []
+        for side in (0, 1):
+            points = [(round(x, 6), round(y, 6)) for x, y in lane.bound(side, curvature)]
+            ids = tuple(nodes.setdefault(x, len(nodes) + 1) for x in points)
+            sides.append(ways.setdefault(ids, len(ways) + 10_000))
+        members = "".join(
+            f'<member type="way" ref="{ref}" role="{role}"/>'
+            for ref, role in zip(sides, ("right", "left"), strict=True)
+        )
+        tags = f'<tag k="type" v="lanelet"/><tag k="subtype" v="{subtype}"/><tag k="location" v="nonurban"/>'
+        relations.append(f'<relation id="{lane.id}">{members}{tags}</relation>')
+    made = "".join(f'<node id="{k}" {(node or local)(x)}</node>' for x, k in nodes.items())
+    for ids, k in ways.items():
+        turned = ids[::-1] if k % 2 else ids
+        refs = "".join(f'<nd ref="{x}"/>' for x in turned)
+        made += f'<way id="{k}">{refs}</way>'
+    return f"<osm>{made}{''.join(relations)}</osm>"
+
+
+def local(point: Point) -> str:
+    x, y = point
+    return f'lat="0" lon="0"><tag k="local_x" v="{x}"/><tag k="local_y" v="{y}"/>'

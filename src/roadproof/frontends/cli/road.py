@@ -11,16 +11,17 @@ from roadproof.verdict import ExitCode
 if TYPE_CHECKING:
     from roadproof.world.maps.overview import MapStretch
 
-SUMMARY = "list and draw the roads of a map in OpenDRIVE or CommonRoad"
+SUMMARY = "list and draw the roads of a map in OpenDRIVE, CommonRoad or Lanelet2"
 
 EXAMPLES = """\
-MAP is a file in OpenDRIVE (.xodr) or CommonRoad (.xml). After # stands what is selected of it, as --road of
-other commands takes it: from=M and to=M along s; step=M, how much the edge of a lane changes at most on one
-lanelet (default: 0.25).
+MAP is a file in OpenDRIVE (.xodr), CommonRoad (.xml) or Lanelet2 (.osm). After # stands what is selected of
+it, as --road of other commands takes it: from=M and to=M along s; step=M, how much the edge of a lane changes
+at most on one lanelet (default: 0.25).
 OpenDRIVE: road=ID, or route=ID+ID for roads that follow each other; lanes=left or right, where both sides are
 driven on.
-CommonRoad: road=K for the main way of carriageway K; way=ID for the way with lanelet ID. The road are the
-lanelets of the way and those beside it. Ring roads and traffic that crosses are not usable: cut a part.
+CommonRoad, Lanelet2: road=K for the main way of carriageway K; way=ID for the way with lanelet ID. The road
+are the lanelets of the way and those beside it. Ring roads and traffic that crosses are not usable: cut a
+part.
 
 examples:
   roadproof road town.xodr                                       all roads, in both directions

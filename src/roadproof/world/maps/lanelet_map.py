@@ -12,7 +12,7 @@ from pathlib import Path
 
 from roadproof.errors import InputError, UsageError
 from roadproof.world.lanelet_rules import check_lanelets
-from roadproof.world.maps import commonroad
+from roadproof.world.maps import commonroad, lanelet2
 from roadproof.world.maps.lanelet_steps import MapLanelet, edges_along, lanelets_of
 from roadproof.world.maps.lines import crossing, joined, reference_line, thinned
 from roadproof.world.maps.network import Network, network_of, zones_of
@@ -60,6 +60,9 @@ class LaneletMap:
 
 def read_lanelets(path: Path) -> LaneletMap:
     """The map of a file, by its ending. Raises ``InputError``."""
+    if path.suffix == ".osm":
+        lanelets, left_out = lanelet2.read_map(path)
+        return LaneletMap(path, network_of(path, lanelets), left_out)
     return LaneletMap(path, network_of(path, commonroad.read_map(path)))
 
 

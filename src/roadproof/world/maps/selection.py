@@ -23,7 +23,7 @@ STRETCH = "roadproof_stretch"
 """The parameter of a scenario in OpenSCENARIO that has what is selected of its map."""
 STEP = Fraction(1, 4)
 _KEYS = ("road", "route", "way", "lanes", "from", "to", "step")
-LANELETS = (".xml",)
+LANELETS = (".xml", ".osm")
 """Endings of maps of measured lanelets."""
 _JOINED, _TURN = 0.5, 0.2
 """Metres along and radians between the end of a road and the beginning of the next one of a route."""
