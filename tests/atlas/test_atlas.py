@@ -131,8 +131,8 @@ def test_formulas_are_in_the_notation_of_the_paper():
 def test_frequencies_are_those_of_the_table():
     found = frequencies(1, "main road")
     assert [(x.set, x.min_danger, x.matches, x.disturbances) for x in found][:3] == [
-        ("base", "0", 17, 156),
-        ("extA", "0", 17, 156),
+        ("base", "0", 18, 156),
+        ("extA", "0", 18, 156),
         ("ext", "0", 39, 156),
     ]
     assert frequencies(99, "main road") == []
