@@ -133,8 +133,7 @@ def prove(
         return replace(result(Verdict.UNKNOWN, why), stop=Stop.CERTIFICATE)
     rejected = _rejection(certificate, proofs, meter)
     if rejected is not None:
-        stop = Stop.CERTIFICATE if rejected[0] is Verdict.UNKNOWN else None
-        return replace(result(*rejected), stop=stop)
+        return replace(result(*rejected), stop=Stop.CERTIFICATE if rejected[0] is Verdict.UNKNOWN else None)
     if premise != f.TRUE and attempt.never_holds(premise, f.TRUE):
         return result(Verdict.VACUOUS, CONTRADICTION, certificate)
     condition = None if shared is not None else _premise(query, claim)

@@ -70,23 +70,19 @@ def read_selection(text: str) -> tuple[Path, Selection]:
         given[key] = value
     if len(named := [x for x in ("road", "route", "way") if x in given]) > 1:
         raise UsageError(f"road {text}: {' and '.join(named)}: name one of them")
-    if "way" in given and Path(name).suffix not in LANELETS:
-        raise UsageError(f"road {text}: way={given['way']}: a road in OpenDRIVE is named by road=ID")
-    lanes = given.get("lanes")
+    lanes, way, road, route = (given.get(x) for x in ("lanes", "way", "road", "route"))
+    if way is not None and Path(name).suffix not in LANELETS:
+        raise UsageError(f"road {text}: way={way}: a road in OpenDRIVE is named by road=ID")
     if lanes not in (None, "left", "right"):
         raise UsageError(f"road {text}: lanes={lanes}: one of left, right is needed")
-    roads = (
-        tuple(given["route"].split("+")) if "route" in given else (given["road"],) if "road" in given else ()
-    )
+    roads = tuple(route.split("+")) if route is not None else () if road is None else (road,)
     low, high, step = (_metres(text, x, given.get(x)) for x in ("from", "to", "step"))
     if low is not None and high is not None and low >= high:
-        raise UsageError(f"road {text}: from={given['from']} is not below to={given['to']}")
+        raise UsageError(f"road {text}: from={float(low):g} is not below to={float(high):g}")
     if step is not None and step < Fraction(1, 100):
-        raise UsageError(f"road {text}: step={given['step']}: at least 0.01 m is needed")
+        raise UsageError(f"road {text}: step={float(step):g}: at least 0.01 m is needed")
     against = None if lanes is None else lanes == "left"
-    return Path(name), Selection(
-        roads, against, (low, high), STEP if step is None else step, given.get("way")
-    )
+    return Path(name), Selection(roads, against, (low, high), STEP if step is None else step, way)
 
 
 def _metres(text: str, key: str, value: str | None) -> Fraction | None:
