@@ -8,7 +8,7 @@ lane in the depart zone, every other one on the main road. A file NAME_zones.tom
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import get_args
+from typing import cast, get_args
 
 from roadproof.errors import InputError
 from roadproof.world.maps.topology import (
@@ -96,17 +96,18 @@ def _read_said(path: Path, lanelets: Mapping[str, MeasuredLanelet]) -> LaneletAt
         where = f"{path}, lanelet {k}"
         if not isinstance(entry, dict) or not {"id"} < set(entry) <= {"id", "zone", "attribute"}:
             raise InputError(f"{where}: an entry has id and zone, attribute or both")
-        name = str(entry["id"])
+        said, zone, attribute = map(entry.get, ("id", "zone", "attribute"))
+        name = str(said)
         if name not in lanelets:
             raise InputError(f"{where}: id={name}: there is no such lanelet")
         if name in attributes or name in zones:
             raise InputError(f"{where}: id={name}: this lanelet has an entry already")
         if "zone" in entry:
-            require_one_of(where, "zone", entry["zone"], get_args(Zone))
-            zones[name] = entry["zone"]
+            require_one_of(where, "zone", zone, get_args(Zone))
+            zones[name] = cast(Zone, zone)
         if "attribute" in entry:
-            require_one_of(where, "attribute", entry["attribute"], get_args(Attribute))
-            attributes[name] = entry["attribute"]
+            require_one_of(where, "attribute", attribute, get_args(Attribute))
+            attributes[name] = cast(Attribute, attribute)
     return LaneletAttributes(attributes, zones)
 
 
