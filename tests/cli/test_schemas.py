@@ -40,13 +40,14 @@ NAMES = {
 }
 DRIVE = ROOT / "examples" / "traffic" / "drives" / "scenario-04-base.json"
 # What evaluate keeps of one recording, and convert, and what a page gives to the viewer in it: for this very
-# version, which alone reads it; answers that are known, and cells of classes.
+# version, which alone reads it; answers that are known, cells of classes, and shares of classes.
 INTERNAL = {
     "roadproof/recording-findings/4",
     "roadproof/recording/2",
     "roadproof/viewer/1",
     "roadproof/known/1",
     "roadproof/division/1",
+    "roadproof/shares/1",
     "roadproof/shown/1",
 }
 NOT_HEADED = {"road.json", "drive.json", "certificate.json", "question.json", "answer.json", "common.json"}

@@ -176,9 +176,7 @@ class Models(Settings):
 class SearchPlace(Models):
     """Where, with whom and for how long drives are looked for."""
 
-    road: RoadLike | None = search(
-        None, "--road R", "road, .toml file or map: a.xodr#road=1 (default: by formula)"
-    )
+    road: RoadLike | None = search(None, "--road R", "road, .toml file or map (default: by formula)")
     lanes: Mapping[str, str] | None = search(
         None,
         "--lane [L=]LANE",
