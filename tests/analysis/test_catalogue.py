@@ -12,7 +12,7 @@ from xml.etree import ElementTree as xml
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.catalogue import examination, meaning, showing, tested
+from roadproof.analysis.catalogue import examination, formula_facts, meaning, showing, tested
 from roadproof.analysis.catalogue.asked import NOWHERE, Questions, Row
 from roadproof.analysis.catalogue.entries import Abstract, Concrete, Freedom
 from roadproof.analysis.catalogue.meaning import Fact
@@ -346,7 +346,7 @@ def meant(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_answers_about_formulas_are_kept_and_checked(meant: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert main(["check", str(meant / "report"), "--jobs", "1"]) == 0
-    monkeypatch.setattr(meaning, "answer", lambda search: pytest.fail("it is kept"))
+    monkeypatch.setattr(formula_facts, "answer", lambda search: pytest.fail("it is kept"))
     again = catalogue(meant, among="3-4", classes=False, drivers=(), jobs=1, out=meant / "report")
     assert len(again.evidence) == 11
 

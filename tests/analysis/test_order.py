@@ -245,8 +245,9 @@ def test_what_a_scenario_needs_is_shown_by_a_drive() -> None:
 def few_changes(monkeypatch: pytest.MonkeyPatch) -> None:
     """Only the changes of one part of scenarios 3 and 11, so that a run takes seconds."""
 
-    def few(home: Specification, query: Query, whole: bool = False) -> Iterator[Change]:
-        yield from (x for x in changes_of(home, query, whole) if x.part.startswith(("sameLane", "aheadOf")))
+    def few(home: Specification, query: Query, whole: bool = False, stated: bool = False) -> Iterator[Change]:
+        changes = changes_of(home, query, whole, stated)
+        yield from (x for x in changes if x.part.startswith(("sameLane", "aheadOf")))
 
     monkeypatch.setattr(redundancy, "changes_of", few)
 
