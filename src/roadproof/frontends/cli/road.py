@@ -11,7 +11,7 @@ from roadproof.verdict import ExitCode
 if TYPE_CHECKING:
     from roadproof.world.maps.overview import MapStretch
 
-SUMMARY = "list and draw the roads of a map in OpenDRIVE, CommonRoad or Lanelet2"
+SUMMARY = "list and draw the roads of a map"
 
 EXAMPLES = """\
 MAP is a file in OpenDRIVE (.xodr), CommonRoad (.xml) or Lanelet2 (.osm). After # stands what is selected of
