@@ -208,36 +208,24 @@ def values_said(specification: Specification, said: Sequence[str]) -> dict[str, 
     for written in said:
         if not _VALUE.match(written):
             continue
-        name, value = specification.worked_out.get((values_said, written)) or _read(specification, written)
+        with located(written):
+            read = elaborate(specification, syntax.Claim((), parsed(written)))
+        found = pins(f.negation(read.formula))
+        if [read.formula] != [x.formula for x in _equalities(specification, found)]:
+            raise InputError(
+                f"'{written[:80]}' is no value of a parameter: write a name, = and a number, such as "
+                "minDanger = 0.6 s"
+            )
+        [(name, value)] = found.items()
         if values.setdefault(name, value) != value:
             raise InputError(f"{name} cannot have two values: {', '.join(said)[:200]}")
     values_with(specification.library, values)
     return dict(sorted(values.items()))
 
 
-def _read(specification: Specification, written: str) -> tuple[str, Fraction]:
-    """A parameter and its value in SI units. Raises ``InputError``."""
-    with located(written):
-        read = elaborate(specification, syntax.Claim((), parsed(written)))
-    found = pins(f.negation(read.formula))
-    if [read.formula] != [x.formula for x in _equalities(specification, found)]:
-        raise InputError(
-            f"'{written[:80]}' is no value of a parameter: write a name, = and a number, such as "
-            "minDanger = 0.6 s"
-        )
-    [only] = found.items()
-    return only
-
-
 def value_texts(specification: Specification, values: Mapping[str, Fraction]) -> tuple[str, ...]:
-    """Values of parameters (SI) as ``values_said`` reads them: ``minDanger = 0.6 s``, by name.
-
-    ``values_said`` knows the values of texts that are written here, and need not read them.
-    """
-    texts = tuple(x.text for x in _equalities(specification, values))
-    for written, said in zip(texts, sorted(values.items()), strict=True):
-        specification.worked_out[values_said, written] = said
-    return texts
+    """Values of parameters (SI) as ``values_said`` reads them: ``minDanger = 0.6 s``, by name."""
+    return tuple(x.text for x in _equalities(specification, values))
 
 
 def _equalities(specification: Specification, values: Mapping[str, Fraction]) -> list[Query]:
