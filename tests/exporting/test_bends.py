@@ -1,5 +1,6 @@
 """Drives on a bent road: limits on bends, and exports against an independent integration."""
 
+import json
 import math
 import random
 from dataclasses import replace
@@ -185,3 +186,30 @@ def test_a_witness_on_the_motorway_is_judged_again_with_check(tmp_path: Path) ->
     found = rp.witness(9, road=f"{MAP}#lanes=right", out=tmp_path, pictures=False)
     assert found.verdict is rp.Verdict.WITNESSED
     assert rp.check(tmp_path).accepted
+
+
+def test_a_map_that_is_another_one_is_not_exported(tmp_path: Path) -> None:
+    """Also no file that a drive of somebody else names as its map."""
+    path = tmp_path / "a.xodr"
+    path.write_bytes(MAP.read_bytes())
+    own = replace(file_of(turning("30")), road=load_road(f"{path}#lanes=right"))
+    path.write_text(MAP.read_text().replace('a="3.75"', 'a="3.5"'))
+    with pytest.raises(InputError, match="the map has another road than drive one"):
+        openscenario.files(subject_of("one", 1, own, 25))
+    path.write_text("secret")
+    with pytest.raises(InputError, match="no well-formed XML"):
+        openscenario.files(subject_of("one", 1, own, 25))
+
+
+def test_two_maps_of_one_name_are_not_exported_together(tmp_path: Path) -> None:
+    drives = []
+    for k, name in enumerate(("A 99", "A 98")):
+        path = tmp_path / str(k) / "a.xodr"
+        path.parent.mkdir()
+        path.write_text(MAP.read_text().replace('name="A 99"', f'name="{name}"'))
+        data = drive_data(replace(file_of(turning("30")), road=load_road(f"{path}#lanes=right")), None)
+        drives.append(tmp_path / f"drive{k}.json")
+        drives[-1].write_text(json.dumps(data | {"verdict": None}))
+    with pytest.raises(InputError, match="drive1: another drive has another a"):
+        rp.export(drives, to="opendrive", out=tmp_path / "out")
+    assert not (tmp_path / "out").exists()

@@ -93,6 +93,7 @@ def export(
         raise UsageError("no drive to export: name drive files, such as those of roadproof witness")
     folder = Path(out)
     made = {(x.name, name): _files(x, name, library) for x in subjects for name in formats}
+    _refuse_clash(made)
     with hold_folder(folder):
         written = tuple(
             _write(folder / name if len(formats) > 1 else folder, subject, name, made[subject.name, name])
@@ -100,6 +101,15 @@ def export(
             for name in formats
         )
     return Exports(folder, written)
+
+
+def _refuse_clash(made: Mapping[tuple[str, str], Mapping[str, bytes]]) -> None:
+    """Raises ``InputError`` where two drives have maps of one name that differ."""
+    known = dict[tuple[str, str], bytes]()
+    for (drive, form), files in made.items():
+        for name, content in files.items():
+            if known.setdefault((form, name), content) != content:
+                raise InputError(f"{drive}: another drive has another {name}; export to two folders")
 
 
 def _files(subject: Subject, name: str, library: Library) -> dict[str, bytes]:

@@ -17,6 +17,7 @@ from roadproof.errors import InputError
 from roadproof.recordings.export import plan_view
 from roadproof.recordings.export.subject import WRITTEN, Layout, Section, Subject, together
 from roadproof.recordings.export.xml import Element, decimal, document, element
+from roadproof.world.models import load_road
 from roadproof.world.motion import monotone_starts, state_at
 from roadproof.world.road import Attribute, Lanelet, Road
 
@@ -44,15 +45,19 @@ def map_path(road: Road) -> Path | None:
 
 
 def _map_file(subject: Subject) -> bytes | None:
-    """The map that the road is from, None where there is none. Raises ``InputError``."""
-    path = map_path(subject.file.road)
+    """The map that the road is from, None where there is none.
+
+    Raises ``InputError`` where the map cannot be read, or does not have the road of the drive.
+    """
+    road = subject.file.road
+    path = map_path(road)
     if path is None:
         return None
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        told = f"the map of the road cannot be read ({error.strerror}); put it there, or run where it is"
-        raise InputError(f"{path}: {told}") from None
+    if load_road(str(road.map)) != road:
+        raise InputError(
+            f"{road.map}: the map has another road than drive {subject.name}; find the drive again"
+        )
+    return path.read_bytes()
 
 
 def road_file(subject: Subject) -> bytes:
