@@ -213,3 +213,10 @@ def test_two_maps_of_one_name_are_not_exported_together(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="drive1: another drive has another a"):
         rp.export(drives, to="opendrive", out=tmp_path / "out")
     assert not (tmp_path / "out").exists()
+
+
+def test_drives_on_one_map_share_it(tmp_path: Path) -> None:
+    rp.witness("4", "8", road=f"{MAP}#lanes=left", out=tmp_path / "found", pictures=False)
+    made = rp.export(tmp_path / "found", to="openscenario", out=tmp_path / "out")
+    assert sorted(x.name for x in made.files) == sorted(x.name for x in (tmp_path / "out").iterdir())
+    assert str(made).startswith("2 drives as openscenario: 3 files in ")

@@ -47,8 +47,8 @@ class Exports(Table):
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """All files."""
-        return tuple(path for drive in self.drives for path in drive.files)
+        """All files, each once: drives on one map share it."""
+        return tuple(dict.fromkeys(path for drive in self.drives for path in drive.files))
 
     def rows(self) -> list[Row]:
         """A row for each drive and format."""
