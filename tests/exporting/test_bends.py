@@ -188,6 +188,31 @@ def test_a_witness_on_the_motorway_is_judged_again_with_check(tmp_path: Path) ->
     assert rp.check(tmp_path).accepted
 
 
+def test_answers_on_a_bent_road_state_the_largest_error_of_lengths(tmp_path: Path) -> None:
+    road = f"{MAP}#lanes=right"
+    # The curvature is at most 1/400 1/m, on 840 m. The merge lane reaches to d = -11 m, main lanes to 7.5 m.
+    said = {"per_cent": pytest.approx(100 * 11 / 400), "metres": pytest.approx(840 * 7.5 / 400)}
+    found = rp.witness(9, road=road, pictures=False)
+    file = found.drives[0].file
+    formula = "v_lon(SV) > 0 m/s"
+    answers = [
+        found,
+        rp.compare(formula, formula, road=road),
+        rp.prove(formula, engine="milp", road=road, horizon=1),
+        rp.explore(formula, vary={"SV.a_lon.min": (-3, -1)}, steps=2, road=road),
+        rp.monitor(9, file),
+    ]
+    for x in answers:
+        assert x.as_data()["length_error"] == said
+        assert x.length_error is not None
+        assert float(100 * x.length_error.share) == said["per_cent"]
+    straight = replace(file, road=replace(file.road, line=None))
+    assert "length_error" not in rp.monitor(9, straight).as_data()
+    assert rp.monitor(9, straight).length_error is None
+    rp.explore(formula, vary={"SV.a_lon.min": (-3, -1)}, steps=2, road=road, out=tmp_path)
+    assert rp.check(tmp_path).accepted
+
+
 def test_a_map_that_is_another_one_is_not_exported(tmp_path: Path) -> None:
     """Also no file that a drive of somebody else names as its map."""
     path = tmp_path / "a.xodr"

@@ -1,6 +1,6 @@
 """How far lengths along the lanes of a bent road are from those in s."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -22,13 +22,20 @@ class LengthError:
         return f"{float(100 * self.share):.2g} %, {float(self.metres):.2g} m on the whole length"
 
 
-def told_bends(road: Road) -> Iterator[str]:
-    """How far lengths in the lanes of a road are from those in s, in a line; nothing where it is straight."""
-    if road.line is None:
-        return
+def length_error_of(road: Road | None) -> LengthError | None:
+    """The greatest error of lengths on a road; None where it is straight."""
+    if road is None or road.line is None:
+        return None
     error = length_error(road.line, road.lanelets)
-    if error.share:
-        yield f"road {road.name} bends: lengths in its lanes differ from those in s by up to {error}"
+    return error if error.share else None
+
+
+def told_bends(road: Road | None) -> str:
+    """How far lengths in the lanes of a road are from those in s, in words; empty where it is straight."""
+    error = length_error_of(road)
+    if road is None or error is None:
+        return ""
+    return f"road {road.name} bends: lengths in its lanes differ from those in s by up to {error}"
 
 
 def length_error(line: ReferenceLine, lanelets: Iterable[Lanelet]) -> LengthError:

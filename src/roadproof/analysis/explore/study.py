@@ -36,6 +36,7 @@ from roadproof.library.dependence import digest_of
 from roadproof.runtime.executors import Jobs
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import Verdict
+from roadproof.world.road import Road
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,11 @@ class Exploration:
     def named(self) -> dict[str, Explorable]:
         """What is asked by the names under which the answers are kept; what is asked twice is there once."""
         return {name_of(number, asked.search): asked for number, asked in enumerate(self.asked, 1)}
+
+    @property
+    def road(self) -> Road | None:
+        """The road on which is searched, where one is named."""
+        return self.asked[0].search.setting.road
 
     @property
     def question(self) -> Question:
@@ -133,7 +139,12 @@ class Exploration:
     def index(self, records: Mapping[str, kept.Record], seconds: float) -> kept.Index:
         """The index, made of the answers as they are recorded."""
         explored = tuple(records[name].exploration for name in self.named)
-        return kept.Index(**self.question.heading, seconds=round(seconds, 1), explored=explored)
+        return kept.Index(
+            **self.question.heading,
+            length_error=kept.Index.bends(self.road),
+            seconds=round(seconds, 1),
+            explored=explored,
+        )
 
 
 def _asked_of(asked: Explorable) -> tuple[int | None, str, str]:

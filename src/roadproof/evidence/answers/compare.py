@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated, Final, Literal, TypeAlias
 
-from roadproof.evidence.answers.shared import Formula, PlainHeading, Reason, SetName
+from roadproof.evidence.answers.shared import Formula, OnRoad, PlainHeading, Reason, SetName
 from roadproof.evidence.codec import Doc
 from roadproof.evidence.json_schema import Whole
 from roadproof.verdict import ClaimVerdict
@@ -38,7 +38,7 @@ class Direction:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer(PlainHeading):
+class Answer(OnRoad, PlainHeading):
     """Which of two formulas implies the other."""
 
     schema: Literal["roadproof/compare/2"] = SCHEMA

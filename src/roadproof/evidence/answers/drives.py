@@ -103,7 +103,7 @@ class Outcome:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer(shared.Heading):
+class Answer(shared.OnRoad, shared.Heading):
     """Drives for scenarios and formulas."""
 
     schema: Literal["roadproof/witness/1"] = SCHEMA

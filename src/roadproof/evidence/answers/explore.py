@@ -129,7 +129,7 @@ class Preamble:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Index(Preamble, shared.Heading):
+class Index(Preamble, shared.OnRoad, shared.Heading):
     """For which values there is a drive."""
 
     schema: Literal["roadproof/explore/1"] = SCHEMA

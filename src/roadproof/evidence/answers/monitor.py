@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Annotated, Final, Literal, TypeAlias
 
-from roadproof.evidence.answers.shared import Formula, PlainHeading, Rational, SetName
+from roadproof.evidence.answers.shared import Formula, OnRoad, PlainHeading, Rational, SetName
 from roadproof.evidence.codec import LEFT_OUT, Doc, Key, Rule
 
 SCHEMA: Final = "roadproof/monitor/2"
@@ -91,7 +91,7 @@ class Observation(PlainHeading):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer(Place, Observation):
+class Answer(Place, OnRoad, Observation):
     """Where a formula holds on one trace."""
 
     notes: Annotated[

@@ -238,7 +238,7 @@ class ClaimAnswer:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Answer(shared.Heading):
+class Answer(shared.OnRoad, shared.Heading):
     """Claims, proved or refuted."""
 
     schema: Literal["roadproof/verdicts/1"] = ANSWER_SCHEMA

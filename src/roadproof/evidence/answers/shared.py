@@ -8,6 +8,8 @@ from typing import Annotated, Literal, TypeAlias
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
 from roadproof.evidence.json_schema import Other, Plain, Shared
 from roadproof.library.words import Words
+from roadproof.world.length_error import length_error_of
+from roadproof.world.road import Road
 
 Formula: TypeAlias = Annotated[
     str, Rule(least=1), Doc("A formula or a claim as text (docs/reference/language.md)."), Shared("formula")
@@ -210,6 +212,36 @@ KeptPrevention: TypeAlias = Annotated[
     ),
     Shared("prevention"),
 ]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LengthError:
+    """How much longer or shorter lanes of a road with bends are than their s says."""
+
+    per_cent: Annotated[float, Rule(minimum=0), Doc("At one place.")]
+    metres: Annotated[float, Rule(minimum=0), Doc("On the whole way along a lane.")]
+
+
+KeptLengthError: TypeAlias = Annotated[
+    LengthError,
+    Doc("By how much lengths in lanes differ at most from those in s; left out on straight roads."),
+    Shared("length_error"),
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class OnRoad:
+    """Of an answer on a road that the question may name."""
+
+    length_error: Annotated[KeptLengthError | None, UNCHECKED, LEFT_OUT] = None
+
+    @staticmethod
+    def bends(road: Road | None) -> "LengthError | None":
+        """The field of an answer on a road."""
+        found = length_error_of(road)
+        if found is None:
+            return None
+        return LengthError(per_cent=float(100 * found.share), metres=float(found.metres))
 
 
 @dataclass(frozen=True, kw_only=True)

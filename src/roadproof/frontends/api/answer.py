@@ -16,6 +16,8 @@ from roadproof.frontends.report.figures import as_bytes
 from roadproof.frontends.report.sheet import Sheet, as_rows
 from roadproof.runtime.files import write_whole
 from roadproof.verdict import ExitCode, Verdict
+from roadproof.world.length_error import LengthError, length_error_of
+from roadproof.world.road import Road
 
 if TYPE_CHECKING:
     from roadproof.frontends.api.checking import CheckReport, Solver
@@ -64,6 +66,16 @@ class Answer(Table):
     @abstractmethod
     def evidence(self) -> tuple[Evidence, ...]:
         """Certificates, judged drives and judged traces, in order."""
+
+    @property
+    def road(self) -> Road | None:
+        """The road that the question names; None where it names none, or the answer is about all roads."""
+        return None
+
+    @property
+    def length_error(self) -> LengthError | None:
+        """How far lengths in lanes of the road are from those in s; None where it is straight."""
+        return length_error_of(self.road)
 
     @property
     @abstractmethod

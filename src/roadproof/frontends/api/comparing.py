@@ -34,6 +34,7 @@ from roadproof.library.specification import Library, Specification
 from roadproof.runtime.files import make_folder, write_json, write_whole
 from roadproof.runtime.progress import Listener, listening
 from roadproof.verdict import ExitCode, Verdict
+from roadproof.world.road import Road
 
 
 @dataclass(frozen=True, repr=False)
@@ -42,6 +43,7 @@ class ComparisonAnswer(Answer):
 
     specification: Specification
     comparison: Comparison
+    road: Road | None = None
 
     @property
     def library(self) -> Library:
@@ -73,6 +75,7 @@ class ComparisonAnswer(Answer):
         one, two = found.sets
         answer = kept.Answer(
             **heading(SCHEMA, self.library),
+            length_error=kept.Answer.bends(self.road),
             first=kept.Side(formula=found.first.text, set=one),
             second=kept.Side(formula=found.second.text, set=two),
             relation=found.relation,
@@ -140,4 +143,4 @@ def compare(
     against = taken_from(home.specification, query, other)
     with listening(stage):
         found = compare_queries(search, against, other, processes, each)
-    return ComparisonAnswer(home.specification, found)
+    return ComparisonAnswer(home.specification, found, search.setting.road)

@@ -37,6 +37,7 @@ from roadproof.library.specification import Library
 from roadproof.runtime.files import make_folder, write_whole
 from roadproof.runtime.progress import Listener, listening
 from roadproof.verdict import ExitCode, Verdict, exit_code
+from roadproof.world.road import Road
 
 
 @dataclass(frozen=True)
@@ -94,6 +95,10 @@ class Witnesses(StudyAnswers[WitnessStudy, Outcome, kept.Record]):
         return (*self.drives, *proofs)
 
     @property
+    def road(self) -> Road | None:
+        return self.study.searches[0].setting.road
+
+    @property
     def exit_code(self) -> ExitCode:
         return exit_code((x.verdict, Verdict.WITNESSED) for x in self.outcomes)
 
@@ -106,7 +111,9 @@ class Witnesses(StudyAnswers[WitnessStudy, Outcome, kept.Record]):
         return write(self._index(self.found.records))
 
     def _index(self, records: Mapping[str, kept.Record]) -> Answer:
-        return Answer(**self.study.question.beginning, verdicts=tuple(x.kept for x in self.outcomes))
+        verdicts = tuple(x.kept for x in self.outcomes)
+        length_error = Answer.bends(self.road)
+        return Answer(**self.study.question.beginning, length_error=length_error, verdicts=verdicts)
 
     def _write_index(self, folder: Path, found: StudyResult[Outcome, kept.Record]) -> None:
         """There is none: drive files and proofs stand for themselves."""

@@ -27,6 +27,7 @@ from roadproof.frontends.settings.questions import Explore
 from roadproof.library.bind import Number
 from roadproof.library.scenario_references import names_scenarios
 from roadproof.verdict import ExitCode, Verdict, exit_code
+from roadproof.world.road import Road
 
 
 class Explorations(StudyAnswers[Exploration, ExplorationResult, kept.Record]):
@@ -51,6 +52,10 @@ class Explorations(StudyAnswers[Exploration, ExplorationResult, kept.Record]):
     @property
     def evidence(self) -> tuple[Evidence, ...]:
         return tuple(y for _, _, x, _ in self._entries if (y := x.certificate or x.drive) is not None)
+
+    @property
+    def road(self) -> Road | None:
+        return self.study.road
 
     @property
     def exit_code(self) -> ExitCode:

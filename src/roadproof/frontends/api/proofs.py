@@ -38,6 +38,7 @@ from roadproof.runtime.executors import Jobs, hands_of
 from roadproof.runtime.files import hold_folder
 from roadproof.runtime.progress import Listener, listening
 from roadproof.verdict import ClaimVerdict, ExitCode, Verdict, claim_verdict, exit_code
+from roadproof.world.road import Road
 from roadproof.world.vehicle import Vehicle
 
 _PROPERTY = re.compile(r"[A-Z]\d+")
@@ -84,6 +85,10 @@ class Proofs(StudyAnswers[Claims, ClaimResult, Record]):
         return tuple(next(y for y in each if y is not None) for each in found if any(each))
 
     @property
+    def road(self) -> Road | None:
+        return None if self.study.within is None else self.study.within[0].road
+
+    @property
     def exit_code(self) -> ExitCode:
         found = exit_code((x.verdict, x.expected) for x in self.answers)
         return found if self.kernel is None else max(found, self.kernel.exit_code)
@@ -124,6 +129,7 @@ class Proofs(StudyAnswers[Claims, ClaimResult, Record]):
         says = {} if self.kernel is None else self.kernel.rulings
         answer = Answer(
             **heading(ANSWER_SCHEMA, self.study.library),
+            length_error=Answer.bends(self.road),
             verdicts=tuple(
                 x.as_settled(named.get(name), _said(says[name]) if name in says else None)
                 for x in self.answers

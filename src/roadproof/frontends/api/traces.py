@@ -43,6 +43,8 @@ from roadproof.recordings.evaluate.one_trace import (
 from roadproof.recordings.formats.source import TRACK_FILES
 from roadproof.recordings.formats.table import Frame, columns_of
 from roadproof.verdict import ExitCode
+from roadproof.world.length_error import LengthError, length_error_of
+from roadproof.world.road import Road
 
 # A path, a judged drive, a drive file, a trace that was read, or columns by name: arrays, or a frame.
 TraceLike: TypeAlias = str | Path | JudgedDrive | DriveFile | OneTrace | Mapping[str, Any] | Frame
@@ -61,6 +63,12 @@ class MonitorAnswer(Table):
     observed: FirstAnswer
     place: Place
     notes: tuple[str, ...] = ()
+    road: Road | None = None
+
+    @property
+    def length_error(self) -> LengthError | None:
+        """How far lengths in lanes of the road are from those in s; None where it is straight."""
+        return length_error_of(self.road)
 
     @property
     def verdict(self) -> Truth:
@@ -90,6 +98,7 @@ class MonitorAnswer(Table):
         x = self.observed
         answer = kept.Answer(
             **heading(kept.SCHEMA, self.library),
+            length_error=kept.Answer.bends(self.road),
             formula=x.formula,
             view=x.view,
             end=x.convention,
@@ -224,7 +233,8 @@ def _on_drive(
     lanes = _lanes(home, query, number, played, file.lanes, given)
     formula = bind(query.formula, file.road, lanes, values)
     observed = observe_drive(query.text, formula, drive, file.horizon, step)
-    return MonitorAnswer(home.library, observed, _place(played, home, query, lanes, overruled))
+    place = _place(played, home, query, lanes, overruled)
+    return MonitorAnswer(home.library, observed, place, road=file.road)
 
 
 def _overruled(file: DriveFile, home: Definitions, values: Mapping[str, Fraction]) -> Iterator[Override]:
@@ -256,7 +266,8 @@ def _on_trace(
     formula = bind(query.formula, samples.road, lanes, values)
     refuse_unmeasured(samples, formula)
     observed = observe_samples(query.text, formula, samples.batch, given.end)
-    return MonitorAnswer(home.library, observed, _place(samples, home, query, lanes), samples.notes)
+    place = _place(samples, home, query, lanes)
+    return MonitorAnswer(home.library, observed, place, samples.notes, samples.road)
 
 
 def _place(

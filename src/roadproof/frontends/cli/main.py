@@ -15,7 +15,7 @@ from pathlib import Path
 
 from roadproof.errors import RoadproofError, UsageError
 from roadproof.frontends.cli.help import COMMANDS, PACKAGE, CommandParser, command_parser, overview
-from roadproof.frontends.cli.progress import be_quiet, clear, warn
+from roadproof.frontends.cli.progress import be_quiet, clear
 from roadproof.frontends.cli.streams import FULL, forget_output, make_streams_lenient
 from roadproof.frontends.cli.supervising import supervise
 from roadproof.frontends.cli.terminal import dress_output
@@ -92,19 +92,7 @@ def _run(arguments: list[str]) -> int:
     if getattr(parsed, "json", None) != "-" and getattr(parsed, "format", "text") == "text":
         dress_output()
     code: int = import_module(f"{PACKAGE}.{name}").run(parsed)
-    _tell_bends(getattr(parsed, "road", None))
     return code
-
-
-def _tell_bends(road: object) -> None:
-    """Say how far lengths in lanes are from those in s, where a question was asked on a road with bends."""
-    if not isinstance(road, str) or "." not in road:
-        return
-    from roadproof.world.length_error import told_bends
-    from roadproof.world.models import load_road
-
-    for line in told_bends(load_road(road)):
-        warn(line)
 
 
 def _try_paths(target: str | None, out: Path | None) -> None:

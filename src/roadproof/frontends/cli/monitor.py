@@ -7,6 +7,7 @@ from pathlib import Path
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import read_definitions
 from roadproof.frontends.cli.options import print_answer
+from roadproof.frontends.cli.progress import tell_bends
 from roadproof.frontends.settings.flags import read_keywords
 from roadproof.frontends.settings.recordings import Monitor
 
@@ -57,4 +58,5 @@ def run(args: argparse.Namespace) -> int:
     print_answer(found, args.json)
     if args.picture is not None:
         found.plot().save(args.picture)
+    tell_bends(found.road)
     return found.exit_code

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from roadproof.runtime.progress import Stage
+    from roadproof.world.road import Road
 
 QUIET = "ROADPROOF_QUIET"
 _BE_QUIET = "quiet"
@@ -63,6 +64,15 @@ def warn(line: str) -> None:
     """A line that is said in any case, as it is about what was found and not about how far it is."""
     clear()
     print(line, file=sys.stderr, flush=True)
+
+
+def tell_bends(road: "Road | None") -> None:
+    """Say how far lengths in lanes are from those in s, where a question was asked on a road with bends."""
+    from roadproof.world.length_error import told_bends
+
+    told = told_bends(road)
+    if told:
+        warn(told)
 
 
 ALIKE = ("recordings",)
