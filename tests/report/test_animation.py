@@ -19,7 +19,7 @@ from roadproof.frontends.cli.main import main
 from roadproof.frontends.report.animation import draw_animation
 from roadproof.frontends.report.drive import COLOURS, DANGER, SHADES
 from roadproof.frontends.report.frames import MOST_FRAMES, draw_film
-from roadproof.frontends.report.scene import Scene, areas
+from roadproof.frontends.report.scene import Scene
 from roadproof.library.loading import bundled_library
 from roadproof.world.motion import state_at
 
@@ -92,7 +92,7 @@ def test_frames_show_vehicles_where_the_drive_has_them(k: int) -> None:
 
 def test_the_area_of_a_frame_is_red_while_the_vehicle_is_in_it() -> None:
     file = file_of(None, "F danger(SV, POV)", **CROSSING)
-    [area] = areas(Scene(file, LIBRARY, grain=F(1, 12)))
+    [area] = Scene(file, LIBRARY, grain=F(1, 12)).areas()
     seen = set()
     for (_, frame), (left, top, *_), red in zip(frames_of(file), area.boxes, area.red, strict=False):
         shown = frame.getpixel((int(left + 3), int(top + 3)))

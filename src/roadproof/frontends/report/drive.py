@@ -9,7 +9,9 @@ from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import judge_file
 from roadproof.frontends.report import drive_data as data
 from roadproof.frontends.report.figures import draw_box, hide_frame, legend_beside, make_figure, name_rows
+from roadproof.frontends.report.plane import View, extent, extent_of, views_along
 from roadproof.library.specification import Library
+from roadproof.world.length_error import told_bends
 from roadproof.world.motion import State, state_at
 from roadproof.world.road import Zone
 
@@ -19,6 +21,8 @@ SHADES: Mapping[Zone, str] = {"main": "#ececec", "merge": "#d6e4f2", "depart": "
 SNAPSHOTS = 5
 WIDTH, STRIP = 10.0, 0.15
 ROAD_INCHES = 6.0  # about what is left of WIDTH between names and legends
+_PAD = (4.0, 46.0)  # points to the time of an instant; on a bend there are names of lanes between
+HIGHEST = 2.5  # inches of a road with bends
 LETTER = (0.058, 0.13)  # of a vehicle's name, in inches
 
 
@@ -30,8 +34,8 @@ def draw_drive(file: DriveFile, library: Library, title: str = "") -> Any:
     judgement = judge_file(file, library).judgement
     strips = () if judgement is None else data.strips_of(judgement, file.horizon)
     dangers = data.dangers_of(file, library)
-    lanes = len(file.road.lanes)
-    heights = [0.2 + 0.26 * lanes] * SNAPSHOTS + [1.4, 1.4, 1.2, 0.2 + STRIP * len(strips)]
+    above = [_road_height(file)] * SNAPSHOTS
+    heights = [*above, 1.4, 1.4, 1.2, 0.2 + STRIP * len(strips)]
     longest = max((2 * x.depth + len(x.name) for x in strips), default=0)
     figure, axes = make_figure(heights, WIDTH + 0.05 * max(0, longest - 50))  # room for names of strips
     colours = dict(zip(data.vehicles_of(file), COLOURS * len(file.drive.vehicles), strict=False))
@@ -55,6 +59,7 @@ def _title(file: DriveFile, library: Library, title: str, dangers: Sequence[data
     lanes = "".join(f", {name} = {lane}" for name, lane in file.lanes.items())
     lines.append(f"set {file.set_name}, road {file.road.name}{lanes}")
     lines[-1] += "".join(f"; {x}" for x in dangers)
+    lines.append(told_bends(file.road))
     return "\n".join(piece for line in lines if line for piece in wrap(line, 120))
 
 
@@ -63,15 +68,26 @@ def _title(file: DriveFile, library: Library, title: str, dangers: Sequence[data
 
 def _draw_roads(axes: Sequence[Any], file: DriveFile, colours: Mapping[str, str], height: float) -> None:
     """The road around the vehicles at some instants, all to one scale, driving direction to the right."""
-    times = [file.horizon * k / (SNAPSHOTS - 1) for k in range(SNAPSHOTS)]
-    window = data.window_of(file, times)
+    times, window, views = _snapshots(file)
     zones: dict[Zone, None] = {}
-    for one, time in zip(axes, times, strict=True):
+    for k, (one, time) in enumerate(zip(axes, times, strict=True)):
         origin = state_at(file.drive.vehicles[next(iter(colours))], time).s
         road = data.road_in(file.road, origin, window)
         zones |= dict.fromkeys(road.zones)
-        _snapshot(one, road, window, f"{float(time):.1f} s")
-        _vehicles(one, file, colours, time, (window[1] - window[0], height))
+        if views:
+            _bent_snapshot(one, road, views[k], extent_of(views, window, road.across))
+        else:
+            _snapshot(one, road, window)
+        one.set_ylabel(
+            f"{float(time):.1f} s",
+            rotation=0,
+            fontsize=8,
+            ha="right",
+            va="center",
+            labelpad=_PAD[bool(views)],
+        )
+        size = one.get_xlim()[1] - one.get_xlim()[0], height
+        _vehicles(one, file, colours, time, size, views[k] if views else None)
     for zone in zones:
         axes[0].fill([], [], color=SHADES[zone], ec="#888888", lw=0.6, label=data.ZONES[zone])
     legend_beside(axes[0])
@@ -80,10 +96,46 @@ def _draw_roads(axes: Sequence[Any], file: DriveFile, colours: Mapping[str, str]
     axes[1].text(1.01, 0.56, "driving direction", fontsize=6, va="bottom", transform=axes[1].transAxes)
     for one in axes[:-1]:
         one.tick_params(axis="x", labelbottom=False)
-    axes[-1].set_xlabel(f"m along the road from the front of {next(iter(colours))}", fontsize=7)
+    along = f"m along the road from the front of {next(iter(colours))}"
+    axes[-1].set_xlabel("m to scale, as seen from the middle" if views else along, fontsize=7)
 
 
-def _snapshot(axes: Any, road: data.ShownRoad, window: data.Span, when: str) -> None:
+def _snapshots(file: DriveFile) -> tuple[list[Fraction], data.Span, list[View]]:
+    """Some instants, what is seen along the road then, and from where, if it has bends."""
+    times = [file.horizon * k / (SNAPSHOTS - 1) for k in range(SNAPSHOTS)]
+    window = data.window_of(file, times)
+    subject = file.drive.vehicles[data.vehicles_of(file)[0]]
+    return times, window, views_along(file.road, (state_at(subject, time).s for time in times), window)
+
+
+def _road_height(file: DriveFile) -> float:
+    """Inches for the road at an instant: by its lanes, or to scale where it has bends."""
+    _, window, views = _snapshots(file)
+    usual = 0.2 + 0.26 * len(file.road.lanes)
+    if not views:
+        return usual
+    across = data.road_in(file.road, Fraction(0), window).across
+    left, right, bottom, top = extent_of(views, window, across)
+    return min(max(usual, ROAD_INCHES * (top - bottom) / (right - left)), HIGHEST)
+
+
+def _bent_snapshot(axes: Any, road: data.ShownRoad, view: View, seen: data.Box) -> None:
+    for zone, along, (right, left) in road.pieces:
+        axes.fill(*zip(*view.outline((*along, right, left)), strict=True), color=SHADES[zone], lw=0, zorder=1)
+        for d in (right, left):
+            axes.plot(*zip(*view.edge(*along, d), strict=True), color="#888888", lw=0.6, zorder=2)
+    begin = min(along[0] for _, along, _ in road.pieces)
+    for name, middle in road.lanes:
+        x, y = view.at(begin, middle)
+        axes.annotate(name, (x, y), (-3, 0), "data", "offset points", fontsize=6, ha="right", va="center")
+    axes.set_aspect("equal")
+    axes.set_xlim(*seen[:2])
+    axes.set_ylim(seen[2] - 0.2, seen[3] + 0.2)
+    axes.set_yticks([])
+    hide_frame(axes, ("top", "right", "left"))
+
+
+def _snapshot(axes: Any, road: data.ShownRoad, window: data.Span) -> None:
     for zone, along, (right, left) in road.pieces:
         axes.fill_between(along, right, left, color=SHADES[zone], zorder=1, linewidth=0)
         axes.plot(along, (right, right), color="#888888", lw=0.6, zorder=2)
@@ -92,12 +144,16 @@ def _snapshot(axes: Any, road: data.ShownRoad, window: data.Span, when: str) -> 
     axes.set_ylim(road.across[0] - 0.2, road.across[1] + 0.2)
     axes.set_yticks([middle for _, middle in road.lanes], [name for name, _ in road.lanes], fontsize=6)
     axes.tick_params(axis="y", length=0)
-    axes.set_ylabel(when, rotation=0, fontsize=8, ha="right", va="center")
     hide_frame(axes, ("top", "right", "left"))
 
 
 def _vehicles(
-    axes: Any, file: DriveFile, colours: Mapping[str, str], time: Fraction, size: tuple[float, float]
+    axes: Any,
+    file: DriveFile,
+    colours: Mapping[str, str],
+    time: Fraction,
+    size: tuple[float, float],
+    view: View | None,
 ) -> None:
     """The boxes of all vehicles and their names; ``size``: metres shown along, inches across."""
     origin = state_at(file.drive.vehicles[next(iter(colours))], time).s
@@ -106,11 +162,16 @@ def _vehicles(
         motion, state = file.drive.vehicles[name], state_at(file.drive.vehicles[name], time)
         s, d = float(state.s - origin), float(state.d)
         boxes[name] = (s - float(motion.length), s, d - float(motion.width), d)
+    shapes = {} if view is None else {name: view.vehicle(box) for name, box in boxes.items()}
+    boxes |= {name: extent(corners) for name, corners in shapes.items()}
     low, high = axes.get_ylim()
     letter = (LETTER[0] * size[0] / ROAD_INCHES, LETTER[1] * (high - low) / size[1])
     names = data.place_names(boxes, {name: (len(name) * letter[0], letter[1]) for name in boxes})
     for name, colour in colours.items():
-        draw_box(axes, boxes[name], colour)
+        if name in shapes:
+            axes.fill(*zip(*shapes[name], strict=True), color=colour, lw=0, zorder=3)
+        else:
+            draw_box(axes, boxes[name], colour)
         left, _, bottom, top = names[name]
         behind = {"fc": "white", "ec": "none", "alpha": 0.7, "pad": 0.4}
         axes.text(

@@ -1,5 +1,6 @@
 """An animation of a drive as frames: the scene of the moving picture, drawn with matplotlib."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -7,22 +8,24 @@ from math import ceil
 from typing import Any, TypeVar
 
 from roadproof.evidence.drive_file import DriveFile
+from roadproof.frontends.report.bent_scene import scene_of
 from roadproof.frontends.report.drive import DANGER
 from roadproof.frontends.report.drive_data import Box
 from roadproof.frontends.report.figures import draw_again, make_page
 from roadproof.frontends.report.film import Film
+from roadproof.frontends.report.plane import Point, Points
 from roadproof.frontends.report.scene import (
     PAUSE,
     WIDTH,
     Line,
+    Polygon,
     Rectangle,
-    Scene,
     Shape,
-    areas,
+    Shift,
+    Strokes,
+    Text,
     headings,
-    pavement,
     rows,
-    vehicles,
 )
 from roadproof.library.specification import Library
 
@@ -35,48 +38,53 @@ V = TypeVar("V")
 
 @dataclass(frozen=True)
 class _Mobile:
-    """A shape and the artist that draws it; ``shifts``: pixels to the right at each instant."""
+    """A shape and the artist that draws it; ``shifts`` of the pavement about ``pivot`` at each instant."""
 
     shape: Shape
     artist: Any
-    shifts: Sequence[float] = ()
+    shifts: Sequence[Shift] = ()
+    pivot: Point = (0.0, 0.0)
 
     @property
     def moves(self) -> bool:
         """Whether it is not the same at all instants."""
-        x = self.shape
-        values = x.boxes if isinstance(x, Rectangle) else x.ends if isinstance(x, Line) else x.places
-        return len(values) > 1 or bool(self.shifts)
+        return bool(self.shifts) or _count(self.shape) > 1
 
     def show(self, k: int) -> None:
         """Bring the artist to an instant."""
-        shape, shift = self.shape, self.shifts[k] if self.shifts else 0.0
+        shape, shift = self.shape, self.shifts[k] if self.shifts else Shift(0.0)
         if isinstance(shape, Rectangle):
-            self.artist.set_xy([*zip(*_corners(_at(shape.boxes, k), shift), strict=True)])
-            if shape.red:
-                self.artist.set_color(DANGER if shape.red[k] else shape.fill)
+            self.artist.set_xy([*zip(*_corners(_at(shape.boxes, k), shift.x), strict=True)])
+        elif isinstance(shape, Polygon):
+            self.artist.set_xy(_shifted(_at(shape.outlines, k), shift, self.pivot))
+        elif isinstance(shape, Strokes):
+            lines = [_shifted(x, shift, self.pivot) for x in shape.lines]
+            self.artist.set_data(*_joined(lines))
         elif isinstance(shape, Line):
-            self.artist.set_data(*_strokes(_at(shape.ends, k), shape.dash, shift))
+            self.artist.set_data(*_strokes(_at(shape.ends, k), shape.dash, shift.x))
         else:
             self.artist.set_position(_at(shape.places, k))
+        if isinstance(shape, Rectangle | Polygon) and shape.red:
+            self.artist.set_color(DANGER if shape.red[k] else shape.fill)
 
 
 def draw_film(file: DriveFile, library: Library, title: str = "") -> Film:
     """The frames of a drive. Raises ``MissingSolverError`` without matplotlib."""
     grain = max(Fraction(1, RATE), file.horizon / MOST_FRAMES)
-    scene = Scene(file, library, grain=grain)
+    scene = scene_of(file, library, grain=grain)
     size = int(WIDTH), 2 * ceil(scene.height / 2)  # films need even numbers
     figure = make_page(size[0] / DOTS, size[1] / DOTS, DOTS)
     axes = figure.add_axes((0, 0, 1, 1), xlim=(0, size[0]), ylim=(size[1], 0))
     axes.set_axis_off()
-    lanes = pavement(scene)
-    road = [_Mobile(x, _draw(axes, x), lanes.shifts) for x in lanes.shapes]
-    road += [_Mobile(x, _draw(axes, x)) for x in areas(scene)]
+    lanes = scene.pavement()
+    pivot = lanes.pivot or (0.0, 0.0)
+    road = [_Mobile(x, _draw(axes, x), lanes.shifts, pivot) for x in lanes.shapes]
+    road += [_Mobile(x, _draw(axes, x)) for x in scene.areas()]
     left, top, width, height = lanes.window
     window = _draw(axes, Rectangle([(left, top - 1, width, height + 2)], "none"))  # with the edge lines
     for x in road:
         x.artist.set_clip_path(window)
-    others = [_Mobile(x, _draw(axes, x)) for x in (*headings(scene, title), *vehicles(scene), *rows(scene))]
+    others = [_Mobile(x, _draw(axes, x)) for x in (*headings(scene, title), *scene.vehicles(), *rows(scene))]
     for order, x in enumerate((*road, *others)):
         x.artist.set_zorder(order)
     moving = [x for x in (*road, *others) if x.moves]
@@ -95,12 +103,39 @@ def _at(values: Sequence[V], k: int) -> V:
     return values[k] if len(values) > 1 else values[0]
 
 
+def _count(shape: Shape) -> int:
+    """How many states a shape has: one for each instant, or one."""
+    match shape:
+        case Rectangle(boxes=values) | Line(ends=values) | Text(places=values) | Polygon(outlines=values):
+            return len(values)
+        case Strokes():
+            return 1
+
+
+def _shifted(points: Points, shift: Shift, pivot: Point) -> list[Point]:
+    """Points moved and then turned clockwise as y grows downwards."""
+    turned = math.radians(shift.turned)
+    cos, sin = math.cos(turned), math.sin(turned)
+    moved = ((x + shift.x - pivot[0], y + shift.y - pivot[1]) for x, y in points)
+    return [(pivot[0] + x * cos - y * sin, pivot[1] + x * sin + y * cos) for x, y in moved]
+
+
+def _joined(lines: Sequence[Points]) -> tuple[list[float], list[float]]:
+    """The points of lines, with none between one and the next."""
+    gap = (math.nan, math.nan)
+    points = [point for line in lines for point in (*line, gap)]
+    return [x for x, _ in points], [y for _, y in points]
+
+
 def _draw(axes: Any, shape: Shape) -> Any:
     """The artist of a shape at the first instant."""
     if isinstance(shape, Rectangle):
         return axes.fill(*_corners(shape.boxes[0]), color=shape.fill, alpha=shape.opacity, lw=0)[0]
-    if isinstance(shape, Line):
-        strokes = _strokes(shape.ends[0], shape.dash)
+    if isinstance(shape, Polygon):
+        corners = zip(*shape.outlines[0], strict=True)
+        return axes.fill(*corners, color=shape.fill, alpha=shape.opacity, lw=0)[0]
+    if isinstance(shape, Line | Strokes):
+        strokes = _strokes(shape.ends[0], shape.dash) if isinstance(shape, Line) else _joined(shape.lines)
         return axes.plot(*strokes, color=shape.stroke, lw=POINTS, solid_capstyle="butt")[0]
     look = {"fontsize": shape.size * POINTS * LETTERS, "color": shape.fill, "parse_math": False}
     return axes.text(*shape.places[0], shape.text, ha="center" if shape.middle else "left", **look)

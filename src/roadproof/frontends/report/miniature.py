@@ -4,11 +4,14 @@ Changes are keyframes of CSS, not SMIL: so a page plays a picture on hover or fo
 reduced motion see it at rest, at the beginning of danger.
 """
 
+import math
 from collections.abc import Iterator, Sequence
 from xml.etree.ElementTree import Element, tostring
 
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.frontends.report.scene import DASH, Scene
+from roadproof.frontends.report.bent_scene import BentScene, scene_of
+from roadproof.frontends.report.plane import Points
+from roadproof.frontends.report.scene import DASH, Polygon, Scene, Strokes
 from roadproof.library.specification import Library
 from roadproof.recordings.export.xml import element
 
@@ -19,15 +22,15 @@ _CLASSES = ("sv", "pov", "pov2", "pov3")
 
 def small_scene(file: DriveFile, library: Library) -> Scene:
     """A drive in the size of a small picture."""
-    return Scene(file, library, WIDTH, 0.0, MARGIN, LANE_PIXELS)
+    return scene_of(file, library, WIDTH, 0.0, MARGIN, LANE_PIXELS)
 
 
 def miniature(scene: Scene, name: str, told: str) -> str:
     """The picture of a ``small_scene`` as SVG. ``name`` is unique on the page, and begins the names of its
     keyframes; ``told`` describes the picture in words.
     """
-    drawn = _Drawing(scene, name)
-    height = 2 * MARGIN + (scene.across[1] - scene.across[0]) * scene.scale[1]
+    drawn = _BentDrawing(scene, name) if isinstance(scene, BentScene) else _Drawing(scene, name)
+    height = 2 * MARGIN + scene.road_height
     shapes = [drawn.road(), *drawn.envelopes(), *drawn.vehicles()]
     style = element("style", text="".join(drawn.keyframes))
     root = element("svg", element("title", text=told), style, *shapes, viewBox=f"0 0 {WIDTH:g} {_n(height)}")
@@ -67,9 +70,10 @@ class _Drawing:
     def envelopes(self) -> Iterator[Element]:
         """The area within RSS distances of the subject, for each other vehicle; red while that is in it."""
         for k, x in enumerate(self.scene.envelopes):
-            moved = [f"translate({_n(a)}px,{_n(b)}px) scale({_n(c)},{_n(d)})" for a, b, c, d in x.boxes]
+            boxes = [*map(self.scene.pixels, x.boxes)]
+            moved = [f"translate({_n(a)}px,{_n(b)}px) scale({_n(c)},{_n(d)})" for a, b, c, d in boxes]
             area = _shape("rect", "envelope", width=1.0, height=1.0)
-            yield self._moving([self._switched(area, x.near, f"e{k}")], moved, x.boxes, f"a{k}")
+            yield self._moving([self._switched(area, x.near, f"e{k}")], moved, boxes, f"a{k}")
 
     def vehicles(self) -> Iterator[Element]:
         """The boxes, each with its name above."""
@@ -81,17 +85,31 @@ class _Drawing:
             label = _shape("text", "label", x=width - wide / 2, y=-2.0)
             label.text = name
             moved = [f"translate({_n(x)}px,{_n(y)}px)" for x, y, _, _ in boxes]
-            group = self._moving([box, label], moved, [x[:2] for x in boxes], f"v{k}")
-            group.attrib["class"] += f" {_CLASSES[min(k, len(_CLASSES) - 1)]}"
-            yield group
+            yield self._named(self._moving([box, label], moved, [x[:2] for x in boxes], f"v{k}"), k)
+
+    def _named(self, vehicle: Element, k: int) -> Element:
+        """A group of a vehicle with the colour of its place among all."""
+        vehicle.attrib["class"] += f" {_CLASSES[min(k, len(_CLASSES) - 1)]}"
+        return vehicle
 
     def _moving(
         self, shapes: Sequence[Element], moved: Sequence[str], places: Sequence[Sequence[float]], part: str
     ) -> Element:
         """Shapes that move: by ``moved`` at each instant, which are ``places`` as numbers."""
-        kept = sorted(_kept(places, 0, len(places) - 1))
-        frames = [f"{self._percent(k)}{{transform:{moved[k]}}}" for k in kept]
-        return self._played(element("g", *shapes), [*frames, f"to{{transform:{moved[-1]}}}"], part)
+        return self._changing(element("g", *shapes), "transform", moved, places, part)
+
+    def _changing(
+        self,
+        shape: Element,
+        name: str,
+        values: Sequence[str],
+        numbers: Sequence[Sequence[float]],
+        part: str,
+    ) -> Element:
+        """A shape with a property that has ``values`` at each instant, which are ``numbers`` in pixels."""
+        kept = sorted(_kept(numbers, 0, len(numbers) - 1))
+        frames = [f"{self._percent(k)}{{{name}:{values[k]}}}" for k in kept]
+        return self._played(shape, [*frames, f"to{{{name}:{values[-1]}}}"], part)
 
     def _switched(self, shape: Element, flags: Sequence[bool], part: str) -> Element:
         """A shape that is red at instants where a flag is set."""
@@ -110,6 +128,69 @@ class _Drawing:
 
     def _percent(self, k: int) -> str:
         return f"{100 * float(self.scene.times[k] / self.scene.lasts):.3g}%"
+
+
+class _BentDrawing(_Drawing):
+    """The same on a road with bends: lanes and vehicles turn, and distances follow the road."""
+
+    scene: BentScene
+
+    def road(self) -> Element:
+        lanes, pieces = self.scene.pavement(), list[Element]()
+        assert lanes.pivot is not None
+        x, y = lanes.pivot
+        zones = iter(self.scene.road.pieces)
+        for shape in lanes.shapes:
+            if isinstance(shape, Polygon):
+                pieces.append(_way(next(zones)[0], shape.outlines, "Z"))
+            elif isinstance(shape, Strokes):
+                pieces.append(_way("lane" if len(shape.lines) > 1 else "edge", shape.lines, ""))
+        moved = [
+            f"translate({_n(x)}px,{_n(y)}px) rotate({a.turned:.2f}deg) "
+            f"translate({_n(a.x - x)}px,{_n(a.y - y)}px)"
+            for a in lanes.shifts
+        ]
+        reach = math.radians(WIDTH / 2)
+        return self._moving(pieces, moved, [(a.x, a.y, a.turned * reach) for a in lanes.shifts], "road")
+
+    def envelopes(self) -> Iterator[Element]:
+        for k, (x, shape) in enumerate(zip(self.scene.envelopes, self.scene.areas(), strict=True)):
+            assert isinstance(shape, Polygon)
+            area = _way("envelope", [shape.outlines[self.scene.still]], "Z")
+            ways = [f"path('{_line(outline)}Z')" for outline in shape.outlines]
+            numbers = [[value for point in outline for value in point] for outline in shape.outlines]
+            area = self._changing(area, "d", ways, numbers, f"a{k}")
+            yield self._switched(element("g", area), x.near, f"e{k}")
+
+    def vehicles(self) -> Iterator[Element]:
+        pixels = self.scene.scale[0]
+        for k, name in enumerate(self.scene.states):
+            motion = self.scene.file.drive.vehicles[name]
+            wide, high = max(LEAST, float(motion.length) * pixels), float(motion.width) * pixels
+            seen = [(view, self.scene.box(name, i)) for i, view in enumerate(self.scene.views)]
+            turned = [-math.degrees(view.turned((box[0] + box[1]) / 2)) for view, box in seen]
+            box = _shape("rect", "car", x=-wide / 2, y=-high / 2, width=wide, height=high, rx=2.0)
+            turns = [f"rotate({x:.2f}deg)" for x in turned]
+            box = self._changing(
+                box, "transform", turns, [(math.radians(x) * wide,) for x in turned], f"t{k}"
+            )
+            label = _shape("text", "label", x=0.0, y=-high / 2 - 2.0)
+            label.text = name
+            centres = [view.at((a + b) / 2, (c + d) / 2) for view, (a, b, c, d) in seen]
+            places = self.scene.places(centres)
+            moved = [f"translate({_n(x)}px,{_n(y)}px)" for x, y in places]
+            yield self._named(self._moving([box, label], moved, places, f"v{k}"), k)
+
+
+def _way(kind: str, lines: Sequence[Points], end: str) -> Element:
+    look = {} if end else {"fill": "none"}
+    made = element("path", d=" ".join(_line(x) + end for x in lines), **look)
+    made.attrib["class"] = kind
+    return made
+
+
+def _line(points: Points) -> str:
+    return "M" + " ".join(f"{_n(x)},{_n(y)}" for x, y in points)
 
 
 def _kept(places: Sequence[Sequence[float]], first: int, last: int) -> set[int]:

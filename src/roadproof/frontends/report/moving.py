@@ -4,21 +4,22 @@ from collections.abc import Iterator, Mapping, Sequence
 from xml.etree.ElementTree import Element
 
 from roadproof.evidence.drive_file import DriveFile
+from roadproof.frontends.report.bent_scene import scene_of
 from roadproof.frontends.report.drive import DANGER
 from roadproof.frontends.report.drive_data import GRAIN
+from roadproof.frontends.report.plane import Points
 from roadproof.frontends.report.scene import (
     PAUSE,
     WIDTH,
     Line,
     Pavement,
+    Polygon,
     Rectangle,
     Scene,
     Shape,
-    areas,
+    Strokes,
     headings,
-    pavement,
     rows,
-    vehicles,
 )
 from roadproof.library.specification import Library
 from roadproof.recordings.export.xml import document, element
@@ -28,13 +29,13 @@ _BOX, _ENDS = ("x", "y", "width", "height"), ("x1", "x2", "y1", "y2")
 
 def draw_moving(file: DriveFile, library: Library, title: str = "") -> bytes:
     """The moving picture of a drive as SVG; the title is its scenario in words, or its formula."""
-    scene = Scene(file, library)
+    scene = scene_of(file, library)
     root = element(
         "svg",
         element("rect", width="100%", height="100%", fill="white"),
         *(_drawn(scene, x) for x in headings(scene, title)),
-        *_road(scene, pavement(scene)),
-        *(_drawn(scene, x) for x in (*vehicles(scene), *rows(scene))),
+        *_road(scene, scene.pavement()),
+        *(_drawn(scene, x) for x in (*scene.vehicles(), *rows(scene))),
         xmlns="http://www.w3.org/2000/svg",
         viewBox=f"0 0 {WIDTH:g} {scene.height:g}",
         width=f"{WIDTH:g}",
@@ -49,9 +50,19 @@ def _road(scene: Scene, lanes: Pavement) -> Iterator[Element]:
     cut = element("rect", **_named(_BOX, lanes.window))
     yield element("clipPath", cut, id="window")
     drawn = [_drawn(scene, x) for x in lanes.shapes]
-    here = f"translate({_n(lanes.shifts[scene.still])} 0)"
-    moved = element("g", *drawn, _moved(scene, lanes.shifts), transform=here)
-    yield element("g", moved, *(_drawn(scene, x) for x in areas(scene)), **{"clip-path": "url(#window)"})
+    here, still = [x.x for x in lanes.shifts], lanes.shifts[scene.still]
+    if lanes.pivot is None:
+        moving = _moved(scene, "translate", _played(here))
+        moved = element("g", *drawn, moving, transform=f"translate({_n(still.x)} 0)")
+    else:
+        places = _joined([f"{_n(x.x)} {_n(x.y)}" for x in lanes.shifts])
+        pivot = " ".join(map(_n, lanes.pivot))
+        turns = _joined([f"{x.turned:.2f} {pivot}" for x in lanes.shifts])
+        moving = _moved(scene, "translate", places)
+        inner = element("g", *drawn, moving, transform=f"translate({_n(still.x)} {_n(still.y)})")
+        turning = _moved(scene, "rotate", turns)
+        moved = element("g", inner, turning, transform=f"rotate({still.turned:.2f} {pivot})")
+    yield element("g", moved, *(_drawn(scene, x) for x in scene.areas()), **{"clip-path": "url(#window)"})
 
 
 def _drawn(scene: Scene, shape: Shape) -> Element:
@@ -62,6 +73,17 @@ def _drawn(scene: Scene, shape: Shape) -> Element:
         made = element("rect", **still, fill=shape.fill, **opacity)
         if shape.red:
             changes.append(_switched(scene, shape.red, DANGER, shape.fill))
+    elif isinstance(shape, Polygon):
+        opacity = {} if shape.opacity == 1 else {"fill-opacity": f"{shape.opacity:g}"}
+        here = shape.outlines[scene.still if len(shape.outlines) > 1 else 0]
+        seam = {} if opacity else {"stroke": shape.fill, "stroke-width": "0.6"}
+        made = element("polygon", points=_points(here), fill=shape.fill, **opacity, **seam)
+        changes = [_reshaped(scene, shape.outlines)] if len(shape.outlines) > 1 else []
+        if shape.red:
+            changes.append(_switched(scene, shape.red, DANGER, shape.fill))
+    elif isinstance(shape, Strokes):
+        way = " ".join(f"M{_points(x)}" for x in shape.lines)
+        made, changes = element("path", d=way, fill="none", stroke=shape.stroke), []
     elif isinstance(shape, Line):
         still, changes = _at_instants(scene, _ENDS, shape.ends)
         dash = {} if shape.dash is None else {"stroke-dasharray": " ".join(map(_n, shape.dash))}
@@ -102,16 +124,28 @@ def _animated(scene: Scene, values: Mapping[str, Sequence[float]]) -> Iterator[E
             yield element("animate", attributeName=name, values=_played(numbers), **_clock(scene))
 
 
-def _moved(scene: Scene, shift: Sequence[float]) -> Element:
+def _moved(scene: Scene, kind: str, values: str) -> Element:
     clock = _clock(scene)
-    return element(
-        "animateTransform", attributeName="transform", type="translate", values=_played(shift), **clock
-    )
+    return element("animateTransform", attributeName="transform", type=kind, values=values, **clock)
+
+
+def _reshaped(scene: Scene, outlines: Sequence[Points]) -> Element:
+    values = _joined([_points(x) for x in outlines])
+    return element("animate", attributeName="points", values=values, **_clock(scene))
+
+
+def _points(points: Points) -> str:
+    return " ".join(f"{_n(x)},{_n(y)}" for x, y in points)
 
 
 def _played(numbers: Sequence[float]) -> str:
+    """The values of a round."""
+    return _joined([*map(_n, numbers)])
+
+
+def _joined(values: Sequence[str]) -> str:
     """The values of a round: the last stands for the pause."""
-    return ";".join(map(_n, [*numbers, *[numbers[-1]] * int(PAUSE / GRAIN)]))
+    return ";".join([*values, *[values[-1]] * int(PAUSE / GRAIN)])
 
 
 def _switched(scene: Scene, flags: Sequence[bool], within: str, outside: str) -> Element:

@@ -9,14 +9,16 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import judge_file
 from roadproof.frontends.report import drive_data as data
 from roadproof.frontends.report.drive import COLOURS, DANGER, SHADES, TRUE
+from roadproof.frontends.report.plane import Point, Points
 from roadproof.frontends.report.sheet import excerpt
 from roadproof.library.specification import Library
+from roadproof.world.length_error import length_error_of
 from roadproof.world.motion import State, states_at
 
 WIDTH, EDGE, NAMES = 860.0, 14.0, 230.0  # pixels: the picture, its margin, the column of names
@@ -59,16 +61,43 @@ class Text:
     middle: bool = False
 
 
-Shape: TypeAlias = Rectangle | Line | Text
+@dataclass(frozen=True)
+class Polygon:
+    """The corners in pixels at each instant, or once; ``red``: whether it is red, at each instant."""
+
+    outlines: Sequence[Points]
+    fill: str
+    opacity: float = 1.0
+    red: Sequence[bool] = ()
+
+
+@dataclass(frozen=True)
+class Strokes:
+    """Lines through points in pixels, the same at all instants."""
+
+    lines: Sequence[Points]
+    stroke: str
+
+
+Shape: TypeAlias = Rectangle | Line | Text | Polygon | Strokes
+
+
+class Shift(NamedTuple):
+    """Pixels to the right and down, and after that ``turned`` degrees clockwise about ``Pavement.pivot``."""
+
+    x: float
+    y: float = 0.0
+    turned: float = 0.0
 
 
 @dataclass(frozen=True)
 class Pavement:
-    """Lanes that move by ``shifts`` pixels to the right, one for each instant, and are seen in ``window``."""
+    """Lanes that move by ``shifts``, one for each instant, and are seen in ``window``."""
 
     window: data.Box
-    shapes: tuple[Rectangle | Line, ...]
-    shifts: tuple[float, ...]
+    shapes: Sequence[Shape]
+    shifts: tuple[Shift, ...]
+    pivot: Point | None = None
 
 
 @dataclass(frozen=True)
@@ -198,8 +227,35 @@ class Scene:
                     along.gap[k] <= along.needed[k] and beside.gap[k] <= beside.needed[k]
                     for k in self.instants
                 ]
-                found.append(Envelope(along.other, [*map(self.pixels, boxes)], near))
+                found.append(Envelope(along.other, boxes, near))
         return found
+
+    def pavement(self) -> Pavement:
+        """The lanes, which move to the left as SV goes on."""
+        _, top, _, height = window = self.pixels((*self.window, *self.across))
+        dash = (DASH[0] * self.scale[0], DASH[1] * self.scale[0])
+        shapes: list[Rectangle | Line] = []
+        for zone, along, (right, beyond) in self.road.pieces:
+            x, y, wide, high_ = box = self.pixels((*along, right, beyond))
+            shapes.append(Rectangle([box], SHADES[zone]))
+            for edge in (y, y + high_):
+                inner = top + 1 < edge < top + height - 1
+                shapes.append(Line([(x, x + wide, edge, edge)], "#888888", dash if inner else None))
+        return Pavement(window, tuple(shapes), tuple(Shift(-x * self.scale[0]) for x in self.travel))
+
+    def areas(self) -> Iterator[Shape]:
+        """The area within RSS distances of SV, for each other vehicle; red while that vehicle is in it."""
+        for x in self.envelopes:
+            yield Rectangle([*map(self.pixels, x.boxes)], self.colours[x.other], 0.2, x.near)
+
+    def vehicles(self) -> Iterator[Shape]:
+        """The boxes, each with its name inside, or above where it is too short for that."""
+        for name, colour in self.colours.items():
+            boxes = [self.pixels(self.box(name, k)) for k in self.instants]
+            yield Rectangle(boxes, colour)
+            fits = boxes[0][2] >= 9 * len(name)
+            places = [(x + w / 2, y + h / 2 + (4 if fits else -8)) for x, y, w, h in boxes]
+            yield Text(name, places, "white" if fits else colour, size=11, middle=True)
 
     @cached_property
     def strips(self) -> list[data.Strip]:
@@ -209,9 +265,14 @@ class Scene:
         return [x for x in strips if x.depth <= DEEPEST][:MOST_STRIPS]
 
     @property
+    def road_height(self) -> float:
+        """Pixels from the upper to the lower edge of the road."""
+        return (self.across[1] - self.across[0]) * self.scale[1]
+
+    @property
     def rows_begin(self) -> float:
         """Where the rows begin, below the road."""
-        return self.top + (self.across[1] - self.across[0]) * self.scale[1] + 2 * ROW
+        return self.top + self.road_height + 2 * ROW
 
     @property
     def height(self) -> float:
@@ -221,7 +282,9 @@ class Scene:
 
 @dataclass(frozen=True)
 class Envelope:
-    """Where ``other`` is too near to the subject at each instant, in pixels, and whether it is ``near``."""
+    """Where ``other`` is too near to the subject at each instant, in m as ``Scene.box`` is, and whether it
+    is ``near``.
+    """
 
     other: str
     boxes: Sequence[data.Box]
@@ -237,26 +300,10 @@ def headings(scene: Scene, title: str = "") -> Iterator[Text]:
     if scene.begins is not None:
         told.append(f"danger begins at {scene.begins:.1f} s")
     yield Text("; ".join(told), [(EDGE, 37)], "#555555")
-
-
-def pavement(scene: Scene) -> Pavement:
-    """The lanes, which move to the left as SV goes on."""
-    _, top, _, height = window = scene.pixels((*scene.window, *scene.across))
-    dash = (DASH[0] * scene.scale[0], DASH[1] * scene.scale[0])
-    shapes: list[Rectangle | Line] = []
-    for zone, along, (right, beyond) in scene.road.pieces:
-        x, y, wide, high_ = box = scene.pixels((*along, right, beyond))
-        shapes.append(Rectangle([box], SHADES[zone]))
-        for edge in (y, y + high_):
-            inner = top + 1 < edge < top + height - 1
-            shapes.append(Line([(x, x + wide, edge, edge)], "#888888", dash if inner else None))
-    return Pavement(window, tuple(shapes), tuple(-x * scene.scale[0] for x in scene.travel))
-
-
-def areas(scene: Scene) -> Iterator[Rectangle]:
-    """The area within RSS distances of SV, for each other vehicle; red while that vehicle is in it."""
-    for x in scene.envelopes:
-        yield Rectangle(x.boxes, scene.colours[x.other], 0.2, x.near)
+    error = length_error_of(scene.file.road)
+    if error is not None:
+        said = f"lengths differ by up to {float(100 * error.share):.2g} %, {float(error.metres):.2g} m"
+        yield Text(said, [(EDGE, scene.rows_begin - 11)], "#555555", size=10)
 
 
 def _around(box: data.Box, along: data.Distance, across: data.Distance, k: int) -> data.Box:
@@ -274,16 +321,6 @@ def _around(box: data.Box, along: data.Distance, across: data.Distance, k: int) 
     else:
         bottom -= across.needed[k]
     return left, max(left, right), bottom, max(bottom, top)
-
-
-def vehicles(scene: Scene) -> Iterator[Shape]:
-    """The boxes, each with its name inside, or above where it is too short for that."""
-    for name, colour in scene.colours.items():
-        boxes = [scene.pixels(scene.box(name, k)) for k in scene.instants]
-        yield Rectangle(boxes, colour)
-        fits = boxes[0][2] >= 9 * len(name)
-        places = [(x + w / 2, y + h / 2 + (4 if fits else -8)) for x, y, w, h in boxes]
-        yield Text(name, places, "white" if fits else colour, size=11, middle=True)
 
 
 def rows(scene: Scene) -> Iterator[Shape]:

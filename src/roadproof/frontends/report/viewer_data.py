@@ -8,7 +8,7 @@ Floats are for drawing; ``exact`` of a part tells its truth with open and closed
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from math import isfinite, lcm
+from math import ceil, isfinite, lcm, remainder, tau
 from typing import TypeAlias, assert_never
 
 from roadproof.drivers.words import words_of_parts
@@ -32,17 +32,21 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, subformulas
 from roadproof.logic.rewrite import bounds_of, intervals_of
 from roadproof.logic.show import as_syntax, text
+from roadproof.recordings.export.subject import span_of
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.blame import blame
 from roadproof.semantics.exact.exact import Judgement, judge
 from roadproof.semantics.exact.robust import robustness
 from roadproof.semantics.exact.truth import TruthSet
+from roadproof.world.length_error import length_error_of
 from roadproof.world.motion import starts_of, state_at
+from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.road import Road
 
 MOST_PARTS = 2000
 FINEST = 20  # margins are sampled at most so many times as often as curves
 DIGITS = 6
+SPACING, BESIDE = 4.0, 300.0  # m between samples of the line of a road, and of it before and after a drive
 
 
 @dataclass(frozen=True)
@@ -88,7 +92,7 @@ def shown_drive(
         float(file.horizon),
         float(grain),
         file.lanes,
-        shown_road(file.road),
+        shown_road(file.road, span_of([*file.drive.vehicles.values()], file.horizon)),
         {name: _shown_motion(file, name) for name in vehicles_of(file)},
         [
             document.DistanceView(direction, x.one, x.other, _short(x.gap), _short(x.needed), x.one_behind)
@@ -99,8 +103,9 @@ def shown_drive(
     )
 
 
-def shown_road(road: Road) -> document.RoadView:
-    """Lanelets with their extent (m)."""
+def shown_road(road: Road, span: tuple[Fraction | float, Fraction | float]) -> document.RoadView:
+    """Lanelets with their extent (m), and the line of a road with bends around a ``span`` along it."""
+    error = length_error_of(road)
     return document.RoadView(
         road.name,
         [
@@ -109,7 +114,24 @@ def shown_road(road: Road) -> document.RoadView:
             )
             for x in road.lanelets
         ],
+        None if road.line is None else _shown_line(road.line, float(span[0]), float(span[1])),
+        None if error is None else document.LengthErrorView(float(100 * error.share), float(error.metres)),
     )
+
+
+def _shown_line(line: ReferenceLine, low: float, high: float) -> list[list[float]]:
+    """Samples of a line, from the first of them on."""
+    begin, end = max(low - BESIDE, float(line.begin)), min(high + BESIDE, float(line.end))
+    count = max(ceil((end - begin) / SPACING), 1)
+    places = [begin + (end - begin) * k / count for k in range(count + 1)]
+    poses, samples = [line.pose(s) for s in places], list[list[float]]()
+    turned = poses[0].heading
+    for k, (s, here) in enumerate(zip(places, poses, strict=True)):
+        turned += remainder(here.heading - poses[max(k - 1, 0)].heading, tau)
+        samples.append(
+            [round(s, 3), round(here.x - poses[0].x, 3), round(here.y - poses[0].y, 3), round(turned, 5)]
+        )
+    return samples
 
 
 def _shown_motion(file: DriveFile, name: str) -> document.VehicleView:

@@ -71,10 +71,24 @@ class LaneletView:
     d: Sequence[float]
 
 
+class LengthErrorView(NamedTuple):
+    """By how much lengths in lanes differ at most from those in s: at one place, and on a whole lane."""
+
+    per_cent: float
+    metres: float
+
+
 @dataclass(frozen=True)
 class RoadView:
+    """A road; of one with bends the ``line`` along which s is measured, and what that does to lengths.
+
+    ``line``: s, x, y and heading (m, rad) at places some metres apart; ``error``: in per cent and metres.
+    """
+
     name: str
     lanelets: Sequence[LaneletView]
+    line: Sequence[Sequence[float]] | None = None
+    error: LengthErrorView | None = None
 
 
 @dataclass(frozen=True)

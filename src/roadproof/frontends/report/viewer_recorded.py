@@ -33,12 +33,13 @@ def recorded_data(
     count = int(batch.lengths[0])
     dt = float(batch.dt)
     names = vehicle_order({name for _, name in batch.signals})
+    places = [float(x) for name in names for x in batch.signals["s", name][:count, 0]]
     drive = document.DriveView(
         home.set_name,
         (count - 1) * dt,
         dt,
         trace.lanes,
-        shown_road(trace.road),
+        shown_road(trace.road, (min(places), max(places))),
         {name: _shown_vehicle(trace, name, count, dt) for name in names},
         [
             shown

@@ -3,11 +3,14 @@
 import { html, useEffect, useRef } from "vendor/view";
 import { colour, coloursOf, font } from "viewer/palette";
 import { acrossOf, keptAt, shown, stateAt, windowOf } from "viewer/drive";
+import { extentOf, viewOf } from "viewer/plane";
 
 const ZONES = { main: "main road", merge: "merge zone", depart: "departure zone" };
 const HEIGHT = 216;
 const MARGIN = { top: 20, bottom: 26 };
 const MOST_STRETCH = 6;
+const LETTERS = 13; // pixels for a line of words
+const HIGHEST = 420; // pixels of a road with bends, which is to scale
 
 /** A canvas of the scene at `time`, which is a signal; `toScale` is one too. */
 export function Scene({ drive, time, toScale, theme }) {
@@ -43,14 +46,16 @@ function paint(canvas, drive, time, toScale) {
   if (!canvas || !canvas.clientWidth) return;
   const ratio = window.devicePixelRatio || 1;
   const width = canvas.clientWidth;
+  const place = placing(drive, time, width, toScale);
+  if (place.bends) canvas.style.height = `${place.height}px`;
   canvas.width = Math.round(width * ratio);
-  canvas.height = Math.round(HEIGHT * ratio);
+  canvas.height = Math.round(place.height * ratio);
   const brush = canvas.getContext("2d");
   brush.scale(ratio, ratio);
-  brush.clearRect(0, 0, width, HEIGHT);
-  const place = placing(drive, time, width, toScale);
+  brush.clearRect(0, 0, width, place.height);
   paintRoad(brush, drive, place);
-  paintScale(brush, place);
+  if (place.bends) paintBar(brush, drive, place);
+  else paintScale(brush, place);
   const colours = coloursOf(Object.keys(drive.vehicles));
   for (const distance of drive.distances) paintNeeded(brush, drive, distance, time, place, colours);
   for (const name of Object.keys(drive.vehicles)) paintVehicle(brush, drive, name, time, place, colours);
@@ -58,60 +63,94 @@ function paint(canvas, drive, time, toScale) {
   canvas.setAttribute("aria-label", `The road from above at ${time.toFixed(2)} s: ${told}`);
 }
 
-/** From m (along from the first vehicle's front, across) to pixels. */
+/** From places of the road (m) to pixels: points, ways along the road, areas to fill, and the turn of the road (rad). */
 function placing(drive, time, width, toScale) {
   const [low, high] = windowOf(drive);
   const [right, left] = acrossOf(drive.road);
   const origin = stateAt(Object.values(drive.vehicles)[0], time).s;
+  const common = { low, high, right, left, origin, width, letters: 0 };
+  const view = viewOf(drive, time);
+  if (view) return { ...common, ...bentPlacing(drive, view, width) };
   const along = width / (high - low);
   const room = HEIGHT - MARGIN.top - MARGIN.bottom;
   const fitting = Math.max(1, Math.min(MOST_STRETCH, room / (left - right) / along));
   const stretch = toScale || fitting < 1.1 ? 1 : fitting;
   const across = along * stretch;
   const middle = MARGIN.top + room / 2;
+  const point = (s, d) => [(s - origin - low) * along, middle - (d - (right + left) / 2) * across];
+  const way = (begin, end, d) => [point(begin, d), point(end, d)];
+  const fill = (brush, begin, end, [bottom, top]) =>
+    brush.fillRect(...point(begin, top), (end - begin) * along, (top - bottom) * across);
+  return { ...common, along, across, stretch, height: HEIGHT, point, way, fill, turn: () => 0 };
+}
+
+/** The same on a road with bends, which is to scale. */
+function bentPlacing(drive, view, width) {
+  const [begin, end, bottom, top] = extentOf(drive);
+  const along = Math.min(width / (end - begin), (HIGHEST - MARGIN.top - MARGIN.bottom) / (top - bottom));
+  const room = Math.max(HEIGHT - MARGIN.top - MARGIN.bottom, (top - bottom) * along);
+  const pixels = ([x, y]) => [
+    width / 2 + (x - (begin + end) / 2) * along,
+    MARGIN.top + room / 2 - (y - (top + bottom) / 2) * along,
+  ];
   return {
-    low,
-    high,
-    right,
-    left,
-    origin,
+    bends: true,
+    letters: LETTERS,
     along,
-    across,
-    stretch,
-    width,
-    x: (s) => (s - origin - low) * along,
-    y: (d) => middle - (d - (right + left) / 2) * across,
+    across: along,
+    height: Math.round(room + MARGIN.top + MARGIN.bottom),
+    point: (s, d) => pixels(view.at(s, d)),
+    way: (...ends) => view.edge(...ends).map(pixels),
+    fill: (brush, ...ends) => {
+      trace(brush, view.outline(...ends).map(pixels));
+      brush.fill();
+    },
+    turn: (s) => -view.turned(s),
   };
 }
 
 function paintRoad(brush, drive, place) {
+  const more = place.bends ? (place.high - place.low) / 2 : 0; // to the corners of the picture
   const seen = [place.origin + place.low, place.origin + place.high];
-  const zones = new Set();
   for (const { lane, zone, s, d } of drive.road.lanelets) {
-    const begin = Math.max(seen[0], s[0] ?? -Infinity);
-    const end = Math.min(seen[1], s[1] ?? Infinity);
+    const begin = Math.max(seen[0] - more, s[0] ?? -Infinity);
+    const end = Math.min(seen[1] + more, s[1] ?? Infinity);
     if (begin >= end) continue;
-    zones.add(zone);
-    const box = [place.x(begin), place.y(d[1]), (end - begin) * place.along, (d[1] - d[0]) * place.across];
     brush.fillStyle = colour(`--zone-${zone}`);
-    brush.fillRect(...box);
+    place.fill(brush, begin, end, d);
     brush.strokeStyle = colour("--lane-line");
-    brush.lineWidth = 1;
-    brush.setLineDash([10, 8]);
     for (const edge of d) {
       const outer = edge === place.right || edge === place.left;
       brush.setLineDash(outer ? [] : [10, 8]);
       brush.lineWidth = outer ? 1.5 : 1;
-      line(brush, box[0], place.y(edge), box[0] + box[2], place.y(edge));
+      stroke(brush, place.way(begin, end, edge));
     }
     brush.setLineDash([]);
-    if (s[0] !== null && s[0] > seen[0]) line(brush, box[0], box[1], box[0], box[1] + box[3]);
+    if (s[0] !== null && s[0] > seen[0]) stroke(brush, [place.point(begin, d[1]), place.point(begin, d[0])]);
     brush.fillStyle = colour("--faint");
     brush.font = font(11);
     brush.textAlign = "left";
+    if ((d[1] - d[0]) * place.across < place.letters) continue;
     const words = zone === "main" ? lane : `${lane} · ${ZONES[zone]}`;
-    brush.fillText(words, Math.max(4, box[0] + 4), place.y(d[1]) + 12);
+    write(brush, place, [Math.max(seen[0], begin), d[1]], words, [4, 12]);
   }
+}
+
+/** On a bend a length in m, as places along the picture are none along the road. */
+function paintBar(brush, drive, place) {
+  const step = [5, 10, 20, 50, 100].find((x) => x * place.along > 56) ?? 200;
+  const y = place.height - 8;
+  brush.fillStyle = colour("--faint");
+  brush.strokeStyle = colour("--faint");
+  brush.lineWidth = 1;
+  stroke(brush, [[8, y - 3], [8, y], [8 + step * place.along, y], [8 + step * place.along, y - 3]]);
+  brush.font = font(11);
+  brush.textAlign = "left";
+  const { error } = drive.road;
+  const bends = error ? ` · lengths differ by up to ${shown(error[0], 2)} %, ${shown(error[1], 2)} m` : "";
+  brush.fillText(`${step} m${bends}`, 14 + step * place.along, y);
+  brush.textAlign = "right";
+  brush.fillText("to scale · driving direction →", place.width - 6, 13);
 }
 
 function paintScale(brush, place) {
@@ -122,7 +161,7 @@ function paintScale(brush, place) {
   brush.textAlign = "center";
   for (let at = Math.ceil(place.low / step) * step; at <= place.high; at += step) {
     const x = (at - place.low) * place.along;
-    line(brush, x, HEIGHT - MARGIN.bottom + 4, x, HEIGHT - MARGIN.bottom + 8);
+    stroke(brush, [[x, HEIGHT - MARGIN.bottom + 4], [x, HEIGHT - MARGIN.bottom + 8]]);
     if (x > 16 && x < place.width - 16) brush.fillText(at === 0 ? "0" : `${at}`, x, HEIGHT - 6);
   }
   brush.textAlign = "right";
@@ -134,66 +173,81 @@ function paintScale(brush, place) {
 function paintNeeded(brush, drive, distance, time, place, colours) {
   const { keeper, other, needed, gap } = keptAt(drive, distance, time);
   if (needed === null || needed <= 0) return;
-  const vehicle = drive.vehicles[keeper];
-  const { s, d } = stateAt(vehicle, time);
-  const box =
-    distance.direction === "along"
-      ? [place.x(s), place.y(d), needed * place.along, vehicle.width * place.across]
-      : [
-          place.x(s - vehicle.length),
-          place.y(d + needed),
-          vehicle.length * place.along,
-          needed * place.across,
-        ];
+  const { length, width } = drive.vehicles[keeper];
+  const { s, d } = stateAt(drive.vehicles[keeper], time);
+  const ahead = distance.direction === "along";
   brush.save();
   brush.globalAlpha = gap <= needed ? 0.42 : 0.2;
   brush.fillStyle = colours[keeper];
-  brush.fillRect(...box);
+  if (ahead) place.fill(brush, s, s + needed, [d - width, d]);
+  else place.fill(brush, s - length, s, [d, d + needed]);
   brush.globalAlpha = 0.95;
   brush.strokeStyle = colours[keeper];
   brush.lineWidth = 1.5;
-  if (distance.direction === "along") {
-    line(brush, box[0] + box[2], box[1] - 3, box[0] + box[2], box[1] + box[3] + 3);
+  if (ahead) {
+    const more = 3 / place.across;
+    stroke(brush, [place.point(s + needed, d + more), place.point(s + needed, d - width - more)]);
     brush.fillStyle = colour("--ink");
     brush.font = font(11);
     brush.textAlign = "left";
-    const words = `RSS to ${other} ${shown(needed)} m`;
-    const below = box[3] > 34 ? box[3] - 5 : box[3] / 2 + 4; // below the names of vehicles
-    if (box[2] > 110) brush.fillText(words, box[0] + 8, box[1] + below);
+    const high = width * place.across;
+    const below = high > 34 ? high - 5 : high / 2 + 4; // below the names of vehicles
+    const fits = needed * place.along > 110 && high >= place.letters;
+    if (fits) write(brush, place, [s, d], `RSS to ${other} ${shown(needed)} m`, [8, below]);
   } else {
-    line(brush, box[0] - 3, box[1], box[0] + box[2] + 3, box[1]);
+    const more = 3 / place.along;
+    stroke(brush, place.way(s - length - more, s + more, d + needed));
   }
   brush.restore();
 }
 
 function paintVehicle(brush, drive, name, time, place, colours) {
-  const vehicle = drive.vehicles[name];
-  const { s, d, vLon } = stateAt(vehicle, time);
-  const box = [
-    place.x(s - vehicle.length),
-    place.y(d),
-    vehicle.length * place.along,
-    vehicle.width * place.across,
-  ];
+  const { length, width } = drive.vehicles[name];
+  const { s, d, vLon } = stateAt(drive.vehicles[name], time);
+  const [x, y] = place.point(s - length / 2, d - width / 2);
+  const [long, high] = [length * place.along, width * place.across];
+  const turn = place.turn(s - length / 2);
+  brush.save();
+  brush.translate(x, y);
+  brush.rotate(turn);
   brush.fillStyle = colours[name];
   brush.beginPath();
-  brush.roundRect(...box, Math.min(4, box[3] / 3));
+  brush.roundRect(-long / 2, -high / 2, long, high, Math.min(4, high / 3));
   brush.fill();
   brush.strokeStyle = colour("--paper");
   brush.lineWidth = 1;
   brush.stroke();
+  brush.restore();
   brush.fillStyle = colour("--ink");
   brush.font = font(12, 600);
-  brush.textAlign = "right";
   const words = `${name} ${shown(vLon * 3.6)} km/h`;
-  const fits = box[0] > brush.measureText(words).width + 8;
+  const half = (Math.abs(Math.cos(turn)) * long + Math.abs(Math.sin(turn)) * high) / 2;
+  if (high < place.letters) {
+    const wide = brush.measureText(words).width;
+    brush.textAlign = "left";
+    brush.fillText(words, Math.max(2, Math.min(place.width - wide - 2, x - wide / 2)), y - high / 2 - 5);
+    return;
+  }
+  const fits = x - half > brush.measureText(words).width + 8;
   brush.textAlign = fits ? "right" : "left";
-  brush.fillText(words, fits ? box[0] - 6 : box[0] + box[2] + 6, box[1] + box[3] / 2 + 4);
+  brush.fillText(words, fits ? x - half - 6 : x + half + 6, y + 4);
 }
 
-function line(brush, x1, y1, x2, y2) {
+/** Words beside a place of the road, in its direction. */
+function write(brush, place, [s, d], words, [ahead, below]) {
+  brush.save();
+  brush.translate(...place.point(s, d));
+  brush.rotate(place.turn(s));
+  brush.fillText(words, ahead, below);
+  brush.restore();
+}
+
+function trace(brush, points) {
   brush.beginPath();
-  brush.moveTo(x1, y1);
-  brush.lineTo(x2, y2);
+  points.forEach((point, k) => (k ? brush.lineTo(...point) : brush.moveTo(...point)));
+}
+
+function stroke(brush, points) {
+  trace(brush, points);
   brush.stroke();
 }
