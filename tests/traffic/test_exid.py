@@ -35,7 +35,7 @@ DRIVES = Path(__file__).parent / "planted"
 RATE, SECONDS, PAUSE = 25, 7, 20
 
 
-def planted(begin: float) -> tuple[Recording, dict[int, tuple[int, ...]]]:
+def planted(begin: float, rate: int = RATE) -> tuple[Recording, dict[int, tuple[int, ...]]]:
     """The drives of scenarios 1 to 8, one after the other, rears from ``begin`` on; who drove in each."""
     tracks, who = [], {}
     for number in range(1, 9):
@@ -45,18 +45,18 @@ def planted(begin: float) -> tuple[Recording, dict[int, tuple[int, ...]]]:
         who[number] = tuple(len(tracks) + k for k in range(len(names)))
         for name in names:
             motion = drive.vehicles[name]
-            states = [state_at(motion, Fraction(k, RATE)) for k in range(SECONDS * RATE + 1)]
+            states = [state_at(motion, Fraction(k, rate)) for k in range(SECONDS * rate + 1)]
             rows = [
                 tuple(float(x) for x in (z.s + ahead, z.d, z.v_lon, z.v_lat, z.a_lon, z.a_lat))
                 for z in states
             ]
-            first = (number - 1) * (SECONDS * RATE + PAUSE)
+            first = (number - 1) * (SECONDS * rate + PAUSE)
             tracks.append(Track(2, first, rows, float(motion.length), float(motion.width)))
-    return make_recording(tracks), who
+    return make_recording(tracks, rate), who
 
 
-def everything() -> Questions:
-    return ask(replace(default_settings(), scenarios=tuple(range(1, 25))), RATE)
+def everything(rate: int = RATE) -> Questions:
+    return ask(replace(default_settings(), scenarios=tuple(range(1, 25))), rate)
 
 
 def bent(s: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -107,6 +107,34 @@ def test_accelerations_come_from_velocities(tmp_path: Path) -> None:
     )
 
 
+def test_velocities_across_come_from_places_where_boxes_are_turned(tmp_path: Path) -> None:
+    """A map's grid turns orientations by two degrees: speeds agree with places, their direction does not."""
+    turned = tuple(replace(car(k, 10.0 * k), drift=float(np.radians(2.0))) for k in range(1, 9))
+    read, why = both(written(tmp_path, document(turned)))
+    assert "velocities across the road and positions contradict each other" in why
+    assert read.vehicles == 8
+    assert np.allclose(read.v_lat, 0.0, atol=1e-6)
+    assert np.allclose(read.a_lat, 0.0, atol=1e-5)
+    assert "of 8 of 8 vehicles (1, 2, 3, 4, 5, 6, 7, 8) contradict their places" in note_in(
+        read, "velocities across"
+    )
+
+
+def test_velocities_across_of_a_table_are_not_computed(tmp_path: Path) -> None:
+    """There a sign that is turned is a mistake of columns, and either of the two may be wrong."""
+    rows = [
+        f"{k / 10},{n},{20 * n + 2 * k},{2 + k / 25},20,-0.4,0,0,4,1.8"
+        for n in range(1, 9)
+        for k in range(41)
+    ]
+    path = tmp_path / "a.csv"
+    lane = 'id = "a"\nlane = "a"\nzone = "main"\nattribute = "main"\ns = [-inf, inf]\nd = [0, 4]\n'
+    path.with_name("a_road.toml").write_text(f"[[lanelet]]\n{lane}")
+    path.write_text("\n".join(["time,vehicle,s,d,v_lon,v_lat,a_lon,a_lat,length,width", *rows, ""]))
+    with pytest.raises(InputError, match="by a factor of -1: the sign is turned"):
+        find_source(path).read()
+
+
 def test_the_line_is_at_fault_where_the_plane_agrees(tmp_path: Path) -> None:
     """A vehicle that drives across the road is left out, and the note says that its data agree."""
     across = tuple((60.0, 1.75 + 5.0 * k / 10) for k in range(STEPS))

@@ -112,10 +112,23 @@ def krueger(latitude: float, longitude: float) -> tuple[float, float]:
     return radius * far, radius * up
 
 
+def test_a_lanelet_without_a_subtype_is_a_road(tmp_path: Path) -> None:
+    said = lanelet2(RAMPS)
+    assert '<tag k="subtype" v="road"/>' in said
+    plain = said.replace('<tag k="subtype" v="road"/>', "")
+    assert load_road(write(tmp_path, plain)).lanelets == load_road(write(tmp_path, said)).lanelets
+
+
+def test_streets_as_lines_are_no_lanelets(tmp_path: Path) -> None:
+    streets = '<osm><way id="1"><tag k="highway" v="primary"/></way></osm>'
+    with pytest.raises(InputError, match=r"the file has 1 streets as lines \(tag highway\)"):
+        load_road(write(tmp_path, streets))
+
+
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        ('v="road"', 'v="walkway"', "no lanelet of subtype highway or road"),
+        ('v="road"', 'v="walkway"', "no lanelet of subtype highway or road, but 8 of walkway"),
         ('ref="10000"', 'ref="7"', "right bound: way 7 is not in the file"),
         ('<nd ref="1"/>', '<nd ref="99999"/>', "node 99999 is not in the file"),
         ('v="0.0"', 'v="east"', "local_x of node 1 is 'east'"),

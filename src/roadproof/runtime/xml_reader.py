@@ -33,6 +33,9 @@ def read_xml(path: Path, root_tag: str) -> Element:
         raise InputError(
             f"{path}: no well-formed XML ({error}); get the file again from its source"
         ) from None
+    if root.tag.endswith(f"}}{root_tag}"):  # in a namespace
+        for element in root.iter():
+            element.tag = element.tag.rpartition("}")[2]
     if root.tag != root_tag:
         raise InputError(f"{path}: the root is {root.tag}, but {root_tag} is needed")
     return root

@@ -10,7 +10,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import TypeAlias
 
@@ -127,16 +127,32 @@ class Polyline:
 
     points: tuple[tuple[Fraction, Fraction], ...]
 
+    @cached_property
+    def measured(self) -> tuple[Sequence[float], Sequence[float]]:
+        """Lengths up to the points (m), and the directions there (rad), which do not jump by a turn."""
+        places, ways = [0.0], list[float]()
+        for (x, y), (x1, y1) in pairwise(self.places):
+            places.append(places[-1] + math.hypot(x1 - x, y1 - y))
+            way = math.atan2(y1 - y, x1 - x)
+            ways.append(way if not ways else ways[-1] + math.remainder(way - ways[-1], math.tau))
+        middles = [(a + b) / 2 for a, b in pairwise(ways)]
+        return places, [ways[0], *middles, ways[-1]]
+
+    @cached_property
+    def places(self) -> Sequence[tuple[float, float]]:
+        """The points, rounded."""
+        return [(float(x), float(y)) for x, y in self.points]
+
     def pose(self, s: float, _: Fraction) -> Pose:
-        places, headings = _measured(self)
+        places, headings = self.measured
         k = min(max(bisect_right(places, s) - 1, 0), len(places) - 2)
         share = (s - places[k]) / (places[k + 1] - places[k])
-        (x, y), (x1, y1) = ((float(a), float(b)) for a, b in self.points[k : k + 2])
+        (x, y), (x1, y1) = self.places[k : k + 2]
         turned = headings[k] + min(max(share, 0.0), 1.0) * (headings[k + 1] - headings[k])
         return Pose(x + share * (x1 - x), y + share * (y1 - y), turned)
 
     def bends(self, length: Fraction) -> Iterator[Bend]:
-        places, headings = _measured(self)
+        places, headings = self.measured
         scale = float(length) / places[-1]
         for (a, b), (before, after) in zip(pairwise(places), pairwise(headings), strict=True):
             curvature = Fraction((after - before) / (b - a))
@@ -149,7 +165,7 @@ Curve: TypeAlias = Line | Spiral | Cubic | Polyline
 
 def length_of(line: Polyline) -> float:
     """Of all its straight lines together (m)."""
-    return _measured(line)[0][-1]
+    return line.measured[0][-1]
 
 
 def _same(begin: Fraction, end: Fraction) -> tuple[tuple[Fraction, Fraction], tuple[Fraction, Fraction]]:
@@ -248,16 +264,3 @@ def _bounds(coefficients: Coefficients, part: Range, order: int) -> Range:
 def _times(one: Range, other: Range) -> Range:
     products = [x * y for x in one for y in other]
     return min(products), max(products)
-
-
-@lru_cache(maxsize=256)
-def _measured(line: Polyline) -> tuple[Sequence[float], Sequence[float]]:
-    """Lengths up to the points (m), and the directions there (rad), which do not jump by a turn."""
-    points = [(float(x), float(y)) for x, y in line.points]
-    places, ways = [0.0], list[float]()
-    for (x, y), (x1, y1) in pairwise(points):
-        places.append(places[-1] + math.hypot(x1 - x, y1 - y))
-        way = math.atan2(y1 - y, x1 - x)
-        ways.append(way if not ways else ways[-1] + math.remainder(way - ways[-1], math.tau))
-    middles = [(a + b) / 2 for a, b in pairwise(ways)]
-    return places, [ways[0], *middles, ways[-1]]

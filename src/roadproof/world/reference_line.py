@@ -42,14 +42,22 @@ class Part:
 
     def pose(self, s: float) -> Pose:
         """The line at ``s``."""
-        u = s - float(self.s)
-        local = self.curve.pose(float(self.length) - u if self.backward else u, self.length)
-        turn = math.cos(self.heading), math.sin(self.heading)
-        x = float(self.x) + local.x * turn[0] - local.y * turn[1]
-        y = float(self.y) + local.x * turn[1] + local.y * turn[0]
-        heading = float(self.heading) + local.heading + (math.pi if self.backward else 0.0)
-        aside = float(self.offset)
+        begin, length, x, y, heading, aside = self._rounded
+        u = s - begin
+        local = self.curve.pose(length - u if self.backward else u, self.length)
+        turn = math.cos(heading), math.sin(heading)
+        x += local.x * turn[0] - local.y * turn[1]
+        y += local.x * turn[1] + local.y * turn[0]
+        heading += local.heading + (math.pi if self.backward else 0.0)
         return Pose(x - aside * math.sin(heading), y + aside * math.cos(heading), heading)
+
+    @cached_property
+    def _rounded(self) -> tuple[float, float, float, float, float, float]:
+        """``s``, ``length``, ``x``, ``y``, ``heading`` and ``offset``, to be computed once."""
+        s, length, x, y, heading, offset = map(
+            float, (self.s, self.length, self.x, self.y, self.heading, self.offset)
+        )
+        return s, length, x, y, heading, offset
 
     def bends(self) -> Iterator[Bend]:
         """Bounds of the curvature of the curve, by s and seen along the line."""
@@ -91,13 +99,19 @@ class ReferenceLine:
 
     def pose(self, s: float) -> Pose:
         """The place of the line at ``s`` (m) and its direction."""
-        inside = min(max(s, float(self.begin)), float(self.end))
-        k = bisect_right(self.parts, inside, key=lambda x: float(x.s)) - 1
+        begins, end = self._places
+        inside = min(max(s, begins[0]), end)
+        k = bisect_right(begins, inside) - 1
         pose = self.parts[max(k, 0)].pose(inside)
         beyond = s - inside
         return Pose(
             pose.x + beyond * math.cos(pose.heading), pose.y + beyond * math.sin(pose.heading), pose.heading
         )
+
+    @cached_property
+    def _places(self) -> tuple[list[float], float]:
+        """s where each part begins, and where the last one ends."""
+        return [float(x.s) for x in self.parts], float(self.end)
 
     def curvature_rate(self, s: float) -> float:
         """The change of curvature per metre at ``s`` (1/m²), by its bounds; 0 beyond the ends."""

@@ -26,7 +26,7 @@ from roadproof.recordings.formats.recording import (
     offsets,
     with_notes,
 )
-from roadproof.recordings.formats.reliable import named, reliable
+from roadproof.recordings.formats.reliable import contradicts_motion, named, reliable
 from roadproof.recordings.formats.repeats import moments_of
 from roadproof.recordings.formats.source import Format, find_files
 from roadproof.runtime.xml_reader import Element, number_in, read_xml
@@ -59,13 +59,15 @@ def read_commonroad(path: Path, strict: bool = True, truck_length: float = 7.0) 
         traffic = replace(traffic, moments=np.zeros_like(traffic.moments))
     whole = place_traffic(traffic, network)
     recording = reliable(whole, strict, partial(_check_plausible, path))
-    lost = ~np.isin(whole.vehicle_id, recording.vehicle_id)
-    return with_notes(recording, (*_say_consistent(traffic, lost), *_describe(recording)))
+    return with_notes(recording, (*_say_consistent(traffic, whole, recording), *_describe(recording)))
 
 
-def _say_consistent(traffic: MeasuredTraffic, lost: Bools) -> Iterator[str]:
+def _say_consistent(traffic: MeasuredTraffic, whole: Recording, part: Recording) -> Iterator[str]:
     """A note on vehicles that were left out for the reference line, as they move as their velocities say."""
-    ids = traffic.vehicle_id[lost & _moves_as_told(traffic)].tolist() if lost.any() else []
+    lost = ~np.isin(whole.vehicle_id, part.vehicle_id)
+    if lost.any():
+        lost &= _moves_as_told(traffic)
+    ids = [int(whole.vehicle_id[v]) for v in np.flatnonzero(lost) if contradicts_motion(whole, int(v))]
     if ids:
         yield (
             f"of the vehicles left out, {len(ids)} ({named(ids)}) move in the plane as their velocities say: "

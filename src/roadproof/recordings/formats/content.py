@@ -2,6 +2,7 @@
 
 import csv
 import io
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,11 +10,14 @@ from typing import BinaryIO
 
 from roadproof.errors import InputError
 
+_THOUSANDS = re.compile(r"-?\d{1,3}(,\d{3})+(\.\d+)?")
 
-def plain_text(path: Path, content: bytes) -> bytes:
+
+def plain_text(path: Path, content: bytes, thousands: bool = False) -> bytes:
     """The same rows with no quotes, and with line feeds. Raises ``InputError``.
 
-    A quoted cell with a comma or a line break in it is refused: no column of a format has such cells.
+    A quoted cell with a comma or a line break in it is refused: no column of a format has such cells, but for
+    numbers such as "1,118,846,979" where commas part ``thousands``.
     """
     if b"\n" not in content:
         content = content.replace(b"\r", b"\n")
@@ -25,6 +29,8 @@ def plain_text(path: Path, content: bytes) -> bytes:
             (cells,) = csv.reader([line.removesuffix("\r")], strict=True)
         except (csv.Error, ValueError):
             raise InputError(f"{path}, row {number}: a quote does not end in its cell; remove it") from None
+        if thousands:
+            cells = [x.replace(",", "") if _THOUSANDS.fullmatch(x) else x for x in cells]
         if any("," in cell or '"' in cell for cell in cells):
             raise InputError(f"{path}, row {number}: a comma or a quote within a quoted cell; remove it")
         lines.append(",".join(cells))
@@ -49,14 +55,14 @@ class Content:
     kept: bytes | None
 
     @classmethod
-    def of(cls, path: Path) -> "Content":
-        """Raises ``InputError`` for a file that cannot be read or is empty."""
+    def of(cls, path: Path, thousands: bool = False) -> "Content":
+        """Raises ``InputError`` for a file that cannot be read or is empty. ``thousands``: see plain_text."""
         try:
             kept = None if path.is_file() else path.read_bytes().removeprefix(_MARK)
             found = cls(path, stamp_of(path), kept)
             empty = not found.beginning() or (found.beginning().isspace() and found.all().isspace())
             if not empty and found.needs_change():
-                found = cls(path, found.stamp, plain_text(path, found.all()))
+                found = cls(path, found.stamp, plain_text(path, found.all(), thousands))
         except OSError as error:
             raise InputError(f"{path}: the file cannot be read ({error.strerror}); check the path") from None
         if empty:

@@ -2,11 +2,13 @@
 
 Vehicles that are on no lane at any time are left out. Nothing else is left out of a recording that stands as
 a whole. Where too much contradicts itself, each vehicle is asked alone: those that break a rule above the
-share that a recording may are left out. Accelerations that contradict the velocities are computed from these
-instead, since places confirm the velocities.
+share that a recording may are left out. Two signals are repaired instead. Accelerations along the road that
+contradict the velocities are computed from these, since places confirm the velocities. Velocities across the
+road that contradict the places are computed from these, where velocities along the road agree with places:
+then boxes are turned against the way that they move, such as by another grid of the map.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,6 +24,7 @@ from roadproof.recordings.formats.recording import (
     one_vehicle,
     with_notes,
 )
+from roadproof.world.signals import SignalName
 
 MOST_LEFT_OUT = 0.5
 """Above this share of vehicles that would be left out, a recording is rejected as a whole."""
@@ -29,7 +32,13 @@ SHOWN = 50
 LEFT_OUT = "left out"
 """How notes on that begin."""
 _OFF_ROAD = "on no lane at any time"
-_ACCELERATIONS = "a_lon"
+_REPAIRED: Mapping[SignalName, str] = {
+    "a_lon": "accelerations along the road of {} contradict their velocities; they were computed from the "
+    "velocities",
+    "v_lat": "velocities across the road of {} contradict their places, as boxes are turned against the way "
+    "that they move; velocities and accelerations across were computed from the places",
+}
+"""Signals that are computed from others where these contradict them, and the note on that."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +94,7 @@ def _rejecting(
 def _believable(recording: Recording) -> tuple[Recording, Bools, list[LeftOut]]:
     """The part without vehicles that contradict themselves, which vehicles it has, and who was left out."""
     part, wanted, found = recording, np.ones(recording.vehicles, np.bool_), list[LeftOut]()
-    repaired = False
+    repaired = set[SignalName]()
     while part.vehicles:
         checks = check(part)
         rules = {_rule_of(x): x for x in checks.doubts() if x.refused}
@@ -96,9 +105,9 @@ def _believable(recording: Recording) -> tuple[Recording, Bools, list[LeftOut]]:
         elif rules:
             reason, rule = next(iter(rules.items()))
             broken = np.array([_breaks(part, k, reason) for k in range(part.vehicles)], np.bool_)
-            if rule.signal == _ACCELERATIONS and rule.unit == "moving seconds" and not repaired:
-                repaired = True
-                part = with_notes(_derived(part, broken), [_told_derived(part, broken)])
+            if rule.unit == "moving seconds" and rule.signal in _REPAIRED.keys() - repaired:
+                repaired.add(rule.signal)
+                part = _repaired(part, rule.signal, broken)
                 continue
         else:
             break
@@ -124,21 +133,41 @@ def _breaks(recording: Recording, vehicle: int, rule: str) -> bool:
     return False
 
 
-def _derived(recording: Recording, vehicles: Bools) -> Recording:
-    """The recording with accelerations along the road of some vehicles computed from their velocities."""
-    a_lon = recording.a_lon.copy()
+def contradicts_motion(recording: Recording, vehicle: int) -> bool:
+    """Whether the places of a vehicle contradict its velocities, above the share that a recording may."""
+    limits = {"moving seconds": SHARE, "steps": SHARE_OF_JUMPS}
+    doubts = check(one_vehicle(recording, vehicle)).doubts()
+    return any(x.unit in limits and x.broken > limits[x.unit] * x.asked for x in doubts)
+
+
+def _repaired(recording: Recording, signal: SignalName, broken: Bools) -> Recording:
+    """The recording with a signal of some vehicles computed from others, and a note on that.
+
+    Velocities across are computed where they follow from headings, for vehicles that head along the road.
+    """
+    vehicles = broken & _heads_along(recording) if signal == "v_lat" else broken
+    if not vehicles.any():
+        return recording
+    made = {x: getattr(recording, x).copy() for x in ("a_lon", "v_lat", "a_lat")}
     for v in np.flatnonzero(vehicles):
         rows = slice(recording.start[v], recording.start[v + 1])
-        a_lon[rows] = rate_of_change(recording.v_lon[rows], recording.rate)
-    return replace(recording, a_lon=a_lon)
-
-
-def _told_derived(recording: Recording, vehicles: Bools) -> str:
+        if signal == "v_lat":
+            made["v_lat"][rows] = rate_of_change(recording.d[rows], recording.rate)
+            made["a_lat"][rows] = rate_of_change(made["v_lat"][rows], recording.rate)
+        else:
+            made["a_lon"][rows] = rate_of_change(recording.v_lon[rows], recording.rate)
     ids = recording.vehicle_id[vehicles].tolist()
-    return (
-        f"accelerations along the road of {len(ids)} of {recording.vehicles} vehicles ({named(ids)}) "
-        "contradict their velocities; they were computed from the velocities"
-    )
+    told = _REPAIRED[signal].format(f"{len(ids)} of {recording.vehicles} vehicles ({named(ids)})")
+    return with_notes(replace(recording, **made), [told])
+
+
+def _heads_along(recording: Recording) -> Bools:
+    """Which boxes are turned in the plane, and head along the road but for a share of their samples."""
+    if recording.slack is None:
+        return np.zeros(recording.vehicles, np.bool_)
+    beside = np.add.reduceat(~np.isfinite(recording.slack.along), recording.start[:-1])
+    along: Bools = beside <= SHARE * np.diff(recording.start)
+    return along
 
 
 def rate_of_change(values: Floats, rate: int) -> Floats:

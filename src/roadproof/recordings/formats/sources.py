@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from roadproof.errors import InputError
-from roadproof.recordings.formats import commonroad, converted, exid, highd, openscenario, samples
+from roadproof.recordings.formats import commonroad, converted, exid, highd, ngsim, openscenario, samples
 from roadproof.recordings.formats.large import divide_large
 from roadproof.recordings.formats.source import (
     TRACK_FILES,
@@ -22,7 +22,8 @@ def _find_csv(path: Path) -> dict[str, Files]:
     if path.is_dir():
         wanted = {"time", "vehicle"}
         return {x: y for x, y in found.items() if wanted <= set(first_line(y[-1]).split(","))}
-    return {x: y for x, y in found.items() if not TRACK_FILES.fullmatch(path.name)}
+    other = TRACK_FILES.fullmatch(path.name) or ngsim.is_ngsim(path)
+    return {} if other else found
 
 
 def _find_parquet(path: Path) -> dict[str, Files]:
@@ -36,6 +37,7 @@ PARQUET = Format("Parquet", "NAME.parquet with the same columns", _find_parquet,
 FORMATS: tuple[Format, ...] = (
     highd.FORMAT,
     exid.FORMAT,
+    ngsim.FORMAT,
     commonroad.FORMAT,
     openscenario.FORMAT,
     CSV,

@@ -113,13 +113,16 @@ def cell_error(path: Path, row: int, column: str, value: object, rule: str) -> I
     return InputError(f"{path}, row {row + 2}, column {column}={value}: {rule}")
 
 
-def read_table(path: Path, header: Sequence[str], wanted: Mapping[str, Kind]) -> Table:
+def read_table(
+    path: Path, header: Sequence[str], wanted: Mapping[str, Kind], thousands: bool = False
+) -> Table:
     """The columns ``wanted`` of a CSV file whose header is exactly ``header``.
 
+    ``thousands``: whether commas in quoted numbers part them.
     Integers come as int64, numbers as finite float64, texts as str. Raises ``InputError`` for a
     file that cannot be read, is empty or truncated, or breaks a rule above.
     """
-    content = Content.of(path)
+    content = Content.of(path, thousands)
     beginning = content.beginning()
     other = other_table(beginning, len(header))
     if other is not None:

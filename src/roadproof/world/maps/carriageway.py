@@ -12,6 +12,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from itertools import pairwise
 
 from roadproof.errors import InputError
@@ -37,6 +38,10 @@ NO_LANES = frozenset(
 )
 _ZONES: Mapping[Attribute, Zone] = {"main": "main", "merge": "merge", "departure": "depart"}
 _ROUNDED = 1000
+_ROUNDING = Fraction(1, 100)
+"""Metres: a width that is so little below 0 is 0."""
+_TIP = Fraction(1, 2)
+"""Metres: the end of a lane that is narrower may be left out."""
 _SHORTEST = Fraction(1, 4)
 """Metres: steps of a width are hardly shorter."""
 
@@ -107,7 +112,8 @@ def carriageway(ways: tuple[DirectedRoad, ...], step: Fraction) -> Carriageway:
     ``step``: how much an edge changes at most on a lanelet (m). Raises ``InputError``.
     """
     steps = [x for way in ways for x in _steps(way, step)]
-    return Carriageway(tuple(_lanelets(steps)), max((x.error for x in steps), default=Fraction(0)))
+    lanelets = _without_tips(tuple(_lanelets(steps)))
+    return Carriageway(lanelets, max((x.error for x in steps), default=Fraction(0)))
 
 
 def driven(section: MapSection, side: int) -> list[MapLane]:
@@ -138,7 +144,7 @@ def _check_types(lanes: list[MapLane], where: str) -> None:
         if x.type not in DRIVEN and x.type not in RAMPS and x.type not in NO_LANES:
             known = ", ".join(("driving", *sorted(DRIVEN - {"driving"}), *RAMPS, *sorted(NO_LANES)))
             raise InputError(f"{where}, lane {x.id}: type={x.type!r} is none of {known}")
-        if not x.width:
+        if not x.width and not x.border:
             raise InputError(f"{where}, lane {x.id}: 0 widths; at least one is needed")
     ramps = {RAMPS[x.type] for x in lanes if x.type in RAMPS}
     if len(ramps) > 1:
@@ -150,7 +156,10 @@ def _edges(offset: Polynomials, lanes: list[MapLane], begin: Fraction) -> list[C
     pieces = [(1, _there(offset, begin))] if offset else []
     edges = [total(pieces, begin)]
     for lane in lanes:
-        pieces.append((1 if lane.id > 0 else -1, _there(lane.width, begin)))
+        if lane.border:
+            pieces = [(1, _there(lane.border, begin))]
+        else:
+            pieces.append((1 if lane.id > 0 else -1, _there(lane.width, begin)))
         edges.append(total(pieces, begin))
     return edges
 
@@ -162,7 +171,7 @@ def _there(pieces: Polynomials, s: Fraction) -> Piece:
 
 def _places(offset: Polynomials, lanes: list[MapLane], section: MapSection, step: Fraction) -> list[Fraction]:
     """Places between which no edge changes by more than ``step``."""
-    begins = {x.s for pieces in (offset, *(lane.width for lane in lanes)) for x in pieces}
+    begins = {x.s for pieces in (offset, *(x.width or x.border for x in lanes)) for x in pieces}
     ends = [section.begin, *sorted(x for x in begins if section.begin < x < section.end), section.end]
     found = [section.begin]
     for begin, end in pairwise(ends):
@@ -202,9 +211,10 @@ def _strips(way: DirectedRoad, lanes: list[MapLane], edges: list[Fraction], wher
     """The lanes that are driven on, from left to right."""
     strips = []
     for lane, (inner, outer) in zip(lanes, pairwise(edges), strict=True):
-        if (outer - inner) * way.side < 0:
-            raise InputError(f"{where}, lane {lane.id}: its width is below 0")
-        if lane.type not in NO_LANES and inner != outer:
+        width = (outer - inner) * way.side
+        if width < -_ROUNDING:
+            raise InputError(f"{where}, lane {lane.id}: its width is below 0, {float(width):.2f} m")
+        if lane.type not in NO_LANES and width > 0:
             ends = lane.successor, lane.predecessor
             after, before = ends if way.forward else ends[::-1]
             right, left = sorted((way.d(inner), way.d(outer)))
@@ -221,16 +231,39 @@ def _lanelets(steps: list[_Step]) -> Iterator[Lanelet]:
         zone: Zone = next((_ZONES[x.attribute] for x in step.strips if x.attribute != "main"), "main")
         for strip in reversed(step.strips):
             ends = [x for x in before.strips if _goes_on(before, x, step, strip)] if before else []
+            ends.sort(key=partial(_apart, strip))
             known = [name for name in (names[k - 1][x.id] for x in ends) if name not in names[k].values()]
-            if len(known) > 1:
-                raise InputError(f"{step.where}, lane {strip.id}: two lanes go on in it")
             if not known:
                 counts[strip.attribute] += 1
                 known = [f"{strip.attribute}-{counts[strip.attribute]}"]
-            (name,) = known
+            name = known[0]  # of lanes that join here the one beside which the others end
             names[k][strip.id] = name
             letter = chr(ord("a") + k) if k < 26 else f".{k + 1}"  # of the step
             yield Lanelet(f"{name}{letter}", name, strip.zone or zone, strip.attribute, step.s, strip.d)
+
+
+def _apart(one: _Strip, other: _Strip) -> Fraction:
+    """Twice the distance (m) between the middles of two strips."""
+    return abs(one.d[0] + one.d[1] - other.d[0] - other.d[1])
+
+
+def _without_tips(lanelets: tuple[Lanelet, ...]) -> tuple[Lanelet, ...]:
+    """The lanelets without narrow ends of a lane that do not meet the rest of it across the road.
+
+    Where a lane narrows to nothing while its middle moves, its steps lie beside each other.
+    """
+    dropped = set[str]()
+    for lane in dict.fromkeys(x.lane for x in lanelets):
+        chain = [x for x in lanelets if x.lane == lane]
+        apart = [k for k, (a, b) in enumerate(pairwise(chain), 1) if a.d[0] >= b.d[1] or b.d[0] >= a.d[1]]
+        if not apart:
+            continue
+        begins, ends = chain[: apart[-1]], chain[apart[0] :]
+        for part in (begins, ends):
+            if all(x.d[1] - x.d[0] < _TIP for x in part):
+                dropped |= {x.id for x in part}
+                break
+    return tuple(x for x in lanelets if x.id not in dropped)
 
 
 def _goes_on(one: _Step, before: _Strip, other: _Step, strip: _Strip) -> bool:

@@ -6,8 +6,8 @@ equations 8-9 and 8-10, up to the fifth power): within 50 km of it, places are w
 exact projection, and lengths within 0.004 % of those on the ground. Elevation is left out.
 
 A lanelet follows another where its bounds begin at the points where those of the other end, and is beside one
-with a bound of the same points. Lanelets of subtype road and highway are read; the others are counted. Of
-lanelets that are driven both ways the direction of the bounds is read.
+with a bound of the same points. Lanelets of subtype road and highway, and those without one, are read; the
+others are counted. Of lanelets that are driven both ways the direction of the bounds is read.
 """
 
 import math
@@ -51,15 +51,25 @@ def read_map(path: Path) -> tuple[dict[str, MeasuredLanelet], tuple[tuple[str, i
         tags = _tags(node)
         if tags.get("type") != "lanelet":
             continue
-        kind = tags.get("subtype", "without subtype")
+        kind = tags.get("subtype", "road")
         if kind in ROADS:
             left, right = (_nodes(path, name, node, x, ways, points) for x in ("left", "right"))
             found[name] = _directed(left, right, points)
         else:
             others[kind] += 1
     if not found:
-        raise InputError(f"{path}: the file has no lanelet of subtype {' or '.join(sorted(ROADS))}")
+        raise InputError(f"{path}: {_without_roads(others, ways)}")
     return _linked(found), tuple(sorted(others.items()))
+
+
+def _without_roads(others: Mapping[str, int], ways: Mapping[str, Element]) -> str:
+    """Why there is no road in a file."""
+    if others:
+        told = ", ".join(f"{count} of {kind}" for kind, count in sorted(others.items()))
+        return f"the file has no lanelet of subtype {' or '.join(sorted(ROADS))}, but {told}"
+    streets = sum("highway" in _tags(x) for x in ways.values())
+    what = f"{streets} streets as lines (tag highway)" if streets else "none"
+    return f"relations of type lanelet are needed, and the file has {what}; use a map in Lanelet2"
 
 
 def _tags(node: Element) -> dict[str, str]:

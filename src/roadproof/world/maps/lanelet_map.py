@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+import numpy as np
+
 from roadproof.errors import InputError, UsageError
 from roadproof.world.lanelet_rules import check_lanelets
 from roadproof.world.maps import commonroad, lanelet2
@@ -48,6 +50,33 @@ class LaneletMap:
     def middles(self) -> dict[str, Floats]:
         """The middle of each lanelet, with points some metres apart."""
         return {name: thinned(x.centre, _SPACING) for name, x in self.network.lanelets.items()}
+
+    @cached_property
+    def boxes(self) -> tuple[Floats, Floats]:
+        """The least and the greatest x and y of the middle of each lanelet, in their order."""
+        found = [(x.min(axis=0), x.max(axis=0)) for x in self.middles.values()]
+        return np.array([x for x, _ in found]), np.array([x for _, x in found])
+
+    @cached_property
+    def predecessors(self) -> dict[str, set[str]]:
+        """For each lanelet those that lead into it."""
+        found: dict[str, set[str]] = {x: set() for x in self.network.lanelets}
+        for x in self.network.lanelets.values():
+            for other in x.successors:
+                found[other].add(x.id)
+        return found
+
+    @cached_property
+    def chain_of(self) -> dict[str, int]:
+        """For each lanelet the number of its way in ``chains``."""
+        return {name: k for k, chain in enumerate(self.chains) for name in chain}
+
+    def near(self, line: Floats) -> list[str]:
+        """Lanelets whose middles may cross a line."""
+        low, high = self.boxes
+        meet = ((low <= line.max(axis=0)) & (high >= line.min(axis=0))).all(axis=1)
+        names = [*self.middles]
+        return [names[k] for k in np.flatnonzero(meet)]
 
     def beside(self, way: tuple[str, ...]) -> tuple[str, ...]:
         """The lanelets of the road along a way."""
@@ -110,7 +139,8 @@ def _measured(
     network, names = known.network, known.beside(way)
     attributes, zones = _kinds(known, way)
     lanes: dict[str, str] = {}
-    for chain in known.chains:
+    for number in dict.fromkeys(known.chain_of[name] for name in names):
+        chain = known.chains[number]
         for k, name in enumerate(chain):
             goes_on = k and chain[k - 1] in lanes and attributes.get(chain[k - 1]) == attributes.get(name)
             if name in attributes:
@@ -146,14 +176,14 @@ def _refuse_crossing(
     """Raises ``InputError`` where a lanelet of the map crosses the part of the road that is selected."""
     lanelets, ours = known.network.lanelets, set(known.beside(way))
     ends = [float(s) for x in found for s in x.s if s is not None]
-    joining = {x.id for x in lanelets.values() if ours & set(x.successors)}
+    joining = {other for x in ours for other in known.predecessors[x]}
     parting = {other for x in ours for other in lanelets[x].successors}
     roads = [joined([known.middles[name] for name in way])]
-    roads += [known.middles[x] for x in ours - set(way)]
-    for name in lanelets:
-        if name in ours or name in joining or name in parting:
-            continue
-        for road in roads:
+    roads += [known.middles[x] for x in sorted(ours - set(way))]
+    for road in roads:
+        for name in known.near(road):
+            if name in ours or name in joining or name in parting:
+                continue
             met = crossing(road, known.middles[name], _ENDS)
             s = line.locate(*met)[0] if met else None
             if s is not None and min(ends) <= s <= max(ends):

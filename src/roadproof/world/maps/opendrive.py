@@ -1,7 +1,7 @@
 """Roads of a map in OpenDRIVE (ASAM, 1.4 to 1.8): reference line, lane sections with widths, links.
 
-Elevation and superelevation are left out, as s is measured in plan. Of a lane its width, its type and its
-links are read; of a road its traffic rule and whether it is part of a junction.
+Elevation and superelevation are left out, as s is measured in plan. Of a lane its width or
+border, its type and its links are read; of a road its traffic rule and whether it is part of a junction.
 """
 
 import re
@@ -23,11 +23,13 @@ ZONE = "roadproof:zone"
 ZONES: tuple[Zone, ...] = ("main", "merge", "depart")
 Rule: TypeAlias = Literal["RHT", "LHT"]
 _RULES: Mapping[str, Rule] = {"RHT": "RHT", "LHT": "LHT"}
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,2})?")
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?0*\d{1,2})?")
 _ZERO = Fraction(0)
 _MOST = 10_000
 _TOLERANCE = Fraction(1, 10**3)
 """Metres between the end of a geometry and the beginning of the next one."""
+_LENGTH_TOLERANCE = Fraction(1, 2)
+"""Metres between the end of the last geometry, where a road ends, and the length that the road states."""
 
 
 @dataclass(frozen=True)
@@ -55,12 +57,14 @@ def value_at(pieces: Polynomials, s: Fraction) -> Fraction:
 class MapLane:
     """A lane of a section; ``width`` by s of the road (m), ``successor`` and ``predecessor`` ids of lanes.
 
+    ``border``: instead of the width, where the outer edge is to the left of the reference line (m).
     ``zone``: what ``userData`` says.
     """
 
     id: int
     type: str
     width: Polynomials
+    border: Polynomials
     predecessor: int | None
     successor: int | None
     zone: Zone | None
@@ -73,6 +77,18 @@ class MapSection:
     begin: Fraction
     end: Fraction
     lanes: Mapping[int, MapLane]
+
+
+def outer_edge(offset: Polynomials, section: MapSection, lane: int, s: Fraction) -> Fraction:
+    """How far (m) the outer edge of a lane is to the left of the reference line; of lane 0, its only edge.
+
+    Raises ``KeyError`` for a lane that the section does not have.
+    """
+    edge, sign = value_at(offset, s), 1 if lane > 0 else -1
+    for number in range(1, abs(lane) + 1):
+        found = section.lanes[sign * number]
+        edge = value_at(found.border, s) if found.border else edge + sign * value_at(found.width, s)
+    return edge
 
 
 @dataclass(frozen=True)
@@ -104,17 +120,32 @@ class MapRoad:
         return self.line.end
 
 
-def read_map(path: Path) -> tuple[MapRoad, ...]:
-    """The roads of a file, in its order. Raises ``InputError`` that names file, element and rule."""
+@dataclass(frozen=True)
+class RoadMap:
+    """The roads of a file, in its order. ``refused``: by id, why a road cannot be read."""
+
+    roads: tuple[MapRoad, ...]
+    refused: Mapping[str, str]
+
+
+def read_map(path: Path) -> RoadMap:
+    """The map of a file. Raises ``InputError`` that names file, element and rule, if no road can be read."""
     nodes = read_xml(path, "OpenDRIVE").findall("road")
     if not nodes:
         raise InputError(f"{path}: there is no road")
     if len(nodes) > _MOST:
         raise InputError(f"{path}: {len(nodes)} roads; at most {_MOST} are read")
-    found = tuple(_road(node, f"{path}: road {node.get('id')}") for node in nodes)
-    if len({x.id for x in found}) < len(found):
+    if len({x.get("id") for x in nodes}) < len(nodes):
         raise InputError(f"{path}: two roads have the same id")
-    return found
+    found, refused = list[MapRoad](), dict[str, str]()
+    for node in nodes:
+        try:
+            found.append(_road(node, f"{path}: road {node.get('id')}"))
+        except InputError as error:
+            refused[node.get("id", "")] = str(error)
+    if not found:
+        raise InputError(next(iter(refused.values())))
+    return RoadMap(tuple(found), refused)
 
 
 def _road(node: Element, where: str) -> MapRoad:
@@ -124,16 +155,16 @@ def _road(node: Element, where: str) -> MapRoad:
     rule = _RULES.get(node.get("rule", "RHT"))
     if rule is None:
         raise InputError(f"{where}: rule={node.get('rule')}: one of {', '.join(_RULES)} is needed")
-    junction = node.get("junction", "-1")
+    junction, line = node.get("junction", "-1"), _line(node, length, where)
     return MapRoad(
         node.get("id", ""),
         node.get("name") or "",
         where,
         rule,
         None if junction == "-1" else junction,
-        _line(node, length, where),
+        line,
         _pieces(node.findall("lanes/laneOffset"), "s", _ZERO, f"{where}, laneOffset"),
-        tuple(_sections(node, length, where)),
+        tuple(_sections(node, line.end, where)),
         _link(node.find("link/predecessor")),
         _link(node.find("link/successor")),
     )
@@ -159,7 +190,7 @@ def _line(road: Element, length: Fraction, where: str) -> ReferenceLine:
         end = s + long
         if long > 0:
             parts.append(Part(s, long, x, y, heading, _curve(node, long, at)))
-    if not parts or abs(end - length) > _TOLERANCE:
+    if not parts or abs(end - length) > _LENGTH_TOLERANCE:
         told = road.get("length")
         raise InputError(f"{where}: length={told}, but its geometries end at {float(end):g}")
     _check_joined(parts, where)
@@ -231,11 +262,11 @@ def _coefficients(node: Element, names: str | list[str], where: str) -> Coeffici
 
 
 def _pieces(nodes: list[Element], name: str, begin: Fraction, where: str) -> Polynomials:
-    """Cubics by the s at which they begin, ``name`` m after ``begin``."""
+    """Cubics by the s at which they begin, ``name`` m after ``begin``; of several at one s, the last one."""
     found = [Piece(begin + _number(x, name, where), _coefficients(x, "abcd", where)) for x in nodes]
-    if any(a.s >= b.s for a, b in pairwise(found)):
+    if any(a.s > b.s for a, b in pairwise(found)):
         raise InputError(f"{where}: {name} must ascend")
-    return tuple(found)
+    return tuple({x.s: x for x in found}.values())
 
 
 def _sections(road: Element, length: Fraction, where: str) -> Iterator[MapSection]:
@@ -260,14 +291,14 @@ def _sections(road: Element, length: Fraction, where: str) -> Iterator[MapSectio
 def _lane(node: Element, begin: Fraction, where: str) -> MapLane:
     number = int(_number(node, "id", f"{where}, a lane"))
     at = f"{where}, lane {number}"
-    if node.find("border") is not None and node.find("width") is None:
-        raise InputError(f"{at}: border: only lanes with width are read; write its width")
     before, after = (node.find(f"link/{x}") for x in ("predecessor", "successor"))
     width = _pieces(node.findall("width"), "sOffset", begin, f"{at}, width")
+    borders = () if width else node.findall("border")
     return MapLane(
         number,
         node.get("type", ""),
         width,
+        _pieces(list(borders), "sOffset", begin, f"{at}, border"),
         None if before is None else int(_number(before, "id", f"{at}, predecessor")),
         None if after is None else int(_number(after, "id", f"{at}, successor")),
         _zone(node, at),

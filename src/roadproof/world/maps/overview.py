@@ -8,7 +8,7 @@ from pathlib import Path
 from roadproof.errors import InputError
 from roadproof.world.length_error import LengthError, length_error
 from roadproof.world.maps.carriageway import DRIVEN, RAMPS
-from roadproof.world.maps.opendrive import MapRoad, read_map
+from roadproof.world.maps.opendrive import MapRoad, RoadMap, read_map
 from roadproof.world.maps.selection import LANELETS, STEP, Selection, Stretch, stretch_of
 from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.road import Lanelet, Zone
@@ -48,10 +48,10 @@ class MapStretch:
     refused: str = ""
 
 
-def stretches_of(path: Path, roads: tuple[MapRoad, ...]) -> tuple[MapStretch, ...]:
-    """Every road of a map in every direction that lanes are driven in."""
+def stretches_of(path: Path, roads: RoadMap) -> tuple[MapStretch, ...]:
+    """Every road of a map in every direction that lanes are driven in, then those that cannot be read."""
     found = []
-    for road in roads:
+    for road in roads.roads:
         for side in ("right", "left"):
             numbers = {x for section in road.sections for x in section.lanes}
             if not any(x > 0 if side == "left" else x < 0 for x in numbers):
@@ -59,6 +59,8 @@ def stretches_of(path: Path, roads: tuple[MapRoad, ...]) -> tuple[MapStretch, ..
             stretch = _stretch(path, roads, road, side)
             if stretch is not None:
                 found.append(stretch)
+    for name, told in roads.refused.items():
+        found.append(MapStretch(f"{path}#road={name}", "", Fraction(0), refused=told))
     return tuple(found)
 
 
@@ -98,7 +100,7 @@ def _covers(lanelet: Lanelet, begin: Fraction, end: Fraction) -> bool:
     return low is not None and high is not None and low <= begin and end <= high
 
 
-def _stretch(path: Path, roads: tuple[MapRoad, ...], road: MapRoad, side: str) -> MapStretch | None:
+def _stretch(path: Path, roads: RoadMap, road: MapRoad, side: str) -> MapStretch | None:
     """A road in one direction; None where nothing is driven on in it."""
     select = f"{path}#road={road.id},lanes={side}"
     lanes = (x for section in road.sections for x in section.lanes.values() if (x.id > 0) == (side == "left"))

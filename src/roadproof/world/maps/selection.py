@@ -15,7 +15,7 @@ from pathlib import Path
 from roadproof.errors import InputError, UsageError
 from roadproof.world.lanelet_rules import check_lanelets
 from roadproof.world.maps.carriageway import Carriageway, DirectedRoad, carriageway, driven
-from roadproof.world.maps.opendrive import MapRoad, read_map
+from roadproof.world.maps.opendrive import MapRoad, RoadMap, read_map
 from roadproof.world.reference_line import Part, ReferenceLine
 from roadproof.world.road import Lanelet
 
@@ -101,17 +101,20 @@ def select(path: Path, selection: Selection) -> Stretch:
     return stretch_of(path, read_map(path), selection)
 
 
-def stretch_of(path: Path, roads: tuple[MapRoad, ...], selection: Selection) -> Stretch:
+def stretch_of(path: Path, known_map: RoadMap, selection: Selection) -> Stretch:
     """As ``select``, from the roads of the file."""
-    known = {x.id: x for x in roads}
-    if not selection.roads and len(roads) > 1:
-        shown = ", ".join(list(known)[:8]) + (", …" if len(known) > 8 else "")
-        told = f"{len(roads)} roads ({shown}); name one as {path}#road=ID; roadproof road {path} lists them"
+    known, names = {x.id: x for x in known_map.roads}, [x.id for x in known_map.roads]
+    names += known_map.refused
+    if not selection.roads and len(names) > 1:
+        shown = ", ".join(names[:8]) + (", …" if len(names) > 8 else "")
+        told = f"{len(names)} roads ({shown}); name one as {path}#road=ID; roadproof road {path} lists them"
         raise InputError(f"{path}: {told}")
     for name in selection.roads:
+        if name in known_map.refused:
+            raise InputError(known_map.refused[name])
         if name not in known:
             raise InputError(f"{path}: there is no road {name}; roadproof road {path} lists the roads")
-    chosen = [known[x] for x in selection.roads] or [roads[0]]
+    chosen = [known[x] for x in selection.roads] or [known_map.roads[0]]
     ways = _route(path, chosen) if len(chosen) > 1 else (_single(chosen[0], selection),)
     made = carriageway(ways, selection.step)
     if not made.lanelets:
@@ -144,6 +147,8 @@ def _span(ways: tuple[DirectedRoad, ...], selection: Selection) -> tuple[Fractio
 
 def cut(path: Path, made: Carriageway, span: tuple[Fraction | None, Fraction | None]) -> list[Lanelet]:
     """The lanelets between two places, None for the ends of the road. Raises ``InputError``."""
+    if not made.lanelets:
+        raise InputError(f"{path}: no lane of the road has a length and a width")
     found = []
     for x in made.lanelets:
         begin, end = x.s

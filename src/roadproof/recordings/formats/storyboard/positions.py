@@ -15,7 +15,7 @@ from roadproof.errors import InputError
 from roadproof.recordings.formats.storyboard.document import Document
 from roadproof.runtime.xml_reader import Element
 from roadproof.world.maps.carriageway import DRIVEN, RAMPS
-from roadproof.world.maps.opendrive import MapRoad, MapSection, read_map, value_at
+from roadproof.world.maps.opendrive import MapRoad, MapSection, outer_edge, read_map, value_at
 from roadproof.world.maps.selection import STRETCH, is_map, read_selection
 from roadproof.world.models import load_road
 from roadproof.world.road import Road
@@ -173,16 +173,13 @@ class Positions:
 
     def _middle(self, node: Element, road: MapRoad, s: float, lane: int) -> float:
         """t of the middle of a lane."""
-        section = _section(road, s)
+        section, at = _section(road, s), Fraction(s)
         if lane == 0:
-            return float(value_at(road.offset, Fraction(s)))
+            return float(value_at(road.offset, at))
         if lane not in section.lanes:
             raise self.document.error(node, f"road {road.id} has no lane {lane} at s={s:.2f}")
-        at = Fraction(s)
-        sign = 1 if lane > 0 else -1
-        widths = [value_at(section.lanes[sign * k].width, at) for k in range(1, abs(lane) + 1)]
-        outwards = sum(widths[:-1], Fraction(0)) + widths[-1] / 2
-        return float(value_at(road.offset, at) + sign * outwards)
+        inner = lane - 1 if lane > 0 else lane + 1
+        return float(sum(outer_edge(road.offset, section, x, at) for x in (inner, lane)) / 2)
 
     def _road(self, place: Element) -> MapRoad:
         name = self.document.text(place, "roadId")
@@ -199,7 +196,7 @@ def positions_on(document: Document, road: Road) -> Positions:
     if road.map is None or not is_map(road.map):
         return Positions(document, road, {})
     path, selection = read_selection(road.map)
-    known = {x.id: x for x in read_map(path)}
+    known = {x.id: x for x in read_map(path).roads}
     return Positions(document, road, {x: known[x] for x in selection.roads or known})
 
 
