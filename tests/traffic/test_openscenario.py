@@ -22,6 +22,7 @@ from roadproof.recordings.export.subject import Subject
 from roadproof.recordings.formats import openscenario
 from roadproof.recordings.formats.openscenario import RATE, read_columns, read_recording
 from roadproof.recordings.formats.sources import find_source
+from roadproof.recordings.formats.storyboard import curves
 from roadproof.world.motion import state_at
 from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.signals import RECORDED
@@ -151,8 +152,8 @@ def exchanged(old: str, new: str) -> Callable[[str], str]:
         ),
         (without("TimeReference"), "a Timing with domainAbsoluteRelative=absolute"),
         (exchanged('domainAbsoluteRelative="absolute"', 'domainAbsoluteRelative="relative"'), "absolute"),
-        (lambda text: text.replace("Polyline", "Nurbs"), "Shape Nurbs; a Polyline is needed"),
-        (lambda text: text.replace("WorldPosition", "RelativeWorldPosition"), "a WorldPosition is needed"),
+        (lambda text: text.replace("Polyline", "Nurbs"), "Nurbs: order is needed"),
+        (lambda text: text.replace("WorldPosition", "GeoPosition"), "GeoPosition: this kind of position"),
         (exchanged('<Vertex time="0"', '<Vertex time="100"'), "each later than the one before"),
         (exchanged('<Vertex time="0"', '<Vertex time="nan"'), "a finite number is needed"),
         (without("RoutingAction"), "PrivateAction: it has 0 elements"),
@@ -190,8 +191,8 @@ def the_corner_is_the_centre(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def speeds_of_the_last_vertex(monkeypatch: pytest.MonkeyPatch) -> None:
-    speeds = openscenario._speeds
-    monkeypatch.setattr(openscenario, "_speeds", lambda knots, places: np.roll(speeds(knots, places), 1))
+    speeds = curves._slopes
+    monkeypatch.setattr(curves, "_slopes", lambda knots, places: np.roll(speeds(knots, places), 1))
 
 
 def the_road_is_not_where_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -483,7 +484,6 @@ def test_vehicles_that_begin_and_end_at_other_times_share_their_frames(tmp_path:
             replace(BASE, follow='initialDistanceOffset="5"'),
             "initialDistanceOffset=5: begin at the first Vertex",
         ),
-        (replace(BASE, mode="follow"), "followingMode=follow: position is needed"),
         (replace(BASE, closed="true"), "closed=true"),
         (replace(BASE, begin=1.0), "StartTrigger of the Event"),
         (replace(BASE, scale=-1.0), "each later than the one before"),

@@ -1,11 +1,6 @@
-"""Storyboards of OpenSCENARIO: motions worked out by hand, shapes integrated apart, and refusals.
-
-The road has three lanes of 4 m to the right of its reference line: their middles are at d = -2, -6 and -10.
-Boxes are 4 m by 2 m around the reference point, so the front-left corner is at s + 2 and d + 1.
-"""
+"""Storyboards of OpenSCENARIO: motions worked out by hand, shapes integrated apart, and refusals."""
 
 import math
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -14,136 +9,25 @@ import pytest
 from roadproof.errors import InputError
 from roadproof.recordings.formats.openscenario import read_recording, read_scenario
 from roadproof.recordings.formats.storyboard.document import expression_value, replaced
-
-Rows = Mapping[str, np.ndarray]
-LANES = "".join(
-    f'<lane id="-{k}" type="driving" level="false"><width sOffset="0" a="4" b="0" c="0" d="0"/></lane>'
-    for k in (1, 2, 3)
+from traffic.board import (
+    CAR,
+    EGO,
+    at,
+    at_time,
+    element_is,
+    event,
+    facing,
+    init,
+    lane,
+    longitudinal,
+    maneuver,
+    of,
+    put,
+    rows,
+    to_lane,
+    to_speed,
+    when,
 )
-MAP = (
-    '<OpenDRIVE><header revMajor="1" revMinor="6"/><road id="7" length="2000" junction="-1"><planView>'
-    '<geometry s="0" length="2000" x="30" y="40" hdg="{hdg}">{curve}</geometry></planView>'
-    '<lanes><laneSection s="0"><center><lane id="0" type="none" level="false"/></center>'
-    f"<right>{LANES}</right></laneSection></lanes></road></OpenDRIVE>"
-)
-CAR = (
-    '<Vehicle name="car" vehicleCategory="car"><BoundingBox><Center x="0" y="0" z="0"/>'
-    '<Dimensions length="4" width="2" height="1"/></BoundingBox></Vehicle>'
-)
-
-
-def lane(number: int, s: float) -> str:
-    return f'<Position><LanePosition roadId="7" laneId="{number}" s="{s}" offset="0"/></Position>'
-
-
-def init(name: str, position: str, speed: object) -> str:
-    return (
-        f'<Private entityRef="{name}"><PrivateAction><TeleportAction>{position}</TeleportAction>'
-        f"</PrivateAction>{to_speed(speed)}</Private>"
-    )
-
-
-def target(speed: object) -> str:
-    return f'<AbsoluteTargetSpeed value="{speed}"/>'
-
-
-def to_speed(
-    speed: object, shape: str = "step", by: str = "time", value: object = 0, aim: str | None = None
-) -> str:
-    dynamics = f'dynamicsShape="{shape}" dynamicsDimension="{by}" value="{value}"'
-    return (
-        f"<PrivateAction><LongitudinalAction><SpeedAction><SpeedActionDynamics {dynamics}/>"
-        f"<SpeedActionTarget>{aim or target(speed)}</SpeedActionTarget></SpeedAction></LongitudinalAction>"
-        "</PrivateAction>"
-    )
-
-
-def to_lane(aim: str, shape: str = "cubic", by: str = "time", value: float = 4) -> str:
-    dynamics = f'dynamicsShape="{shape}" dynamicsDimension="{by}" value="{value}"'
-    return (
-        f"<PrivateAction><LateralAction><LaneChangeAction><LaneChangeActionDynamics {dynamics}/>"
-        f"<LaneChangeTarget>{aim}</LaneChangeTarget></LaneChangeAction></LateralAction></PrivateAction>"
-    )
-
-
-def when(condition: str, edge: str = "none", delay: float = 0, tag: str = "StartTrigger") -> str:
-    return (
-        f'<{tag}><ConditionGroup><Condition name="c" conditionEdge="{edge}" delay="{delay}">'
-        f"{condition}</Condition></ConditionGroup></{tag}>"
-    )
-
-
-def at_time(time: float) -> str:
-    clock = f'<SimulationTimeCondition value="{time}" rule="greaterOrEqual"/>'
-    return f"<ByValueCondition>{clock}</ByValueCondition>"
-
-
-def of(name: str, condition: str) -> str:
-    return (
-        f'<ByEntityCondition><TriggeringEntities triggeringEntitiesRule="any"><EntityRef entityRef="{name}"/>'
-        f"</TriggeringEntities><EntityCondition>{condition}</EntityCondition></ByEntityCondition>"
-    )
-
-
-def element_is(kind: str, name: str, state: str) -> str:
-    return (
-        f'<ByValueCondition><StoryboardElementStateCondition storyboardElementType="{kind}" '
-        f'storyboardElementRef="{name}" state="{state}"/></ByValueCondition>'
-    )
-
-
-def event(name: str, action: str, trigger: str, priority: str = "parallel") -> str:
-    return (
-        f'<Event name="{name}" priority="{priority}"><Action name="{name} action">{action}</Action>'
-        f"{trigger}</Event>"
-    )
-
-
-def maneuver(name: str, *events: str) -> str:
-    return (
-        f'<ManeuverGroup name="group of {name}" maximumExecutionCount="1"><Actors '
-        f'selectTriggeringEntities="false"><EntityRef entityRef="{name}"/></Actors>'
-        f'<Maneuver name="maneuver of {name}">{"".join(events)}</Maneuver></ManeuverGroup>'
-    )
-
-
-def put(
-    folder: Path,
-    begin: Mapping[str, str],
-    *groups: str,
-    stop: str = "",
-    more: str = "",
-    hdg: float = 0.3,
-    curve: str = "<line/>",
-    entity: str = CAR,
-) -> Path:
-    (folder / "map.xodr").write_text(MAP.format(hdg=hdg, curve=curve), "utf-8")
-    entities = "".join(f'<ScenarioObject name="{name}">{entity}</ScenarioObject>' for name in begin)
-    story = f'<Story name="story"><Act name="act">{"".join(groups)}{when(at_time(0))}</Act></Story>'
-    path = folder / "story.xosc"
-    path.write_text(
-        f'<OpenSCENARIO><FileHeader revMajor="1" revMinor="2"/>{more}<RoadNetwork><LogicFile '
-        f'filepath="map.xodr"/></RoadNetwork><Entities>{entities}</Entities><Storyboard><Init><Actions>'
-        f"{''.join(begin.values())}</Actions></Init>{story if groups else ''}"
-        f"{stop or '<StopTrigger/>'}</Storyboard></OpenSCENARIO>",
-        "utf-8",
-    )
-    return path
-
-
-def rows(path: Path) -> dict[str, Rows]:
-    table = read_scenario(path).table
-    names = table["vehicle"]
-    return {str(name): {x: table[x][names == name] for x in table.columns} for name in dict.fromkeys(names)}
-
-
-def at(found: Rows, time: float, signal: str) -> float:
-    (k,) = np.flatnonzero(np.isclose(found["time"], time))
-    return float(found[signal][k])
-
-
-EGO = init("Ego", lane(-2, 100), 20)
-
 
 # --- three motions by hand --------------------------------------------------------------------------
 
@@ -245,10 +129,6 @@ def test_lane_changes_are_those_of_an_integration(shape: str, by: str, value: fl
 
 
 # --- actions that look at other vehicles ------------------------------------------------------------
-
-
-def longitudinal(action: str) -> str:
-    return f"<PrivateAction><LongitudinalAction>{action}</LongitudinalAction></PrivateAction>"
 
 
 def test_a_distance_is_kept_as_a_damped_spring_does(tmp_path: Path) -> None:
@@ -359,10 +239,32 @@ def test_a_trajectory_within_a_story(tmp_path: Path) -> None:
     assert at(found, 8, "d") == pytest.approx(-5 - 4, abs=1e-6)
 
 
-def test_no_vehicle_drives_against_the_road(tmp_path: Path) -> None:
-    x = '<Position><WorldPosition x="80" y="40" h="3.4"/></Position>'
-    with pytest.raises(InputError, match="drives against the others"):
-        rows(put(tmp_path, {"Ego": EGO, "Other": init("Other", x, 10)}))
+@pytest.mark.parametrize(
+    "place", ['<Position><WorldPosition x="80" y="40" h="3.4"/></Position>', facing(lane(-1, 400))]
+)
+def test_oncoming_vehicles_are_left_out(place: str, tmp_path: Path) -> None:
+    found = read_scenario(put(tmp_path, {"Ego": EGO, "Other": init("Other", place, 10)}))
+    assert set(found.table["vehicle"]) == {"Ego"}
+    assert "left out, as they drive against the others: Other" in found.notes
+
+
+def test_oncoming_vehicles_trigger_others(tmp_path: Path) -> None:
+    """Ego brakes when the oncoming vehicle is 100 m ahead: from 320 m apart, after 5.6 s.
+
+    The other one goes faster from 2 s to 4 s, in which it goes 40 m: 320 - 20 t = 30 + 40 + 25 (t - 4) + 100.
+    """
+    near = of(
+        "Ego",
+        '<RelativeDistanceCondition entityRef="Other" relativeDistanceType="longitudinal" value="100" '
+        'freespace="false" rule="lessOrEqual"/>',
+    )
+    brake = event("brake", to_speed(10, "step"), when(near))
+    speed = of("Other", '<SpeedCondition value="15" rule="greaterOrEqual"/>')
+    faster = event("faster", to_speed(25, "linear", "time", 2), when(speed, delay=2))
+    begin = {"Ego": EGO, "Other": init("Other", facing(lane(-1, 420)), 15)}
+    found = rows(put(tmp_path, begin, maneuver("Ego", brake), maneuver("Other", faster)))["Ego"]
+    changed = found["time"][np.argmax(found["v_lon"] < 15)]
+    assert changed == pytest.approx(250 / 45, abs=0.051)
 
 
 # --- what else is read ------------------------------------------------------------------------------
@@ -497,11 +399,27 @@ def test_objects_that_are_no_vehicles_are_left_out(tmp_path: Path) -> None:
     recording = read_recording(path)
     assert recording.vehicles == 1
     assert "left out, as they are no motor vehicles: Box" in recording.notes
-    move = maneuver("Box", event("go", to_speed(3), when(at_time(1))))
-    path = put(tmp_path, begin, move)
-    path.write_text(path.read_text("utf-8").replace(thing, thing.replace("Vehicle", "Pedestrian")), "utf-8")
-    with pytest.raises(InputError, match="ManeuverGroup group of Box: Box is no motor vehicle"):
-        rows(path)
+
+
+def test_pedestrians_move_and_trigger(tmp_path: Path) -> None:
+    """A pedestrian crosses 4 m with 2 m/s from 1 s on; Ego brakes when it is 1 m beside, at 2.5 s."""
+    cross = event("go", to_lane('<AbsoluteTargetLane value="-2"/>', "linear", "rate", 2), when(at_time(1)))
+    beside = of(
+        "Ego",
+        '<RelativeDistanceCondition entityRef="Man" relativeDistanceType="lateral" value="1" '
+        'freespace="false" rule="lessOrEqual"/>',
+    )
+    brake = event("brake", to_speed(10, "step"), when(beside))
+    begin = {"Ego": EGO, "Man": init("Man", lane(-3, 400), 0)}
+    path = put(tmp_path, begin, maneuver("Man", cross), maneuver("Ego", brake))
+    man = f'<ScenarioObject name="Man">{CAR}'
+    text = path.read_text("utf-8")
+    assert man in text
+    path.write_text(text.replace(man, man.replace("Vehicle", "Pedestrian")), "utf-8")
+    found = rows(path)
+    assert set(found) == {"Ego"}
+    changed = found["Ego"]["time"][np.argmax(found["Ego"]["v_lon"] < 15)]
+    assert changed == pytest.approx(2.5, abs=0.051)
 
 
 def test_a_collision_ends_it(tmp_path: Path) -> None:
@@ -615,7 +533,7 @@ def test_it_is_read_as_a_recording(tmp_path: Path) -> None:
         ('roadId="7"', 'roadId="8"', "there is no road 8"),
         ("LanePosition", "GeoPosition", "GeoPosition: this kind of position is not supported"),
         ('<EntityRef entityRef="Ego"', '<EntityRef entityRef="No"', "there is no ScenarioObject No"),
-        ("TeleportAction>", "AppearanceAction>", "Ego has no TeleportAction in Init"),
+        ("TeleportAction>", "AppearanceAction>", "no motor vehicle is on the road: left out"),
         ('value="8"', 'value="$v"', "there is no parameter v"),
         ('rule="greaterOrEqual"', 'rule="near"', "rule=near: one of"),
     ],

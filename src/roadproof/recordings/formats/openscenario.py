@@ -5,7 +5,8 @@ them with the speeds that three vertices in a row have, which is exact where acc
 them. Speeds and accelerations are those of the cubics. Files with other actions, or with vehicles that keep
 their initial state, are run (``storyboard``). A box is aligned with the road; its centre is where that of the
 file's box is, and in a storyboard where it is when the vehicle is aligned with the road. Speeds are those of
-s and d, which differ on a bend by the factor 1 - κd from those of the vehicle.
+s and d, which differ on a bend by the factor 1 - κd from those of the vehicle. Pedestrians, other objects and
+vehicles that drive against the others move in a storyboard, but are no part of the recording.
 """
 
 import math
@@ -19,11 +20,11 @@ from roadproof.errors import InputError
 from roadproof.recordings.formats.recording import Floats, Recording
 from roadproof.recordings.formats.samples import DIRECTION, LABEL, recording_of
 from roadproof.recordings.formats.source import Files, Format, with_suffix
-from roadproof.recordings.formats.storyboard.actions import Trajectory, TrajectoryReader
 from roadproof.recordings.formats.storyboard.box import Box
 from roadproof.recordings.formats.storyboard.conditions import TICKS
-from roadproof.recordings.formats.storyboard.document import Document, open_document
-from roadproof.recordings.formats.storyboard.positions import State, stretch_of
+from roadproof.recordings.formats.storyboard.curves import curve
+from roadproof.recordings.formats.storyboard.document import open_document
+from roadproof.recordings.formats.storyboard.routes import stretch_of
 from roadproof.recordings.formats.storyboard.run import Play, run_storyboard
 from roadproof.recordings.formats.straight import of_road
 from roadproof.recordings.formats.table import Column, Table
@@ -43,7 +44,9 @@ _KINDS = {
     "bus": "Truck",
     "motorbike": "Motorcycle",
 }
-_OTHERS = ("Pedestrian", "MiscObject")
+_OTHERS = ("Pedestrian", "MiscObject", "ExternalObjectReference")
+_FOLLOWS = "followingMode=follow is taken as position: vehicles are on their trajectories, as in esmini"
+_UNRECORDED = ("bicycle", "pedestrian", "wheelchair")
 _PLACES = "PrivateAction/RoutingAction/FollowTrajectoryAction"
 
 
@@ -80,27 +83,24 @@ def read_scenario(path: Path) -> Scenario:
     """The vehicles of a file. Raises ``InputError`` that names element and rule."""
     document = open_document(path)
     root = document.root
-    road_path = path.parent / _text(path, root.find("RoadNetwork/LogicFile"), "filepath", "a LogicFile")
-    if road_path.suffix != ".xodr":
-        raise InputError(
-            f"{path}: LogicFile filepath={road_path.name}: a road in OpenDRIVE (.xodr) is needed"
-        )
+    road_path = _road_path(path, root)
     boxes = dict(_boxes(path, root))
-    if not boxes:
+    if not any(x.recorded for x in boxes.values()):
         raise InputError(f"{path}: no ScenarioObject is a motor vehicle")
     road = load_road(stretch_of(document, road_path))
-    if _follows_polylines(root):
+    modes = {x.get("followingMode") for x in root.iter("TrajectoryFollowingMode")}
+    follows = (_FOLLOWS,) if "follow" in modes else ()
+    if _follows_polylines(root, boxes):
         ways = {name: _in_road(x, boxes[name], road) for name, x in _vertices(path, root, boxes)}
         note = f"speeds and accelerations are those of curves through the vertices, {RATE} samples a second"
-        return Scenario(_sampled(path, boxes, ways), road, road_path, (note,))
-    play = run_storyboard(document, boxes, road, _trajectory_reader(document, boxes, road))
+        return Scenario(_sampled(path, boxes, ways), road, road_path, (note, *follows))
+    play = run_storyboard(document, boxes, road)
     if len(play.states) < 2 * TICKS // RATE:
         raise InputError(f"{path}: the storyboard ends at {len(play.states) / TICKS:g} s: {play.ending}")
     told = f"the storyboard ends at {(len(play.states) - 1) / TICKS:g} s: {play.ending}"
     note = f"the storyboard was run with conditions evaluated {TICKS} times a second, {RATE} samples a second"
-    others = sorted({x.get("name", "") for x in root.findall("Entities/ScenarioObject")} - {*boxes})
-    left_out = [f"left out, as they are no motor vehicles: {', '.join(others)}"] if others else []
-    return Scenario(_of_play(path, boxes, play), road, road_path, (note, told, *left_out))
+    table, left_out = _of_play(path, boxes, play)
+    return Scenario(table, road, road_path, (note, told, *follows, *left_out))
 
 
 def read_columns(path: Path) -> tuple[Table, Road, Path]:
@@ -119,30 +119,31 @@ def read_recording(path: Path, strict: bool = True) -> Recording:
     return recording_of(found.table, road, path.stem, found.notes, strict)
 
 
-def _follows_polylines(root: Element) -> bool:
-    """Whether all that happens is that each vehicle follows a trajectory."""
+def _road_path(path: Path, root: Element) -> Path:
+    """The map that the file names, or that of the name beside it, as CARLA names maps."""
+    found = path.parent / _text(path, root.find("RoadNetwork/LogicFile"), "filepath", "a LogicFile")
+    if not found.suffix:
+        found = found.with_suffix(".xodr")
+    if found.suffix != ".xodr":
+        raise InputError(f"{path}: LogicFile filepath={found.name}: a road in OpenDRIVE (.xodr) is needed")
+    return found
+
+
+def _follows_polylines(root: Element, boxes: Mapping[str, Box]) -> bool:
+    """Whether all that happens is that each vehicle follows a polyline with times."""
     actions = root.findall("Storyboard/Story/Act/ManeuverGroup/Maneuver/Event/Action")
     actors = {x.get("entityRef") for x in root.findall("Storyboard/Story/Act/ManeuverGroup/Actors/EntityRef")}
-    names = {x.get("name") for x in root.findall("Entities/ScenarioObject")}
-    return bool(actions) and names <= actors and all(x.find(_PLACES) is not None for x in actions)
+    return bool(actions) and {*boxes} <= actors and all(map(_is_timed_polyline, actions))
 
 
-def _trajectory_reader(document: Document, boxes: Mapping[str, Box], road: Road) -> TrajectoryReader:
-    """Reads a FollowTrajectoryAction of a storyboard."""
-
-    def read(follow: Element, name: str, begin: float) -> Trajectory:
-        told, box = document.places[follow], boxes[name]
-        way = _in_road(_polyline(document.path, follow, told, begin), box, road)
-
-        def state(time: float) -> State:
-            at = np.array([time])
-            s, v_lon, a_lon = (float(x[0]) for x in _curve(way.time, way.s, at))
-            d, v_lat, a_lat = (float(x[0]) for x in _curve(way.time, way.d, at))
-            return State(s - box.centre[0], d - box.centre[1], v_lon, v_lat, a_lon, a_lat)
-
-        return Trajectory(float(way.time[0]), float(way.time[-1]), state)
-
-    return read
+def _is_timed_polyline(action: Element) -> bool:
+    """Whether an Action follows a trajectory of which nothing needs a storyboard."""
+    follow = action.find(_PLACES)
+    if follow is None or follow.find("TimeReference/None") is not None:
+        return False
+    shapes = {x.tag for shape in follow.iter("Shape") for x in shape}
+    kinds = {x.tag for position in follow.iter("Position") for x in position}
+    return not shapes & {"Clothoid", "ClothoidSpline", "Nurbs"} and kinds <= {"WorldPosition"}
 
 
 def _text(path: Path, node: Element | None, attribute: str, what: str) -> str:
@@ -166,12 +167,15 @@ def _boxes(path: Path, root: Element) -> Iterator[tuple[str, Box]]:
         seen.add(name)
         told = f"ScenarioObject {name}"
         vehicle = node.find("Vehicle")
-        if vehicle is None and any(node.find(x) is not None for x in _OTHERS):
+        other = next((x for x in node if x.tag in _OTHERS), None)
+        if vehicle is None and other is not None:
+            yield name, _other_box(path, other, told)
             continue
         if vehicle is None:
             raise InputError(f"{path}: {told} is no Vehicle")
         category = vehicle.get("vehicleCategory", "car")
-        if category == "bicycle":
+        if category in _UNRECORDED:
+            yield name, _other_box(path, vehicle, told)
             continue
         if category not in _KINDS:
             raise InputError(f"{path}: {told}: vehicleCategory={category} is none of {', '.join(_KINDS)}")
@@ -181,6 +185,16 @@ def _boxes(path: Path, root: Element) -> Iterator[tuple[str, Box]]:
         yield name, Box(_KINDS[category], category, length, width, (ahead, left))
     if not seen:
         raise InputError(f"{path}: there is no ScenarioObject")
+
+
+def _other_box(path: Path, node: Element, told: str) -> Box:
+    """That of an object that is not recorded, without size where the file says none."""
+    if node.find("BoundingBox") is None:
+        return Box(node.tag, node.tag, 0.0, 0.0, (0.0, 0.0), recorded=False)
+    size, centre = node.find("BoundingBox/Dimensions"), node.find("BoundingBox/Center")
+    length, width = (_number(path, size, x, f"the Dimensions of {told}") for x in ("length", "width"))
+    ahead, left = (_number(path, centre, x, f"the Center of {told}") for x in ("x", "y"))
+    return Box(node.tag, node.tag, length, width, (ahead, left), recorded=False)
 
 
 def _vertices(path: Path, root: Element, boxes: dict[str, Box]) -> Iterator[tuple[str, Floats]]:
@@ -226,9 +240,6 @@ def _check_begin(path: Path, node: Element, first: float, told: str) -> None:
 
 def _check_exact(path: Path, follow: Element, told: str) -> None:
     """Raise ``InputError`` where vehicles need not be on the vertices at their times."""
-    mode = follow.find("TrajectoryFollowingMode")
-    if mode is not None and mode.get("followingMode") != "position":
-        raise InputError(f"{path}: {told}: followingMode={mode.get('followingMode')}: position is needed")
     offset = "initialDistanceOffset"
     if follow.get(offset) and _number(path, follow, offset, told) != 0:
         raise InputError(f"{path}: {told}: {offset}={follow.get(offset)}: begin at the first Vertex")
@@ -281,22 +292,59 @@ def _sampled(path: Path, boxes: dict[str, Box], ways: dict[str, CentreLine]) -> 
     for name, way in ways.items():
         first, last = math.ceil(way.time[0] * RATE - 1e-6), math.floor(way.time[-1] * RATE + 1e-6)
         times = np.clip(np.arange(first, last + 1) / RATE, way.time[0], way.time[-1])
-        s, v_lon, a_lon = _curve(way.time, way.s, times)
-        d, v_lat, a_lat = _curve(way.time, way.d, times)
+        s, v_lon, a_lon = curve(way.time, way.s, times)
+        d, v_lat, a_lat = curve(way.time, way.d, times)
         moving = (s, d, v_lon, v_lat, a_lon, a_lat)
         tables.append(_rows(name, boxes[name], np.arange(first, last + 1) / RATE, moving))
     return _joined(path, tables)
 
 
-def _of_play(path: Path, boxes: dict[str, Box], play: Play) -> Table:
-    """The states of a storyboard, RATE a second."""
-    states = play.states[:: TICKS // RATE]
-    tables = []
+def _of_play(path: Path, boxes: dict[str, Box], play: Play) -> tuple[Table, list[str]]:
+    """The states of a storyboard, RATE a second, and notes on objects that are left out.
+
+    An object is another vehicle after it was put somewhere else, or was away.
+    """
+    step = TICKS // RATE
+    tables, notes = [], []
+    against = sorted(x for x in boxes if any(x in now and not now[x].forward for now in play.states))
     for name, box in boxes.items():
-        moving = np.array([[getattr(x[name], y) for x in states] for y in map(str, RECORDED)])
-        moving[:2] += np.array(box.centre)[:, None]
-        tables.append(_rows(name, box, np.arange(len(states)) / RATE, tuple(moving)))
-    return _joined(path, tables)
+        parts = [] if name in against or not box.recorded else [*_presences(name, play, step)]
+        for k, ticks in enumerate(parts):
+            states = [play.states[tick][name] for tick in ticks]
+            moving = np.array([[getattr(x, y) for x in states] for y in map(str, RECORDED)])
+            moving[:2] += np.array(box.centre)[:, None]
+            called = f"{name} ({k + 1})" if k else name
+            tables.append(_rows(called, box, np.array(ticks) / TICKS, tuple(moving)))
+        if len(parts) > 1:
+            notes.append(f"{name} is put somewhere else: from then on it is {name} (2)")
+        if not parts and box.recorded and name not in against:
+            notes.append(
+                f"left out, as no TeleportAction, AddEntityAction or trajectory says where it is: {name}"
+            )
+    for rule, names in (
+        ("they are no motor vehicles", sorted(x for x, box in boxes.items() if not box.recorded)),
+        ("they drive against the others", [x for x in against if boxes[x].recorded]),
+    ):
+        if names:
+            notes.append(f"left out, as {rule}: {', '.join(names)}")
+    if not tables:
+        raise InputError(f"{path}: no motor vehicle is on the road: {'; '.join(notes)}")
+    return _joined(path, tables), notes
+
+
+def _presences(name: str, play: Play, step: int) -> Iterator[list[int]]:
+    """Ticks at which an object has a place, every ``step``-th, from one jump to the next one."""
+    found: list[int] = []
+    jumps = {math.ceil(x / step) * step for x in play.jumps.get(name, ())}
+    for tick in range(0, len(play.states), step):
+        there = name in play.states[tick]
+        if found and (not there or tick in jumps):
+            yield found
+            found = []
+        if there:
+            found.append(tick)
+    if found:
+        yield found
 
 
 def _rows(name: str, box: Box, times: Floats, moving: tuple[Floats, ...]) -> dict[str, Column]:
@@ -316,29 +364,6 @@ def _rows(name: str, box: Box, times: Floats, moving: tuple[Floats, ...]) -> dic
 def _joined(path: Path, tables: list[dict[str, Column]]) -> Table:
     columns = {column: np.concatenate([x[column] for x in tables]) for column in tables[0]}
     return Samples(path, columns, len(columns["time"]))
-
-
-def _curve(knots: Floats, places: Floats, times: Floats) -> tuple[Floats, Floats, Floats]:
-    """Place, speed and acceleration at ``times`` on the cubics through ``places``."""
-    speeds = _speeds(knots, places)
-    k = np.clip(np.searchsorted(knots, times, side="right") - 1, 0, len(knots) - 2)
-    step = knots[k + 1] - knots[k]
-    x = (times - knots[k]) / step
-    rise = places[k + 1] - places[k]
-    low, high = speeds[k] * step, speeds[k + 1] * step
-    square, cube = 3 * rise - 2 * low - high, low + high - 2 * rise
-    place = places[k] + x * (low + x * (square + x * cube))
-    return place, (low + x * (2 * square + 3 * x * cube)) / step, (2 * square + 6 * x * cube) / step**2
-
-
-def _speeds(knots: Floats, places: Floats) -> Floats:
-    """At each knot the speed of the parabola through it and its neighbours."""
-    means = np.diff(places) / np.diff(knots)
-    if len(means) == 1:
-        return np.repeat(means, 2)
-    before, after = np.diff(knots)[:-1], np.diff(knots)[1:]
-    inside = (after * means[:-1] + before * means[1:]) / (before + after)
-    return np.concatenate(([2 * means[0] - inside[0]], inside, [2 * means[-1] - inside[-1]]))
 
 
 def _find(path: Path) -> dict[str, Files]:

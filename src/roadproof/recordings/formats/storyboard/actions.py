@@ -1,54 +1,51 @@
 """Private actions of OpenSCENARIO as courses along and across the road.
 
 Conventions where the standard is open are those of esmini: a change of speed over a distance takes the time
-2·distance/(v0 + v1); a rate is the largest one of the shape; lanes are counted to the left.
+2·distance/(v0 + v1); a rate is the largest one of the shape; lanes are counted to the left; a linear change
+of the lane offset takes as long as a cubic one.
 """
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 from roadproof.recordings.formats.storyboard.box import Box
-from roadproof.recordings.formats.storyboard.controllers import Arrive, KeepDistance, Limits, Phases
+from roadproof.recordings.formats.storyboard.controllers import (
+    Arrive,
+    Axis,
+    DistanceGoal,
+    KeepDistance,
+    Limits,
+    Phases,
+)
 from roadproof.recordings.formats.storyboard.courses import (
     SHAPES,
     Course,
-    Guided,
     PlaceOverDistance,
     PlaceTransition,
-    Point,
     SpeedTransition,
     Steady,
 )
 from roadproof.recordings.formats.storyboard.document import Document
 from roadproof.recordings.formats.storyboard.positions import Positions, State, States
+from roadproof.recordings.formats.storyboard.trajectories import TrajectoryReader
 from roadproof.runtime.xml_reader import Element
 
-Axis: TypeAlias = Literal["along", "across"]
 _IGNORED = frozenset(
     "ControllerAction ActivateControllerAction AssignControllerAction VisibilityAction AppearanceAction "  # noqa: SIM905
-    "LightStateAction AssignRouteAction EnvironmentAction UserDefinedAction".split()
+    "LightStateAction AssignRouteAction AcquirePositionAction RandomRouteAction".split()
 )
-"""Actions that have no effect on the motion of a vehicle that does as the storyboard says."""
+"""Actions that have no effect on the motion of a vehicle that does as the storyboard says, on one road."""
+_BEHIND = ("trailingReferencedEntity", "rightToReferencedEntity")
+_AHEAD = ("leadingReferencedEntity", "leftToReferencedEntity")
 
-
-@dataclass(frozen=True)
-class Trajectory:
-    """Places of a vehicle's reference point from ``begin`` to ``end`` (s)."""
-
-    begin: float
-    end: float
-    state: Callable[[float], State]
-
-
-TrajectoryReader: TypeAlias = Callable[[Element, str, float], Trajectory]
-"""Reads a FollowTrajectoryAction that begins at a time (s), for a vehicle by name."""
+_LATERAL = 0.5
+"""m/s²: maxLateralAcc where a LaneOffsetAction does not say it, as in esmini."""
 
 
 @dataclass(frozen=True)
 class Scene:
-    """All vehicles at a time."""
+    """All vehicles at a time, in the coordinates of the vehicle that acts."""
 
     time: float
     states: States
@@ -56,10 +53,14 @@ class Scene:
 
 @dataclass(frozen=True)
 class Actor:
-    """A vehicle with its courses along and across the road."""
+    """An object with its courses along and across the road, in its own coordinates.
+
+    ``forward``: these are s and d of the road; otherwise the road is turned around.
+    """
 
     name: str
     courses: Mapping[Axis, Course]
+    forward: bool = True
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,10 @@ class ActionReader:
     document: Document
     boxes: Mapping[str, Box]
     positions: Positions
-    trajectory: TrajectoryReader
+
+    def turned(self) -> "ActionReader":
+        """The same for actors that drive against the road."""
+        return replace(self, positions=self.positions.turned())
 
     def courses(self, action: Element, actor: Actor, scene: Scene) -> dict[Axis, Course]:
         """The courses that a PrivateAction begins for a vehicle; none where it has no effect.
@@ -82,18 +86,14 @@ class ActionReader:
         if node.tag in _IGNORED:
             return {}
         match node.tag:
-            case "TeleportAction":
-                place = self.document.child(node, "Position")
-                s, d = self.positions.find(place, scene.states)
-                self.positions.check_direction(self.document.only(place))
-                speed = scene.states[actor.name].v_lon if actor.name in scene.states else 0.0
-                return {"along": Steady(scene.time, s, speed), "across": Steady(scene.time, d)}
             case "SpeedAction":
                 return {"along": self._speed(node, actor, scene)}
             case "SpeedProfileAction":
                 return {"along": self._speed_profile(node, actor, scene)}
             case "LongitudinalDistanceAction":
-                return {"along": self._keep_distance(node, actor, scene)}
+                return {"along": self._keep_distance(node, actor, scene, "along")}
+            case "LateralDistanceAction":
+                return {"across": self._keep_distance(node, actor, scene, "across")}
             case "SynchronizeAction":
                 return {"along": self._synchronize(node, actor, scene)}
             case "LaneChangeAction":
@@ -101,8 +101,29 @@ class ActionReader:
             case "LaneOffsetAction":
                 return {"across": self._lane_offset(node, actor, scene)}
             case "FollowTrajectoryAction":
-                return self._follow(node, actor, scene)
+                before = actor.courses["along"], actor.courses["across"]
+                read = TrajectoryReader(self.document, self.positions)
+                found = read.courses(node, self.boxes[actor.name], before, scene.time, scene.states)
+                return {"along": found[0], "across": found[1]}
         raise self.document.error(node, "this action is not supported")
+
+    def placed(self, position: Element, name: str, scene: Scene) -> Actor:
+        """A vehicle that is put to a Position, or to the first point of a trajectory; it keeps its speed.
+
+        ``scene``: in coordinates of the road. Raises ``InputError``, and ``KeyError`` where it refers to a
+        vehicle without place.
+        """
+        if position.tag == "FollowTrajectoryAction":
+            read = TrajectoryReader(self.document, self.positions)
+            s, d = read.first(position, self.boxes[name], scene.states)
+            return Actor(name, {"along": Steady(scene.time, s), "across": Steady(scene.time, d)})
+        forward = self.positions.is_forward(self.document.only(position), scene.states)
+        positions = self.positions if forward else self.positions.turned()
+        states = scene.states if forward else turned(scene.states)
+        s, d = positions.find(position, states)
+        speed = scene.states.get(name)
+        now = 0.0 if speed is None else speed.v_lon if speed.forward else -speed.v_lon
+        return Actor(name, {"along": Steady(scene.time, s, now), "across": Steady(scene.time, d)}, forward)
 
     def _speed(self, node: Element, actor: Actor, scene: Scene) -> Course:
         read, state = self.document, scene.states[actor.name]
@@ -166,32 +187,43 @@ class ActionReader:
         value = abs(read.number(node, "value"))
         return (shape if value else "step"), dimension, value
 
-    def _keep_distance(self, node: Element, actor: Actor, scene: Scene) -> Course:
+    def _keep_distance(self, node: Element, actor: Actor, scene: Scene, axis: Axis) -> Course:
+        """Behind or right of another vehicle, or ahead or left of it, as ``displacement`` says.
+
+        Where it does not say: as it is now along the road; across it to the left, as in esmini.
+        """
         read, state, other = self.document, scene.states[actor.name], self._state(node, scene)
         name, seconds = read.text(node, "entityRef"), node.get("timeGap") is not None
         distance = abs(read.number(node, "timeGap" if seconds else "distance"))
-        kind, ahead = node.get("displacement", "any"), other.s < state.s
-        if kind not in ("any", "trailingReferencedEntity", "leadingReferencedEntity"):
+        kind = node.get("displacement", "any")
+        if kind not in ("any", *_BEHIND, *_AHEAD):
             raise read.error(node, f"displacement={kind} is not supported")
-        ahead = ahead if kind == "any" else kind == "leadingReferencedEntity"
+        beyond = other.s < state.s if axis == "along" else True
+        beyond = beyond if kind == "any" else kind in _AHEAD
         apart = 0.0
         if node.get("freespace") in ("true", "1"):
-            box, beyond = self.boxes[actor.name], self.boxes[name]
-            shift = box.centre[0] - beyond.centre[0]
-            apart = (box.length + beyond.length) / 2 + (-shift if ahead else shift)
-        most = Limits()
-        limits = node.find("DynamicConstraints")
-        if limits is not None:
-            for rate in ("maxAccelerationRate", "maxDecelerationRate"):
-                if limits.get(rate):
-                    raise read.error(limits, f"{rate} is not supported")
-            names = ("maxAcceleration", "maxDeceleration", "maxSpeed")
-            most = Limits(*(read.number(limits, x) if limits.get(x) else math.inf for x in names))
-        now = Steady(scene.time, state.s, state.v_lon)
+            box, far = self.boxes[actor.name], self.boxes[name]
+            sizes = (box.length, far.length) if axis == "along" else (box.width, far.width)
+            which = 0 if axis == "along" else 1
+            shift = box.centre[which] - far.centre[which]
+            apart = sum(sizes) / 2 + (-shift if beyond else shift)
+        limits = self._limits(node)
+        if axis == "across":
+            limits = replace(limits, deceleration=limits.acceleration)
+        now = Steady(scene.time, state.s, state.v_lon) if axis == "along" else Steady(scene.time, state.d)
         continuous = read.text(node, "continuous") in ("true", "1")
-        signed = -distance if ahead else distance
-        course = KeepDistance(now, actor.name, name, signed, seconds, apart, most, continuous)
-        return course.next(scene.time, scene.states)
+        signed = math.copysign(distance, -1.0 if beyond else 1.0)
+        goal = DistanceGoal(axis, name, signed, seconds, apart, limits, continuous)
+        return KeepDistance(now, actor.name, goal).next(scene.time, scene.states)
+
+    def _limits(self, node: Element) -> Limits:
+        limits = node.find("DynamicConstraints")
+        if limits is None:
+            return Limits()
+        names = ("Acceleration", "Deceleration", "Speed", "AccelerationRate", "DecelerationRate")
+        return Limits(
+            *(self.document.number(limits, f"max{x}") if limits.get(f"max{x}") else math.inf for x in names)
+        )
 
     def _synchronize(self, node: Element, actor: Actor, scene: Scene) -> Course:
         """Tolerances are not used: both vehicles arrive at the positions themselves."""
@@ -259,34 +291,20 @@ class ActionReader:
         shape, change = read.text(dynamics, "dynamicsShape"), d - state.d
         if shape == "step" or not change:
             return Steady(scene.time, d)
-        if shape not in SHAPES or not SHAPES[shape].most_bent:
-            raise read.error(dynamics, f"dynamicsShape={shape}: one of step, cubic, sinusoidal is needed")
-        most = read.number(dynamics, "maxLateralAcc")
+        if shape not in SHAPES:
+            raise read.error(dynamics, f"dynamicsShape={shape}: one of step, {', '.join(SHAPES)} is needed")
+        most = read.number(dynamics, "maxLateralAcc", _LATERAL)
         if most <= 0:
             raise read.error(dynamics, f"maxLateralAcc={most:g} must be above 0")
-        duration = math.sqrt(SHAPES[shape].most_bent * abs(change) / most)
+        bend = SHAPES[shape if SHAPES[shape].most_bent else "cubic"].most_bent
+        duration = math.sqrt(bend * abs(change) / most)
         return PlaceTransition(scene.time, (state.d, d), duration, SHAPES[shape])
-
-    def _follow(self, node: Element, actor: Actor, scene: Scene) -> dict[Axis, Course]:
-        found = self.trajectory(node, actor.name, scene.time)
-        if found.begin < scene.time - 0.011:
-            told = f"it begins at {scene.time:g} s, after the first Vertex at {found.begin:g} s"
-            raise self.document.error(node, told)
-
-        def along(time: float) -> Point:
-            x = found.state(time)
-            return Point(x.s, x.v_lon, x.a_lon)
-
-        def across(time: float) -> Point:
-            x = found.state(time)
-            return Point(x.d, x.v_lat, x.a_lat)
-
-        span = found.begin, found.end
-        return {
-            "along": Guided(actor.courses["along"], *span, along, rests=False),
-            "across": Guided(actor.courses["across"], *span, across, rests=True),
-        }
 
     def _state(self, node: Element, scene: Scene) -> State:
         """The vehicle that an element refers to. Raises ``KeyError`` where it has no place yet."""
         return scene.states[self.document.text(node, "entityRef")]
+
+
+def turned(states: States) -> dict[str, State]:
+    """States in the coordinates of those who drive against the road."""
+    return {name: state.turned() for name, state in states.items()}

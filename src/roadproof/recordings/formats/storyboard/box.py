@@ -1,13 +1,14 @@
-"""Vehicles of an OpenSCENARIO file."""
+"""Vehicles and other objects of an OpenSCENARIO file."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class Box:
-    """A vehicle's class, what the file calls it, and its box.
+    """An object's class, what the file calls it, and its box.
 
-    ``centre`` is that of the box, ahead and left of the reference point (m).
+    ``centre`` is that of the box, ahead and left of the reference point (m). ``recorded``: it is a motor
+    vehicle; others move too, but are no part of the recording.
     """
 
     kind: str
@@ -15,3 +16,4 @@ class Box:
     length: float
     width: float
     centre: tuple[float, float]
+    recorded: bool = True

@@ -6,7 +6,7 @@ time to collision needs vehicles that come closer. Headway and distance have no 
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from roadproof.recordings.formats.storyboard.box import Box
 from roadproof.recordings.formats.storyboard.document import Document
@@ -33,7 +33,7 @@ class Situation:
     """What conditions can see: the tick, vehicles and how far they went, and states of storyboard elements.
 
     ``still``: since when each vehicle stands, in ticks. ``elements``: their states and
-    transitions by type and name.
+    transitions by type and name. ``values``: of parameters and variables, which actions may change.
     """
 
     tick: int
@@ -41,6 +41,7 @@ class Situation:
     travelled: Mapping[str, float]
     still: Mapping[str, int]
     elements: Mapping[tuple[str, str], frozenset[str]]
+    values: Mapping[str, str]
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,8 @@ class ConditionReader:
     document: Document
     boxes: Mapping[str, Box]
     positions: Positions
+    off_road: dict[tuple[Element, str], int] = field(default_factory=dict)
+    """Since which tick an object is beside the road, as seen by a condition."""
 
     def holds(self, condition: Element, now: Situation) -> bool:
         """Whether a Condition holds, without its edge and delay. Raises ``InputError``."""
@@ -61,16 +64,20 @@ class ConditionReader:
         triggering = self.document.child(kind, "TriggeringEntities")
         names = [self.document.text(x, "entityRef") for x in triggering.findall("EntityRef")]
         node = self.document.only(self.document.child(kind, "EntityCondition"))
-        for name in names:
-            if name not in now.states:
+        others = [x.get("entityRef", "") for x in node.iter() if x.get("entityRef")]
+        for name in (*names, *others):
+            if name not in self.boxes:
                 raise self.document.error(triggering, f"there is no ScenarioObject {name}")
-        found = [self._by_entity(node, name, now) for name in names]
+        there = all(x in now.states for x in others)
+        found = [there and name in now.states and self._by_entity(node, name, now) for name in names]
         return all(found) if triggering.get("triggeringEntitiesRule") == "all" else any(found)
 
     def _by_value(self, node: Element, now: Situation) -> bool:
         read = self.document
         if node.tag == "SimulationTimeCondition":
             return self._compare(node, now.tick / TICKS)
+        if node.tag in ("ParameterCondition", "VariableCondition"):
+            return self._compare_value(node, now)
         if node.tag != "StoryboardElementStateCondition":
             raise read.error(node, "this condition is not supported")
         kind, name = (read.text(node, f"storyboardElement{x}") for x in ("Type", "Ref"))
@@ -78,6 +85,22 @@ class ConditionReader:
         if (kind, name) not in now.elements:
             raise read.error(node, f"there is no {kind} {name}")
         return read.text(node, "state") in now.elements[kind, name]
+
+    def _compare_value(self, node: Element, now: Situation) -> bool:
+        """A parameter or variable, as a number where both it and the value of the condition are."""
+        read = self.document
+        name = read.text(node, node.tag.removesuffix("Condition").lower() + "Ref").lstrip("$")
+        if name not in now.values:
+            raise read.error(node, f"there is no parameter or variable {name}")
+        one, other = now.values[name], read.text(node, "value")
+        try:
+            return self._compare(node, float(one))
+        except ValueError:
+            pass
+        rule = read.text(node, "rule")
+        if rule not in ("equalTo", "notEqualTo"):
+            raise read.error(node, f"rule={rule}: {one} is no number")
+        return (one == other) == (rule == "equalTo")
 
     def _by_entity(self, node: Element, name: str, now: Situation) -> bool:
         read, state = self.document, now.states[name]
@@ -87,11 +110,14 @@ class ConditionReader:
             case "TraveledDistanceCondition":
                 return now.travelled[name] >= read.number(node, "value")
             case "SpeedCondition":
-                return self._compare(node, state.v_lon)
+                return self._compare(node, self._on_axis(node, _speeds(state)))
             case "AccelerationCondition":
-                return self._compare(node, state.a_lon)
+                return self._compare(node, self._on_axis(node, _accelerations(state)))
             case "RelativeSpeedCondition":
-                return self._compare(node, state.v_lon - self._other(node, now)[1].v_lon)
+                speeds = [self._on_axis(node, _speeds(x)) for x in (state, self._other(node, now)[1])]
+                return self._compare(node, speeds[0] - speeds[1])
+            case "OffroadCondition":
+                return self._is_off_road(node, name, now)
             case "StandStillCondition":
                 stands = now.still.get(name)
                 return stands is not None and now.tick - stands >= read.number(node, "duration") * TICKS
@@ -114,6 +140,22 @@ class ConditionReader:
             case "TimeToCollisionCondition":
                 return self._time_to_collision(node, name, now)
         raise read.error(node, "this condition is not supported")
+
+    def _on_axis(self, node: Element, values: tuple[float, float]) -> float:
+        """The value along the vehicle, or across it where the ``direction`` says so."""
+        direction = node.get("direction", "longitudinal")
+        if direction not in ("longitudinal", "lateral"):
+            raise self.document.error(node, f"direction={direction}: longitudinal or lateral is needed")
+        return values[0] if direction == "longitudinal" else values[1]
+
+    def _is_off_road(self, node: Element, name: str, now: Situation) -> bool:
+        """Whether the reference point has been on no lane of the map for a duration."""
+        state = now.states[name]
+        if not self.positions.is_off_road((state.s, state.d)):
+            self.off_road.pop((node, name), None)
+            return False
+        since = self.off_road.setdefault((node, name), now.tick)
+        return now.tick - since >= self.document.number(node, "duration") * TICKS
 
     def _time_to_collision(self, node: Element, name: str, now: Situation) -> bool:
         target = self.document.only(self.document.child(node, "TimeToCollisionConditionTarget"))
@@ -155,8 +197,6 @@ class ConditionReader:
 
     def _other(self, node: Element, now: Situation) -> tuple[str, State]:
         name = self.document.text(node, "entityRef")
-        if name not in now.states:
-            raise self.document.error(node, f"there is no ScenarioObject {name}")
         return name, now.states[name]
 
     def _compare(self, node: Element, value: float) -> bool:
@@ -164,6 +204,15 @@ class ConditionReader:
         if rule not in _RULES:
             raise self.document.error(node, f"rule={rule}: one of {', '.join(_RULES)} is needed")
         return _RULES[rule](value, self.document.number(node, "value"))
+
+
+def _speeds(state: State) -> tuple[float, float]:
+    """Along and across a vehicle, to its front and its left."""
+    return (state.v_lon, state.v_lat) if state.forward else (-state.v_lon, -state.v_lat)
+
+
+def _accelerations(state: State) -> tuple[float, float]:
+    return (state.a_lon, state.a_lat) if state.forward else (-state.a_lon, -state.a_lat)
 
 
 class Trigger:

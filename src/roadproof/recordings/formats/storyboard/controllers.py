@@ -1,15 +1,15 @@
 """Actions that look at another vehicle at each tick: distances that are kept, and arrivals at the same time.
 
-Both are courses whose ``next`` is the course from the next tick on. Accelerations are constant in a tick.
+All are courses whose ``next`` is the course from the next tick on. Accelerations are constant in a tick.
 """
 
 import math
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
 from roadproof.recordings.formats.storyboard.courses import Course, Point, Steady
-from roadproof.recordings.formats.storyboard.positions import States
+from roadproof.recordings.formats.storyboard.positions import State, States
 
 _NEAR = 0.1
 """m: a distance that is to be reached once is reached, as in esmini."""
@@ -17,8 +17,16 @@ _SPRING = 0.4
 _SLOWEST = 1e-6
 _STEP = 0.01
 
+Axis: TypeAlias = Literal["along", "across"]
 Phase: TypeAlias = tuple[float, float]
 """Duration (s) and acceleration (m/s²)."""
+
+
+def on_axis(state: State, axis: Axis) -> Point:
+    """A vehicle's motion along the road or across it."""
+    if axis == "along":
+        return Point(state.s, state.v_lon, state.a_lon)
+    return Point(state.d, state.v_lat, state.a_lat)
 
 
 @dataclass(frozen=True)
@@ -47,30 +55,51 @@ class Phases:
 
 @dataclass(frozen=True)
 class Limits:
-    """Of acceleration, deceleration (m/s²) and speed (m/s)."""
+    """Of acceleration and deceleration (m/s²), of their rates (m/s³) and of speed (m/s)."""
 
     acceleration: float = math.inf
     deceleration: float = math.inf
     speed: float = math.inf
+    acceleration_rate: float = math.inf
+    deceleration_rate: float = math.inf
 
 
 @dataclass(frozen=True)
-class KeepDistance:
-    """Keeps ``distance`` (m, or s of the other one's speed) behind another vehicle, or ahead where negative.
+class DistanceGoal:
+    """A distance to another vehicle: m, or s of its speed, along the road or across it.
 
-    Without limits of acceleration it is there at once. With them it is a spring with critical damping, as in
-    esmini: stiffness 0.4 times the limit of acceleration. ``apart``: what is between reference points where
-    the distance is 0.
+    Positive: behind the other one or to its right. ``apart``: what is between reference points where the
+    distance is 0. ``continuous``: it is kept, otherwise reached once.
     """
 
-    now: Course
-    name: str
+    axis: Axis
     other: str
     distance: float
     seconds: bool
     apart: float
     limits: Limits
     continuous: bool
+
+    def error(self, name: str, states: States) -> float:
+        """How far a vehicle has to go to be at the distance (m)."""
+        other = states[self.other]
+        wanted = self.distance * (abs(other.v_lon) if self.seconds else 1.0)
+        wanted += math.copysign(self.apart, self.distance)
+        return on_axis(other, self.axis).place - on_axis(states[name], self.axis).place - wanted
+
+
+@dataclass(frozen=True)
+class KeepDistance:
+    """Is at the distance of a ``goal``.
+
+    Without limits of acceleration it is there at once. With them it is a spring with critical damping, as in
+    esmini: stiffness 0.4 times the limit of acceleration; limits of jerk hold where acceleration grows.
+    """
+
+    now: Course
+    name: str
+    goal: DistanceGoal
+    acceleration: float = 0.0
     reached: bool = False
 
     def at(self, time: float, along: Point) -> Point:
@@ -81,24 +110,33 @@ class KeepDistance:
 
     def next(self, time: float, states: States) -> "KeepDistance":
         """From ``time`` on, where all vehicles are as ``states`` say."""
-        state, other = states[self.name], states[self.other]
-        wanted = self.distance * (abs(other.v_lon) if self.seconds else 1.0)
-        wanted += math.copysign(self.apart, self.distance)
-        error = other.s - state.s - wanted
-        reached = not self.continuous and abs(error) < _NEAR
-        most = self.limits
+        goal, most = self.goal, self.goal.limits
+        here, other = (on_axis(states[x], goal.axis) for x in (self.name, goal.other))
+        error = goal.error(self.name, states)
+        reached = not goal.continuous and abs(error) < _NEAR
         if math.isinf(most.acceleration) and math.isinf(most.deceleration):
-            there = Phases(time, other.s - wanted, other.v_lon, ((_STEP, other.a_lon),))
-            return replace(self, now=there, reached=not self.continuous)
+            if goal.axis == "across" and abs(error) > most.speed * _STEP:
+                glide = Steady(time, here.place, math.copysign(most.speed, error))
+                return replace(self, now=glide, reached=reached)
+            there = Phases(time, here.place + error, other.speed, ((_STEP, other.acceleration),))
+            return replace(self, now=there, reached=not goal.continuous)
+        pull = self._pull(error, here, other)
+        course = Phases(time, here.place, here.speed, ((_STEP, 0.0 if reached else pull),))
+        return replace(self, now=course, acceleration=pull, reached=reached)
+
+    def _pull(self, error: float, here: Point, other: Point) -> float:
+        """The acceleration of the spring within the limits."""
+        most, before = self.goal.limits, self.acceleration
         tension = most.acceleration if error < 0 else most.deceleration
         tension = tension if math.isfinite(tension) else min(most.acceleration, most.deceleration)
         stiffness = _SPRING * tension
-        pull = error * stiffness - (state.v_lon - other.v_lon) * 2 * math.sqrt(stiffness)
+        pull = error * stiffness - (here.speed - other.speed) * 2 * math.sqrt(stiffness)
         pull = min(max(pull, -most.deceleration), most.acceleration)
-        low, high = (-most.speed - state.v_lon) / _STEP, (most.speed - state.v_lon) / _STEP
-        pull = min(max(pull, low), high)
-        course = Phases(time, state.s, state.v_lon, ((_STEP, 0.0 if reached else pull),))
-        return replace(self, now=course, reached=reached)
+        if pull < min(before, 0.0):
+            pull = max(before - most.deceleration_rate * _STEP, pull)
+        elif pull > max(before, 0.0):
+            pull = min(before + most.acceleration_rate * _STEP, pull)
+        return min(max(pull, (-most.speed - here.speed) / _STEP), (most.speed - here.speed) / _STEP)
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
+import numpy as np
+
+from roadproof.recordings.formats.recording import Floats
+from roadproof.recordings.formats.storyboard.curves import curve
+
 _PI = math.pi
 
 
@@ -154,6 +159,35 @@ class PlaceOverDistance:
 
     def ended(self, time: float, along: Point) -> bool:
         return along.place - self.start >= self.length - _SOON
+
+
+@dataclass(frozen=True)
+class AlongPath:
+    """d as a function of s along a path; ``before`` up to its first point, at rest after its last one.
+
+    ``straight``: between its points; otherwise on cubics through them.
+    """
+
+    before: Course
+    s: Floats
+    d: Floats
+    straight: bool
+
+    def at(self, time: float, along: Point) -> Point:
+        if along.place < self.s[0] - _SOON:
+            return self.before.at(time, along)
+        if along.place > self.s[-1]:
+            return Point(float(self.d[-1]), 0.0)
+        if self.straight:
+            k = min(int(np.searchsorted(self.s, along.place, side="right")), len(self.s) - 1)
+            slope = float((self.d[k] - self.d[k - 1]) / (self.s[k] - self.s[k - 1]))
+            here = float(self.d[k - 1] + slope * (along.place - self.s[k - 1]))
+            return Point(here, slope * along.speed, slope * along.acceleration)
+        d, slope, bend = (float(x[0]) for x in curve(self.s, self.d, np.array([along.place])))
+        return Point(d, slope * along.speed, bend * along.speed**2 + slope * along.acceleration)
+
+    def ended(self, time: float, along: Point) -> bool:
+        return along.place >= float(self.s[-1])
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,8 @@
 """OpenSCENARIO files as trees in which parameters, expressions and catalogue entries are replaced.
 
 ``$name`` is the value of the nearest ParameterDeclaration above; ``${…}`` is an expression (ASAM
-OpenSCENARIO XML 1.3, section 9.1) with numbers, parameters, + - * / %, and the functions of ``_FUNCTIONS``.
+OpenSCENARIO XML 1.3, section 9.1) with numbers, pi, parameters, + - * / %, and functions (``_FUNCTIONS``).
+World positions of files whose description begins with ``CARLA:`` have y to the right, as in CARLA.
 """
 
 import ast
@@ -60,6 +61,8 @@ def _evaluate(node: ast.expr) -> float:
             return float(value)
         case ast.BinOp(left=left, op=op, right=right) if type(op) in _OPERATORS:
             return _OPERATORS[type(op)](_evaluate(left), _evaluate(right))
+        case ast.Name(id="pi"):
+            return math.pi
         case ast.UnaryOp(op=ast.USub(), operand=operand):
             return -_evaluate(operand)
         case ast.UnaryOp(op=ast.UAdd(), operand=operand):
@@ -134,6 +137,12 @@ def open_document(path: Path) -> Document:
         if reference is not None:
             owner.remove(reference)
             owner.append(_entry(document, reference))
+    header = root.find("FileHeader")
+    if header is not None and header.get("description", "").startswith("CARLA:"):
+        for place in root.iter("WorldPosition"):
+            for name in ("y", "h"):
+                if place.get(name):
+                    place.set(name, repr(-document.number(place, name)))
     return document
 
 

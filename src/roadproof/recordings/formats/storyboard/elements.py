@@ -79,10 +79,8 @@ def read_element(node: Element, reader: ConditionReader, actors: tuple[str, ...]
     if node.tag == "ManeuverGroup":
         actors = tuple(document.text(x, "entityRef") for x in node.findall("Actors/EntityRef"))
         for name in actors:
-            if all(name != x.get("name") for x in document.root.iter("ScenarioObject")):
-                raise document.error(node, f"there is no ScenarioObject {name}")
             if name not in reader.boxes:
-                raise document.error(node, f"{name} is no motor vehicle; only these are moved")
+                raise document.error(node, f"there is no ScenarioObject {name}")
     below = _BELOW.get(node.tag)
     return StoryElement(
         node,

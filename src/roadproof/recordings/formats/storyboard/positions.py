@@ -2,32 +2,31 @@
 
 A position on a road of the map is put into the plane and from there on the reference line of the road that
 is driven on. Lanes to the left have greater numbers in relative positions (as seen in driving direction).
+Actions of a vehicle that drives against the road are read in its own coordinates: s and d of the road turned
+around (``sign`` -1), so that all of them mean the same as for the others.
 """
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import permutations
-from pathlib import Path
 
-from roadproof.errors import InputError
 from roadproof.recordings.formats.storyboard.document import Document
 from roadproof.runtime.xml_reader import Element
 from roadproof.world.maps.carriageway import DRIVEN, RAMPS
 from roadproof.world.maps.opendrive import MapRoad, MapSection, outer_edge, read_map, value_at
-from roadproof.world.maps.selection import STRETCH, is_map, read_selection
-from roadproof.world.models import load_road
+from roadproof.world.maps.selection import is_map, read_selection
 from roadproof.world.road import Road
 
 _LANE = "LanePosition"
-_MOST_ROADS = 4
-"""Of so many roads the order is found."""
+
+
+_SIGNED = ("s", "d", "v_lon", "v_lat", "a_lon", "a_lat")
 
 
 @dataclass(frozen=True)
 class State:
-    """Of a reference point: along and across the road."""
+    """Of a reference point: along and across the road; ``forward``: the vehicle drives along s."""
 
     s: float
     d: float
@@ -35,44 +34,25 @@ class State:
     v_lat: float
     a_lon: float
     a_lat: float
+    forward: bool = True
+
+    def turned(self) -> "State":
+        """The same in the coordinates of those who drive against the road."""
+        s, d, v_lon, v_lat, a_lon, a_lat = (-getattr(self, x) for x in _SIGNED)
+        return State(s, d, v_lon, v_lat, a_lon, a_lat, not self.forward)
 
 
 States = Mapping[str, State]
 
 
-def stretch_of(document: Document, path: Path) -> str:
-    """The road that is driven on: as a parameter says, or that of the lanes in which vehicles begin."""
-    declared = next(
-        (x.get("value") for x in document.root.iter("ParameterDeclaration") if x.get("name") == STRETCH), None
-    )
-    if declared:
-        return f"{path}#{declared}"
-    places = document.root.findall(f"Storyboard/Init//{_LANE}") or [*document.root.iter(_LANE)]
-    if not places:
-        return str(path)
-    roads = {document.text(x, "roadId") for x in places}
-    if len(roads) > 1:
-        return _route(document, path, sorted(roads), places[0])
-    left = (document.number(places[0], "laneId") > 0) != _turned(document, places[0])
-    return f"{path}#road={roads.pop()},lanes={'left' if left else 'right'}"
+def _position(place: Element) -> Element:
+    """An element Position around a place."""
+    found = Element("Position")
+    found.append(place)
+    return found
 
 
-def _route(document: Document, path: Path, roads: list[str], place: Element) -> str:
-    """The roads in the order in which the vehicle at ``place`` drives on them. Raises ``InputError``."""
-    for order in permutations(roads) if len(roads) <= _MOST_ROADS else ():
-        route = f"{path}#route={'+'.join(order)}"
-        try:
-            found = positions_on(document, load_road(route))
-            found.check_direction(place)
-        except InputError:
-            continue
-        return route
-    shown = ", ".join(roads)
-    rule = f"name the route as a parameter {STRETCH} with a value such as route=1+2"
-    raise document.error(place, f"positions on several roads ({shown}) that are not one route; {rule}")
-
-
-def _turned(document: Document, place: Element) -> bool:
+def is_turned(document: Document, place: Element) -> bool:
     """Whether an Orientation turns a vehicle against its lane."""
     orientation = place.find("Orientation")
     return orientation is not None and math.cos(document.number(orientation, "h", 0.0)) < 0
@@ -80,15 +60,36 @@ def _turned(document: Document, place: Element) -> bool:
 
 @dataclass(frozen=True)
 class Positions:
-    """Finds places on ``road``; ``roads``: those of its map by id."""
+    """Finds places on ``road``; ``roads``: those of its map by id. ``sign``: -1 for turned coordinates."""
 
     document: Document
     road: Road
     roads: Mapping[str, MapRoad]
+    sign: int = 1
+
+    def turned(self) -> "Positions":
+        """The same for coordinates of those who drive against the road."""
+        return replace(self, sign=-self.sign)
 
     def place(self, x: float, y: float) -> tuple[float, float]:
         """s and d of a point of the plane."""
-        return (x, y) if self.road.line is None else self.road.line.locate(x, y)
+        s, d = (x, y) if self.road.line is None else self.road.line.locate(x, y)
+        return self.sign * s, self.sign * d
+
+    def pose(self, node: Element, states: States) -> tuple[float, float, float]:
+        """x, y and heading of an element Position in the plane: that of the road unless it is told."""
+        place = self.document.only(node)
+        s, d = self.find(node, states)
+        along = math.pi if self.is_forward(place, states) != (self.sign > 0) else 0.0
+        if self.road.line is None:
+            return self.sign * s, self.sign * d, along
+        x, y = self.road.line.place(self.sign * s, self.sign * d)
+        told = place if place.tag == "WorldPosition" else place.find("Orientation")
+        turn = 0.0 if told is None else self.document.number(told, "h", 0.0)
+        if told is not None and (told.get("type") == "absolute" or (told is place and place.get("h"))):
+            return x, y, turn
+        turn -= math.pi if math.cos(turn) < 0 else 0.0  # which ``along`` says
+        return x, y, self.road.line.pose(self.sign * s).heading + along + turn
 
     def find(self, node: Element, states: States) -> tuple[float, float]:
         """s and d of an element Position, where vehicles are as ``states`` say. Raises ``InputError``.
@@ -104,36 +105,65 @@ class Positions:
             case "RoadPosition" | "TrackPosition":
                 road = self._road(place)
                 return self._on_map(road, read.number(place, "s"), read.number(place, "t"))
+            case "RoutePosition":
+                return self._route_position(place, states)
         if not place.tag.startswith("Relative"):
             raise read.error(place, "this kind of position is not supported")
         other = states[read.text(place, "entityRef")]
+        way = 1 if other.forward else -1
         match place.tag:
             case "RelativeLanePosition":
-                ahead = read.number(place, "dsLane" if place.get("dsLane") else "ds")
-                s = other.s + ahead
-                d = self.lane_beside(place, (s, other.d), round(read.number(place, "dLane")))
-                return s, d + read.number(place, "offset", 0.0)
+                ahead = read.number(place, "dsLane" if place.get("dsLane") else "ds", 0.0)
+                s = other.s + way * ahead
+                d = self.lane_beside(place, (s, other.d), way * round(read.number(place, "dLane")))
+                return s, d + way * read.number(place, "offset", 0.0)
             case "RelativeRoadPosition":
-                return other.s + read.number(place, "ds"), other.d + read.number(place, "dt")
+                return other.s + way * read.number(place, "ds"), other.d + way * read.number(place, "dt")
             case "RelativeObjectPosition":
-                return other.s + read.number(place, "dx"), other.d + read.number(place, "dy")
+                return other.s + way * read.number(place, "dx"), other.d + way * read.number(place, "dy")
+            case "RelativeWorldPosition" if self.road.line is not None:
+                x, y = self.road.line.place(self.sign * other.s, self.sign * other.d)
+                return self.place(x + read.number(place, "dx"), y + read.number(place, "dy"))
         raise read.error(place, "this kind of position is not supported")
 
-    def check_direction(self, place: Element) -> None:
-        """Raise ``InputError`` where a vehicle with this kind of position would drive against the road."""
-        against = False
-        if place.tag == _LANE and self.document.text(place, "laneId") != "0":
+    def is_forward(self, place: Element, states: States) -> bool:
+        """Whether a vehicle at a place, an element inside Position, drives along s in these coordinates."""
+        orientation = place.find("Orientation")
+        if orientation is not None and orientation.get("type") == "absolute" and self.road.line is not None:
+            heading = self.document.number(orientation, "h", 0.0)
+            here = self.find(_position(place), states)[0]
+            return (math.cos(heading - self.road.line.pose(self.sign * here).heading) >= 0) == (self.sign > 0)
+        turned = is_turned(self.document, place)
+        if place.tag in (_LANE, "RoadPosition", "TrackPosition"):
+            side = self.document.number(place, "laneId" if place.tag == _LANE else "t")
             road, s = self._road(place), self.document.number(place, "s")
-            side = -1 if road.rule == "RHT" else 1
-            forward = self.document.number(place, "laneId") * side > 0
-            against = (forward != _turned(self.document, place)) != (self._heading_sign(road, s) > 0)
-        elif place.tag == "WorldPosition" and place.get("h") and self.road.line is not None:
-            s, _ = self.place(self.document.number(place, "x"), self.document.number(place, "y"))
-            against = math.cos(self.document.number(place, "h") - self.road.line.pose(s).heading) < 0
-        if against:
-            raise self.document.error(
-                place, "a vehicle drives against the others; one direction is supported"
-            )
+            right = side < 0 if road.rule == "RHT" else side > 0
+            return side == 0 or (right != turned) == (self._heading_sign(road, s) > 0)
+        if place.tag.startswith("Relative"):
+            return states[self.document.text(place, "entityRef")].forward != turned
+        if place.tag == "WorldPosition" and place.get("h") and self.road.line is not None:
+            s, _ = self.road.line.locate(self.document.number(place, "x"), self.document.number(place, "y"))
+            heading = self.document.number(place, "h")
+            return (math.cos(heading - self.road.line.pose(s).heading) >= 0) == (self.sign > 0)
+        return self.sign > 0
+
+    def _route_position(self, place: Element, states: States) -> tuple[float, float]:
+        """A place so far behind the first waypoint, along the road."""
+        read = self.document
+        inside = read.only(read.child(place, "InRoutePosition"))
+        if inside.tag == "FromCurrentEntity":
+            other = states[read.text(inside, "entityRef")]
+            return other.s, other.d
+        first = next(place.iter("Waypoint"), None)
+        if first is None or inside.tag not in ("FromLaneCoordinates", "FromRoadCoordinates"):
+            raise read.error(inside, "a Waypoint and FromLaneCoordinates or FromRoadCoordinates are needed")
+        begin, d = self.find(read.child(first, "Position"), states)
+        ways = self.is_forward(read.only(read.child(first, "Position")), states)
+        s = begin + (1 if ways else -1) * read.number(inside, "pathS")
+        if inside.tag == "FromRoadCoordinates":
+            return s, (1 if ways else -1) * read.number(inside, "t")
+        d = self.lane_called(inside, (s, d), round(read.number(inside, "laneId")))
+        return s, d + (1 if ways else -1) * read.number(inside, "laneOffset", 0.0)
 
     def lane_beside(self, node: Element, at: tuple[float, float], number: int) -> float:
         """d of the middle of the lane so many to the left of that at a place."""
@@ -152,12 +182,19 @@ class Positions:
         road, s = self._road_at(node, at)
         return self._on_map(road, s, self._middle(node, road, s, lane))[1]
 
+    def is_off_road(self, at: tuple[float, float]) -> bool:
+        """Whether a place is on no lane of the map."""
+        if self.road.line is None or not self.roads:
+            return False
+        x, y = self.road.line.place(self.sign * at[0], self.sign * at[1])
+        return not any(_has_lane(road, *road.line.locate(x, y)) for road in self.roads.values())
+
     def _road_at(self, node: Element, at: tuple[float, float]) -> tuple[MapRoad, float]:
         """The map's road at a place, and s there."""
         if self.road.line is None or not self.roads:
             raise self.document.error(node, "lanes need a map")
-        x, y = self.road.line.place(*at)
-        nearest = min(self.roads.values(), key=lambda road: _distance(road, x, y))
+        x, y = self.road.line.place(self.sign * at[0], self.sign * at[1])
+        nearest = min(self.roads.values(), key=lambda road: distance(road, x, y))
         return nearest, nearest.line.locate(x, y)[0]
 
     def _lane_position(self, place: Element) -> tuple[float, float]:
@@ -204,7 +241,18 @@ def _section(road: MapRoad, s: float) -> MapSection:
     return next((x for x in reversed(road.sections) if x.begin <= s), road.sections[0])
 
 
-def _distance(road: MapRoad, x: float, y: float) -> float:
+def _has_lane(road: MapRoad, s: float, t: float) -> bool:
+    """Whether a road has a lane of some kind at a place that is beside it."""
+    if not road.line.begin <= s <= road.line.end:
+        return False
+    section = _section(road, s)
+    ends = min(0, *section.lanes), max(0, *section.lanes)
+    right, left = (float(outer_edge(road.offset, section, x, Fraction(s))) for x in ends)
+    return right <= t <= left
+
+
+def distance(road: MapRoad, x: float, y: float) -> float:
+    """How far a point is from the reference line of a road, and much more beyond its ends."""
     s, t = road.line.locate(x, y)
     beyond = max(float(road.line.begin) - s, s - float(road.line.end), 0.0)
     return abs(t) + 100 * beyond

@@ -3,19 +3,21 @@
 It ends when its StopTrigger fires, when a vehicle comes to the end of the road, REST s after the last story
 is complete where there is no StopTrigger, or after LONGEST s. Vehicles keep speed and d unless an action
 moves them; an action ends another one that moves the same vehicle in the same direction. Transitions of
-storyboard elements are seen by conditions one tick later.
+storyboard elements are seen by conditions one tick later. An object without place takes no part, and
+conditions on it do not hold.
 """
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from roadproof.recordings.formats.storyboard.actions import ActionReader, Actor, Axis, Scene, TrajectoryReader
+from roadproof.recordings.formats.storyboard.actions import ActionReader, Actor, Scene, turned
 from roadproof.recordings.formats.storyboard.box import Box
 from roadproof.recordings.formats.storyboard.conditions import TICKS, ConditionReader, Situation, Trigger
-from roadproof.recordings.formats.storyboard.controllers import Arrive, KeepDistance
+from roadproof.recordings.formats.storyboard.controllers import Arrive, Axis, KeepDistance
 from roadproof.recordings.formats.storyboard.courses import Course, Point, Steady
 from roadproof.recordings.formats.storyboard.document import Document
 from roadproof.recordings.formats.storyboard.elements import StoryElement, read_element, starts
+from roadproof.recordings.formats.storyboard.global_actions import act_globally, initial_values
 from roadproof.recordings.formats.storyboard.positions import State, positions_on
 from roadproof.runtime.xml_reader import Element
 from roadproof.world.road import Road
@@ -23,31 +25,32 @@ from roadproof.world.road import Road
 LONGEST, REST = 120, 5
 _STANDS = 1e-6
 """m/s"""
+_FOLLOW = "RoutingAction/FollowTrajectoryAction"
 _ANYWHERE = Point(0.0, 0.0)
 
 
 @dataclass(frozen=True)
 class Play:
-    """States of the vehicles' reference points at each tick from 0 on, and why it ended."""
+    """States of the objects' reference points at each tick from 0 on, and why it ended.
+
+    ``jumps``: ticks at which an object was put somewhere else.
+    """
 
     states: tuple[Mapping[str, State], ...]
     ending: str
+    jumps: Mapping[str, tuple[int, ...]]
 
 
-def run_storyboard(
-    document: Document, boxes: Mapping[str, Box], road: Road, trajectory: TrajectoryReader
-) -> Play:
+def run_storyboard(document: Document, boxes: Mapping[str, Box], road: Road) -> Play:
     """The motions that a storyboard describes. Raises ``InputError`` for what is not supported."""
-    return _Runner(document, boxes, road, trajectory).run()
+    return _Runner(document, boxes, road).run()
 
 
 class _Runner:
-    def __init__(
-        self, document: Document, boxes: Mapping[str, Box], road: Road, trajectory: TrajectoryReader
-    ) -> None:
+    def __init__(self, document: Document, boxes: Mapping[str, Box], road: Road) -> None:
         self.document, self.boxes = document, boxes
         positions = positions_on(document, road)
-        self.actions = ActionReader(document, boxes, positions, trajectory)
+        self.actions = ActionReader(document, boxes, positions)
         conditions = ConditionReader(document, boxes, positions)
         board = document.child(document.root, "Storyboard")
         self.stories = [read_element(x, conditions) for x in board.findall("Story")]
@@ -60,6 +63,8 @@ class _Runner:
         self.owners: dict[tuple[str, Axis], StoryElement] = {}
         self.travelled: dict[str, float] = {}
         self.still: dict[str, int] = {}
+        self.jumps: dict[str, tuple[int, ...]] = {}
+        self.values = initial_values(document)
         self.tick = 0
 
     def run(self) -> Play:
@@ -70,13 +75,12 @@ class _Runner:
             self.tick = tick
             states = self._states()
             self._count(found[-1] if found else states, states)
-            ahead = [x for x, state in states.items() if state.s + self.boxes[x].centre[0] > self.end]
-            if ahead:
-                return Play(tuple(found), f"{ahead[0]} comes to the end of the road")
+            if ahead := [x for x, state in states.items() if self._is_beyond(x, state)]:
+                return self._play(found, f"{ahead[0]} comes to the end of the road")
             found.append(states)
             now = self._situation(states)
             if self.stop.fires(now):
-                return Play(tuple(found), "its StopTrigger fires")
+                return self._play(found, "its StopTrigger fires")
             self._steer(states)
             for story in self.stories:
                 self._advance(story, now)
@@ -84,8 +88,16 @@ class _Runner:
             if complete is None and all(x.state == "complete" for x in self.stories):
                 complete = tick
             if complete is not None and not self.stop.can_fire and tick >= complete + REST * TICKS:
-                return Play(tuple(found), f"all is complete for {REST} s")
-        return Play(tuple(found), f"it does not end by itself within {LONGEST} s")
+                return self._play(found, f"all is complete for {REST} s")
+        return self._play(found, f"it does not end by itself within {LONGEST} s")
+
+    def _play(self, states: list[Mapping[str, State]], ending: str) -> Play:
+        return Play(tuple(states), ending, self.jumps)
+
+    def _is_beyond(self, name: str, state: State) -> bool:
+        """Whether a vehicle that is recorded comes to the end of the road."""
+        box = self.boxes[name]
+        return box.recorded and state.forward and state.s + box.centre[0] > self.end
 
     def _states(self) -> dict[str, State]:
         time = self.tick / TICKS
@@ -94,15 +106,24 @@ class _Runner:
     def _steer(self, states: Mapping[str, State]) -> None:
         """Let vehicles react to others."""
         for name, actor in self.actors.items():
-            course = actor.courses["along"]
-            if isinstance(course, KeepDistance | Arrive) and not course.ended(0.0, _ANYWHERE):
-                steered = course.next(self.tick / TICKS, states)
-                self.actors[name] = Actor(name, {**actor.courses, "along": steered})
+            seen = states if actor.forward else turned(states)
+            for axis, course in actor.courses.items():
+                if isinstance(course, KeepDistance | Arrive) and not course.ended(0.0, _ANYWHERE):
+                    self._set(name, {axis: course.next(self.tick / TICKS, seen)})
+
+    def _set(self, name: str, courses: Mapping[Axis, Course]) -> None:
+        actor = self.actors[name]
+        self.actors[name] = Actor(name, {**actor.courses, **courses}, actor.forward)
 
     def _count(self, before: Mapping[str, State], states: Mapping[str, State]) -> None:
         """Add up distances and times at rest."""
         for name, state in states.items():
-            self.travelled[name] = self.travelled.get(name, 0.0) + abs(state.s - before[name].s)
+            gone = (
+                abs(state.s - before[name].s)
+                if name in before and self.tick not in self.jumps.get(name, ())
+                else 0.0
+            )
+            self.travelled[name] = self.travelled.get(name, 0.0) + gone
             if abs(state.v_lon) > _STANDS:
                 self.still.pop(name, None)
             else:
@@ -112,7 +133,7 @@ class _Runner:
         elements: dict[tuple[str, str], frozenset[str]] = {}
         for x in (y for story in self.stories for y in story.walk()):
             elements[x.key] = elements.get(x.key, frozenset()) | x.seen(self.tick)
-        return Situation(self.tick, states, self.travelled, self.still, elements)
+        return Situation(self.tick, states, self.travelled, self.still, elements, self.values)
 
     def _place(self) -> None:
         """Put the vehicles where Init says, and begin its actions."""
@@ -125,18 +146,16 @@ class _Runner:
                 for x in private.findall("PrivateAction")
             ]
         )
-        known = {x.get("name") for x in self.document.root.iter("ScenarioObject")}
         for name, action in actions:
-            if name not in known:
+            if name not in self.boxes:
                 raise self.document.error(action, f"there is no ScenarioObject {name}")
-        actions = [x for x in actions if x[0] in self.boxes]
         teleports = [x for x in actions if x[1].find("TeleportAction") is not None]
         self._begin_all(teleports)
-        for name in self.boxes:
-            if name not in self.actors:
-                entities = self.document.child(self.document.root, "Entities")
-                raise self.document.error(entities, f"{name} has no TeleportAction in Init")
-        self._begin_all([x for x in actions if x not in teleports])
+        self._begin_all(
+            [x for x in actions if x not in teleports and (x[0] in self.actors or _places(x[1]) is not None)]
+        )
+        for action in () if self.init is None else self.init.findall("GlobalAction"):
+            self._act_globally(action)
 
     def _begin_all(self, actions: list[tuple[str, Element]]) -> None:
         """Begin actions of Init, those that refer to another vehicle after that one has its place."""
@@ -147,14 +166,49 @@ class _Runner:
             actions = late
 
     def _begins(self, name: str, action: Element) -> bool:
-        actor = self.actors.get(name) or Actor(name, {})
         try:
-            courses = self.actions.courses(action, actor, Scene(0.0, self._states()))
+            self._act(name, action)
         except KeyError:
             return False
-        if courses or name in self.actors:
-            self.actors[name] = Actor(name, {**actor.courses, **courses})
         return True
+
+    def _act(self, name: str, action: Element) -> tuple[Axis, ...]:
+        """Let a vehicle begin a PrivateAction; the axes along which this moves it. Raises ``KeyError``."""
+        time, states = self.tick / TICKS, self._states()
+        teleport = action.find("TeleportAction")
+        if teleport is not None:
+            self._put(name, self.document.child(teleport, "Position"))
+            return ()
+        if name not in self.actors:
+            follow = self.document.child(action, _FOLLOW)
+            self.actors[name] = self.actions.placed(follow, name, Scene(time, states))
+            states = self._states()
+        actor = self.actors[name]
+        reader, seen = (self.actions, states) if actor.forward else (self.actions.turned(), turned(states))
+        courses = reader.courses(action, actor, Scene(time, seen))
+        self._set(name, courses)
+        return tuple(courses)
+
+    def _put(self, name: str, position: Element) -> None:
+        """Put a vehicle somewhere; where it had a place, this is a jump."""
+        if name in self.actors and self.tick:
+            self.jumps[name] = (*self.jumps.get(name, ()), self.tick)
+        self.actors[name] = self.actions.placed(position, name, Scene(self.tick / TICKS, self._states()))
+
+    def _act_globally(self, action: Element) -> None:
+        """Begin a GlobalAction. Raises ``InputError`` for what is not supported."""
+        node = self.document.only(action)
+        if node.tag == "EntityAction":
+            name = self.document.text(node, "entityRef")
+            if name not in self.boxes:
+                raise self.document.error(node, f"there is no ScenarioObject {name}")
+            kind = self.document.only(node)
+            if kind.tag == "AddEntityAction":
+                self._put(name, self.document.child(kind, "Position"))
+            else:
+                self.actors.pop(name, None)
+        else:
+            act_globally(self.document, node, self.values)
 
     def _advance(self, element: StoryElement, now: Situation) -> None:
         """Start, go on with or end an element and those below it."""
@@ -198,26 +252,25 @@ class _Runner:
         """Begin an action of an event for all its actors."""
         action.change("running", "startTransition", self.tick)
         kind = self.document.only(action.node)
-        if kind.tag == "GlobalAction" and kind.find("EnvironmentAction") is not None:
+        if kind.tag == "GlobalAction":
+            self._act_globally(kind)
             return
-        if kind.tag not in ("PrivateAction", "UserDefinedAction"):
+        if kind.tag != "PrivateAction":
             raise self.document.error(kind, "this action is not supported")
-        if kind.find("TeleportAction") is not None:
-            raise self.document.error(kind, "TeleportAction is supported in Init only")
-        for name in action.actors if kind.tag == "PrivateAction" else ():
-            actor = self.actors[name]
+        for name in action.actors:
+            if name not in self.actors and _places(kind) is None:
+                continue
             try:
-                courses = self.actions.courses(kind, actor, Scene(self.tick / TICKS, self._states()))
+                axes = self._act(name, kind)
             except KeyError as error:
-                raise self.document.error(kind, f"there is no ScenarioObject {error}") from None
-            self.actors[name] = Actor(name, {**actor.courses, **courses})
-            for axis in courses:
+                raise self.document.error(kind, f"there is no {error} on the road") from None
+            for axis in axes:
                 self.owners[name, axis] = action
 
     def _courses(self, action: StoryElement) -> Iterator[tuple[str, Axis, Course]]:
         """The courses of an action that no other one has ended."""
         for (name, axis), owner in self.owners.items():
-            if owner is action:
+            if owner is action and name in self.actors:
                 yield name, axis, self.actors[name].courses[axis]
 
     def _done(self, action: StoryElement) -> bool:
@@ -229,10 +282,16 @@ class _Runner:
         states = self._states()
         for action in (x for x in element.walk() if x.node.tag == "Action" and x.state == "running"):
             for name, axis, _ in [*self._courses(action)]:
-                x, time = states[name], self.tick / TICKS
-                rest: Course = Steady(time, x.s, x.v_lon) if axis == "along" else Steady(time, x.d)
-                self.actors[name] = Actor(name, {**self.actors[name].courses, axis: rest})
+                x = states[name] if self.actors[name].forward else states[name].turned()
+                time = self.tick / TICKS
+                self._set(name, {axis: Steady(time, x.s, x.v_lon) if axis == "along" else Steady(time, x.d)})
         element.finish(how, self.tick)
+
+
+def _places(action: Element) -> Element | None:
+    """The element of a PrivateAction that puts a vehicle without place on the road."""
+    place = action.find("TeleportAction")
+    return action.find(_FOLLOW) if place is None else place
 
 
 def _along(actor: Actor, time: float) -> Point:
@@ -240,8 +299,10 @@ def _along(actor: Actor, time: float) -> Point:
 
 
 def _state(actor: Actor, time: float) -> State:
+    """In coordinates of the road."""
     along = _along(actor, time)
     across = actor.courses["across"].at(time, along)
-    return State(
+    state = State(
         *(along.place, across.place, along.speed, across.speed, along.acceleration, across.acceleration)
     )
+    return state if actor.forward else state.turned()
