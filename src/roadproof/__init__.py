@@ -6,7 +6,7 @@
 
 What is here: definitions (``load``), formulas built with operators (``SV POV L F G U some every …``),
 questions (``prove witness compare overlap order redundancy coverage classify explore catalogue preventable
-monitor evaluate simulate check``, and ``ask`` for studies of yours), drives that are given (``motion
+monitor compile evaluate simulate check``, and ``ask`` for studies of yours), drives that are given (``motion
 drive``), ``export`` for other tools, and the errors that they raise. Each is imported when it is first used.
 """
 
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from roadproof.frontends.api.checking import check as check
     from roadproof.frontends.api.classifying import classify as classify
     from roadproof.frontends.api.comparing import compare as compare
+    from roadproof.frontends.api.compiling import compile as compile
     from roadproof.frontends.api.converting import convert as convert
     from roadproof.frontends.api.covering import coverage as coverage
     from roadproof.frontends.api.definitions import Definitions as Definitions
@@ -110,6 +111,7 @@ _HOMES = {
     "ask": "frontends.api.studied",
     "monitor": "frontends.api.traces",
     "trace": "frontends.api.traces",
+    "compile": "frontends.api.compiling",
     "evaluate": "frontends.api.recordings",
     "roads": "frontends.api.recordings",
     "road": "frontends.api.maps",

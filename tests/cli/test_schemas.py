@@ -379,6 +379,7 @@ def test_every_command_is_asked() -> None:
     assert {*COMMANDS} - {*ASKED} == {
         *(
             "simulate",
+            "compile",
             "export",
             "convert",
             "report",

@@ -18,7 +18,7 @@ _JOBS: Mapping[str, Sequence[str]] = {
     "analyse a set of scenarios": (
         *("overlap", "order", "redundancy", "coverage", "classify", "preventable", "catalogue"),
     ),
-    "work with recordings and maps": ("monitor", "evaluate", "simulate", "convert", "road"),
+    "work with recordings and maps": ("monitor", "compile", "evaluate", "simulate", "convert", "road"),
     "show and share results": ("report", "atlas", "export", "studio"),
     "set up": ("completion", "cache"),
 }

@@ -140,8 +140,8 @@ class Readings(Settings):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Definitions(Readings, Answered):
-    """The definitions that a question is asked in."""
+class Values(Readings):
+    """Definitions, with values of parameters."""
 
     params: Mapping[str, Number] | None = definition(
         None,
@@ -150,6 +150,11 @@ class Definitions(Readings, Answered):
         read=assignment("--param"),
         gather=dict,
     )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Definitions(Values, Answered):
+    """The definitions that a question is asked in."""
 
 
 @dataclass(frozen=True, kw_only=True)

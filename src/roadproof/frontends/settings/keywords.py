@@ -247,3 +247,11 @@ class MotionKeywords(TypedDict, total=False):
 class ExportKeywords(TypedDict, total=False):
     rate: int
     specs: Iterable[str | Path]
+
+
+class CompileKeywords(TypedDict, total=False):
+    dt: Number
+    road: RoadLike | None
+    lanes: Mapping[str, str] | None
+    memory: int
+    name: str

@@ -177,3 +177,25 @@ class Export(Settings):
     )
     specs: Iterable[str | Path] = groups.specifications_of("the drives")
     out: str | Path | None = groups.folder_for("files", command_line_only=True, required=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Compile(groups.Values):
+    """Options of ``compile``."""
+
+    sets: tuple[str, ...] = groups.one_set("base")
+    to: str = option("c", "--to TARGET", "c: C99 (default)", choices=("c",), keyword=False)
+    dt: Number = option(Fraction(1, 25), "--dt S", "seconds between samples (default: 1/25)", read=seconds)
+    road: RoadLike | None = option(
+        None,
+        "--road R",
+        "road on which lanes are found from positions (default: samples have flags for them)",
+    )
+    lanes: Mapping[str, str] | None = option(
+        None, "--lane [L=]LANE", "with --road: lane that L means", read=named("L"), gather=dict
+    )
+    memory: int = option(
+        65_536, "--memory N", "bytes that the state of a monitor may take (default: 65536)", read=whole(1)
+    )
+    name: str = option("monitor", "--name NAME", "name of the files and of types (default: monitor)")
+    out: str | Path | None = groups.folder_for("NAME.h and NAME.c", command_line_only=True, required=True)

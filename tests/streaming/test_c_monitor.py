@@ -1,0 +1,219 @@
+"""Monitors in C say what the monitor says, on every sample of every trace."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import roadproof as rp
+from monitoring.cases import DT, random_batch, random_traffic
+from roadproof.errors import InputError
+from roadproof.library.bind import bind
+from roadproof.logic.formula import Formula
+from roadproof.recordings.evaluate.one_trace import sample_drive
+from roadproof.semantics.sampled import Batch, compile
+from roadproof.semantics.streaming.c_files import CSource, compile_c
+from streaming.c_programs import (
+    SANITIZED,
+    STRICT,
+    TRUE,
+    UNKNOWN,
+    answers,
+    build,
+    differences,
+    needs_compiler,
+    parted,
+    said,
+    samples_of,
+)
+from streaming.random_formulas import random_formula
+
+pytestmark = needs_compiler
+OWN = """
+signal jerk(a: vehicle): m/s^3 in [-10, 10]
+signal red: bool
+def stops(a: vehicle) := red and jerk(a) < 0 and not is_truck(a)
+def is_truck(a: vehicle) := kind(a) = truck
+"""
+
+
+def _compiled(some: Mapping[str, Formula]) -> CSource:
+    return compile_c({name: (name, formula) for name, formula in some.items()}, DT, "monitor", 65_536)
+
+
+def _random(seed: int, count: int = 25) -> CSource:
+    """Monitors of random formulas, without those that are refused."""
+    rng, kept = np.random.default_rng(seed), dict[str, Formula]()
+    for k in range(count):
+        formula = random_formula(rng, int(rng.integers(2, 6)))
+        try:
+            _compiled({"it": formula})
+        except InputError:
+            continue
+        kept[f"formula_{k}"] = formula
+    assert len(kept) > count / 2
+    return _compiled(kept)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_random_formulas_on_random_traces(seed: int, tmp_path: Path) -> None:
+    source = _random(seed)
+    program = build(source, tmp_path, (*STRICT, f"-O{seed % 4}"))
+    for longest, traces in ((4, 30), (30, 20), (110, 3)):
+        batch = random_batch(seed, traces, longest)
+        assert list(differences(source, program, batch)) == []
+
+
+def test_no_memory_is_left_nor_any_value_undefined(tmp_path: Path) -> None:
+    source = _random(99, 12)
+    program = build(source, tmp_path, SANITIZED)
+    assert list(differences(source, program, random_batch(99, 20, 90))) == []
+
+
+@pytest.mark.parametrize("rss_form", ["boolean", "robust"])
+def test_scenarios_on_ten_thousand_traces(rss_form: str, tmp_path: Path) -> None:
+    home = rp.load("ext", options={"rss_form": rss_form}, params={"minSafe": "80 ms", "minDanger": "80 ms"})
+    numbers = (1, 3, 4, 5, 6, 7, 8)
+    compiled = rp.compile([*numbers, "danger(SV,POV)", "dangerArises(SV,POV)"], using=home).source
+    roots = [home.read(n).formula for n in numbers]
+    program = build(compiled, tmp_path)
+    batch = random_traffic(roots, traces=5_000, longest=24)
+    assert list(differences(compiled, program, batch)) == []
+    verdicts = said(compiled, program, batch)
+    assert all(np.any(verdicts[f"scenario_{n}"][:, 0] == TRUE) for n in (1, 4, 5, 6, 8))
+
+
+# --- All witnesses ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("set_name", ["base", "extA", "ext"])
+def test_all_witnesses(set_name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("ROADPROOF_KNOWN")
+    home = rp.load(set_name)
+    drives = {n: x.file for n, x in rp.known_drives(range(1, 25), home).items()}
+    assert len(drives) == 24
+    bound = {
+        f"scenario_{n}": bind(home.read(n).formula, x.road, x.lanes, home.all_values())
+        for n, x in drives.items()
+    }
+    source = _compiled(bound)
+    flags = rp.compile("1-24", using=home).source
+    program, with_flags = build(source, tmp_path / "bound", STRICT), build(flags, tmp_path / "flags", STRICT)
+    for monitor, free, (n, file) in zip(source.monitors, flags.monitors, drives.items(), strict=True):
+        batch = sample_drive(file.drive, file.road, file.horizon, DT, "drive").batch
+        found = said(source, program, batch)[monitor.label]
+        assert list(parted(monitor, batch, found)) == []
+        assert found[-1, 2, 0] == TRUE  # a witness, with samples, too
+        leaves = {x: bind(x, file.road, file.lanes, {}) for x in free.plan.leaves}
+        truth = compile(leaves).evaluate(batch, at="all").answers
+        given = {x: answer.true for x, answer in truth.items()}
+        same = said(flags, with_flags, replace(batch, given=given))[free.label]
+        assert np.array_equal(same, found), n
+
+
+# --- Samples that are rejected ----------------------------------------------------------------------
+
+GOOD = {"jerk_SV": 0.0, "red": 0.0, "s_SV": 0.0, "s_POV": 0.0, "length_SV": 4.0, "kind_SV": 1.0}
+
+
+def _batch(values: Mapping[str, float]) -> Batch:
+    """Four samples; signals are what is given in the third of them, and sizes at all times."""
+    signals, sizes = {}, {}
+    for name, usual in GOOD.items():
+        signal, vehicle = name.rsplit("_", 1) if "_" in name else (name, "")
+        value = values.get(name, usual)
+        if signal in ("length", "kind"):
+            sizes[signal, vehicle] = np.array([value])
+        else:
+            signals[signal, vehicle] = np.array([[usual], [usual], [value], [usual]])
+    return Batch(DT, np.array([4]), signals, sizes)
+
+
+@pytest.fixture(scope="module")
+def asked(tmp_path_factory: pytest.TempPathFactory) -> tuple[CSource, Path]:
+    """Formulas with own signals, a kind, a quotient by a size, an inverse and a maximum."""
+    home = rp.load(specs=[OWN])
+    formulas = (
+        "stops(SV)",
+        "max(s(SV)/length(SV), s(POV)^3/length(SV)^3) < 5",
+        "inverse(s(SV)) >= 0 and not (s(POV) > 3 m)",
+    )
+    source = rp.compile(formulas, using=home).source
+    return source, build(source, tmp_path_factory.mktemp("asked"), SANITIZED)
+
+
+@pytest.mark.parametrize(
+    "good",
+    [{}, {"red": 1.0, "jerk_SV": -10.0}, {"kind_SV": 2.0}, {"s_SV": 5e-324}, {"s_POV": 1e102}],
+)
+def test_good_samples_are_accepted(good: dict[str, float], asked: tuple[CSource, Path]) -> None:
+    assert list(differences(*asked, _batch(good))) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "where"),
+    [
+        ("jerk_SV", 11.0, 0),
+        ("jerk_SV", -10.5, 0),
+        ("jerk_SV", float("nan"), 0),
+        ("kind_SV", 0.0, 0),
+        ("length_SV", -4.0, 1),
+        ("length_SV", 1e-320, 1),
+        ("s_POV", 1e103, 1),
+        ("s_POV", float("nan"), 2),
+        ("s_POV", float("inf"), 2),
+        ("s_SV", float("nan"), 2),
+    ],
+)
+def test_wrong_samples_are_rejected_for_good(
+    name: str, value: float, where: int, asked: tuple[CSource, Path]
+) -> None:
+    source, program = asked
+    monitor = source.monitors[where]
+    with pytest.raises(InputError):
+        compile({"it": monitor.plan.formula}).evaluate(_batch({name: value, "s_SV": 1.0} | {name: value}))
+    samples = samples_of(source, _batch({"s_SV": 1.0}), 0)
+    samples[name][2] = value
+    found = answers(source, program, [samples])[monitor.label][:, 0, 0].tolist()
+    assert UNKNOWN not in found[:2]
+    assert found[2:] == [UNKNOWN, UNKNOWN]
+
+
+# --- What no monitor in C takes ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("formula", "options", "told"),
+    [
+        (
+            "G[0, 0.05] v_lon(SV) > 3 m/s",
+            {},
+            "bound 0.05 s is no multiple of the time step dt=0.04 s",
+        ),
+        (
+            "F (v_lon(SV) > 3 m/s and G[0, 600] v_lon(SV) < 30 m/s and a_lon(SV) > 0)",
+            {"memory": 1000},
+            "the monitor needs 1904 bytes, to remember 15000 values, and the limit is 1000; raise --memory",
+        ),
+        (
+            " or ".join(f"F G v_lon(SV) > {k} m/s" for k in range(4)),
+            {},
+            "8 temporal operators of the formula have no upper bound",
+        ),
+        (
+            "some l in lanelets(L): occ(SV, l) and v_lon(SV) > 3 m/s",
+            {},
+            "name the road of the monitor with --road",
+        ),
+        ("some M in lanes: F atLane(SV, M)", {}, "name the road of the monitor with --road"),
+        ("4", {"lanes": {"L": "main-1"}}, "lanes: the lanes of which road?"),
+        ("4", {"name": "a b"}, "name=a b: write letters, digits and _"),
+        ("4", {"to": "rust"}, "there is no target 'rust'; there are c"),
+    ],
+)
+def test_refused(formula: str, options: dict[str, object], told: str) -> None:
+    with pytest.raises(rp.RoadproofError) as refused:
+        rp.compile(formula, **options)  # type: ignore[arg-type]
+    assert told in str(refused.value)
