@@ -115,10 +115,10 @@ class ReferenceLine:
 
     def curvature_rate(self, s: float) -> float:
         """The change of curvature per metre at ``s`` (1/m²), by its bounds; 0 beyond the ends."""
-        part = next((x for x in self.parts if x.s <= s < x.end), None)
-        bend = next((x for x in part.bends() if x.begin <= s < x.end), None) if part else None
-        if bend is None:
+        k = bisect_right(self._bends, s, key=lambda x: float(x.begin)) - 1
+        if k < 0 or self._bends[k].end <= s:
             return 0.0
+        bend = self._bends[k]
         change = sum(bend.low[1:] + bend.high[1:]) - sum(bend.low[:1] + bend.high[:1])
         return float(change / 2 / (bend.end - bend.begin))
 
@@ -162,4 +162,8 @@ class ReferenceLine:
 
     def bends(self) -> tuple[Bend, ...]:
         """Bounds of the curvature, in the order of s."""
+        return self._bends
+
+    @cached_property
+    def _bends(self) -> tuple[Bend, ...]:
         return tuple(x for part in self.parts for x in sorted(part.bends(), key=lambda bend: bend.begin))

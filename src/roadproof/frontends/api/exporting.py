@@ -16,7 +16,7 @@ from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.recordings import Export
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library, unknown
-from roadproof.recordings.export.registry import FORMATS
+from roadproof.recordings.export.registry import FORMATS, numbers_in
 from roadproof.recordings.export.subject import Subject, subject_of
 from roadproof.runtime.files import hold_folder, write_whole
 
@@ -123,7 +123,7 @@ def _files(subject: Subject, name: str, library: Library) -> dict[str, bytes]:
 def _write(folder: Path, subject: Subject, name: str, files: Mapping[str, bytes]) -> ExportedDrive:
     for file, content in files.items():
         write_whole(folder / file, content)
-    return ExportedDrive(subject.name, name, tuple(folder / x for x in files), subject.ids)
+    return ExportedDrive(subject.name, name, tuple(folder / x for x in files), numbers_in(name, subject))
 
 
 def can_export(drive: str | Path, to: str, specs: Iterable[str | Path] = ()) -> None:

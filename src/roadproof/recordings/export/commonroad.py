@@ -4,17 +4,24 @@ A vehicle's reference point is the centre of its box, which is aligned with the 
 ``velocity`` and ``acceleration`` are along the box and so along the road, ``velocityY`` is to its left. The
 format has no place for the acceleration across. On a bend the speed along is v_lon·(1 - κ·d), with d and the
 curvature κ at the centre, and the acceleration along is the rate of that less v_lat·v_lon·κ.
+
+A road that is from a map in CommonRoad 2020a is exported as that map: its lanelets, signs, lights and
+intersections, and the file with zones beside it. Numbers of vehicles are then above all that the map has.
 """
 
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from pathlib import Path
 
 from roadproof.recordings.export.points import centre, centre_in_plane
 from roadproof.recordings.export.subject import WRITTEN, Layout, Section, Subject, kind_of, together
+from roadproof.recordings.export.user_map import checked_map
 from roadproof.recordings.export.xml import Element, decimal, document, element
+from roadproof.runtime.xml_reader import read_xml
 from roadproof.world.drive import Motion
+from roadproof.world.maps.network import ZONES_ENDING
 from roadproof.world.motion import State
 from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.road import Attribute, Lanelet
@@ -28,6 +35,8 @@ _CHORD = 0.005
 FIRST_LANELET, PROBLEM = 1001, 9001
 """Ids: vehicles count from 1, lanelets from 1001; ids differ among all of them."""
 
+VERSION = "2020a"
+_NETWORK = ("lanelet", "trafficSign", "trafficLight", "intersection")
 _NOWHERE = {"geoNameId": "-999", "gpsLatitude": "999", "gpsLongitude": "999"}
 # Kinds that CommonRoad calls otherwise.
 _OBSTACLES: Mapping[Kind, str] = {"other": "unknown"}
@@ -43,16 +52,21 @@ class _Cell:
 
 
 def files(subject: Subject) -> dict[str, bytes]:
-    """NAME.xml. Raises ``InputError`` for roads that have no lanes side by side."""
-    layout = subject.layout
+    """NAME.xml, and NAME_zones.toml where the map has one.
+
+    Raises ``InputError`` for roads that have no lanes side by side, and maps that are others by now.
+    """
+    path, known = _map_of(subject)
+    ids = _numbered(subject, known)
+    nowhere = element("location", *(element(tag, text=text) for tag, text in _NOWHERE.items()))
     root = element(
         "commonRoad",
-        element("location", *(element(tag, text=text) for tag, text in _NOWHERE.items())),
+        next((x for x in known if x.tag == "location"), nowhere),
         element("scenarioTags", element("highway"), element("simulated")),
-        *_lanelets(layout),
-        *(_obstacle(subject, name, motion) for name, motion in subject.vehicles.items()),
-        _problem(subject),
-        commonRoadVersion="2020a",
+        *([x for x in known if x.tag in _NETWORK] or _lanelets(subject.layout)),
+        *(_obstacle(subject, ids[name], name, motion) for name, motion in subject.vehicles.items()),
+        _problem(subject, max([PROBLEM, *(x + 1 for x in ids.values())])),
+        commonRoadVersion=VERSION,
         benchmarkID=f"ZAM_Roadproof-{subject.number}_1_T-1",
         date=WRITTEN,
         author="roadproof",
@@ -60,7 +74,33 @@ def files(subject: Subject) -> dict[str, bytes]:
         source=subject.said,
         timeStepSize=decimal(Fraction(1, subject.rate)),
     )
-    return {f"{subject.name}.xml": document(root)}
+    made = {f"{subject.name}.xml": document(root)}
+    zones = None if path is None else path.with_name(f"{path.stem}{ZONES_ENDING}")
+    if zones is not None and zones.is_file():
+        made[f"{subject.name}{ZONES_ENDING}"] = zones.read_bytes()
+    return made
+
+
+def numbers(subject: Subject) -> dict[str, int]:
+    """What vehicles are called. Raises ``InputError`` for maps that are others by now."""
+    return _numbered(subject, _map_of(subject)[1])
+
+
+def _map_of(subject: Subject) -> tuple[Path | None, list[Element]]:
+    """The map in CommonRoad 2020a that the road is from, and what it has; None where there is none."""
+    path = checked_map(subject, ".xml")
+    root = None if path is None else read_xml(path, "commonRoad")
+    if root is None or root.get("commonRoadVersion") != VERSION:
+        return None, []
+    return path, list(root)
+
+
+def _numbered(subject: Subject, known: list[Element]) -> dict[str, int]:
+    """Vehicles count from 1, beside a map from the next thousand above its greatest number."""
+    names = (y.get("id", "") for x in known if x.tag in _NETWORK for y in x.iter())
+    taken = [int(x) for x in names if x.isdecimal()]
+    first = 1000 * (max(taken) // 1000 + 1) if taken else 0
+    return {name: first + number for name, number in subject.ids.items()}
 
 
 def _lanelets(layout: Layout) -> Iterator[Element]:
@@ -122,7 +162,7 @@ def _box(motion: Motion) -> Element:
     return element("rectangle", *(element(tag, text=decimal(size)) for tag, size in sizes.items()))
 
 
-def _obstacle(subject: Subject, name: str, motion: Motion) -> Element:
+def _obstacle(subject: Subject, number: int, name: str, motion: Motion) -> Element:
     box = _box(motion)
     first, *others = (
         _state("state" if k else "initialState", k, state, motion, subject.file.road.line)
@@ -134,7 +174,7 @@ def _obstacle(subject: Subject, name: str, motion: Motion) -> Element:
         element("shape", box),
         first,
         element("trajectory", *others),
-        id=str(subject.ids[name]),
+        id=str(number),
     )
 
 
@@ -184,7 +224,7 @@ def _exact(tag: str, value: Fraction | float) -> Element:
     return element(tag, element("exact", text=decimal(value)))
 
 
-def _problem(subject: Subject) -> Element:
+def _problem(subject: Subject, number: int) -> Element:
     """That of the first vehicle, SV: from where it starts to where and when it ends (2020a requires one)."""
     name = next(iter(subject.vehicles))
     motion = subject.vehicles[name]
@@ -205,4 +245,4 @@ def _problem(subject: Subject) -> Element:
     steps = len(states) - 1
     begin, last = element("intervalStart", text=str(steps)), element("intervalEnd", text=str(steps + 1))
     goal = element("goalState", element("time", begin, last), element("position", place))
-    return element("planningProblem", initial, goal, id=str(PROBLEM))
+    return element("planningProblem", initial, goal, id=str(number))

@@ -11,53 +11,31 @@ map's reference line, as cubics, and its s from where the drive needs the road.
 from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from math import ceil
-from pathlib import Path
 
-from roadproof.errors import InputError
 from roadproof.recordings.export import plan_view
 from roadproof.recordings.export.subject import WRITTEN, Layout, Section, Subject, together
+from roadproof.recordings.export.user_map import checked_map, map_path
 from roadproof.recordings.export.xml import Element, decimal, document, element
-from roadproof.world.models import load_road
 from roadproof.world.motion import monotone_starts, state_at
-from roadproof.world.road import Attribute, Lanelet, Road
+from roadproof.world.road import Attribute, Lanelet
 
 _TYPES: Mapping[Attribute, str] = {"main": "driving", "merge": "entry", "departure": "exit"}
 _GAP = "none"
+ENDING = ".xodr"
 SPEED = 130
 """The speed limit in km/h, which our roads do not have: the recommended speed of German motorways."""
 
 
 def files(subject: Subject) -> dict[str, bytes]:
     """NAME.xodr, or the map of the road. Raises ``InputError`` for roads that have no lanes side by side."""
-    return {file_name(subject): _map_file(subject) or road_file(subject)}
+    path = checked_map(subject, ENDING)
+    return {file_name(subject): road_file(subject) if path is None else path.read_bytes()}
 
 
 def file_name(subject: Subject) -> str:
     """Of the road: NAME.xodr, or that of the map which it is from."""
-    path = map_path(subject.file.road)
+    path = map_path(subject.file.road, ENDING)
     return f"{subject.name}.xodr" if path is None else path.name
-
-
-def map_path(road: Road) -> Path | None:
-    """The map in OpenDRIVE that a road is from, None where there is none."""
-    path = Path((road.map or "").partition("#")[0])
-    return path if path.suffix == ".xodr" else None
-
-
-def _map_file(subject: Subject) -> bytes | None:
-    """The map that the road is from, None where there is none.
-
-    Raises ``InputError`` where the map cannot be read, or does not have the road of the drive.
-    """
-    road = subject.file.road
-    path = map_path(road)
-    if path is None:
-        return None
-    if load_road(str(road.map)) != road:
-        raise InputError(
-            f"{road.map}: the map has another road than drive {subject.name}; find the drive again"
-        )
-    return path.read_bytes()
 
 
 def road_file(subject: Subject) -> bytes:

@@ -26,6 +26,7 @@ from roadproof.errors import InputError
 from roadproof.recordings.export import opendrive
 from roadproof.recordings.export.points import OVERHANG, axle_to_centre, heading, rear_axle_in_plane
 from roadproof.recordings.export.subject import WRITTEN, Subject, kind_of
+from roadproof.recordings.export.user_map import map_path
 from roadproof.recordings.export.xml import Element, decimal, document, element
 from roadproof.world.drive import Motion
 from roadproof.world.maps.selection import STRETCH
@@ -236,7 +237,7 @@ def scenario_file(subject: Subject) -> bytes:
 def _stretch(road: Road) -> Iterator[Element]:
     """The stretch of the map, which a player does not need and a reader of s and d does."""
     _, _, chosen = (road.map or "").partition("#")
-    if chosen and opendrive.map_path(road) is not None:
+    if chosen and map_path(road, opendrive.ENDING) is not None:
         yield element("ParameterDeclaration", name=STRETCH, parameterType="string", value=chosen)
 
 

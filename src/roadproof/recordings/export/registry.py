@@ -13,3 +13,8 @@ FORMATS: Mapping[str, Callable[[Subject], dict[str, bytes]]] = {
     "csv": csv_table.files,
 }
 """By name, what makes the files of a drive: their contents by name. Each raises ``InputError``."""
+
+
+def numbers_in(name: str, subject: Subject) -> dict[str, int]:
+    """What vehicles are called in a format, where names are numbers."""
+    return commonroad.numbers(subject) if name == "commonroad" else subject.ids
