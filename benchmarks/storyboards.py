@@ -42,7 +42,7 @@ def storyboards(folder: Path) -> Iterator[Path]:
     for path in sorted(folder.rglob("*.xosc")):
         content = path.read_bytes()
         digest = hashlib.sha256(content).digest()
-        if digest not in seen and (b"<Storyboard" in content or b"<ParameterValueDistribution" in content):
+        if digest not in seen and re.search(rb"<(Storyboard|ParameterValueDistribution)[\s>]", content):
             seen.add(digest)
             yield path
 

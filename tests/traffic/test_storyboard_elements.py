@@ -385,3 +385,38 @@ def test_an_object_needs_a_box_only_where_it_is_a_vehicle(tmp_path: Path) -> Non
     assert thing in text
     path.write_text(text.replace(thing, outside), "utf-8")
     assert set(rows(path)) == {"Ego"}
+
+
+def test_a_road_goes_on_where_its_links_lead(tmp_path: Path) -> None:
+    """The car begins 60 m before the end of road 7; road 9 goes on straight, road 8 turns away."""
+    path = put(tmp_path, {"Ego": init("Ego", lane(-2, 1940), 20)}, hdg=0, stop=END)
+    text = (tmp_path / "map.xodr").read_text("utf-8")
+    road = text[text.index("<road ") : text.index("</OpenDRIVE>")]
+    ahead = '<link><successor elementType="junction" elementId="5"/></link><planView>'
+    before = '<link><predecessor elementType="road" elementId="7" contactPoint="end"/></link><planView>'
+    inside = road.replace('x="30"', 'x="2030"').replace("<planView>", before)
+    inside = inside.replace('junction="-1"', 'junction="5"').replace("2000", "300")
+    turning = inside.replace('id="7" length', 'id="8" length').replace("<line/>", '<arc curvature="0.01"/>')
+    straight = inside.replace('id="7" length', 'id="9" length')
+    roads = turning + straight + road.replace("<planView>", ahead)
+    (tmp_path / "map.xodr").write_text(text.replace(road, roads), "utf-8")
+    found = rows(path)["Ego"]
+    assert found["time"][-1] == pytest.approx(12)
+    assert at(found, 12, "s") == pytest.approx(1942 + 240)
+    assert at(found, 12, "d") == pytest.approx(-5)
+
+
+def test_a_lane_change_at_once_is_a_jump(tmp_path: Path) -> None:
+    change = event("jump", to_lane('<AbsoluteTargetLane value="-1"/>', "step"), when(at_time(4)))
+    path = put(tmp_path, {"Ego": EGO}, maneuver("Ego", change), stop=END)
+    assert read_recording(path).vehicles == 2
+    assert at(rows(path)["Ego (2)"], 5, "s") == pytest.approx(202)
+
+
+def test_criteria_of_carla_are_no_conditions(tmp_path: Path) -> None:
+    value = '<ParameterCondition parameterRef="" value="" rule="lessThan"/>'
+    criterion = f"<ByValueCondition>{value}</ByValueCondition>"
+    stop = when(criterion, tag="StopTrigger").replace('name="c"', 'name="criteria_CollisionTest"')
+    clock = when(at_time(3), tag="StopTrigger").removeprefix("<StopTrigger>")
+    path = put(tmp_path, {"Ego": EGO}, stop=stop.replace("</StopTrigger>", clock))
+    assert rows(path)["Ego"]["time"][-1] == pytest.approx(3)

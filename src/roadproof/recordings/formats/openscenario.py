@@ -24,7 +24,7 @@ from roadproof.recordings.formats.storyboard.box import Box
 from roadproof.recordings.formats.storyboard.conditions import TICKS
 from roadproof.recordings.formats.storyboard.curves import curve
 from roadproof.recordings.formats.storyboard.document import open_document
-from roadproof.recordings.formats.storyboard.routes import stretch_of
+from roadproof.recordings.formats.storyboard.routes import longer, stretch_of
 from roadproof.recordings.formats.storyboard.run import Play, run_storyboard
 from roadproof.recordings.formats.straight import of_road
 from roadproof.recordings.formats.table import Column, Table
@@ -87,7 +87,8 @@ def read_scenario(path: Path) -> Scenario:
     boxes = dict(_boxes(path, root))
     if not any(x.recorded for x in boxes.values()):
         raise InputError(f"{path}: no ScenarioObject is a motor vehicle")
-    road = load_road(stretch_of(document, road_path))
+    stretch = stretch_of(document, road_path)
+    road = load_road(stretch)
     modes = {x.get("followingMode") for x in root.iter("TrajectoryFollowingMode")}
     follows = (_FOLLOWS,) if "follow" in modes else ()
     if _follows_polylines(root, boxes):
@@ -95,6 +96,12 @@ def read_scenario(path: Path) -> Scenario:
         note = f"speeds and accelerations are those of curves through the vertices, {RATE} samples a second"
         return Scenario(_sampled(path, boxes, ways), road, road_path, (note, *follows))
     play = run_storyboard(document, boxes, road)
+    while play.at_end and (more := longer(stretch)) is not None:
+        try:
+            road = load_road(more)
+        except InputError:
+            break
+        stretch, play = more, run_storyboard(document, boxes, road)
     if len(play.states) < 2 * TICKS // RATE:
         raise InputError(f"{path}: the storyboard ends at {len(play.states) / TICKS:g} s: {play.ending}")
     told = f"the storyboard ends at {(len(play.states) - 1) / TICKS:g} s: {play.ending}"
@@ -308,7 +315,7 @@ def _of_play(path: Path, boxes: dict[str, Box], play: Play) -> tuple[Table, list
     tables, notes = [], []
     against = sorted(x for x in boxes if any(x in now and not now[x].forward for now in play.states))
     for name, box in boxes.items():
-        parts = [] if name in against or not box.recorded else [*_presences(name, play, step)]
+        parts = [*_presences(name, play, step)] if box.recorded else []
         for k, ticks in enumerate(parts):
             states = [play.states[tick][name] for tick in ticks]
             moving = np.array([[getattr(x, y) for x in states] for y in map(str, RECORDED)])
@@ -333,12 +340,12 @@ def _of_play(path: Path, boxes: dict[str, Box], play: Play) -> tuple[Table, list
 
 
 def _presences(name: str, play: Play, step: int) -> Iterator[list[int]]:
-    """Ticks at which an object has a place, every ``step``-th, from one jump to the next one."""
+    """Ticks at which an object drives along the road, every ``step``-th, from one jump to the next one."""
     found: list[int] = []
-    jumps = {math.ceil(x / step) * step for x in play.jumps.get(name, ())}
     for tick in range(0, len(play.states), step):
-        there = name in play.states[tick]
-        if found and (not there or tick in jumps):
+        there = name in play.states[tick] and play.states[tick][name].forward
+        jumps = there and any(play.jumps(name, x) for x in range(max(tick - step, 0) + 1, tick + 1))
+        if found and (not there or jumps):
             yield found
             found = []
         if there:

@@ -103,6 +103,20 @@ def select(path: Path, selection: Selection) -> Stretch:
 
 def stretch_of(path: Path, known_map: RoadMap, selection: Selection) -> Stretch:
     """As ``select``, from the roads of the file."""
+    ways = directed(path, known_map, selection)
+    made = carriageway(ways, selection.step)
+    if not made.lanelets:
+        raise InputError(
+            f"{ways[0].road.where}: no lane is driven on in this direction; try lanes=left or right"
+        )
+    line = ReferenceLine(tuple(part for way in ways for part in _parts(way)))
+    lanelets = tuple(cut(path, made, _span(ways, selection)))
+    check_lanelets(lanelets, ways[0].road.where)
+    return Stretch(lanelets, line, made.width_error)
+
+
+def directed(path: Path, known_map: RoadMap, selection: Selection) -> tuple[DirectedRoad, ...]:
+    """The selected roads as they are driven. Raises ``InputError``."""
     known, names = {x.id: x for x in known_map.roads}, [x.id for x in known_map.roads]
     names += known_map.refused
     if not selection.roads and len(names) > 1:
@@ -115,16 +129,7 @@ def stretch_of(path: Path, known_map: RoadMap, selection: Selection) -> Stretch:
         if name not in known:
             raise InputError(f"{path}: there is no road {name}; roadproof road {path} lists the roads")
     chosen = [known[x] for x in selection.roads] or [known_map.roads[0]]
-    ways = _route(path, chosen) if len(chosen) > 1 else (_single(chosen[0], selection),)
-    made = carriageway(ways, selection.step)
-    if not made.lanelets:
-        raise InputError(
-            f"{chosen[0].where}: no lane is driven on in this direction; try lanes=left or right"
-        )
-    line = ReferenceLine(tuple(part for way in ways for part in _parts(way)))
-    lanelets = tuple(cut(path, made, _span(ways, selection)))
-    check_lanelets(lanelets, chosen[0].where)
-    return Stretch(lanelets, line, made.width_error)
+    return _route(path, chosen) if len(chosen) > 1 else (_single(chosen[0], selection),)
 
 
 def _single(road: MapRoad, selection: Selection) -> DirectedRoad:

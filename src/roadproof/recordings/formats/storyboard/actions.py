@@ -102,8 +102,8 @@ class ActionReader:
                 return {"across": self._lane_offset(node, actor, scene)}
             case "FollowTrajectoryAction":
                 before = actor.courses["along"], actor.courses["across"]
-                read = TrajectoryReader(self.document, self.positions)
-                found = read.courses(node, self.boxes[actor.name], before, scene.time, scene.states)
+                read = TrajectoryReader(self.document, self.positions, actor.name, self.boxes[actor.name])
+                found = read.courses(node, before, scene.time, scene.states)
                 return {"along": found[0], "across": found[1]}
         raise self.document.error(node, "this action is not supported")
 
@@ -114,8 +114,8 @@ class ActionReader:
         vehicle without place.
         """
         if position.tag == "FollowTrajectoryAction":
-            read = TrajectoryReader(self.document, self.positions)
-            s, d = read.first(position, self.boxes[name], scene.states)
+            read = TrajectoryReader(self.document, self.positions, name, self.boxes[name])
+            s, d = read.first(position, scene.states)
             return Actor(name, {"along": Steady(scene.time, s), "across": Steady(scene.time, d)})
         forward = self.positions.is_forward(self.document.only(position), scene.states)
         positions = self.positions if forward else self.positions.turned()

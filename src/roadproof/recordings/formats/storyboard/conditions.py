@@ -24,6 +24,8 @@ _RULES: Mapping[str, Callable[[float, float], bool]] = {
     "lessOrEqual": lambda x, y: x <= y,
 }
 _EDGES = ("none", "rising", "falling", "risingOrFalling")
+_CRITERION = "criteria_"
+"""Names of conditions that CARLA's scenario_runner takes as criteria of a test, not as conditions."""
 _SLOWEST = 1e-3
 """m/s: slower vehicles have no headway."""
 
@@ -57,6 +59,8 @@ class ConditionReader:
     def holds(self, condition: Element, now: Situation) -> bool:
         """Whether a Condition holds, without its edge and delay. Raises ``InputError``."""
         kind = self.document.only(condition)
+        if condition.get("name", "").startswith(_CRITERION):
+            return False
         if kind.tag == "ByValueCondition":
             return self._by_value(self.document.only(kind), now)
         if kind.tag != "ByEntityCondition":

@@ -37,7 +37,7 @@ _FUNCTIONS: Mapping[str, Callable[..., float]] = {
     "min": lambda x, y: min(x, y),
     "max": lambda x, y: max(x, y),
 }
-_OWNERS = ("ScenarioObject", "ManeuverGroup", "TrajectoryRef")
+_OWNERS = ("ScenarioObject", "ManeuverGroup", "TrajectoryRef", "RouteRef")
 """Elements that may have a CatalogReference in place of an element that is written out."""
 _FOLDERS = "CatalogLocations/*/Directory"
 

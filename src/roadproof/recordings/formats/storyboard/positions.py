@@ -91,6 +91,14 @@ class Positions:
         turn -= math.pi if math.cos(turn) < 0 else 0.0  # which ``along`` says
         return x, y, self.road.line.pose(self.sign * s).heading + along + turn
 
+    def pose_of(self, state: State) -> tuple[float, float, float]:
+        """x, y and heading of a vehicle that is aligned with the road."""
+        s, d = self.sign * state.s, self.sign * state.d
+        along = 0.0 if state.forward == (self.sign > 0) else math.pi
+        if self.road.line is None:
+            return s, d, along
+        return (*self.road.line.place(s, d), self.road.line.pose(s).heading + along)
+
     def find(self, node: Element, states: States) -> tuple[float, float]:
         """s and d of an element Position, where vehicles are as ``states`` say. Raises ``InputError``.
 

@@ -1,9 +1,11 @@
 """The road or the route of a map on which the vehicles of a storyboard drive.
 
 A parameter ``roadproof_stretch`` says it. Otherwise it is the road on which the vehicles begin, or the route
-of the fewest roads, joined by their links, that has all of these roads.
+of the fewest roads, joined by their links, that has all of these roads. Where a vehicle comes to its end, it
+goes on in the road that its links lead to, at a junction in the straightest one.
 """
 
+import math
 from collections import deque
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -14,7 +16,7 @@ from roadproof.recordings.formats.storyboard.positions import distance, is_turne
 from roadproof.runtime.xml_reader import Element
 from roadproof.world.maps.carriageway import DirectedRoad, driven
 from roadproof.world.maps.opendrive import Link, MapRoad, read_map
-from roadproof.world.maps.selection import STRETCH
+from roadproof.world.maps.selection import LANELETS, STRETCH, directed, read_selection
 from roadproof.world.models import load_road
 
 _MOST_STEPS = 5000
@@ -48,13 +50,33 @@ def stretch_of(document: Document, path: Path) -> str:
     return _route(document, path, roads, wanted)
 
 
+def longer(stretch: str) -> str | None:
+    """A road or route with the road that goes on from its end, None where there is none."""
+    path, selection = read_selection(stretch)
+    if path.suffix in LANELETS or selection.span != (None, None) or not selection.roads:
+        return None
+    found = read_map(path)
+    last = directed(path, found, selection)[-1]
+    roads = {x.id: x for x in found.roads if x.id not in selection.roads}
+    ahead = min(_next(roads, last, []), key=_turn, default=None)
+    return None if ahead is None else f"{path}#route={'+'.join((*selection.roads, ahead.road.id))}"
+
+
+def _turn(way: DirectedRoad) -> float:
+    line = way.road.line
+    begin, end = (line.pose(float(x)).heading for x in (line.begin, line.end))
+    return abs(math.remainder(end - begin, math.tau))
+
+
 def _begins(document: Document) -> Iterator[Element]:
     """Elements inside Position at which vehicles begin or their routes lead, else any lane."""
     init = document.root.find("Storyboard/Init")
     found = []
+    others = {x.get("name") for x in document.root.iter("ScenarioObject") if x.find("Vehicle") is None}
     for private in () if init is None else init.iter("Private"):
-        for tag in ("TeleportAction", "Waypoint"):
-            found += [x[0] for node in private.iter(tag) for x in node.findall("Position") if len(x)]
+        if private.get("entityRef") in others:
+            continue
+        found += [x[0] for node in private.iter() for x in node.findall("Position") if len(x)]
     named = [x for x in found if x.tag in ("LanePosition", "RoadPosition", "TrackPosition", "WorldPosition")]
     yield from named or document.root.iter("LanePosition")
 

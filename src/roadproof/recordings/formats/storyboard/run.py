@@ -22,7 +22,7 @@ from roadproof.recordings.formats.storyboard.positions import State, positions_o
 from roadproof.runtime.xml_reader import Element
 from roadproof.world.road import Road
 
-LONGEST, REST = 120, 5
+LONGEST, REST, JUMP = 120, 5, 0.5
 _STANDS = 1e-6
 """m/s"""
 _FOLLOW = "RoutingAction/FollowTrajectoryAction"
@@ -33,12 +33,21 @@ _ANYWHERE = Point(0.0, 0.0)
 class Play:
     """States of the objects' reference points at each tick from 0 on, and why it ended.
 
-    ``jumps``: ticks at which an object was put somewhere else.
+    ``at_end``: as a vehicle came to the end of the road.
     """
 
     states: tuple[Mapping[str, State], ...]
     ending: str
-    jumps: Mapping[str, tuple[int, ...]]
+    at_end: bool = False
+
+    def jumps(self, name: str, tick: int) -> bool:
+        """Whether an object is put somewhere else at a tick: more than JUMP m from where its speed leads."""
+        if tick == 0 or name not in self.states[tick - 1]:
+            return False
+        one, other = self.states[tick - 1][name], self.states[tick][name]
+        speeds = (max(abs(getattr(x, y)) for x in (one, other)) / TICKS for y in ("v_lon", "v_lat"))
+        ways = abs(other.s - one.s), abs(other.d - one.d)
+        return any(way > speed + JUMP for way, speed in zip(ways, speeds, strict=True))
 
 
 def run_storyboard(document: Document, boxes: Mapping[str, Box], road: Road) -> Play:
@@ -63,7 +72,6 @@ class _Runner:
         self.owners: dict[tuple[str, Axis], StoryElement] = {}
         self.travelled: dict[str, float] = {}
         self.still: dict[str, int] = {}
-        self.jumps: dict[str, tuple[int, ...]] = {}
         self.values = initial_values(document)
         self.tick = 0
 
@@ -76,11 +84,11 @@ class _Runner:
             states = self._states()
             self._count(found[-1] if found else states, states)
             if ahead := [x for x, state in states.items() if self._is_beyond(x, state)]:
-                return self._play(found, f"{ahead[0]} comes to the end of the road")
+                return Play(tuple(found), f"{ahead[0]} comes to the end of the road", at_end=True)
             found.append(states)
             now = self._situation(states)
             if self.stop.fires(now):
-                return self._play(found, "its StopTrigger fires")
+                return Play(tuple(found), "its StopTrigger fires")
             self._steer(states)
             for story in self.stories:
                 self._advance(story, now)
@@ -88,11 +96,8 @@ class _Runner:
             if complete is None and all(x.state == "complete" for x in self.stories):
                 complete = tick
             if complete is not None and not self.stop.can_fire and tick >= complete + REST * TICKS:
-                return self._play(found, f"all is complete for {REST} s")
-        return self._play(found, f"it does not end by itself within {LONGEST} s")
-
-    def _play(self, states: list[Mapping[str, State]], ending: str) -> Play:
-        return Play(tuple(states), ending, self.jumps)
+                return Play(tuple(found), f"all is complete for {REST} s")
+        return Play(tuple(found), f"it does not end by itself within {LONGEST} s")
 
     def _is_beyond(self, name: str, state: State) -> bool:
         """Whether a vehicle that is recorded comes to the end of the road."""
@@ -118,11 +123,7 @@ class _Runner:
     def _count(self, before: Mapping[str, State], states: Mapping[str, State]) -> None:
         """Add up distances and times at rest."""
         for name, state in states.items():
-            gone = (
-                abs(state.s - before[name].s)
-                if name in before and self.tick not in self.jumps.get(name, ())
-                else 0.0
-            )
+            gone = abs(state.s - before[name].s) if name in before else 0.0
             self.travelled[name] = self.travelled.get(name, 0.0) + gone
             if abs(state.v_lon) > _STANDS:
                 self.still.pop(name, None)
@@ -190,9 +191,7 @@ class _Runner:
         return tuple(courses)
 
     def _put(self, name: str, position: Element) -> None:
-        """Put a vehicle somewhere; where it had a place, this is a jump."""
-        if name in self.actors and self.tick:
-            self.jumps[name] = (*self.jumps.get(name, ()), self.tick)
+        """Put a vehicle somewhere."""
         self.actors[name] = self.actions.placed(position, name, Scene(self.tick / TICKS, self._states()))
 
     def _act_globally(self, action: Element) -> None:

@@ -8,6 +8,7 @@ is. One without times says d by s, where s ascends: the speed along the road sta
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
@@ -22,6 +23,9 @@ from roadproof.runtime.xml_reader import Element
 SPACING = 0.25
 MOST = 20_000
 _LATE = 0.011
+
+
+_Pose: TypeAlias = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -40,13 +44,15 @@ class _Points:
 
 @dataclass(frozen=True)
 class TrajectoryReader:
-    """Reads FollowTrajectoryActions of a document."""
+    """Reads FollowTrajectoryActions of a vehicle."""
 
     document: Document
     positions: Positions
+    name: str
+    box: Box
 
     def courses(
-        self, node: Element, box: Box, before: tuple[Course, Course], begin: float, states: States
+        self, node: Element, before: tuple[Course, Course], begin: float, states: States
     ) -> tuple[Course, Course]:
         """The courses along and across the road of an action that begins now, after those ``before``."""
         read = self.document
@@ -58,7 +64,7 @@ class TrajectoryReader:
         if read.number(node, "initialDistanceOffset", 0.0):
             raise read.error(node, "initialDistanceOffset is not supported; begin at the first point")
         points = self._points(trajectory, states)
-        s, d = self._in_road(points, box)
+        s, d = self._in_road(points)
         times = self._times(node, points.times, begin)
         if times is None:
             if not (np.diff(s) > 0).all():
@@ -73,12 +79,12 @@ class TrajectoryReader:
         )
         return along, across
 
-    def first(self, node: Element, box: Box, states: States) -> tuple[float, float]:
+    def first(self, node: Element, states: States) -> tuple[float, float]:
         """s and d of the reference point of a vehicle at the first point of an action's trajectory."""
         trajectory = next(node.iter("Trajectory"), None)
         if trajectory is None:
             raise self.document.error(node, "a Trajectory is needed")
-        s, d = self._in_road(self._points(trajectory, states), box)
+        s, d = self._in_road(self._points(trajectory, states))
         return float(s[0]), float(d[0])
 
     def _times(self, node: Element, times: Floats | None, begin: float) -> Floats | None:
@@ -98,9 +104,9 @@ class TrajectoryReader:
             raise read.error(node, "each point must have a later time than the one before")
         return found
 
-    def _in_road(self, points: _Points, box: Box) -> tuple[Floats, Floats]:
+    def _in_road(self, points: _Points) -> tuple[Floats, Floats]:
         """s and d of the reference point of an aligned vehicle, by the centre of its box."""
-        ahead, left = box.centre
+        ahead, left = self.box.centre
         x = points.x + ahead * np.cos(points.heading) - left * np.sin(points.heading)
         y = points.y + ahead * np.sin(points.heading) + left * np.cos(points.heading)
         places = [self.positions.place(float(a), float(b)) for a, b in zip(x, y, strict=True)]
@@ -119,7 +125,7 @@ class TrajectoryReader:
                 piece = low, low + read.number(shape, prime) * length, length
                 pose = self.positions.pose(read.child(shape, "Position"), states)
                 ends = [read.number(shape, x) for x in ("startTime", "stopTime") if shape.get(x)]
-                return self._clothoids(shape, [(pose, piece)], ends)
+                return self._clothoids(shape, [(pose, 0.0, piece)], ends, states)
             case "ClothoidSpline":
                 return self._spline(shape, states)
             case "Nurbs":
@@ -150,30 +156,31 @@ class TrajectoryReader:
         for node in shape.findall("ClothoidSplineSegment"):
             begin = node.find("PositionStart")
             pose = None if begin is None else self.positions.pose(begin, states)
-            if read.number(node, "hOffset", 0.0):
-                raise read.error(node, "hOffset is not supported")
             if node.get("timeStart"):
                 raise read.error(node, "timeStart is not supported")
             low, high, length = (read.number(node, x) for x in ("curvatureStart", "curvatureEnd", "length"))
-            pieces.append((pose, (low, high, length)))
-        return self._clothoids(shape, pieces, [])
+            pieces.append((pose, read.number(node, "hOffset", 0.0), (low, high, length)))
+        return self._clothoids(shape, pieces, [], states)
 
     def _clothoids(
         self,
         node: Element,
-        pieces: list[tuple[tuple[float, float, float] | None, tuple[float, float, float]]],
+        pieces: list[tuple[_Pose | None, float, _Pose]],
         ends: list[float],
+        states: States,
     ) -> _Points:
-        """Points of clothoids, each with its pose (or where the one before ends), curvatures and length.
+        """Points of clothoids, each with its pose, a turn, curvatures and length.
 
-        ``ends``: times of the first and the last point.
+        Without pose it begins where the one before ends, the first one where the vehicle is. ``ends``: times
+        of the first and the last point.
         """
-        if not pieces or pieces[0][0] is None:
-            raise self.document.error(node, "a position where it starts is needed")
-        x, y, heading = pieces[0][0]
+        if not pieces:
+            raise self.document.error(node, "a ClothoidSplineSegment is needed")
+        x, y, heading = pieces[0][0] or self.positions.pose_of(states[self.name])
         found = [(x, y, heading)]
-        for pose, (low, high, length) in pieces:
+        for pose, offset, (low, high, length) in pieces:
             x, y, heading = found[-1] if pose is None else pose
+            heading += offset
             count = min(max(math.ceil(length / SPACING), 1), MOST)
             step = length / count
             for k in range(count):
