@@ -110,6 +110,55 @@ def test_lanes_that_overlap_are_refused(tmp_path: Path) -> None:
         load_road(write(tmp_path, *wide))
 
 
+@pytest.mark.parametrize("parts", [True, False])
+def test_where_a_lane_parts_or_joins_the_longer_lane_has_the_place(parts: bool, tmp_path: Path) -> None:
+    """Lanelet 13 lies on 12 where it branches off, or ends on it, and is beside it 100 m away."""
+    aside, on = (-3.5, 0.0), (0.0, 3.5)
+    one = MapLane(12, (100, 200), on, (14,), right=13)
+    other = MapLane(
+        13, (100, 200), on if parts else aside, () if parts else (14,), left=12, end=aside if parts else on
+    )
+    lanes = (
+        MapLane(11, (0, 100), on, (12, 13) if parts else (12,)),
+        replace(one, after=(14,)),
+        other,
+        MapLane(14, (200, 300), on),
+    )
+    found = load_road(write(tmp_path, *lanes)).lanelets
+    main = [x for x in found if x.id.partition(".")[0] != "13"]
+    assert all(-1.75 <= x.d[0] <= -1.5 and x.d[1] == 1.75 for x in main)
+    branch = sorted((x.s[0] or 0, x.s[1] or 0, *x.d) for x in found if x.id.startswith("13"))
+    assert branch
+    assert all(right < left <= -1.5 for _, _, right, left in branch)
+    edges = {(x.s[0], x.d[0]) for x in main} & {(x[0], x[3]) for x in branch}
+    assert len(edges) == len(branch)  # side by side everywhere
+    far = branch[-1] if parts else branch[0]
+    assert float(far[2]) == pytest.approx(-5.25, abs=0.15)
+    near = branch[0][0] if parts else 300 - branch[-1][1]
+    assert 100 < near < 115
+
+
+def test_a_way_that_comes_near_itself_is_followed_from_place_to_place(tmp_path: Path) -> None:
+    """The end of a loop is where it begins, but no lanelet leads back."""
+    turn = 2 * math.pi / 400
+    lanes = [MapLane(k, (100.0 * k, 100.0 * k + 100), (0, 0.3), (k + 1,) if k < 3 else ()) for k in range(4)]
+    (found,) = rp.stretches(write(tmp_path, *lanes, curvature=turn))
+    assert not found.refused
+    assert float(found.length) == pytest.approx(400, abs=4)
+
+
+def test_a_bound_that_turns_back_is_named(tmp_path: Path) -> None:
+    path = write(tmp_path, *RAMP)
+    point = "<point><x>60.0</x><y>3.5</y></point>"
+    text = path.read_text()
+    assert point in text
+    path.write_text(text.replace(point, point.replace("60.0", "50.0"), 1))
+    with pytest.raises(
+        InputError, match=r"left bound of lanelet 11: .* by 6\.0 m, as it turns by 180 degrees"
+    ):
+        load_road(path)
+
+
 @pytest.mark.parametrize(
     ("said", "told"),
     [

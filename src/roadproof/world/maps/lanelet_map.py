@@ -71,6 +71,13 @@ class LaneletMap:
         """For each lanelet the number of its way in ``chains``."""
         return {name: k for k, chain in enumerate(self.chains) for name in chain}
 
+    def branches(self, name: str) -> set[str]:
+        """The lanelets that a lanelet parts from at its beginning, and those that it joins at its end."""
+        lanelets = self.network.lanelets
+        parting = {other for x in self.predecessors[name] for other in lanelets[x].successors}
+        joining = {other for x in lanelets[name].successors for other in self.predecessors[x]}
+        return (parting | joining) - {name}
+
     def near(self, line: Floats) -> list[str]:
         """Lanelets whose middles may cross a line."""
         low, high = self.boxes
@@ -145,17 +152,33 @@ def _measured(
             goes_on = k and chain[k - 1] in lanes and attributes.get(chain[k - 1]) == attributes.get(name)
             if name in attributes:
                 lanes[name] = lanes[chain[k - 1]] if goes_on else name
+    begins = _begins(known, way)
+    lengths = dict.fromkeys(lanes.values(), 0.0)
+    for name, lane in lanes.items():
+        lengths[lane] += network.lanelets[name].length
     return tuple(
         MapLanelet(
             x,
             lanes[x],
             attributes[x],
             zones[x],
-            edges_along(line, network.lanelets[x].right, f"{where}: right bound of lanelet {x}"),
-            edges_along(line, network.lanelets[x].left, f"{where}: left bound of lanelet {x}"),
+            edges_along(line, network.lanelets[x].right, begins[x], f"{where}: right bound of lanelet {x}"),
+            edges_along(line, network.lanelets[x].left, begins[x], f"{where}: left bound of lanelet {x}"),
+            lengths[lanes[x]],
+            frozenset(known.branches(x)),
         )
         for x in names
     )
+
+
+def _begins(known: LaneletMap, way: tuple[str, ...]) -> dict[str, float]:
+    """Where (m) along a way each lanelet of its road begins to be beside it."""
+    begins: dict[str, float] = {}
+    begin = 0.0
+    for name in way:
+        begins |= {other: begin for other in known.across[name] if other not in begins}
+        begin += known.network.lanelets[name].length
+    return begins
 
 
 def _kinds(known: LaneletMap, way: tuple[str, ...]) -> tuple[dict[str, Attribute], dict[str, Zone]]:

@@ -2,7 +2,8 @@
 
 Edges are constant in steps, and lanelets side by side have one edge in common, in the middle of both of
 theirs. The greatest distance between an edge and the bound that it stands for is told. Ends of lanelets that
-are within a metre of each other are one place.
+are within a metre of each other are one place. Where two lanelets part or join, they may overlap: then the
+place belongs to the one whose lane is longer, and the other one begins or ends beside it.
 """
 
 from collections import Counter
@@ -28,12 +29,19 @@ _SHORTEST = 0.25
 """Metres: a step that is shorter is not divided."""
 _BACK = 1.0
 """Metres that a bound may go back along the reference line."""
+_AROUND = 15.0
+"""Metres before and after a place where the next point of a bound is looked for."""
+_TURNED_BACK = 120.0
+"""Degrees: a bound that turns by more at a point has a wrong point."""
 _MILLI = 1000
 
 
 @dataclass(frozen=True)
 class MapLanelet:
-    """``right``, ``left``: bounds as rows of s and d, s growing. ``lane``: a name that its lanelets have."""
+    """``right``, ``left``: bounds as rows of s and d, s growing. ``lane``: a name that its lanelets have.
+
+    ``lane_length`` in m. ``branches``: lanelets that it parts from at its beginning or joins at its end.
+    """
 
     id: str
     lane: str
@@ -41,6 +49,8 @@ class MapLanelet:
     zone: Zone
     right: Floats
     left: Floats
+    lane_length: float = 0.0
+    branches: frozenset[str] = frozenset()
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -59,19 +69,42 @@ class _Strip:
     error: float
 
 
-def edges_along(line: ReferenceLine, bound: Floats, where: str) -> Floats:
-    """A bound as rows of s and d. Raises ``InputError`` where it goes back along the line."""
+def edges_along(line: ReferenceLine, bound: Floats, begin: float, where: str) -> Floats:
+    """A bound as rows of s and d. Raises ``InputError`` where it goes back along the line.
+
+    ``begin``: where on the line the bound begins, roughly: points are looked for from there on, as the line
+    may come near itself.
+    """
     rows: list[tuple[float, float]] = []
     samples = np.array(line.samples)
-    for x, y in thinned(bound, _SPACING).tolist():
-        near = int(np.argmin(np.hypot(samples[:, 1] - x, samples[:, 2] - y)))
-        s, d = line.locate(x, y, float(samples[near, 0]))
+    last, points = begin, thinned(bound, _SPACING)
+    steps = np.hypot(*np.diff(points, axis=0, prepend=points[:1]).T)
+    for (x, y), step in zip(points.tolist(), steps.tolist(), strict=True):
+        last = min(max(last, float(line.begin)), float(line.end))
+        ahead = samples[np.abs(samples[:, 0] - last) < 2 * step + _AROUND]
+        near = int(np.argmin(np.hypot(ahead[:, 1] - x, ahead[:, 2] - y)))
+        s, d = line.locate(x, y, float(ahead[near, 0]))
+        last = s
         if rows and s < rows[-1][0] - _BACK:
-            told = f"at s = {s:.1f} m it goes back along the middle of the way: the bend is too sharp"
-            raise InputError(f"{where}: {told} for lanes side by side; name another way or cut the file")
+            told = f"at s = {s:.1f} m it goes back along the middle of the way by {rows[-1][0] - s:.1f} m"
+            raise InputError(
+                f"{where}: {told}, {_cause(line, bound, s)}; lanes side by side are needed: name another way "
+                "or cut the file"
+            )
         if not rows or s > rows[-1][0]:
             rows.append((s, d))
     return np.array(rows)
+
+
+def _cause(line: ReferenceLine, bound: Floats, s: float) -> str:
+    """Why a bound goes back along the line at ``s``."""
+    step = np.diff(bound, axis=0)
+    turns = np.abs(np.remainder(np.diff(np.arctan2(step[:, 1], step[:, 0])) + np.pi, 2 * np.pi) - np.pi)
+    sharpest = float(np.degrees(turns.max(initial=0.0)))
+    if sharpest > _TURNED_BACK:
+        return f"as it turns by {sharpest:.0f} degrees at one of its points"
+    near = (x.greatest for x in line.bends() if x.end > s - _AROUND and x.begin < s + _AROUND)
+    return f"where the way has a radius of {1 / max(float(max(near, default=0)), 1e-3):.1f} m"
 
 
 def lanelets_of(
@@ -149,23 +182,57 @@ def _divided(
 
 def _strips(there: Sequence[MapLanelet], part: tuple[float, float], where: str) -> Iterator[_Strip]:
     """Lanelets side by side on a step, from right to left."""
-    rights = [_values(x.right, part) for x in there]
-    lefts = [_values(x.left, part) for x in there]
-    right, left = ([_middle(x) for x in edges] for edges in (rights, lefts))
-    for k in range(1, len(there)):
-        gap = right[k] - left[k - 1]
-        if abs(gap) <= _ONE_EDGE:
-            right[k] = left[k - 1] = _middle(np.concatenate((lefts[k - 1], rights[k])))
-        elif gap < 0:
-            raise InputError(
-                f"{where}: lanelets {there[k - 1].id} and {there[k].id} overlap by {float(-gap):.1f} m at "
-                f"s = {part[0]:.0f} m; lanes side by side are needed"
-            )
     s = _milli(part[0]), _milli(part[1])
-    for k, x in enumerate(there):
-        if right[k] + _NARROWEST <= left[k]:
-            far = (np.abs(rights[k] - float(right[k])).max(), np.abs(lefts[k] - float(left[k])).max())
-            yield _Strip(x, s, (right[k], left[k]), float(max(far)))
+    beside: list[_Edges] = []
+    for x in there:
+        found = _Edges(x, _values(x.right, part), _values(x.left, part))
+        while beside and found.gives_way_or_takes(beside[-1], where, part[0]):
+            beside.pop()
+        if found.right < found.left:
+            beside.append(found)
+    for edges in beside:
+        if edges.right + _NARROWEST <= edges.left:
+            yield _Strip(edges.lanelet, s, (edges.right, edges.left), edges.error)
+
+
+class _Edges:
+    """The edges of a lanelet on a step, which those beside it move.
+
+    ``rights``, ``lefts``: d of its bounds there. An edge that gave way to another lanelet has no error.
+    """
+
+    def __init__(self, lanelet: MapLanelet, rights: Floats, lefts: Floats) -> None:
+        self.lanelet, self.rights, self.lefts = lanelet, rights, lefts
+        self.right, self.left = _middle(rights), _middle(lefts)
+        self.moved_right, self.moved_left = False, False
+
+    @property
+    def error(self) -> float:
+        """How far (m) an edge is from its bound."""
+        right = 0.0 if self.moved_right else float(np.abs(self.rights - float(self.right)).max())
+        left = 0.0 if self.moved_left else float(np.abs(self.lefts - float(self.left)).max())
+        return max(right, left)
+
+    def gives_way_or_takes(self, other: "_Edges", where: str, s: float) -> bool:
+        """Make edges meet with those of ``other`` to the right; whether nothing of the other one is left.
+
+        Raises ``InputError`` where the two overlap though they neither part nor join.
+        """
+        gap = self.right - other.left
+        if abs(gap) <= _ONE_EDGE:
+            self.right = other.left = _middle(np.concatenate((other.lefts, self.rights)))
+        elif gap < 0:
+            one, two = other.lanelet, self.lanelet
+            if two.id not in one.branches:
+                raise InputError(
+                    f"{where}: lanelets {one.id} and {two.id} overlap by {float(-gap):.1f} m at "
+                    f"s = {s:.0f} m; lanes side by side are needed"
+                )
+            if one.lane_length < two.lane_length:
+                other.left, other.moved_left = self.right, True
+                return other.left <= other.right
+            self.right, self.moved_right = other.left, True
+        return False
 
 
 def _middle(values: Floats) -> Fraction:
