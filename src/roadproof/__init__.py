@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from roadproof.errors import TextError as TextError
     from roadproof.errors import TextErrors as TextErrors
     from roadproof.errors import UsageError as UsageError
+    from roadproof.frontends.api.assuring import assurance as assurance
     from roadproof.frontends.api.cataloguing import catalogue as catalogue
     from roadproof.frontends.api.checking import check as check
     from roadproof.frontends.api.classifying import classify as classify
@@ -120,6 +121,7 @@ _HOMES = {
     "simulate": "frontends.api.simulating",
     "export": "frontends.api.exporting",
     "page": "frontends.api.reporting",
+    "assurance": "frontends.api.assuring",
     "atlas": "frontends.atlas.atlas",
     "check": "frontends.api.checking",
     "Verdict": "verdict",

@@ -54,6 +54,7 @@ NOT_HEADED = {"road.json", "drive.json", "certificate.json", "question.json", "a
 
 STRANGE = {"stranger": [[7]]}  # is nowhere what is wanted
 OPTIONAL = {
+    "assurance.json": {"solution", "limits"},
     "answer.json": {"stem", "road", "counterexample", "assuming"},
     "classify.json": {"doubts"},
     "coverage.json": {"in_traffic", "trace"},
@@ -230,6 +231,18 @@ def of_check(run: Run, out: Path, traffic: Path) -> None:
     told = run("check", out, DRIVE, "--jobs", 1)
     assert {x["outcome"] for x in told["findings"]} == {"accepted", "rejected", "unreadable"}
     examine(told)
+
+
+def of_assurance(run: Run, out: Path, traffic: Path) -> None:
+    run("prove", "false -> danger(SV,POV)", "--jobs", 1, "--out", out / "own")
+    goal = "goal = 'It holds'\nsupported-by = 'Sn1'\n"
+    for name, verdict in (("good", "PROVED"), ("bad", "REFUTED")):
+        solution = f"solution = 'A proof'\nevidence = 'own'\nexpect = '{verdict}'\n"
+        (out / f"{name}.toml").write_text(f"[G1]\n{goal}[Sn1]\n{solution}", "utf-8")
+    told = [run(command, out / "bad.toml", "--jobs", 1) for command in ("assurance", "check")]
+    assert told[0] == told[1]
+    assert told[0]["open_points"]
+    examine(told[0], run("assurance", out / "good.toml", "--jobs", 1))
 
 
 def of_witness(run: Run, out: Path, traffic: Path) -> None:

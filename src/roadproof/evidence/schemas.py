@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Annotated, Literal, get_args
 
 from roadproof.evidence.answers import (
+    assurance,
     catalogue_index,
     certificate,
     check,
@@ -53,6 +54,7 @@ TITLES: Mapping[type, str] = {
     library.Answer: "roadproof list --json: what the library holds",
     show.Answer: "roadproof show --format json: a scenario, a definition or a formula",
     check.Answer: "roadproof check --json: what evidence shows",
+    assurance.Answer: "roadproof assurance --json: an argument in GSN, and which of its parts hold",
     monitor.Answer: "roadproof monitor --json: where a formula holds on one trace",
     traffic.Answer: (
         "results.json of roadproof evaluate, and its --json: dangers in recordings, and what matches them"

@@ -7,7 +7,7 @@ from roadproof.errors import UsageError
 from roadproof.frontends.cli.options import print_answer
 from roadproof.frontends.cli.progress import Counter
 from roadproof.frontends.settings.flags import read_keywords
-from roadproof.frontends.settings.questions import Check
+from roadproof.frontends.settings.questions import Assurance, Check
 from roadproof.verdict import ExitCode
 
 SUMMARY = "check certificates and drive files again, independently"
@@ -21,6 +21,7 @@ examples:
   roadproof check proofs/ --kernel coq --write v/  what would be put to Coq, to be read
   roadproof check proofs/ --strict                 for a pipeline: no answer may be without evidence
   roadproof check mine/ --spec mine.spec           claims that were made with definitions of yours
+  roadproof check case.toml                        all evidence of an assurance case, as roadproof assurance
 
 A certificate is accepted when the claim, read with the library at hand, and the certificate's instances
 give the very query that is stored, and the solver answers unsat to it. A drive file is accepted when its
@@ -46,9 +47,23 @@ def run(args: argparse.Namespace) -> int:
 
     if args.kernel is not None and args.solver != "z3":
         raise UsageError(f"--kernel {args.kernel} uses no solver: omit --solver or --kernel")
+    if any(x.suffix == ".toml" for x in args.paths):
+        return _check_case(args)
     if args.write is not None:
         return _write(args)
     checked = check(*args.paths, **read_keywords(args, Check) | {"progress": Counter()})
+    print_answer(checked, args.json)
+    return checked.exit_code
+
+
+def _check_case(args: argparse.Namespace) -> int:
+    from roadproof.frontends.api.assuring import assurance
+
+    if len(args.paths) > 1 or args.kernel is not None:
+        raise UsageError(
+            "an assurance case is checked alone and with a solver: name one CASE, and omit --kernel"
+        )
+    checked = assurance(args.paths[0], **read_keywords(args, Assurance) | {"progress": Counter()})
     print_answer(checked, args.json)
     return checked.exit_code
 

@@ -138,6 +138,13 @@ class CheckKeywords(BudgetKeywords, WorkersKeywords, total=False):
     progress: Progress | None
 
 
+class AssuranceKeywords(BudgetKeywords, WorkersKeywords, total=False):
+    solver: Solver
+    specs: Iterable[str | Path]
+    strict: bool
+    progress: Progress | None
+
+
 class PageKeywords(WorkersKeywords, total=False):
     title: str | None
     solver: Solver

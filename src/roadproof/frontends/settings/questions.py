@@ -156,6 +156,19 @@ class Check(groups.Answered, groups.Budget, groups.Workers):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Assurance(groups.Answered, groups.Budget, groups.Workers):
+    """Options of ``assurance``."""
+
+    solver: Solver = groups.checker_of("solver that checks certificates")
+    specs: Iterable[str | Path] = groups.specifications_of("the evidence")
+    strict: bool = option(
+        False, "--strict", "leave undecided what expects a verdict without evidence (NONE-WITHIN)"
+    )
+    effort: float = groups.effort_for("a query", 60.0)
+    progress: Progress | None = option(None)
+
+
+@dataclass(frozen=True, kw_only=True)
 class Page(groups.Workers):
     """Options of ``report``, which is ``page`` in Python."""
 

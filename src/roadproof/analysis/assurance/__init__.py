@@ -1,0 +1,1 @@
+"""Assurance cases in Goal Structuring Notation: arguments whose solutions are evidence that is checked."""

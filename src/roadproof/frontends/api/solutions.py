@@ -1,0 +1,178 @@
+"""The solutions of an assurance case: their evidence checked as ``check`` does, and what it shows."""
+
+import hashlib
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+from roadproof.analysis.assurance.case import Evidence
+from roadproof.analysis.assurance.limits import BOUNDED, DIGEST, Limit, limits_of
+from roadproof.analysis.assurance.states import State
+from roadproof.errors import RoadproofError
+from roadproof.evidence.answers import drives, proofs
+from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
+from roadproof.evidence.folder import INDEX
+from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
+from roadproof.frontends.api.checking import check
+from roadproof.frontends.settings.keywords import CheckKeywords
+from roadproof.verdict import ExitCode
+
+WHOLE = ("COVERED", "GAPS")
+"""Verdicts of a whole answer."""
+ANSWERS = (proofs.ANSWER_SCHEMA, drives.SCHEMA)
+_OPEN = ("UNKNOWN", "NONE-WITHIN")
+
+
+@dataclass(frozen=True)
+class SolutionCheck:
+    """The evidence of a solution, checked: ``verdicts`` by number of accepted entries, ``reasons`` why it
+    does not hold, and the exit code that ``check`` gives them."""
+
+    state: State
+    reasons: tuple[str, ...]
+    exit_code: ExitCode
+    verdicts: Mapping[str, int]
+    sha256: str
+    limits: tuple[Limit, ...]
+
+
+def check_evidence(path: Path, told: CheckKeywords) -> tuple[Finding, ...] | RoadproofError:
+    """What ``check`` finds of a file or folder, or why it cannot read it.
+
+    In an answer of ``--json`` verdicts within limits stand for themselves: they have no evidence.
+    """
+    try:
+        stated = _stated(path) if path.is_file() else None
+        return check(path, **told).findings if stated is None else stated
+    except RoadproofError as error:
+        return error
+
+
+def _stated(path: Path) -> tuple[Finding, ...] | None:
+    """The verdicts of an answer of ``prove --json`` or ``witness --json``; None for all other files."""
+    try:
+        data = Fields(read_json(path, LARGEST_INDEX), str(path))
+        if data.text("schema") not in ANSWERS:
+            return None
+    except RoadproofError:
+        return None
+    found = []
+    for number, entry in enumerate(data.items("verdicts"), 1):
+        said = Fields(entry, f"{path}, answer {number}")
+        verdict = said.text("verdict")
+        claim = said.text("claim" if said.has("claim") else "formula")
+        accepted = verdict in BOUNDED
+        outcome = Acceptance.ACCEPTED if accepted else Acceptance.UNDECIDED
+        reason = "" if accepted else "name the folder of --out, of which check reads the evidence"
+        found.append(Finding(said.where, NO_EVIDENCE, outcome, reason, verdict, "", claim))
+    return tuple(found)
+
+
+def judge_solution(
+    path: Path, evidence: Evidence, report: tuple[Finding, ...] | RoadproofError | None, strict: bool
+) -> SolutionCheck:
+    """The state of a solution by the check of its evidence."""
+    if isinstance(report, RoadproofError) or not path.exists():
+        told = str(report) if isinstance(report, RoadproofError) else f"{evidence.path} does not exist"
+        code = report.exit_code if isinstance(report, RoadproofError) else ExitCode.BAD_INPUT
+        return SolutionCheck(State.BROKEN, (told,), ExitCode(code), {}, "", ())
+    digest = digest_of(path)
+    faults: list[_Fault] = []
+    if evidence.sha256 not in ("", digest):
+        faults.append(
+            _Fault(State.BROKEN, f"{evidence.path} has changed: sha256 {digest}", ExitCode.UNEXPECTED)
+        )
+    limits: tuple[Limit, ...] = ()
+    verdicts: Mapping[str, int] = {}
+    if report is None:
+        limits = (Limit(DIGEST, (f"{evidence.path} is compared with its SHA-256 only",)),)
+    else:
+        counted = [x for x in report if _counts(x, evidence.select)]
+        accepted = [x for x in counted if x.outcome is Acceptance.ACCEPTED]
+        faults += _faults(path, evidence, counted, strict)
+        verdicts = Counter(str(x.verdict) for x in accepted)
+        limits = limits_of(_files(path, accepted, evidence), accepted)
+    state = max((x.state for x in faults), key=[*State].index, default=State.HOLDS)
+    codes = (x.code for x in faults if x.state is state)
+    reasons = tuple(dict.fromkeys(x.reason for x in faults))
+    return SolutionCheck(state, reasons, max(codes, default=ExitCode.AS_EXPECTED), verdicts, digest, limits)
+
+
+@dataclass(frozen=True)
+class _Fault:
+    """Why a solution does not hold, with the exit code of that."""
+
+    state: State
+    reason: str
+    code: ExitCode
+
+
+def _counts(finding: Finding, select: Sequence[str]) -> bool:
+    """Whether a finding is about a selected entry, or damage that concerns all of them."""
+    names = (finding.label, Path(finding.where).name)
+    if not select or any(fnmatchcase(name, x) for name in names for x in select):
+        return True
+    return finding.outcome is not Acceptance.ACCEPTED and not finding.label
+
+
+def _faults(path: Path, evidence: Evidence, counted: Sequence[Finding], strict: bool) -> Iterator[_Fault]:
+    for x in counted:
+        if x.outcome is not Acceptance.ACCEPTED:
+            state = State.UNDECIDED if x.outcome is Acceptance.UNDECIDED else State.BROKEN
+            yield _Fault(state, f"{x.outcome}: {_named(x)}: {x.reason}", x.outcome.exit_code)
+    whole = [x for x in evidence.expect if x in WHOLE]
+    each = [x for x in evidence.expect if x not in WHOLE]
+    if whole and (word := whole_verdict(path)) not in whole:
+        state = State.UNDECIDED if word in ("UNKNOWN", "") else State.BROKEN
+        code = ExitCode.UNKNOWN if state is State.UNDECIDED else ExitCode.UNEXPECTED
+        yield _Fault(
+            state, f"{evidence.path} is {word or 'without a verdict'}, expected {' or '.join(whole)}", code
+        )
+    accepted = [x for x in counted if x.outcome is Acceptance.ACCEPTED]
+    if not counted:
+        told = f"no entry of {evidence.path} matches {', '.join(evidence.select) or 'anything'}"
+        yield _Fault(State.BROKEN, told, ExitCode.UNEXPECTED)
+    for x in accepted if each else ():
+        told = f"{x.verdict}: {_named(x)}, expected {' or '.join(each)}"
+        if x.verdict not in each:
+            open_ = x.verdict in _OPEN
+            code = ExitCode.UNKNOWN if open_ else ExitCode.UNEXPECTED
+            yield _Fault(State.UNDECIDED if open_ else State.BROKEN, told, code)
+        elif strict and x.kind == NO_EVIDENCE:
+            yield _Fault(State.UNDECIDED, f"{x.verdict}: {_named(x)} has no evidence", ExitCode.UNKNOWN)
+
+
+def _named(finding: Finding) -> str:
+    """The label of a finding, else the name of its file."""
+    return finding.label or Path(finding.where).name
+
+
+def whole_verdict(path: Path) -> str:
+    """The verdict of an answer as a whole: its own, or of a catalogue whether its tests cover all that was
+    asked and are what they claim; empty where it has none."""
+    try:
+        data = Fields(read_json(path / INDEX if path.is_dir() else path, LARGEST_INDEX), str(path))
+    except RoadproofError:
+        return ""
+    if "not_tested" in data.content:
+        return "GAPS" if data.items("not_tested") or data.items("faults") else "COVERED"
+    return data.text("verdict") if data.has("verdict") and isinstance(data.get("verdict"), str) else ""
+
+
+def _files(path: Path, accepted: Sequence[Finding], evidence: Evidence) -> list[Path]:
+    """The files of evidence of accepted findings, and the answers of the folder that state limits."""
+    files = [Path(x.where) for x in accepted if Path(x.where).suffix == ".json"]
+    answers = [] if evidence.select or not path.is_dir() else sorted(path.glob("answers/*.json"))
+    index = [path / INDEX] if path.is_dir() else [path]
+    return [*dict.fromkeys(x for x in (*files, *index, *answers) if x.is_file())]
+
+
+def digest_of(path: Path) -> str:
+    """The SHA-256 of a file; of a folder that of the names and digests of its files."""
+    if not path.is_dir():
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    files = sorted(x for x in path.rglob("*") if x.is_file())
+    lines = (f"{digest_of(x)}  {x.relative_to(path).as_posix()}\n" for x in files)
+    return hashlib.sha256("".join(lines).encode()).hexdigest()

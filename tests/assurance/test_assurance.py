@@ -1,0 +1,168 @@
+"""Cases with evidence, from the files to exit codes, paths and limits."""
+
+import hashlib
+import json
+from pathlib import Path
+
+import pytest
+
+import roadproof as rp
+from roadproof.analysis.assurance.states import State
+from roadproof.errors import InputError
+from roadproof.frontends.cli.main import main
+
+CLAIMS = ("false -> danger(SV,POV)", "v_lon(SV) > 2 m/s -> v_lon(SV) > 3 m/s")
+CASE = """\
+title = "Trial"
+[G1]
+goal = "All is well"
+supported-by = ["S1"]
+[S1]
+strategy = "Argument by claims"
+supported-by = ["G2", "G3"]
+[G2]
+goal = "Claims hold"
+supported-by = "Sn1"
+[Sn1]
+solution = "Proofs"
+evidence = "claims"
+expect = ["PROVED", "REFUTED"]
+[G3]
+goal = "The review is done"
+supported-by = "Sn2"
+[Sn2]
+solution = "Protocol of the review"
+evidence = "review.txt"
+sha256 = "DIGEST"
+"""
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    """The files of a case that holds."""
+    folder = tmp_path_factory.mktemp("made")
+    rp.prove(*CLAIMS, out=folder / "claims", jobs=1)
+    review = b"reviewed\n"
+    (folder / "review.txt").write_bytes(review)
+    text = CASE.replace("DIGEST", hashlib.sha256(review).hexdigest())
+    (folder / "case.toml").write_text(text, "utf-8")
+    return {x.relative_to(folder).as_posix(): x.read_bytes() for x in folder.rglob("*") if x.is_file()}
+
+
+@pytest.fixture
+def case(made: dict[str, bytes], tmp_path: Path) -> Path:
+    for name, content in made.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_bytes(content)
+    return tmp_path / "case.toml"
+
+
+def certificates(case: Path) -> list[Path]:
+    return sorted((case.parent / "claims").glob("claim-*.json"))
+
+
+def test_a_case_holds(case: Path) -> None:
+    found = rp.assurance(case, jobs=1)
+    assert found.exit_code == 0
+    assert {*found.states.values()} == {State.HOLDS}
+    assert found.open_points == ()
+    assert str(found).endswith("2 solutions: 2 holds; the top goal G1 holds")
+    assert found.solutions["Sn1"].verdicts == {"PROVED": 1, "REFUTED": 1}
+
+
+def test_limits_become_assumptions_of_the_goals_above(case: Path) -> None:
+    data = rp.assurance(case, jobs=1).as_data()
+    elements = {x["id"]: x for x in data["elements"]}
+    assert elements["G2"]["in_context_of"] == ["Sn1.limits"]
+    limits = {x["name"]: x["told"] for x in elements["Sn1.limits"]["limits"]}
+    assert "lateral_sign=rss" in limits["readings"]
+    assert limits["not checked"] == ["limits of vehicles"]
+    assert elements["Sn2.limits"]["limits"][0]["name"] == "digest"
+    assert elements["Sn1.limits"]["kind"] == "assumption"
+
+
+def test_a_damaged_certificate_breaks_the_case_up_to_the_top(
+    case: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = certificates(case)[0]
+    path.write_text(
+        path.read_text("utf-8").replace("danger", "safe", 1).replace("3 m/s", "1 m/s", 1), "utf-8"
+    )
+    found = rp.assurance(case, jobs=1)
+    assert found.states == dict.fromkeys(("Sn1", "G2", "S1", "G1"), State.BROKEN) | dict.fromkeys(
+        ("Sn2", "G3"), State.HOLDS
+    )
+    assert found.exit_code == 10
+    for command in ("assurance", "check"):
+        assert main([command, str(case), "--jobs", "1"]) == 10
+        told = capsys.readouterr().out
+        assert "broken: Sn1 -> G2 -> S1 -> G1\n" in told
+        assert path.name in told
+
+
+def test_a_file_that_is_gone_or_no_json_breaks_the_case(case: Path) -> None:
+    certificates(case)[0].write_text("{", "utf-8")
+    found = rp.assurance(case, jobs=1)
+    assert (found.state, found.exit_code) == (State.BROKEN, 10)
+    certificates(case)[0].unlink()
+    found = rp.assurance(case, jobs=1)
+    assert (found.state, found.exit_code) == (State.BROKEN, 10)
+    (case.parent / "review.txt").unlink()
+    assert "review.txt does not exist" in rp.assurance(case, jobs=1).reasons("Sn2")[0]
+
+
+def test_a_changed_file_without_evidence_breaks_the_case(case: Path) -> None:
+    (case.parent / "review.txt").write_text("rejected\n", "utf-8")
+    found = rp.assurance(case, jobs=1)
+    assert [x.path for x in found.open_points] == [("Sn2", "G3", "S1", "G1")]
+    assert "review.txt has changed: sha256 " in found.reasons("Sn2")[0]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "code", "told"),
+    [
+        ('["PROVED", "REFUTED"]', '"PROVED"', 10, "REFUTED: base, expected PROVED"),
+        ('["PROVED", "REFUTED"]', '"COVERED"', 20, "claims is without a verdict, expected COVERED"),
+        ('["PROVED", "REFUTED"]', '"PROVED"\nselect = "P9 *"', 10, "no entry of claims matches P9 *"),
+        ('"claims"', '"other"', 3, "other does not exist"),
+    ],
+)  # fmt: skip
+def test_other_verdicts_than_expected_are_told(case: Path, old: str, new: str, code: int, told: str) -> None:
+    case.write_text(case.read_text("utf-8").replace(old, new), "utf-8")
+    found = rp.assurance(case, jobs=1)
+    assert found.exit_code == code
+    assert told in " ".join(found.reasons("Sn1"))
+
+
+def test_selected_entries_alone_count(case: Path) -> None:
+    proof = next(x.name for x in certificates(case) if "claim" in json.loads(x.read_text("utf-8")))
+    text = case.read_text("utf-8").replace('["PROVED", "REFUTED"]', f'"PROVED"\nselect = "{proof}"')
+    case.write_text(text, "utf-8")
+    assert rp.assurance(case, jobs=1).exit_code == 0
+    (case.parent / "claims" / proof).write_text("{}", "utf-8")
+    assert rp.assurance(case, jobs=1).state is State.BROKEN
+
+
+def test_bounded_answers_hold_within_limits_and_not_when_strict(case: Path) -> None:
+    found = rp.witness("F[0, 1 s] v_lon(SV) > 200 m/s", jobs=1)
+    (case.parent / "none.json").write_text(json.dumps(found.as_data()), "utf-8")
+    text = (
+        case.read_text("utf-8")
+        .replace('"claims"', '"none.json"')
+        .replace('["PROVED", "REFUTED"]', '"NONE-WITHIN"')
+    )
+    case.write_text(text, "utf-8")
+    found = rp.assurance(case, jobs=1)
+    assert found.exit_code == 0
+    limits = {x.name: x.told for x in found.solutions["Sn1"].limits}
+    assert limits["within limits"][0].startswith("NONE-WITHIN: road main-2; dt 1/2; horizon 6; ")
+    strict = rp.assurance(case, jobs=1, strict=True)
+    assert (strict.states["Sn1"], strict.exit_code) == (State.UNDECIDED, 20)
+
+
+def test_a_case_is_checked_alone(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", str(case), str(case.parent / "claims")]) == 2
+    assert "an assurance case is checked alone" in capsys.readouterr().err
+    case.write_text("[", "utf-8")
+    with pytest.raises(InputError, match="is no TOML"):
+        rp.assurance(case)

@@ -1,0 +1,46 @@
+"""Cases that are not well-formed are refused with the line and the rule; well-formed ones are read."""
+
+from pathlib import Path
+
+import pytest
+
+from assurance.cases import GOOD
+from roadproof.analysis.assurance.case import Kind
+from roadproof.analysis.assurance.reading import read_case
+from roadproof.errors import InputError
+from tables import read_table
+
+FAULTS = read_table(__file__, "faults")
+
+
+def write(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "case.toml"
+    path.write_text(text, "utf-8")
+    return path
+
+
+def test_a_case_is_read(tmp_path: Path) -> None:
+    case = read_case(write(tmp_path, GOOD))
+    assert (case.title, case.top) == ("Trial", "G1")
+    assert [x.kind for x in case.elements.values()] == [
+        *(Kind.GOAL, Kind.CONTEXT, Kind.STRATEGY, Kind.GOAL, Kind.SOLUTION, Kind.GOAL)
+    ]
+    assert case.elements["Sn1"].line == 18
+    assert case.supported["G2"] == ("S1",)
+
+
+@pytest.mark.parametrize("fault", FAULTS, ids=lambda x: x["name"])
+def test_a_fault_is_refused_with_its_line(fault: dict[str, str], tmp_path: Path) -> None:
+    """The change of the good case, the number of the line and the rule stand in the table."""
+    assert GOOD.count(fault["old"]) == 1
+    path = write(tmp_path, GOOD.replace(fault["old"], fault["new"]))
+    with pytest.raises(InputError) as error:
+        read_case(path)
+    assert str(error.value).startswith(f"{path}, line {fault['line']}: ")
+    assert fault["told"] in str(error.value)
+
+
+def test_texts_over_several_lines_hide_no_fields(tmp_path: Path) -> None:
+    text = GOOD.replace('"Is developed later"', '"""Is\n[G9]\ngoal = 7\nlater"""') + "colour = 1\n"
+    with pytest.raises(InputError, match=r"line 29: there is no field 'colour'"):
+        read_case(write(tmp_path, text))
