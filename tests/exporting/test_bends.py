@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import roadproof as rp
+from exporting.integration import integrated
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import DriveFile, drive_data, load_drive, read_drive
 from roadproof.evidence.judged import judge_file
@@ -102,20 +103,6 @@ def test_a_verdict_is_the_same_on_every_road_with_the_same_lanelets(path: Path) 
     changed = Drive(vehicles, file.drive.own)
     one, other = (judge_file(replace(x, drive=changed), library) for x in (file, bent))
     assert (one.accepted, one.reason) == (other.accepted, other.reason)
-
-
-def integrated(s: np.ndarray, d: np.ndarray) -> np.ndarray:
-    """Places on the motorway, whose curvature is integrated twice."""
-    fine = np.linspace(0, 1600, 1_600_001)
-    curvature = np.interp(fine, [0, 300, 420, 1020, 1140, 1600], [0, 0, 1 / 400, 1 / 400, 0, 0])
-    step = fine[1] - fine[0]
-    heading = 0.7 + np.concatenate(([0], np.cumsum((curvature[1:] + curvature[:-1]) / 2 * step)))
-    middle = (heading[1:] + heading[:-1]) / 2
-    x = 300 + np.concatenate(([0], np.cumsum(np.cos(middle) * step)))
-    y = -150 + np.concatenate(([0], np.cumsum(np.sin(middle) * step)))
-    turned = np.interp(s, fine, heading)
-    x, y = np.interp(s, fine, x), np.interp(s, fine, y)
-    return np.stack((x - d * np.sin(turned), y + d * np.cos(turned), turned))
 
 
 def test_exports_agree_with_an_integration() -> None:
