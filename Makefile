@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 JOBS ?= 2
 
-.PHONY: test long demo docs man fresh browser evidence evidence-check findings interop mutants fuzz lint unit format clean
+.PHONY: test long demo docs man fresh browser evidence evidence-check findings interop release mutants fuzz lint unit format clean
 
 test: lint unit
 
@@ -70,6 +70,11 @@ findings: $(READY)
 # Exported drives, put to clients that nobody here wrote (docs/how-to/interop.md); environments under out/interop.
 interop: $(READY)
 	PYTHONPATH=tests $(BIN)/python -m interop $(ARGS)
+
+# The wheel and the source archive in out/release, installed into every Python that is found; ARGS=--lowest too.
+release: $(READY)
+	$(BIN)/python -m pip install --quiet 'build>=1.2,<2' 'cyclonedx-bom>=5,<8'
+	PYTHONPATH=tests $(BIN)/python -m installing $(ARGS)
 
 # Small faults in the source, each tried against the tests that run its line (docs/explanation/tests.md); hours, taken
 # up again where it stopped. ARGS='--only semantics/exact/ --most 20' asks for less.

@@ -2,6 +2,7 @@
 
 import os
 import random
+import re
 import subprocess
 import sys
 import warnings
@@ -436,3 +437,16 @@ def test_z3_needs_no_other_solver(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_cvc5_is_asked_where_it_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Session, "answer", None)
     assert ask(SCRIPT, "cvc5") == "sat"
+
+
+@pytest.mark.parametrize("version", ["1.5.4", "1.9.1"])
+def test_cvxpy_that_loses_bounds_is_refused(version: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(milp.modelling(), "__version__", version)
+    with pytest.raises(MissingSolverError, match=re.escape(f"cvxpy={version} calls problems infeasible")):
+        milp.modelling()
+
+
+@pytest.mark.parametrize("version", ["1.9.2", "1.10.0", "2.0.0rc1"])
+def test_later_versions_of_cvxpy_are_taken(version: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(milp.modelling(), "__version__", version)
+    assert milp.modelling().__version__ == version

@@ -247,6 +247,6 @@ def test_a_sample_of_the_shipped_answers_is_as_computed(
 
 def test_another_version_is_another_question(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = KnownAnswers.to("roadproof/overlap/1", {}, {})
-    monkeypatch.setattr(known, "VERSION", "0.0.1")
+    monkeypatch.setattr(known, "ANSWERS", "0.0.1")
     assert KnownAnswers.to("roadproof/overlap/1", {}, {}).asked != asked.asked
     assert Overlap.record_type.__name__ == "Record"

@@ -53,10 +53,11 @@ Entry: TypeAlias = Concrete | Abstract
 
 @dataclass(frozen=True)
 class Catalogue:
-    """The tests, in order, and ``notes`` on files that are none."""
+    """The tests, in order, and ``notes`` on files that are none; ``sources``: the file that names each."""
 
     entries: tuple[Entry, ...]
     notes: tuple[str, ...] = ()
+    sources: Mapping[str, str] = field(default_factory=dict)
 
 
 # --- what is asked of them ------------------------------------------------------------------------

@@ -54,7 +54,9 @@ def read_catalogue(paths: Iterable[Path | str], specification: Specification) ->
         )
     if all(x.is_whole for x in found):
         raise InputError("\n".join(x.entry.fault for x in found if isinstance(x.entry, Concrete)))
-    return Catalogue(tuple(_with_own_ids(found)), tuple(notes))
+    entries = tuple(_with_own_ids(found))
+    sources = {entry.id: x.source for entry, x in zip(entries, found, strict=True)}
+    return Catalogue(entries, tuple(notes), sources)
 
 
 def _with_own_ids(found: Iterable[_Found]) -> Iterator[Entry]:

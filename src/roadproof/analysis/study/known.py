@@ -20,7 +20,7 @@ from roadproof.evidence.strict import Fields, JsonObject
 from roadproof.runtime.cache import keep_bytes, kept_bytes, make_room
 from roadproof.runtime.files import write_whole
 from roadproof.runtime.package_data import shipped
-from roadproof.version import VERSION
+from roadproof.version import ANSWERS, VERSION
 
 SCHEMA = "roadproof/known/1"
 SWITCH = "ROADPROOF_KNOWN"
@@ -60,7 +60,7 @@ class KnownAnswers:
         """Those to a question with answers of ``schema``; parameters and files count where they are used."""
         rest = {name: value for name, value in said.items() if name not in ("parameters", "specs")}
         kind = schema.removeprefix("roadproof/").partition("/")[0]
-        return cls(kind, _digest(VERSION, schema, rest, dict(more)))
+        return cls(kind, _digest(ANSWERS, schema, rest, dict(more)))
 
     def find(self, name: str, key: str) -> KnownAnswer | None:
         """The answer of this name, where all that it depends on has the digest ``key``."""

@@ -7,9 +7,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
+from itertools import groupby
 from pathlib import Path
 
-from roadproof.errors import UsageError
+from roadproof.errors import Position, UsageError
 from roadproof.library.motion import statement
 from roadproof.library.specification import read_specification, unknown
 from roadproof.verdict import ClaimVerdict, Verdict, claim_verdict
@@ -139,9 +140,24 @@ def choose(
     ]
 
 
-def read_claims(path: Path) -> list[str]:
+@dataclass(frozen=True)
+class WrittenClaim:
+    """A claim of a file, with the place where it begins; line and column count from 1."""
+
+    text: str
+    at: Position
+
+
+def read_claims(path: Path) -> list[WrittenClaim]:
     """The claims of a file: paragraphs, without ``#`` comments. Raises ``InputError``."""
     text = read_specification(path).text.replace("\r\n", "\n")
-    kept = [line for line in text.split("\n") if not line.lstrip().startswith("#")]
-    lines = [line.partition("#")[0].rstrip() for line in kept]
-    return [claim.strip() for claim in re.split(r"\n{2,}", "\n".join(lines)) if claim.strip()]
+    numbered = [(k, line) for k, line in enumerate(text.split("\n"), 1) if not line.lstrip().startswith("#")]
+    lines = [(k, line.partition("#")[0].rstrip()) for k, line in numbered]
+    paragraphs = (list(group) for filled, group in groupby(lines, lambda x: bool(x[1])) if filled)
+    return [
+        WrittenClaim(
+            "\n".join(line for _, line in those).strip(),
+            Position(those[0][0], len(those[0][1]) - len(those[0][1].lstrip()) + 1),
+        )
+        for those in paragraphs
+    ]

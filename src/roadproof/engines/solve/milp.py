@@ -7,6 +7,7 @@ its own condition on the box. ``cvxpy`` is imported here and in ``solve.smooth``
 
 import gc
 import math
+import re
 import sys
 import warnings
 from collections.abc import Callable, Mapping, Sequence
@@ -131,6 +132,8 @@ SOLVERS: Mapping[str, SolverFacts] = {
         lambda limits: {"tm_lim": math.ceil(limits.seconds * 1000), "mip_gap": limits.gap},
     ),
 }
+
+OLDEST_CVXPY = (1, 9, 2)
 
 
 def find_solver(name: str) -> SolverFacts:
@@ -316,7 +319,9 @@ def prepare() -> None:
 def modelling() -> Any:
     """cvxpy, without all of scipy.stats: that is most of its import, for one function that nobody here needs.
 
-    cvxpy gets a function in its place that imports scipy.stats when it is called.
+    cvxpy gets a function in its place that imports scipy.stats when it is called. Raises
+    ``MissingSolverError`` where its version is before 1.9.2: it then loses bounds of a variable of which some
+    entries are binary, and calls problems infeasible that are not.
     """
     if "cvxpy" not in sys.modules and _STATISTICS not in sys.modules:
         known = {*sys.modules}
@@ -333,6 +338,12 @@ def modelling() -> Any:
         gc.freeze()  # thousands of objects that stay, which each collection would walk through for 0.1 s
     import cvxpy
 
+    version = vars(cvxpy)["__version__"]
+    if tuple(map(int, re.findall(r"\d+", version)[:3])) < OLDEST_CVXPY:
+        oldest = ".".join(map(str, OLDEST_CVXPY))
+        raise MissingSolverError(
+            f"cvxpy={version} calls problems infeasible that are not: pip install 'cvxpy>={oldest}'"
+        )
     return cvxpy
 
 

@@ -22,6 +22,7 @@ from roadproof.errors import UsageError
 from roadproof.evidence.answers import catalogue_index as kept
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
+from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.completing import CompletionAnswer, write_completions
 from roadproof.frontends.api.definitions import Definitions, load
 from roadproof.frontends.api.restricting import drivers_of, restricted
@@ -29,6 +30,9 @@ from roadproof.frontends.api.settings import basis_of, one_of
 from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import catalogue as report
 from roadproof.frontends.report.catalogue_drives import DrivePicture, draw_tests
+from roadproof.frontends.report.ci.cases import Case
+from roadproof.frontends.report.ci.junit import as_junit
+from roadproof.frontends.report.ci.questions import catalogue_cases
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import CatalogueKeywords
@@ -39,11 +43,16 @@ from roadproof.verdict import ExitCode, Verdict
 
 
 @dataclass(frozen=True, repr=False)
-class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record], Result):
+class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record], Result, BuildResult):
     """What tests show and mean; ``examination`` has the tests, and what concrete ones show."""
 
     examination: Examination = field(kw_only=True)
     pieces: ClassVar[str] = "questions about abstract tests"
+    command: ClassVar[str] = "catalogue"
+
+    def cases(self) -> Iterator[Case]:
+        home, sources = self.study.basis.specification, self.catalogue.sources
+        return catalogue_cases(self.tests, self.tested, sources, home)
 
     @cached_property
     def known(self) -> Mapping[str, Kept]:
@@ -133,8 +142,8 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record], Result):
         return report.as_csv(self.tests, self.tested, self.in_force)
 
     def to_junit(self) -> str:
-        """Tests that fail where they are not what they claim, and what is to be tested, as JUnit's XML."""
-        return report.as_junit(self.tests, self.tested, self.in_force)
+        """Tests that fail where they are not what they claim, and what is to be tested, as JUnit XML."""
+        return as_junit(f"roadproof {self.command}", tuple(self.cases()), self.in_force)
 
     def __str__(self) -> str:
         drivers = report.driver_lines(self.decisions)

@@ -1,11 +1,11 @@
 """Evidence checked again, without the programs that made it."""
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Literal, TypeAlias, Unpack
+from typing import ClassVar, Literal, TypeAlias, Unpack
 
 from roadproof.analysis.study import pool
 from roadproof.engines.prove.properties import find_label
@@ -20,8 +20,11 @@ from roadproof.evidence.heading import heading
 from roadproof.evidence.kernel import coq
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api import kernel as kernels
+from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.settings import work_of
 from roadproof.frontends.api.table import Row, Table
+from roadproof.frontends.report.ci.cases import Case
+from roadproof.frontends.report.ci.questions import finding_cases
 from roadproof.frontends.settings.keywords import CheckKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Check
@@ -37,7 +40,7 @@ Kernel: TypeAlias = Literal["coq"]
 
 
 @dataclass(frozen=True, repr=False)
-class CheckReport(Table):
+class CheckReport(Table, BuildResult):
     """A finding for each claim, with the definitions of ``library``.
 
     ``solver`` is who was asked about certificates. ``specs``: specification files that lie beside the
@@ -53,6 +56,10 @@ class CheckReport(Table):
     kernel: kernels.KernelAnswer | None = None
     not_checked: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     strict: bool = False
+    command: ClassVar[str] = "check"
+
+    def cases(self) -> Iterator[Case]:
+        return finding_cases(self.findings, self.strict)
 
     @property
     def accepted(self) -> bool:

@@ -19,11 +19,14 @@ from roadproof.errors import UsageError
 from roadproof.evidence.answers import coverage as kept
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
+from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.definitions import Definitions, load
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import as_road, basis_of
 from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.report import coverage as report
+from roadproof.frontends.report.ci.cases import Case
+from roadproof.frontends.report.ci.questions import coverage_cases
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import CoverageKeywords
@@ -44,11 +47,12 @@ CODES = {
 
 
 @dataclass(frozen=True, repr=False)
-class Coverages(StudyAnswers[Coverage, Kept, kept.Record]):
+class Coverages(StudyAnswers[Coverage, Kept, kept.Record], BuildResult):
     """What a spec set misses; ``traffic``: how often each class of gaps occurs in recordings, if asked."""
 
     traffic: GapTraffic | None = None
     pieces: ClassVar[str] = "parts of the survey"
+    command: ClassVar[str] = "coverage"
 
     @cached_property
     def surveyed(self) -> Survey:
@@ -83,6 +87,16 @@ class Coverages(StudyAnswers[Coverage, Kept, kept.Record]):
     @property
     def exit_code(self) -> ExitCode:
         return CODES[self.verdict]
+
+    def cases(self) -> Iterator[Case]:
+        index = self._index(self.found.records)
+        keys = ["" if x.part is None else x.part.key for x in self.surveyed.classes]
+        files = {
+            key: self.folder / str(index.gaps[said.gaps[0] - 1].drive)
+            for key, said in zip(keys, index.classes, strict=True)
+            if self.folder and said.gaps
+        }
+        return coverage_cases(self.surveyed, self.study.survey.basis.specification, files)
 
     @property
     def _sheet(self) -> Sheet[kept.CountedClass] | Sheet[kept.Claim]:

@@ -21,12 +21,15 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Picture
+from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.exporting import formats_in
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import searches_of, setting, work_of
 from roadproof.frontends.api.studied import StudyAnswers, drive_pictures
 from roadproof.frontends.report.animation import ENDINGS
+from roadproof.frontends.report.ci.cases import Case
+from roadproof.frontends.report.ci.questions import search_cases
 from roadproof.frontends.report.film import need
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.report.witness import EVERY_VIEW, SearchedFor, Views, as_line, sheet_of
@@ -66,10 +69,20 @@ class DriveFolder:
 
 
 @dataclass(frozen=True, repr=False)
-class Witnesses(StudyAnswers[WitnessStudy, Outcome, kept.Record]):
+class Witnesses(StudyAnswers[WitnessStudy, Outcome, kept.Record], BuildResult):
     """Searches for drives, and what came out of each."""
 
     pieces: ClassVar[str] = "questions"
+    command: ClassVar[str] = "witness"
+
+    def cases(self) -> Iterator[Case]:
+        named = self.study.named
+        searches = ((name, self.found.answers[name]) for name in named)
+        return search_cases((x, named[name].specification, self._file(name, x)) for name, x in searches)
+
+    def _file(self, name: str, outcome: Outcome) -> Path | None:
+        files = evidence_files(name, outcome)
+        return self.folder / files[0] if self.folder is not None and files else None
 
     @property
     def library(self) -> Library:

@@ -15,10 +15,13 @@ from roadproof.errors import UsageError
 from roadproof.evidence.answers import plates as kept
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
+from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.definitions import Definitions, load
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.api.studied import StudyAnswers, drawn
 from roadproof.frontends.report import preventable as report
+from roadproof.frontends.report.ci.cases import Case
+from roadproof.frontends.report.ci.questions import plate_cases
 from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.sheet import Sheet, as_csv
 from roadproof.frontends.settings import studies as settings
@@ -32,10 +35,19 @@ _MOST_LINES = 2000
 _MOST_PLATES = 200
 
 
-class Plates(StudyAnswers[Preventable, Found, kept.Record]):
+class Plates(StudyAnswers[Preventable, Found, kept.Record], BuildResult):
     """Where a collision is unpreventable, exactly, with judged drives on both sides and proved lemmas."""
 
     pieces = "plates and lemmas"
+    command = "preventable"
+
+    def cases(self) -> Iterator[Case]:
+        index = self._index(self.found.records)
+        shown = {x.name: [y.drive for y in x.shown if y.drive] for x in index.plates}
+        files = {name: drives[0] for name, drives in shown.items() if drives}
+        files |= {f"lemma-{x.name}": x.certificate for x in index.lemmas if x.certificate}
+        places = {name: self.folder / str(file) for name, file in files.items() if self.folder}
+        return plate_cases(self.plates, self.lemmas, self.study.basis.specification, places)
 
     @cached_property
     def plates(self) -> list[Plate]:

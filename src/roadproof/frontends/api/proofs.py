@@ -21,10 +21,13 @@ from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api import kernel as kernels
 from roadproof.frontends.api.answer import Picture
+from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.definitions import Definitions, What, load
 from roadproof.frontends.api.settings import models_of, setting, work_of
 from roadproof.frontends.api.studied import StudyAnswers, drive_pictures
 from roadproof.frontends.report import claims as claims_text
+from roadproof.frontends.report.ci.cases import Case, Location
+from roadproof.frontends.report.ci.questions import claim_cases
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.groups import Run, SearchPlace
 from roadproof.frontends.settings.keywords import ProveKeywords
@@ -45,11 +48,16 @@ _PROPERTY = re.compile(r"[A-Z]\d+")
 
 
 @dataclass(frozen=True, repr=False)
-class Proofs(StudyAnswers[Claims, ClaimResult, Record]):
-    """Claims, settled. ``kernel``: what Coq says of those that are proved, by claim, where it was asked."""
+class Proofs(StudyAnswers[Claims, ClaimResult, Record], BuildResult):
+    """Claims, settled. ``kernel``: what Coq says of those that are proved, by claim, where it was asked.
+
+    ``places``: where claims are written, by ``task.name``, if in a file.
+    """
 
     kernel: kernels.KernelAnswer | None = None
+    places: Mapping[str, Location] = field(default_factory=dict)
     pieces: ClassVar[str] = "claims"
+    command: ClassVar[str] = "prove"
 
     @classmethod
     def asked(
@@ -92,6 +100,15 @@ class Proofs(StudyAnswers[Claims, ClaimResult, Record]):
     def exit_code(self) -> ExitCode:
         found = exit_code((x.verdict, x.expected) for x in self.answers)
         return found if self.kernel is None else max(found, self.kernel.exit_code)
+
+    def cases(self) -> Iterator[Case]:
+        kept = {x.task.name: self.found.records.get(name_of(x.task)) for x in self.answers}
+        files = {
+            name: self.folder / record.claim.evidence
+            for name, record in kept.items()
+            if self.folder and record and isinstance(record.claim.evidence, str)
+        }
+        return claim_cases(self.study, self.answers, files, self.places)
 
     def put_to_kernel(self, jobs: Jobs = None, progress: Progress | None = None) -> Self:
         """The same, with what Coq says of each proof. Raises ``MissingSolverError`` without a coqc."""

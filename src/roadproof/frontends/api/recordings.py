@@ -5,16 +5,19 @@ import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Unpack
+from typing import ClassVar, Unpack
 
 from roadproof.analysis.study.pool import Say
 from roadproof.drivers.models import DRIVERS
 from roadproof.errors import UsageError
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Picture, picture
+from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.definitions import Definitions, load
 from roadproof.frontends.api.table import Row, Table
 from roadproof.frontends.report.answers import facts
+from roadproof.frontends.report.ci.cases import Case
+from roadproof.frontends.report.ci.questions import recording_cases
 from roadproof.frontends.report.tables import as_text
 from roadproof.frontends.report.traffic import comparison_table, drivers_table, results_tables
 from roadproof.frontends.report.traffic_figures import draw_figures, remove_report, write_report
@@ -47,7 +50,7 @@ _HALF_WRITTEN = re.compile(r"\..+\.(json|csv|txt|md|tex|png|svg)\.[a-z0-9_]{8}")
 
 
 @dataclass(frozen=True, repr=False)
-class Evaluation(Table):
+class Evaluation(Table, BuildResult):
     """The experiment on recordings: what danger arose, and which scenario matches it.
 
     ``failed``: recordings that were left out, and why; ``denied``: answers that the plain recursive
@@ -60,6 +63,13 @@ class Evaluation(Table):
     denied: tuple[str, ...] = ()
     folder: Path | None = None
     kept: tuple[Findings, ...] | None = None
+    command: ClassVar[str] = "evaluate"
+
+    def cases(self) -> Iterator[Case]:
+        broken = [*self.totals.broken, *self.denied]
+        names = sorted({*self.outcome.marks, *self.failed})
+        where = self.experiment.recordings
+        return recording_cases(names, self.failed, self.outcome.lost, broken, where)
 
     @property
     def settings(self) -> Settings:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from roadproof.errors import UsageError
-from roadproof.frontends.cli.options import read_hands, write_json
+from roadproof.frontends.cli.options import read_hands, write_build_results, write_json
 from roadproof.frontends.cli.progress import Counter, tell_bends, warn
 from roadproof.frontends.settings.flags import read_flag, read_keywords
 from roadproof.frontends.settings.groups import Readings
@@ -75,6 +75,7 @@ def hand_over(args: argparse.Namespace, found: "StudyAnswers[Any, Any, Any]", pi
     """JSON, what is written to be looked at, and the text of an answer; its exit code."""
     if args.json:
         write_json(found.as_data(), args.json)
+    write_build_results(args, found)
     if args.out is not None:
         found.add_files(pictures)
     if args.json != "-":

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from roadproof.errors import UsageError
-from roadproof.frontends.cli.options import print_answer
+from roadproof.frontends.cli.options import print_answer, write_build_results
 from roadproof.frontends.cli.progress import Counter
 from roadproof.frontends.settings.flags import read_keywords
 from roadproof.frontends.settings.questions import Assurance, Check
@@ -52,6 +52,7 @@ def run(args: argparse.Namespace) -> int:
     if args.write is not None:
         return _write(args)
     checked = check(*args.paths, **read_keywords(args, Check) | {"progress": Counter()})
+    write_build_results(args, checked)
     print_answer(checked, args.json)
     return checked.exit_code
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import add_drivers, read_definitions
-from roadproof.frontends.cli.options import print_answer, read_hands
+from roadproof.frontends.cli.options import print_answer, read_hands, write_build_results
 from roadproof.frontends.cli.progress import note
 from roadproof.frontends.settings.flags import read_keywords
 from roadproof.frontends.settings.recordings import Evaluate
@@ -55,6 +55,7 @@ def run(args: argparse.Namespace) -> int:
         raise UsageError("--out is missing: name the folder for the results, or use --list")
     asked = read_keywords(args, Evaluate) | {"jobs": read_hands(args), "tell": note}
     found = evaluate(args.path, args.out, _definitions(args), **asked)
+    write_build_results(args, found)
     print_answer(found, args.json)
     _tell_notes(args.out, found.totals)
     for name, reason in found.failed.items():

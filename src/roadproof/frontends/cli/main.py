@@ -88,14 +88,15 @@ def _run(arguments: list[str]) -> int:
         raise UsageError(f"{unknown('sub-command', name, COMMANDS)}\nSee roadproof --help.")
     parsed = command_parser(name).parse_args(arguments[at + 1 :])
     be_quiet(getattr(parsed, "quiet", False))
-    _try_paths(getattr(parsed, "json", None), getattr(parsed, "out", None))
+    for option in ("json", "junit", "sarif"):
+        _try_paths(getattr(parsed, option, None), getattr(parsed, "out", None))
     if getattr(parsed, "json", None) != "-" and getattr(parsed, "format", "text") == "text":
         dress_output()
     code: int = import_module(f"{PACKAGE}.{name}").run(parsed)
     return code
 
 
-def _try_paths(target: str | None, out: Path | None) -> None:
+def _try_paths(target: str | Path | None, out: Path | None) -> None:
     """Fail before the work where the answer could not be written. Raises ``InputError``."""
     if target in (None, "-"):
         return

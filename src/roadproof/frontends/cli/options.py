@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.streams import takes_everything
 from roadproof.frontends.settings.flags import section
-from roadproof.runtime.files import whole_file
+from roadproof.runtime.files import whole_file, write_whole
 
 if TYPE_CHECKING:
     from roadproof.evidence.strict import JsonObject
@@ -19,6 +19,22 @@ if TYPE_CHECKING:
 
 class _Answer(Protocol):
     def as_data(self) -> "JsonObject": ...
+
+
+def write_build_results(args: argparse.Namespace, found: object) -> None:
+    """JUnit XML and SARIF to the files of ``--junit`` and ``--sarif``, where a command has them.
+
+    Raises ``InputError``.
+    """
+    if not (vars(args).get("junit") or vars(args).get("sarif")):
+        return
+    from roadproof.frontends.api.ci import BuildResult
+
+    assert isinstance(found, BuildResult)
+    if args.junit is not None:
+        write_whole(args.junit, found.to_junit().encode())
+    if args.sarif is not None:
+        write_whole(args.sarif, found.to_sarif().encode())
 
 
 def print_answer(found: _Answer, target: str | None) -> None:

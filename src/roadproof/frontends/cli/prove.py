@@ -1,11 +1,12 @@
 """``roadproof prove``: claims over dense time, for all horizons and parameter values, with certificates."""
 
 import argparse
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import in_order, read_definitions, study_keywords
-from roadproof.frontends.cli.options import write_json
+from roadproof.frontends.cli.options import write_build_results, write_json
 from roadproof.frontends.cli.progress import Counter, clear, tell_bends, tell_stage
 from roadproof.frontends.cli.streams import print_at_once
 from roadproof.frontends.settings.questions import Prove
@@ -13,6 +14,7 @@ from roadproof.runtime.progress import listening
 
 if TYPE_CHECKING:
     from roadproof.analysis.claims import ClaimResult, Claims
+    from roadproof.frontends.report.ci.cases import Location
 
 SUMMARY = "prove claims for all time, or refute them"
 
@@ -55,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.report.claims import details, line
 
     given = Prove.of(study_keywords(args, Prove))
-    asked = _asked(args, given)
+    asked, places = _asked(args, given)
 
     def show(name: str, answer: "ClaimResult") -> None:
         clear()
@@ -72,20 +74,29 @@ def run(args: argparse.Namespace) -> int:
         found = found.put_to_kernel(given.jobs, Counter())
         if args.json != "-":
             print(found.kernel_text())
+    write_build_results(args, replace(found, places=places))
     if args.json:
         write_json(found.as_data(), args.json)
     tell_bends(found.road)
     return found.exit_code
 
 
-def _asked(args: argparse.Namespace, given: Prove) -> "Claims":
+def _asked(args: argparse.Namespace, given: Prove) -> "tuple[Claims, dict[str, Location]]":
+    """The claims, and where those of a file are written, by ``task.name``."""
     from roadproof.engines.prove.properties import read_claims
     from roadproof.frontends.api.proofs import claims_asked
+    from roadproof.frontends.report.ci.cases import Location
     from roadproof.library.motion import read_under
 
     home = read_definitions(args, Prove)
     written = [] if args.file is None else read_claims(args.file)
     if args.file is not None and not (written or args.claims):
         raise UsageError(f"{args.file} contains no claim: write one per paragraph")
-    what = [*args.claims, *(read_under(home.specification, claim) for claim in written)]
-    return claims_asked(home, what, args.sets[0] if args.sets else None, given)
+    what = [*args.claims, *(read_under(home.specification, x.text) for x in written)]
+    asked = claims_asked(home, what, args.sets[0] if args.sets else None, given)
+    tasks = asked.tasks[len(asked.tasks) - len(written) :]
+    places = {
+        task.name: Location(str(args.file), x.at.line, x.at.column)
+        for task, x in zip(tasks, written, strict=True)
+    }
+    return asked, places

@@ -4,7 +4,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from roadproof.frontends.cli.basis import in_order, read_definitions, study_keywords
-from roadproof.frontends.cli.options import add_what_arguments, some_or_all, write_json
+from roadproof.frontends.cli.options import add_what_arguments, some_or_all, write_build_results, write_json
 from roadproof.frontends.cli.progress import clear, tell_bends, tell_stage
 from roadproof.frontends.cli.streams import print_at_once
 from roadproof.frontends.settings.questions import Witness
@@ -60,6 +60,7 @@ def run(args: argparse.Namespace) -> int:
         found = witness_all(searches, given, each)
     if args.out is not None and not written and plain:
         print(f"no drive was found, so nothing was written to {args.out}")
+    write_build_results(args, found)
     if args.json:
         write_json(found.as_data(), args.json)
     if plain and len(found.outcomes) > 1:

@@ -6,7 +6,6 @@ from functools import partial
 from itertools import groupby
 from textwrap import indent
 from typing import Any
-from xml.etree import ElementTree as xml
 
 from roadproof.analysis.catalogue.decisions import Decision
 from roadproof.analysis.catalogue.gaps import PREFIX
@@ -15,6 +14,8 @@ from roadproof.analysis.catalogue.result import Result
 from roadproof.analysis.catalogue.tested import CLASSES, SCENARIOS, Targets, kind_of
 from roadproof.drivers.models import MODELS
 from roadproof.evidence.answers.catalogue_index import Figure, Remark, Target
+from roadproof.frontends.report.ci import junit
+from roadproof.frontends.report.ci.questions import catalogue_cases
 from roadproof.frontends.report.figures import count_axis, make_figure
 from roadproof.frontends.report.sheet import Column, Mark, Sheet, csv_text
 from roadproof.frontends.report.sheet import as_csv as csv_of
@@ -157,6 +158,11 @@ def tables(result: Result) -> dict[str, bytes]:
     return {name: text.encode() for name, text in made.items()}
 
 
+def former_table(name: str, content: bytes) -> bytes:
+    """The same table as versions before 1.0 wrote it."""
+    return junit.as_before_1_0(content) if name == "junit.xml" else content
+
+
 def figures_csv(counted: Sequence[Figure]) -> str:
     """The figures as a table."""
     columns: tuple[Column[Figure], ...] = (
@@ -256,28 +262,7 @@ def as_junit(tests: Sequence[str], found: Targets, in_force: Sequence[str] = ())
 
     ``in_force``: what was asked otherwise than by default, a property of each suite.
     """
-    suites = xml.Element("testsuites", name="roadproof catalogue")
-    wrong = {x.tests[0]: x.told for x in (*found.doubts, *found.faults, *found.contradictions)}
-    _suite(suites, "tests", {test: wrong.get(test, "") for test in tests}, in_force)
-    targets = (*found.targets, *(found.gaps.targets if found.gaps.asked else ()))
-    missing = {x.name: f"no test shows {x.words}" for x in found.missing}
-    in_doubt = {name: f"in doubt: {reason}" for name, reason in found.gaps.open.items()}
-    _suite(suites, "tested", {x.name: (missing | in_doubt).get(x.name, "") for x in targets}, in_force)
-    xml.indent(suites)
-    return '<?xml version="1.0" encoding="UTF-8"?>\n' + xml.tostring(suites, "unicode") + "\n"
-
-
-def _suite(suites: xml.Element, name: str, cases: dict[str, str], in_force: Sequence[str]) -> None:
-    failures = sum(bool(told) for told in cases.values())
-    suite = xml.SubElement(suites, "testsuite", name=name, tests=str(len(cases)), failures=str(failures))
-    if in_force:
-        properties = xml.SubElement(suite, "properties")
-        for told in in_force:
-            xml.SubElement(properties, "property", name="asked with", value=told)
-    for case, told in cases.items():
-        element = xml.SubElement(suite, "testcase", classname=name, name=case)
-        if told:
-            xml.SubElement(element, "failure", message=told)
+    return junit.as_junit("roadproof catalogue", tuple(catalogue_cases(tests, found)), in_force)
 
 
 def draw_matrix(tests: Sequence[str], found: Targets, in_force: Sequence[str] = ()) -> Any:

@@ -122,6 +122,23 @@ class Answered(Settings):
 
 
 @dataclass(frozen=True, kw_only=True)
+class Reported(Settings):
+    """An answer whose parts pass or fail, for build servers."""
+
+    junit: Path | None = output(
+        None, "--junit FILE", "write JUnit XML for a build server", read=Path, keyword=False, rare=True
+    )
+    sarif: Path | None = output(
+        None,
+        "--sarif FILE",
+        "write what did not pass as SARIF, with file, line and column",
+        read=Path,
+        keyword=False,
+        rare=True,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
 class Readings(Settings):
     """A spec set, files on top of the library, and readings."""
 

@@ -31,7 +31,7 @@ class Compare(groups.SeveralSets, groups.SearchPlace, groups.Method, groups.Budg
 
 
 @dataclass(frozen=True, kw_only=True)
-class Witness(groups.DriveSearch):
+class Witness(groups.DriveSearch, groups.Reported):
     """Options of ``witness``."""
 
     objective: Objective = option(
@@ -78,7 +78,7 @@ class Explore(groups.DriveSearch):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Prove(groups.Definitions, groups.Models, groups.Budget, groups.Run):
+class Prove(groups.Definitions, groups.Models, groups.Budget, groups.Run, groups.Reported):
     """Options of ``prove``."""
 
     sets: tuple[str, ...] = groups.one_set()
@@ -134,7 +134,7 @@ class Prove(groups.Definitions, groups.Models, groups.Budget, groups.Run):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Check(groups.Answered, groups.Budget, groups.Workers):
+class Check(groups.Answered, groups.Budget, groups.Workers, groups.Reported):
     """Options of ``check``."""
 
     solver: Solver = groups.checker_of("solver that checks certificates")

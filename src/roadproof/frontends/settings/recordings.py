@@ -77,7 +77,7 @@ class Monitor(groups.Definitions, groups.Traces):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Evaluate(groups.Definitions, groups.Sharing, groups.Traces):
+class Evaluate(groups.Definitions, groups.Sharing, groups.Traces, groups.Reported):
     """Options of ``evaluate``."""
 
     sets: tuple[str, ...] = groups.several_sets("base", "extA", "ext")

@@ -79,7 +79,7 @@ class Redundancy(groups.Survey):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Coverage(groups.Survey, groups.Prevention):
+class Coverage(groups.Survey, groups.Prevention, groups.Reported):
     """Options of ``coverage``."""
 
     preventable: str | None = groups.driver_model("preventable", "prevents", "drives")
@@ -116,7 +116,7 @@ class Classify(groups.Survey, groups.Prevention):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Preventable(groups.Definitions, groups.Budget, groups.Sharing, groups.Run):
+class Preventable(groups.Definitions, groups.Budget, groups.Sharing, groups.Run, groups.Reported):
     """Options of ``preventable``."""
 
     models: Sequence[str] = option(
@@ -148,7 +148,9 @@ class Preventable(groups.Definitions, groups.Budget, groups.Sharing, groups.Run)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Catalogue(groups.SeveralSets, groups.Models, groups.Budget, groups.Run, groups.Prevention):
+class Catalogue(
+    groups.SeveralSets, groups.Models, groups.Budget, groups.Run, groups.Prevention, groups.Reported
+):
     """Options of ``catalogue``."""
 
     among: Among = groups.scenarios_such_as("1-8", keyword=True)

@@ -1,0 +1,33 @@
+"""Answers as build servers and code hosts read them."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from typing import ClassVar
+
+from roadproof.frontends.report.ci.cases import Case
+from roadproof.frontends.report.ci.junit import as_junit
+from roadproof.frontends.report.ci.sarif import as_sarif
+from roadproof.verdict import ExitCode
+
+
+class BuildResult(ABC):
+    """An answer whose parts pass or fail; ``command``: the sub-command that asks for it."""
+
+    command: ClassVar[str]
+
+    @abstractmethod
+    def cases(self) -> Iterable[Case]:
+        """What was asked, part by part, with places and evidence."""
+
+    @property
+    @abstractmethod
+    def exit_code(self) -> ExitCode:
+        """The exit code of the command line with this answer."""
+
+    def to_junit(self) -> str:
+        """The cases as JUnit XML: failures where the exit code is 10, errors where it is 20."""
+        return as_junit(f"roadproof {self.command}", tuple(self.cases()))
+
+    def to_sarif(self) -> str:
+        """The cases that did not pass as SARIF 2.1.0, with file, line and column."""
+        return as_sarif(self.command, tuple(self.cases()), self.exit_code)
