@@ -44,7 +44,9 @@ static void fill(uint64_t *words, uint32_t bits)
     for (; bits > 63; bits -= 64) {
         *words++ = ~(uint64_t)0;
     }
-    *words |= ((uint64_t)1 << bits) - 1;
+    if (bits > 0) {
+        *words |= ((uint64_t)1 << bits) - 1;
+    }
 }""",
     "rewrite": """\
 /* A table over values at the next sample; row tells which of its rows each row becomes. */

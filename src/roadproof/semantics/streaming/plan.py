@@ -22,6 +22,8 @@ from roadproof.semantics.sampled.semantics import interval_steps
 
 MOST_OPERATORS = 6
 """Of operators without a bound: a table of 2^6 bits fills a word."""
+MOST_DELAY = 1_000_000
+"""Of samples that a formula looks ahead."""
 
 
 @dataclass(frozen=True)
@@ -157,7 +159,7 @@ def plan_of(formula: Formula, dt: Fraction) -> Plan:
     """The plan of a formula without names, whose parameters have values, for samples every ``dt`` seconds.
 
     Quantifiers over lanes and ``occ`` are leaves. Raises ``InputError`` for bounds that are no multiple of
-    ``dt``, and for more than MOST_OPERATORS operators without a bound.
+    ``dt``, for more than MOST_OPERATORS operators without a bound, and for more than MOST_DELAY samples.
     """
     planner = _Planner(dt)
     planner.place(formula, False)
@@ -168,6 +170,11 @@ def plan_of(formula: Formula, dt: Fraction) -> Plan:
             "bound, or compile the parts one by one"
         )
     nodes = planner.nodes
+    if nodes[-1].delay > MOST_DELAY:
+        raise InputError(
+            f"the formula looks {nodes[-1].delay} samples ahead at a step of {float(dt):g} s; a monitor in C "
+            f"looks ahead by at most {MOST_DELAY}: shorten the intervals or take a longer --dt"
+        )
     strong = sum(1 << x.operation.variable for x in nodes if isinstance(x.operation, Forever) and x.opposite)
     kept = _kept(nodes)
     made = tuple(replace(node, kept=kept.get(k, 0)) for k, node in enumerate(nodes))

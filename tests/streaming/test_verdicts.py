@@ -8,24 +8,21 @@ import numpy as np
 import pytest
 
 import roadproof as rp
-from monitoring.cases import DT, random_batch, random_traffic
+from monitoring.cases import DT, interval, random_batch
 from roadproof.errors import InputError
-from roadproof.library.bind import bind
+from roadproof.logic import formula as f
+from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.recordings.evaluate.one_trace import sample_drive
 from roadproof.semantics.sampled import Batch, compile
 from roadproof.semantics.streaming.c_files import CSource, compile_c
 from streaming.c_programs import (
     SANITIZED,
     STRICT,
-    TRUE,
     UNKNOWN,
     answers,
     build,
     differences,
     needs_compiler,
-    parted,
-    said,
     samples_of,
 )
 from streaming.random_formulas import random_formula
@@ -34,7 +31,8 @@ pytestmark = needs_compiler
 OWN = """
 signal jerk(a: vehicle): m/s^3 in [-10, 10]
 signal red: bool
-def stops(a: vehicle) := red and jerk(a) < 0 and not is_truck(a)
+signal int: bool
+def stops(a: vehicle) := red and not int and jerk(a) < 0 and not is_truck(a)
 def is_truck(a: vehicle) := kind(a) = truck
 """
 
@@ -72,50 +70,32 @@ def test_no_memory_is_left_nor_any_value_undefined(tmp_path: Path) -> None:
     assert list(differences(source, program, random_batch(99, 20, 90))) == []
 
 
-@pytest.mark.parametrize("rss_form", ["boolean", "robust"])
-def test_scenarios_on_ten_thousand_traces(rss_form: str, tmp_path: Path) -> None:
-    home = rp.load("ext", options={"rss_form": rss_form}, params={"minSafe": "80 ms", "minDanger": "80 ms"})
-    numbers = (1, 3, 4, 5, 6, 7, 8)
-    compiled = rp.compile([*numbers, "danger(SV,POV)", "dangerArises(SV,POV)"], using=home).source
-    roots = [home.read(n).formula for n in numbers]
-    program = build(compiled, tmp_path)
-    batch = random_traffic(roots, traces=5_000, longest=24)
-    assert list(differences(compiled, program, batch)) == []
-    verdicts = said(compiled, program, batch)
-    assert all(np.any(verdicts[f"scenario_{n}"][:, 0] == TRUE) for n in (1, 4, 5, 6, 8))
+EDGES = (1, 63, 64, 127)
+"""Widths of windows near those of words."""
 
 
-# --- All witnesses ----------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("set_name", ["base", "extA", "ext"])
-def test_all_witnesses(set_name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv("ROADPROOF_KNOWN")
-    home = rp.load(set_name)
-    drives = {n: x.file for n, x in rp.known_drives(range(1, 25), home).items()}
-    assert len(drives) == 24
-    bound = {
-        f"scenario_{n}": bind(home.read(n).formula, x.road, x.lanes, home.all_values())
-        for n, x in drives.items()
-    }
-    source = _compiled(bound)
-    flags = rp.compile("1-24", using=home).source
-    program, with_flags = build(source, tmp_path / "bound", STRICT), build(flags, tmp_path / "flags", STRICT)
-    for monitor, free, (n, file) in zip(source.monitors, flags.monitors, drives.items(), strict=True):
-        batch = sample_drive(file.drive, file.road, file.horizon, DT, "drive").batch
-        found = said(source, program, batch)[monitor.label]
-        assert list(parted(monitor, batch, found)) == []
-        assert found[-1, 2, 0] == TRUE  # a witness, with samples, too
-        leaves = {x: bind(x, file.road, file.lanes, {}) for x in free.plan.leaves}
-        truth = compile(leaves).evaluate(batch, at="all").answers
-        given = {x: answer.true for x, answer in truth.items()}
-        same = said(flags, with_flags, replace(batch, given=given))[free.label]
-        assert np.array_equal(same, found), n
+def test_windows_at_the_edges_of_words(tmp_path: Path) -> None:
+    leaf = f.Compare(t.Signal("s", "SV"), ">", t.number(-1))
+    other = f.Compare(t.Signal("s", "POV"), ">", t.number(0))
+    made: dict[str, Formula] = {}
+    for width in EDGES:
+        window, later = interval(0, width), interval(width, 0)
+        below = f.Until(leaf, f.FOREVER, f.Not(other))
+        made[f"until_{width}"] = f.Until(leaf, window, f.Not(leaf))
+        made[f"table_{width}"] = f.Until(leaf, window, f.And((other, below)))
+        made[f"late_{width}"] = f.And((leaf, f.Or((other, f.Eventually(later, f.Not(leaf))))))
+        made[f"always_{width}"] = f.Always(window, f.Or((leaf, f.Always(f.FOREVER, other))))
+    source = _compiled(made)
+    program = build(source, tmp_path, SANITIZED)
+    batch = random_batch(7, 6, 200)
+    rare = np.random.default_rng(7).random((200, 6)) < 0.99
+    signals = {key: np.where(rare, 1.0, -1.5) for key in batch.signals}
+    assert list(differences(source, program, replace(batch, signals=signals))) == []
 
 
 # --- Samples that are rejected ----------------------------------------------------------------------
 
-GOOD = {"jerk_SV": 0.0, "red": 0.0, "s_SV": 0.0, "s_POV": 0.0, "length_SV": 4.0, "kind_SV": 1.0}
+GOOD = {"jerk_SV": 0.0, "red": 0.0, "int": 0.0, "s_SV": 0.0, "s_POV": 0.0, "length_SV": 4.0, "kind_SV": 1.0}
 
 
 def _batch(values: Mapping[str, float]) -> Batch:
@@ -207,6 +187,7 @@ def test_wrong_samples_are_rejected_for_good(
             {},
             "name the road of the monitor with --road",
         ),
+        ("G[0, 100000] v_lon(SV) > 3 m/s", {}, "the formula looks 2500000 samples ahead at a step of 0.04 s"),
         ("some M in lanes: F atLane(SV, M)", {}, "name the road of the monitor with --road"),
         ("4", {"lanes": {"L": "main-1"}}, "lanes: the lanes of which road?"),
         ("4", {"name": "a b"}, "name=a b: write letters, digits and _"),
