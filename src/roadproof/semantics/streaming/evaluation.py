@@ -188,11 +188,11 @@ class _Writer:
                 yield self.set(self.padded(operand))
             case Window(universal, operand, width) if node.table:
                 name = "meet" if universal else "join"
-                yield self.set(f"{name}(&{self.kept(operand)}, {width}, {self.over}, {self.pad})")
+                yield self.set(f"{name}(state->past_{operand.node}, {width}, {self.over}, {self.pad})")
             case Window(universal, operand, width):
                 yield from self.window(universal, operand, width)
             case Within(left, right, width) if node.table:
-                both = f"&{self.kept(left)}, &{self.kept(right)}"
+                both = f"state->past_{left.node}, state->past_{right.node}"
                 yield self.set(f"reach({both}, {width}, {self.over}, {self.pad})")
             case Within(left, right, width):
                 yield from self.within(left, right, width)
@@ -243,7 +243,7 @@ class _Writer:
         if isinstance(source.operation, Constant):
             value = str(int(source.operation.value))
         elif source.table:
-            return self.kept(operand) if operand.lag else f"n{operand.node}"
+            return f"n{operand.node}"
         else:
             value = _bit(f"state->past_{operand.node}", operand.lag) if operand.lag else f"n{operand.node}"
         return f"(0 - (uint64_t){value})" if self.node.table else value
@@ -251,9 +251,6 @@ class _Writer:
     def padded(self, operand: Operand) -> str:
         """As ``read``, and after the end of the trace the padding."""
         return f"(ended > {self.node.ready} ? {self.pad} : {self.read(operand)})"
-
-    def kept(self, operand: Operand) -> str:
-        return f"state->past_{operand.node}[{operand.lag}]"
 
     @property
     def over(self) -> str:

@@ -104,7 +104,7 @@ Operation: TypeAlias = Seen | Constant | Negation | Junction | Widening | Window
 class Node:
     """One step of a plan. ``kept``: how many earlier values are remembered.
 
-    ``ready``: the delay of the operands, all brought to the same; temporal operators add to it.
+    ``ready``: the delay with which operands are read; temporal operators add to it.
     """
 
     operation: Operation
@@ -211,39 +211,67 @@ def _kept(nodes: list[Node]) -> Mapping[int, int]:
 
 
 class _Planner:
+    """Places nodes. Tables are never delayed, as each sample would have to rewrite those that wait: where one
+    is read with others that take longer, its operators without a bound run that much later instead."""
+
     def __init__(self, dt: Fraction) -> None:
         self.dt = dt
         self.nodes: list[Node] = []
         self.leaves: dict[Formula, int] = {}
         self.variables = 0
-        self.known: dict[tuple[Formula, bool], int] = {}
+        self.known: dict[tuple[Formula, bool, int], int] = {}
+        self.looks: dict[Formula, tuple[int, bool]] = {}
 
-    def place(self, formula: Formula, opposite: bool) -> int:
-        """The node of ``formula``; state formulas have the same in both signs."""
-        key = (formula, opposite and not f.is_state(formula))
+    def look(self, formula: Formula) -> tuple[int, bool]:
+        """The least delay of a formula, and whether its values are tables."""
+        if formula not in self.looks:
+            below = [self.look(x) for x in self._read(formula)]
+            ahead, table = max((delay for delay, _ in below), default=0), any(x for _, x in below)
+            for interval in f.intervals(formula):
+                low, high = interval_steps(interval, self.dt)
+                ahead, table = ahead + (low if high is None else high), table or high is None
+            self.looks[formula] = ahead, table
+        return self.looks[formula]
+
+    def _read(self, formula: Formula) -> tuple[Formula, ...]:
+        """The sub-formulas that matter: before an interval of one sample nothing is asked for."""
+        match formula:
+            case f.Some() | f.Every():
+                return ()
+            case f.Until(left, interval, right):
+                low, high = interval_steps(interval, self.dt)
+                return (right,) if low == high else (left, right)
+            case _:
+                return f.children(formula)
+
+    def place(self, formula: Formula, opposite: bool, least: int = 0) -> int:
+        """The node of ``formula``, whose delay is at least ``least`` where it is a table.
+
+        State formulas have the same node in both signs.
+        """
+        delay, table = self.look(formula)
+        key = formula, opposite and not f.is_state(formula), max(delay, least) if table else delay
         if key not in self.known:
-            self.known[key] = self._place(formula, key[1])
+            self.known[key] = self._place(*key)
         return self.known[key]
 
-    def _place(self, formula: Formula, opposite: bool) -> int:
+    def _place(self, formula: Formula, opposite: bool, delay: int) -> int:
+        table = self.look(formula)[1]
         match formula:
             case f.Truth(value):
                 return self._add(Node(Constant(value), 0, 0))
             case f.Compare() | f.Occupies() | f.Some() | f.Every():
                 return self._add(Node(Seen(self.leaves.setdefault(formula, len(self.leaves))), 0, 0))
             case f.Application(_, _, body):
-                return self.place(body, opposite)
+                return self.place(body, opposite, delay)
             case f.Not(body):
-                below = self.place(body, not opposite)
-                node = self.nodes[below]
-                return self._add(Node(Negation(Operand(below, 0)), 0, node.delay, table=node.table))
+                below = Operand(self.place(body, not opposite, delay), 0)
+                return self._add(Node(Negation(below), delay, delay, table=table))
             case f.And(parts) | f.Or(parts):
-                each = [self.place(part, opposite) for part in parts]
-                return self._join(isinstance(formula, f.And), list(dict.fromkeys(each)))
-            case f.Eventually(interval, body) | f.Always(interval, body):
-                return self._temporal(isinstance(formula, f.Always), None, interval, body, opposite)
-            case f.Until(left, interval, right):
-                return self._temporal(False, left, interval, right, opposite)
+                each = [self.place(part, opposite, delay) for part in parts]
+                return self._join(isinstance(formula, f.And), list(dict.fromkeys(each)), delay)
+            case f.Eventually(interval, _) | f.Always(interval, _) | f.Until(_, interval, _):
+                return self._temporal(formula, interval, opposite, delay)
             case _:
                 assert_never(formula)
 
@@ -251,47 +279,43 @@ class _Planner:
         self.nodes.append(node)
         return len(self.nodes) - 1
 
-    def _join(self, universal: bool, parts: list[int]) -> int:
+    def _join(self, universal: bool, parts: list[int], delay: int) -> int:
         """And or or of nodes; those of one delay first, so that only their result is remembered."""
         by_delay: dict[int, list[int]] = {}
         for part in parts:
             by_delay.setdefault(self.nodes[part].delay, []).append(part)
         if len(by_delay) > 1:
-            parts = [self._joined(universal, group) for group in by_delay.values()]
-        return self._joined(universal, parts)
+            parts = [self._joined(universal, group, at) for at, group in by_delay.items()]
+        return self._joined(universal, parts, delay)
 
-    def _joined(self, universal: bool, parts: list[int]) -> int:
+    def _joined(self, universal: bool, parts: list[int], delay: int) -> int:
         if len(parts) == 1:
             return parts[0]
-        delay, read = self._aligned(parts)
         table = any(self.nodes[k].table for k in parts)
+        read = tuple(self._at(k, delay) for k in parts)
         return self._add(Node(Junction(universal, read), delay, delay, table=table))
 
-    def _aligned(self, parts: list[int]) -> tuple[int, tuple[Operand, ...]]:
-        """The delay after which all are known, and where each is read then."""
-        delay = max(self.nodes[k].delay for k in parts)
-        return delay, tuple(Operand(k, delay - self.nodes[k].delay) for k in parts)
+    def _at(self, node: int, delay: int) -> Operand:
+        """Where a node is read so that it has ``delay``."""
+        return Operand(node, delay - self.nodes[node].delay)
 
     def _temporal(
-        self, universal: bool, left: Formula | None, interval: f.Interval, right: Formula, opposite: bool
+        self, formula: f.Eventually | f.Always | f.Until, interval: f.Interval, opposite: bool, delay: int
     ) -> int:
         low, high = interval_steps(interval, self.dt)
-        if high == low:  # one sample, before which nothing is asked for
-            left = None
-        parts = [self.place(x, opposite) for x in (left, right) if x is not None]
-        table = any(self.nodes[k].table for k in parts)
+        ready = delay - (low if high is None else high)
+        universal, table = isinstance(formula, f.Always), self.look(formula)[1]
+        parts = [self.place(x, opposite, ready) for x in self._read(formula)]
         if high is not None and table:
-            parts = [k if self.nodes[k].table else self._widened(k) for k in parts]
-        ready, read = self._aligned(parts)
-        before = None if left is None else read[0]
+            parts = [k if self.nodes[k].table else self._widened(k, ready) for k in parts]
+        *left, right = (self._at(k, ready) for k in parts)
         if high is None:
             variable, self.variables = self.variables, self.variables + 1
-            forever = Forever(universal, before, read[-1], variable)
-            return self._add(Node(forever, ready, ready + low, opposite, table=True))
+            forever = Forever(universal, left[0] if left else None, right, variable)
+            return self._add(Node(forever, ready, delay, opposite, table=True))
         width = high - low
-        if before is None:
-            return self._add(Node(Window(universal, read[-1], width), ready, ready + high, opposite, table))
-        return self._add(Node(Within(before, read[-1], width), ready, ready + high, opposite, table))
+        operation = Within(left[0], right, width) if left else Window(universal, right, width)
+        return self._add(Node(operation, ready, delay, opposite, table))
 
-    def _widened(self, below: int) -> int:
-        return self._add(Node(Widening(Operand(below, 0)), 0, self.nodes[below].delay, table=True))
+    def _widened(self, below: int, delay: int) -> int:
+        return self._add(Node(Widening(self._at(below, delay)), delay, delay, table=True))
