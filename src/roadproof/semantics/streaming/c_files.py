@@ -53,9 +53,11 @@ def compile_c(
     Parameters have values. Raises ``InputError`` for formulas that no monitor takes (``plan_of``,
     ``fields_of``) and for a state of more than ``most_bytes``.
     """
-    plain = compile({label: formula for label, (_, formula) in formulas.items()}).plain
+    made = compile({label: formula for label, (_, formula) in formulas.items()})
+    names = {plain: f"{x.name}({', '.join(x.arguments)})" for x, plain in made.named.items()}
     monitors = tuple(
-        StreamMonitor(label, told, plan_of(plain[label], dt)) for label, (told, _) in formulas.items()
+        StreamMonitor(label, told, plan_of(made.plain[label], dt, names))
+        for label, (told, _) in formulas.items()
     )
     for monitor in monitors:
         if monitor.memory > most_bytes:

@@ -28,6 +28,12 @@ from roadproof.semantics.streaming.plan import (
 
 _WORD = 64
 HELPERS: Mapping[str, str] = {
+    "wide": """\
+/* A truth value as a table whose rows are equal. */
+static uint64_t wide(uint32_t bit)
+{
+    return 0 - (uint64_t)bit;
+}""",
     "shift": """\
 /* Moves the bits of some words up by one, and puts bit in. */
 static void shift(uint64_t *words, uint32_t count, uint32_t bit)
@@ -162,6 +168,7 @@ def statements(plan: Plan) -> Iterator[str]:
     """Statements that compute all nodes for the next sample."""
     for k, node in enumerate(plan.nodes):
         if not isinstance(node.operation, Constant):
+            yield from (f"/* {name} */" for name in [plan.told.get(k)] if name)
             yield from _Writer(plan, k, node).lines()
 
 
@@ -246,7 +253,7 @@ class _Writer:
             return f"n{operand.node}"
         else:
             value = _bit(f"state->past_{operand.node}", operand.lag) if operand.lag else f"n{operand.node}"
-        return f"(0 - (uint64_t){value})" if self.node.table else value
+        return f"wide({value})" if self.node.table else value
 
     def padded(self, operand: Operand) -> str:
         """As ``read``, and after the end of the trace the padding."""

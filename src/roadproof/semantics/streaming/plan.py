@@ -11,7 +11,7 @@ the opposite (``semantics.sampled.semantics``), so such nodes have a memory of t
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TypeAlias, assert_never
 
@@ -119,7 +119,8 @@ class Node:
 class Plan:
     """``nodes`` in order, the last one that of the whole formula; ``leaves`` are its atoms.
 
-    ``strong``: the row of a table where all that is to come counts against the formula.
+    ``strong``: the row of a table where all that is to come counts against the formula. ``told``: nodes that
+    are definitions, with their names.
     """
 
     formula: Formula
@@ -127,6 +128,7 @@ class Plan:
     nodes: tuple[Node, ...]
     variables: int
     strong: int
+    told: Mapping[int, str] = field(default_factory=dict)
 
     @property
     def delay(self) -> int:
@@ -155,11 +157,12 @@ class Plan:
         return self.rows * (tables + 1) if self.at_start else 0
 
 
-def plan_of(formula: Formula, dt: Fraction) -> Plan:
+def plan_of(formula: Formula, dt: Fraction, names: Mapping[Formula, str]) -> Plan:
     """The plan of a formula without names, whose parameters have values, for samples every ``dt`` seconds.
 
-    Quantifiers over lanes and ``occ`` are leaves. Raises ``InputError`` for bounds that are no multiple of
-    ``dt``, for more than MOST_OPERATORS operators without a bound, and for more than MOST_DELAY samples.
+    ``names``: what sub-formulas were called. Quantifiers over lanes and ``occ`` are leaves. Raises
+    ``InputError`` for bounds that are no multiple of ``dt``, for more than MOST_OPERATORS operators without a
+    bound, and for more than MOST_DELAY samples.
     """
     planner = _Planner(dt)
     planner.place(formula, False)
@@ -178,7 +181,8 @@ def plan_of(formula: Formula, dt: Fraction) -> Plan:
     strong = sum(1 << x.operation.variable for x in nodes if isinstance(x.operation, Forever) and x.opposite)
     kept = _kept(nodes)
     made = tuple(replace(node, kept=kept.get(k, 0)) for k, node in enumerate(nodes))
-    return Plan(formula, tuple(planner.leaves), made, planner.variables, strong)
+    told = {k: names[x] for (x, _, _), k in planner.known.items() if x in names}
+    return Plan(formula, tuple(planner.leaves), made, planner.variables, strong, told)
 
 
 def operands(operation: Operation) -> tuple[Operand, ...]:
