@@ -65,17 +65,18 @@ def rows_of(recording: Recording) -> Iterator[list[tuple[float, ...]]]:
         yield [tuple(row) for row in columns[begin:end].tolist()]
 
 
-def on_road(recording: Recording, road: Road) -> Recording:
+def on_road(recording: Recording, road: Road, rate: int = RATE) -> Recording:
     """The same motion on a road, from its exact samples."""
     names = ("vehicle_id", "direction", "kind", "length", "width", "first_frame")
     vehicles = {name: getattr(recording, name) for name in names}
     signals = [getattr(recording, name) for name in RECORDED]
     place = of_road(road, 2, Path("road"))
-    return record(place, "exact", RATE, vehicles, np.diff(recording.start), signals)
+    return record(place, "exact", rate, vehicles, np.diff(recording.start), signals)
 
 
 def matches(recording: Recording) -> set[tuple[object, ...]]:
-    found = evaluate_recording(recording, everything(RATE)).matches
+    """Vehicles, scenario, set and minDanger of each match."""
+    found = evaluate_recording(recording, everything(recording.rate)).matches
     return {(m.sv, m.pov, m.pov2, m.scenario, m.set_name, m.min_danger) for m in found}
 
 

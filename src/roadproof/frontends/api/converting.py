@@ -38,14 +38,16 @@ def convert(
     jobs: int | None = None,
     progress: Progress | None = None,
     strict: bool = False,
+    road: str | None = None,
 ) -> Conversion:
     """Write recordings of any format as Parquet, as they were read and checked, for quicker reading.
 
     Whatever reads recordings reads the folder ``out`` with the same answers. ``path``: a folder of recordings
     in one format, or the file of one. Raises ``InputError`` for the first that cannot be read; those that are
-    done stay. ``strict``: reject a recording of which vehicles would be left out.
+    done stay. ``strict``: reject a recording of which vehicles would be left out. ``road``: of a map,
+    for recordings that name no lanes (inD, rounD, uniD).
     """
-    sources, folder = find_sources(Path(path), strict), Path(out)
+    sources, folder = find_sources(Path(path), strict, road), Path(out)
     if sources[0].format is FORMAT:
         raise InputError(f"recordings={path}: they are converted already")
     if folder.resolve() == (Path(path) if Path(path).is_dir() else Path(path).parent).resolve():

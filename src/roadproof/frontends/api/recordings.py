@@ -238,9 +238,9 @@ def _settings_of(home: Definitions, given: Evaluate) -> Settings:
 def _evaluate(path: Path, out: Path, settings: Settings, given: Evaluate) -> Evaluation:
     """As ``evaluate``, with what is asked as a value, in a folder that no other run is writing into."""
     hands = hands_of(given.jobs)
-    experiment = Experiment(path, out, settings, hands, given.keep_going, given.strict)
+    experiment = Experiment(path, out, settings, hands, given.keep_going, given.strict, given.road)
     say = given.tell or (lambda line: None)
-    find_sources(path, given.strict)
+    experiment.sources()
     with hold_folder(out, shared=hands.shard is not None):
         remove_report(out)
         outcome = run_experiment(experiment, say)
@@ -297,9 +297,13 @@ class RecordedRoad:
             yield f"  {attributes} lane {name}, direction {direction}: {parts}"
 
 
-def roads(path: str | Path) -> tuple[RecordedRoad, ...]:
-    """The roads of the recordings of ``path``, each read and checked as a whole. Raises ``InputError``."""
-    return tuple(_road(source.format.name, source.read()) for source in find_sources(Path(path)))
+def roads(path: str | Path, road: str | None = None) -> tuple[RecordedRoad, ...]:
+    """The roads of the recordings of ``path``, each read and checked as a whole.
+
+    ``road``: of a map, for recordings that name no lanes (inD, rounD, uniD). Raises ``InputError``,
+    ``UsageError``.
+    """
+    return tuple(_road(x.format.name, x.read()) for x in find_sources(Path(path), road=road))
 
 
 def _road(format_name: str, recording: Recording) -> RecordedRoad:

@@ -40,7 +40,7 @@ from roadproof.recordings.evaluate.one_trace import (
     refuse_unmeasured,
     sample_drive,
 )
-from roadproof.recordings.formats.source import TRACK_FILES
+from roadproof.recordings.formats.sources import has_numbers
 from roadproof.recordings.formats.table import Frame, columns_of
 from roadproof.verdict import ExitCode
 from roadproof.world.length_error import LengthError, length_error_of
@@ -185,16 +185,17 @@ def _read(on: "str | Path | OneTrace | Mapping[str, Any] | Frame", given: Monito
         return on
     if not isinstance(on, str | Path):
         return trace(on, road or "main-2")
-    if Path(on).suffix in (".csv", ".parquet", ".xosc") and not TRACK_FILES.fullmatch(Path(on).name):
+    if Path(on).suffix in (".csv", ".parquet", ".xosc") and not has_numbers(Path(on)):
         return read_samples(Path(on), None if road is None else as_road(road))
-    if road is not None:
-        raise UsageError(f"--road: {on} has the road of its recording; omit --road")
+    if isinstance(road, Road):
+        raise UsageError(f"--road: {on} is a recording; name a road of a map, or omit it")
+    chart = None if road is None else str(road)
     if is_pair(str(on)):
         if names:
             raise UsageError(f"--roles: the order of the vehicles in {on} says their roles; omit --roles")
-        return read_pair(str(on), given.frames, given.strict)
+        return read_pair(str(on), given.frames, given.strict, chart)
     if names:
-        return read_vehicles(Path(on), _numbers(names), given.frames, str(on), given.strict)
+        return read_vehicles(Path(on), _numbers(names), given.frames, str(on), given.strict, chart)
     raise InputError(
         f"{on}: a trace is a drive (.json), samples (.csv, .parquet or .xosc), or vehicles of a recording "
         "such as highd/01_tracks.csv:12,15; --roles SV=12,POV=15 names them, too"

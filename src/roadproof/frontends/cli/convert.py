@@ -29,5 +29,5 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.converting import convert
 
-    print(convert(args.path, args.out, args.jobs, Counter(), args.strict))
+    print(convert(args.path, args.out, args.jobs, Counter(), args.strict, args.road))
     return ExitCode.AS_EXPECTED

@@ -24,8 +24,8 @@ MOST_NOTES = 12
 
 EXAMPLES = """\
 PATH is a folder of recordings, or the file of one: highD (XX_recordingMeta.csv, XX_tracksMeta.csv,
-XX_tracks.csv), exiD (the same, and maps in .osm), NGSIM (NAME.csv), CommonRoad 2020a (NAME.xml), or samples
-(NAME.csv or NAME.parquet, with NAME_road.toml).
+XX_tracks.csv), exiD (the same, and maps in .osm), inD, rounD and uniD (the same, and --road), NGSIM
+(NAME.csv), CommonRoad 2020a (NAME.xml), or samples (NAME.csv or NAME.parquet, with NAME_road.toml).
 A run that was killed goes on where it was.
 
 examples:
@@ -49,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
     if args.list_roads:
         if args.out or args.json:
             raise UsageError("--list evaluates nothing: omit --out and --json")
-        print("\n".join(map(str, roads(args.path))))
+        print("\n".join(map(str, roads(args.path, args.road))))
         return ExitCode.AS_EXPECTED
     if not args.out:
         raise UsageError("--out is missing: name the folder for the results, or use --list")

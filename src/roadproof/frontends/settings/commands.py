@@ -5,7 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from roadproof.frontends.settings.groups import Answered, Readings, Workers, folder_for, strict_reading
+from roadproof.frontends.settings.groups import (
+    Answered,
+    Readings,
+    Workers,
+    folder_for,
+    map_road,
+    strict_reading,
+)
 from roadproof.frontends.settings.option import Settings, option, output
 
 
@@ -35,6 +42,7 @@ class Convert(Workers):
 
     out: str | Path | None = folder_for("the data set", required=True)
     strict: bool = strict_reading()
+    road: str | None = map_road()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -63,6 +63,11 @@ def strict_reading() -> Any:
     return option(False, "--strict", "reject a recording with bad vehicles, and leave none out")
 
 
+def map_road() -> Any:
+    """``road``: the road of recordings that name no lanes."""
+    return option(None, "--road MAP#ROAD", "road of a map, for recordings without lanes (inD, rounD, uniD)")
+
+
 def checker_of(what: str) -> Any:
     """``solver``, which checks evidence; ``what`` is its help."""
     return option("z3", "--solver", f"{what} (default: z3)", choices=("z3", "cvc5"))

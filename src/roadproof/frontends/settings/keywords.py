@@ -227,6 +227,7 @@ class EvaluateKeywords(SharingKeywords, TracesKeywords, total=False):
     check: bool
     keep_going: bool
     strict: bool
+    road: str | None
     pictures: bool
     tell: Say | None
 

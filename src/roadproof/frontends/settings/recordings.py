@@ -56,7 +56,9 @@ class Monitor(groups.Definitions, groups.Traces):
         read=mapping_of("SV=Ego,POV=Target"),
     )
     road: RoadLike | None = option(
-        None, "--road R", "road of samples (default: NAME_road.toml beside the file, else main-2)"
+        None,
+        "--road R",
+        "road of samples (default: NAME_road.toml beside the file, else main-2); for inD: of a map",
     )
     view: View | None = option(
         None, "--view", "judge a drive in dense time (default), or as samples", choices=("dense", "recorded")
@@ -109,6 +111,7 @@ class Evaluate(groups.Definitions, groups.Sharing, groups.Traces, groups.Reporte
     check: bool = option(False, "--check", "compare with the plain recursive evaluator (slow)", rare=True)
     keep_going: bool = option(False, "--keep-going", "skip recordings that cannot be used")
     strict: bool = groups.strict_reading()
+    road: str | None = groups.map_road()
     out: str | Path | None = groups.folder_for("results", command_line_only=True)
     list_roads: bool = output(
         False, "--list", "only list lanes and zones, and which of them were inferred", keyword=False

@@ -25,7 +25,7 @@ from roadproof.runtime.worker import is_worker
 class Experiment:
     """Where the recordings are, where results go, and what is asked.
 
-    ``strict``: no vehicle is left out of a recording.
+    ``strict``: no vehicle is left out of a recording. ``road``: of a map, for recordings without their own.
     """
 
     recordings: Path
@@ -34,6 +34,11 @@ class Experiment:
     hands: Executor = field(default_factory=lambda: Executor(1))
     keep_going: bool = False
     strict: bool = False
+    road: str | None = None
+
+    def sources(self) -> tuple[RecordingSource, ...]:
+        """The recordings. Raises ``InputError``, ``UsageError``."""
+        return find_sources(self.recordings, self.strict, self.road)
 
 
 @dataclass(frozen=True)
@@ -58,7 +63,7 @@ def run_experiment(
     recording that cannot be evaluated, unless ``keep_going``: then it is left out, and said so. One of
     several runs that divide the recordings raises ``SharedError`` when its share is done.
     """
-    sources = find_sources(experiment.recordings, experiment.strict)
+    sources = experiment.sources()
     shard = experiment.hands.shard
     if shard is not None:
         sources = tuple(shard.among(sources))
@@ -113,7 +118,7 @@ def saved_findings(
     experiment: Experiment, outcome: ExperimentOutcome
 ) -> Iterator[tuple[RecordingSource, Findings]]:
     """What an experiment that is done has saved of each recording, in order."""
-    for source in find_sources(experiment.recordings, experiment.strict):
+    for source in experiment.sources():
         if source.name in outcome.marks and source.name not in outcome.failed:
             found = _known(experiment, source, outcome.marks[source.name])
             if found is not None:

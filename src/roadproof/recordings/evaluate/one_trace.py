@@ -61,12 +61,16 @@ def is_pair(text: str) -> bool:
 
 
 def read_pair(
-    text: str, frames: tuple[int | None, int | None] = (None, None), strict: bool = False
+    text: str,
+    frames: tuple[int | None, int | None] = (None, None),
+    strict: bool = False,
+    road: str | None = None,
 ) -> OneTrace:
     """Vehicles of a recording on their common frames, or on those of ``frames`` (first, last).
 
-    The first id is SV, the others are POV, or POV1 and POV2. Raises ``InputError`` for files that are
-    no recording, vehicles that are not there or drive in different directions, and no frames.
+    The first id is SV, the others are POV, or POV1 and POV2. ``road``: as for ``find_sources``. Raises
+    ``InputError`` for files that are no recording, vehicles that are not there or drive in different
+    directions, and no frames.
     """
     named = _PAIR.fullmatch(text)
     if named is None:
@@ -75,7 +79,8 @@ def read_pair(
     ids = [int(x) for x in numbers.split(",")]
     if len(set(ids)) < len(ids):
         raise InputError(f"{text}: each vehicle may be named once")
-    return read_vehicles(Path(path), dict(zip(roles(len(ids)), ids, strict=True)), frames, text, strict)
+    by_role = dict(zip(roles(len(ids)), ids, strict=True))
+    return read_vehicles(Path(path), by_role, frames, text, strict, road)
 
 
 def read_vehicles(
@@ -84,9 +89,10 @@ def read_vehicles(
     frames: tuple[int | None, int | None],
     text: str,
     strict: bool = False,
+    road: str | None = None,
 ) -> OneTrace:
     """As ``read_pair``, the vehicles of a recording by the role that each plays; ``text`` names the trace."""
-    recording = find_source(path, strict).read()
+    recording = find_source(path, strict, road).read()
     index = [_find(recording, number, text) for number in by_role.values()]
     if len({int(recording.direction[v]) for v in index}) > 1:
         raise InputError(f"{text}: the vehicles drive in different directions; name some of one direction")

@@ -1,9 +1,8 @@
 """Recordings in the exiD format (semantics §7; Moers et al., IV 2022), on Lanelet2 maps.
 
-Positions are the middles of boxes, y grows up, and headings are in degrees, counter-clockwise from x. The
-map of a location is an .osm file in the folder of the recording, or in ``maps`` or ``lanelets`` beside it
-or beside its parent, whose name has the number of the location; NAME_zones.toml beside NAME.osm may say
-which lanelets are of ramps. Further columns are passed over, as versions of the format differ in them.
+Tracks are as ``levelx`` says. The map of a location is an .osm file in the folder of the recording, or in
+``maps`` or ``lanelets`` beside it or beside its parent, whose name has the number of the location;
+NAME_zones.toml beside NAME.osm may say which lanelets are of ramps.
 
 Maps in Lanelet2's OSM XML: nodes, ways, and relations of type lanelet with a left and a right way.
 
@@ -14,7 +13,6 @@ another where its bounds begin in the nodes in which those of the other end, and
 same direction where the left way of one is the right way of the other.
 """
 
-import math
 import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
@@ -25,35 +23,32 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.errors import InputError
-from roadproof.recordings.formats.contradictions import contradictions, seldom
+from roadproof.recordings.formats.contradictions import seldom
 from roadproof.recordings.formats.lanelets import network_of
-from roadproof.recordings.formats.measured_roads import MeasuredTraffic, place_traffic
-from roadproof.recordings.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED, check
+from roadproof.recordings.formats.levelx import (
+    check_cells,
+    check_plausible,
+    check_velocities,
+    read_about,
+    read_samples,
+    read_vehicles,
+    traffic_of,
+)
+from roadproof.recordings.formats.measured_roads import place_traffic
 from roadproof.recordings.formats.recording import Floats, Integers, Recording, with_notes
 from roadproof.recordings.formats.reliable import reliable
-from roadproof.recordings.formats.source import Files, Format, beside
-from roadproof.recordings.formats.table import Table, kinds_of, read_named
-from roadproof.recordings.formats.tracks import (
-    RATE_AT,
-    files_of,
-    find_recordings,
-    in_order,
-    match_vehicles,
-    rate_of,
-    read_tracks,
-    usable,
-    vehicles_by_id,
-)
+from roadproof.recordings.formats.source import Files, Format, beside, first_line
+from roadproof.recordings.formats.table import Table
+from roadproof.recordings.formats.tracks import RATE_AT, files_of, find_recordings, read_tracks, usable
 from roadproof.runtime.xml_reader import Element, by_id, number_in, read_xml
 from roadproof.world.maps.network import ZONES_ENDING
+from roadproof.world.maps.projections import UtmPoint, utm_of
 from roadproof.world.maps.topology import MeasuredLanelet
 
 LEFT_OUT = frozenset(
     "emergency_lane walkway shared_walkway crosswalk stairs bicycle_lane rail parking".split()  # noqa: SIM905
 )
 """Subtypes of lanelets that are no lanes of the road."""
-_AXIS, _FLATTENING = 6_378_137.0, 1 / 298.257223563
-_SCALE, _EASTING = 0.9996, 500_000.0
 
 
 @dataclass(frozen=True)
@@ -66,7 +61,7 @@ class _LaneletNodes:
     right: tuple[str, ...]
 
 
-def read_osm(path: Path, origin: tuple[float, float]) -> tuple[dict[str, MeasuredLanelet], tuple[str, ...]]:
+def read_osm(path: Path, origin: UtmPoint) -> tuple[dict[str, MeasuredLanelet], tuple[str, ...]]:
     """The lanelets of a map by id, and notes on what was left out.
 
     ``origin``: UTM easting and northing (m) of the point from which coordinates count, for nodes that have
@@ -86,33 +81,6 @@ def read_osm(path: Path, origin: tuple[float, float]) -> tuple[dict[str, Measure
     return _linked(drawn, places), notes
 
 
-def utm_of(lat: Floats, lon: Floats) -> Floats:
-    """Easting and northing (n, 2) in metres of points in degrees, in the zone of the first.
-
-    >>> [round(float(x), 2) for x in utm_of(np.array([50.0]), np.array([9.0]))[0]]
-    [500000.0, 5538630.7]
-    """
-    middle = math.radians(6 * math.floor((float(lon[0]) + 180) / 6) - 177)
-    n = _FLATTENING / (2 - _FLATTENING)
-    radius = _AXIS / (1 + n) * (1 + n**2 / 4 + n**4 / 64)
-    series = (
-        n / 2 - 2 * n**2 / 3 + 5 * n**3 / 16 + 41 * n**4 / 180,
-        13 * n**2 / 48 - 3 * n**3 / 5 + 557 * n**4 / 1440,
-        61 * n**3 / 240 - 103 * n**4 / 140,
-        49561 * n**4 / 161280,
-    )
-    eccentric = 2 * math.sqrt(n) / (1 + n)
-    sine, turn = np.sin(np.radians(lat)), np.radians(lon) - middle
-    t = np.sinh(np.arctanh(sine) - eccentric * np.arctanh(eccentric * sine))
-    xi, eta = np.arctan2(t, np.cos(turn)), np.arctanh(np.sin(turn) / np.hypot(1, t))
-    east, north = eta.copy(), xi.copy()
-    for k, factor in enumerate(series, start=1):
-        east += factor * np.cos(2 * k * xi) * np.sinh(2 * k * eta)
-        north += factor * np.sin(2 * k * xi) * np.cosh(2 * k * eta)
-    scale = _SCALE * radius
-    return np.stack((_EASTING + scale * east, scale * north + np.where(lat < 0, 1e7, 0.0)), axis=1)
-
-
 def _tag(node: Element, key: str) -> str:
     found = (x.get("v", "") for x in node.findall("tag") if x.get("k") == key)
     return next(found, "")
@@ -126,7 +94,7 @@ def _nodes_of(path: Path, name: str, way: Element, nodes: Mapping[str, Element])
     return refs
 
 
-def _places(path: Path, nodes: Mapping[str, Element], origin: tuple[float, float]) -> dict[str, Floats]:
+def _places(path: Path, nodes: Mapping[str, Element], origin: UtmPoint) -> dict[str, Floats]:
     """x and y of each node that a way uses."""
     local = {name for name, node in nodes.items() if _tag(node, "local_x") or _tag(node, "local_y")}
     if local and len(local) < len(nodes):
@@ -215,21 +183,7 @@ def _even(left: Floats, right: Floats) -> tuple[Floats, Floats]:
     return one, other
 
 
-RECORDING_KINDS = kinds_of(
-    integer="recordingId locationId",
-    number="frameRate xUtmOrigin yUtmOrigin",
-)
-VEHICLE_KINDS = kinds_of(
-    integer="recordingId trackId initialFrame finalFrame numFrames",
-    number="width length",
-    text="class",
-)
-SAMPLE_KINDS = kinds_of(
-    integer="recordingId trackId frame",
-    number="xCenter yCenter heading xVelocity yVelocity xAcceleration yAcceleration lonVelocity latVelocity",
-    list="laneletId",
-)
-LARGEST_PLACE = 10_000.0
+LANELETS = "laneletId"
 
 
 def read_exid(folder: Path, name: str, strict: bool = True) -> Recording:
@@ -237,74 +191,17 @@ def read_exid(folder: Path, name: str, strict: bool = True) -> Recording:
 
     Raises ``InputError`` that names file, element, value and rule.
     """
-    about = read_named(folder / f"{name}_recordingMeta.csv", RECORDING_KINDS)
-    rate = rate_of(about, "recordingId", int(name), f"the file is of recording {name}")
-    meta = _read_vehicles(folder / f"{name}_tracksMeta.csv", int(name))
-    tracks, notes = in_order(read_named(folder / f"{name}_tracks.csv", SAMPLE_KINDS), "trackId")
-    tracks.require(tracks["recordingId"] == int(name), "recordingId", f"the file is of recording {name}")
-    meta, tracks, start, left_out = usable(meta, tracks, "trackId", strict, _check_cells)
-    notes += (*left_out, *_check_velocities(tracks))
+    about, rate = read_about(folder, name)
+    meta = read_vehicles(folder, name)
+    tracks, notes = read_samples(folder, name, {LANELETS: "list"})
+    meta, tracks, start, left_out = usable(meta, tracks, "trackId", strict, check_cells)
+    notes += (*left_out, *check_velocities(tracks))
     path = _map_of(folder, int(about["locationId"][0]), about)
     lanelets, told = read_osm(path, (about["xUtmOrigin"][0], about["yUtmOrigin"][0]))
-    heading = np.radians(tracks["heading"])
-    traffic = MeasuredTraffic(
-        name=name,
-        rate=rate,
-        vehicle_id=meta["trackId"],
-        kind=np.array([str(x).capitalize() for x in meta["class"]]),
-        length=meta["length"],
-        width=meta["width"],
-        first_frame=meta["initialFrame"],
-        start=start,
-        centre=np.stack((tracks["xCenter"], tracks["yCenter"]), axis=1),
-        heading=heading,
-        velocity=np.stack((tracks["xVelocity"], tracks["yVelocity"]), axis=1),
-        acceleration=np.stack((tracks["xAcceleration"], tracks["yAcceleration"]), axis=1),
-        notes=(*notes, *told),
-    )
+    traffic = traffic_of(name, rate, meta, tracks, start, (*notes, *told))
     recording = place_traffic(traffic, network_of(path, lanelets, strict))
-    stands = reliable(recording, strict, partial(_check_plausible, tracks))
+    stands = reliable(recording, strict, partial(check_plausible, tracks))
     return with_notes(stands, _check_lanelets(tracks, recording, path))
-
-
-def _read_vehicles(path: Path, recording: int) -> Table:
-    meta = read_named(path, VEHICLE_KINDS)
-    meta.require(meta["recordingId"] == recording, "recordingId", f"the file is of recording {recording}")
-    return vehicles_by_id(meta, "trackId")
-
-
-def _check_cells(meta: Table, tracks: Table) -> Integers:
-    """Where each vehicle's samples start; no cell may say what no vehicle is or does."""
-    for column in ("width", "length"):
-        size = meta[column]
-        meta.require(size > 0, column, "the size of a vehicle is greater than zero; people have none")
-        meta.require(size <= LARGEST_SIZE, column, f"no vehicle is larger than {LARGEST_SIZE:g} m")
-    start = match_vehicles(meta, tracks, "trackId", 0)
-    tracks.require_within(LARGEST_PLACE, "xCenter", "yCenter")
-    tracks.require_within(LARGEST_SPEED, "xVelocity", "yVelocity", "lonVelocity", "latVelocity")
-    tracks.require_within(LARGEST_ACCELERATION, "xAcceleration", "yAcceleration")
-    tracks.require_within(360.0, "heading")
-    return start
-
-
-def _check_velocities(tracks: Table) -> Iterator[str]:
-    """lonVelocity is the velocity along the heading; where it is not, headings or axes are others."""
-    heading = np.radians(tracks["heading"])
-    along = tracks["xVelocity"] * np.cos(heading) + tracks["yVelocity"] * np.sin(heading)
-    wrong = np.abs(along - tracks["lonVelocity"]) > 0.5
-    rule, advice = "not the velocity along the heading", "does y grow up, and is heading in degrees?"
-    yield from seldom(tracks, wrong, "lonVelocity", rule, advice)
-
-
-def _check_plausible(whole: Table, recording: Recording, rows: Integers) -> Iterator[str]:
-    """Notes on what the file contradicts itself in. Raises ``InputError`` where that is too much."""
-    tracks = whole if len(rows) == whole.rows else whole.at(rows)
-
-    def at(row: int, signal: str) -> str:
-        return f"{tracks.cell(row, 'frame')}, trackId={tracks['trackId'][row]}"
-
-    vehicle_at = partial(tracks.cell, column="trackId")
-    return contradictions(tracks.path, check(recording), at, vehicle_at, "lanelet of the map")
 
 
 def _check_lanelets(tracks: Table, recording: Recording, path: Path) -> Iterator[str]:
@@ -351,10 +248,21 @@ def _files(folder: Path, name: str) -> Files:
     return (*maps, *files_of(folder, name))
 
 
+def names_lanelets(tracks: Path) -> bool:
+    """Whether samples have the lanelets of exiD; True of no file."""
+    line = first_line(tracks)
+    return not line or LANELETS in line.split(",")
+
+
+def _find(path: Path) -> dict[str, Files]:
+    found = find_recordings(path, with_ids=True, files=_files)
+    return {name: x for name, x in found.items() if names_lanelets(x[-1])}
+
+
 FORMAT = Format(
     "exiD",
     "the files of highD with a column recordingId, and maps in .osm",
-    partial(find_recordings, with_ids=True, files=_files),
+    _find,
     partial(read_tracks, read_exid),
     RATE_AT,
 )

@@ -25,7 +25,8 @@ class Format:
     vehicle is left out (reliable.py). It raises ``InputError``.
     ``rate_at``: where the files, {0} being the last, say the ``rate`` (1/s) and ``step`` (s) of samples.
     ``told``: the files in words. ``divide``: a recording that is too large to be read as a whole, in windows,
-    None for others; formats without it are always read as a whole.
+    None for others; formats without it are always read as a whole. ``on_road``: the format for recordings on
+    a road of a map, as ``maps.selection`` reads it, where they do not say their own.
     """
 
     name: str
@@ -34,16 +35,18 @@ class Format:
     read: Callable[[Path, bool], Recording]
     rate_at: str
     divide: Callable[[Path], WindowedRecording | None] | None = None
+    on_road: "Callable[[str], Format] | None" = None
 
 
 @dataclass(frozen=True)
 class RecordingSource:
-    """A recording that can be read; ``strict``: as a whole or not at all."""
+    """A recording that can be read; ``strict``: as a whole or not at all; ``road``: that was selected."""
 
     format: Format
     name: str
     files: Files
     strict: bool = False
+    road: str | None = None
 
     def read(self) -> Recording:
         """Read and check it. Raises ``InputError``."""
@@ -55,8 +58,14 @@ class RecordingSource:
         return (divide and divide(self.files[-1])) or undivided(self.read())
 
     def digests(self) -> list[str]:
-        """A digest of the content of each file, empty for one that cannot be read."""
-        return [_digest(path) for path in self.files]
+        """A digest of the content of each file, empty for one that cannot be read.
+
+        That of the first one is also of the road, where one was selected.
+        """
+        first, *others = [_digest(path) for path in self.files]
+        if self.road is not None:
+            first = hashlib.sha256(f"{first}{self.road}".encode()).hexdigest()
+        return [first, *others]
 
     def place_of_rate(self, rate: int) -> str:
         """Where the files say how many samples a second there are."""

@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from roadproof.errors import InputError
-from roadproof.recordings.formats import commonroad, converted, exid, highd, ngsim, openscenario, samples
+from roadproof.errors import InputError, UsageError
+from roadproof.recordings.formats import commonroad, converted, exid, highd, ind, ngsim, openscenario, samples
 from roadproof.recordings.formats.large import divide_large
 from roadproof.recordings.formats.source import (
     TRACK_FILES,
@@ -14,6 +14,12 @@ from roadproof.recordings.formats.source import (
     find_files,
     first_line,
 )
+from roadproof.world.maps.selection import read_selection
+
+
+def has_numbers(path: Path) -> bool:
+    """Whether a CSV file is of a recording in a format whose vehicles have numbers, by name or content."""
+    return TRACK_FILES.fullmatch(path.name) is not None or ngsim.is_ngsim(path)
 
 
 def _find_csv(path: Path) -> dict[str, Files]:
@@ -22,8 +28,7 @@ def _find_csv(path: Path) -> dict[str, Files]:
     if path.is_dir():
         wanted = {"time", "vehicle"}
         return {x: y for x, y in found.items() if wanted <= set(first_line(y[-1]).split(","))}
-    other = TRACK_FILES.fullmatch(path.name) or ngsim.is_ngsim(path)
-    return {} if other else found
+    return {} if has_numbers(path) else found
 
 
 def _find_parquet(path: Path) -> dict[str, Files]:
@@ -37,6 +42,7 @@ PARQUET = Format("Parquet", "NAME.parquet with the same columns", _find_parquet,
 FORMATS: tuple[Format, ...] = (
     highd.FORMAT,
     exid.FORMAT,
+    ind.FORMAT,
     ngsim.FORMAT,
     commonroad.FORMAT,
     openscenario.FORMAT,
@@ -46,10 +52,11 @@ FORMATS: tuple[Format, ...] = (
 )
 
 
-def find_sources(path: Path, strict: bool = False) -> tuple[RecordingSource, ...]:
+def find_sources(path: Path, strict: bool = False, road: str | None = None) -> tuple[RecordingSource, ...]:
     """The recordings of a folder, or the one that a file is of. Raises ``InputError``.
 
-    ``strict``: a recording is read as a whole or not at all.
+    ``strict``: a recording is read as a whole or not at all. ``road``: of a map, for recordings that do not
+    say theirs; ``UsageError`` for others.
     """
     if not path.exists():
         raise InputError(f"recordings={path}: not a folder and not a file; check the path")
@@ -64,12 +71,18 @@ def find_sources(path: Path, strict: bool = False) -> tuple[RecordingSource, ...
             f"recordings={path}: {names} files in one folder; put them into folders of their own"
         )
     ((chosen, found),) = by_format.items()
-    return tuple(RecordingSource(chosen, name, files, strict) for name, files in found.items())
+    if road is not None:
+        if chosen.on_road is None:
+            raise UsageError(f"road {road}: {path} has the road of its recording; omit it")
+        read_selection(road)
+        chosen = chosen.on_road(road)
+        found = chosen.find(path)
+    return tuple(RecordingSource(chosen, name, files, strict, road) for name, files in found.items())
 
 
-def find_source(path: Path, strict: bool = False) -> RecordingSource:
-    """The only recording of a path. Raises ``InputError``."""
-    sources = find_sources(path, strict)
+def find_source(path: Path, strict: bool = False, road: str | None = None) -> RecordingSource:
+    """The only recording of a path, on a ``road`` as for ``find_sources``. Raises ``InputError``."""
+    sources = find_sources(path, strict, road)
     if len(sources) > 1:
         names = ", ".join(str(source.files[-1].name) for source in sources[:3])
         raise InputError(f"{path}: {len(sources)} recordings; name the file of one, such as {names}")

@@ -21,12 +21,11 @@ import numpy as np
 from roadproof.errors import InputError
 from roadproof.runtime.xml_reader import Element, by_id, number_in, read_xml
 from roadproof.world.maps.lines import resampled
+from roadproof.world.maps.projections import UtmPoint, transverse_mercator, utm_of
 from roadproof.world.maps.topology import Floats, MeasuredLanelet
 
 ROADS = frozenset(("road", "highway"))
 """Subtypes of lanelets that vehicles drive on along a road."""
-_AXIS, _FLATTENING = 6_378_137.0, 1 / 298.257223563
-_SQUARE = _FLATTENING * (2 - _FLATTENING)
 _SPACING = 1.0
 """Metres between the points of bounds that have different numbers of them."""
 
@@ -40,10 +39,16 @@ class _Bounded:
     lines: tuple[Floats, Floats]
 
 
-def read_map(path: Path) -> tuple[dict[str, MeasuredLanelet], tuple[tuple[str, int], ...]]:
-    """The lanelets by id, and how many others there are by subtype. Raises ``InputError``."""
+def read_map(
+    path: Path, origin: UtmPoint | None = None
+) -> tuple[dict[str, MeasuredLanelet], tuple[tuple[str, int], ...]]:
+    """The lanelets by id, and how many others there are by subtype. Raises ``InputError``.
+
+    ``origin``: easting and northing (m) of the point in UTM from which places count, where nodes have no
+    local ones.
+    """
     root = read_xml(path, "osm")
-    points = _points(path, by_id(path, root.findall("node")))
+    points = _points(path, by_id(path, root.findall("node")), origin)
     ways = by_id(path, root.findall("way"))
     found: dict[str, _Bounded] = {}
     others = Counter[str]()
@@ -76,7 +81,9 @@ def _tags(node: Element) -> dict[str, str]:
     return {x.get("k", ""): x.get("v", "") for x in node.findall("tag")}
 
 
-def _points(path: Path, nodes: Mapping[str, Element]) -> dict[str, tuple[float, float]]:
+def _points(
+    path: Path, nodes: Mapping[str, Element], origin: UtmPoint | None
+) -> dict[str, tuple[float, float]]:
     """Where the nodes are in the plane (m)."""
     local = {name: _tags(node) for name, node in nodes.items()}
     if all("local_x" in x and "local_y" in x for x in local.values()):
@@ -93,33 +100,11 @@ def _points(path: Path, nodes: Mapping[str, Element]) -> dict[str, tuple[float, 
     for name, (latitude, longitude) in places.items():
         if abs(latitude) > 85 or abs(longitude) > 180:
             raise InputError(f"{path}: node {name}: lat={latitude}, lon={longitude}: no place on a map")
+    if origin is not None:
+        moved = utm_of(*np.array([*places.values()]).reshape(-1, 2).T) - np.array(origin)
+        return {name: (x, y) for name, (x, y) in zip(places, moved.tolist(), strict=True)}
     middle = [(min(x) + max(x)) / 2 for x in zip(*places.values(), strict=True)]
     return {name: transverse_mercator(x, y, (middle[0], middle[1])) for name, (x, y) in places.items()}
-
-
-def transverse_mercator(
-    latitude: float, longitude: float, origin: tuple[float, float]
-) -> tuple[float, float]:
-    """x to the east and y to the north of ``origin`` (m), all in degrees. The scale at the origin is 1."""
-    phi = math.radians(latitude)
-    second = _SQUARE / (1 - _SQUARE)
-    n = _AXIS / math.sqrt(1 - _SQUARE * math.sin(phi) ** 2)
-    t, c = math.tan(phi) ** 2, second * math.cos(phi) ** 2
-    a = math.radians(longitude - origin[1]) * math.cos(phi)
-    x = n * (a + (1 - t + c) * a**3 / 6 + (5 - 18 * t + t**2 + 72 * c - 58 * second) * a**5 / 120)
-    rise = n * math.tan(phi) * (a**2 / 2 + (5 - t + 9 * c + 4 * c**2) * a**4 / 24)
-    return x, _meridian(phi) - _meridian(math.radians(origin[0])) + rise
-
-
-def _meridian(phi: float) -> float:
-    """Metres from the equator along a meridian (Snyder, equation 3-21)."""
-    e2, e4, e6 = _SQUARE, _SQUARE**2, _SQUARE**3
-    return _AXIS * (
-        (1 - e2 / 4 - 3 * e4 / 64 - 5 * e6 / 256) * phi
-        - (3 * e2 / 8 + 3 * e4 / 32 + 45 * e6 / 1024) * math.sin(2 * phi)
-        + (15 * e4 / 256 + 45 * e6 / 1024) * math.sin(4 * phi)
-        - 35 * e6 / 3072 * math.sin(6 * phi)
-    )
 
 
 def _nodes(

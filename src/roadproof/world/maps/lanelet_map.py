@@ -18,6 +18,7 @@ from roadproof.world.maps import commonroad, lanelet2
 from roadproof.world.maps.lanelet_steps import MapLanelet, edges_along, lanelets_of
 from roadproof.world.maps.lines import crossing, joined, reference_line, thinned
 from roadproof.world.maps.network import Network, network_of, zones_of
+from roadproof.world.maps.projections import UtmPoint
 from roadproof.world.maps.selection import Selection, Stretch, cut
 from roadproof.world.maps.topology import Floats, chains_of, closure, length_of
 from roadproof.world.reference_line import ReferenceLine
@@ -94,10 +95,10 @@ class LaneletMap:
         return length_of(self.network.lanelets, way)
 
 
-def read_lanelets(path: Path) -> LaneletMap:
-    """The map of a file, by its ending. Raises ``InputError``."""
+def read_lanelets(path: Path, origin: UtmPoint | None = None) -> LaneletMap:
+    """The map of a file, by its ending; ``origin`` as for ``lanelet2.read_map``. Raises ``InputError``."""
     if path.suffix == ".osm":
-        lanelets, left_out = lanelet2.read_map(path)
+        lanelets, left_out = lanelet2.read_map(path, origin)
         return LaneletMap(path, network_of(path, lanelets), left_out)
     return LaneletMap(path, network_of(path, commonroad.read_map(path)))
 

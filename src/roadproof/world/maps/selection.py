@@ -92,12 +92,15 @@ def _metres(text: str, key: str, value: str | None) -> Fraction | None:
         raise UsageError(f"road {text}: {key}={value}: a number of metres is needed") from None
 
 
-def select(path: Path, selection: Selection) -> Stretch:
-    """The stretch of a map. Raises ``InputError`` that names the file, the element and the rule."""
+def select(path: Path, selection: Selection, origin: tuple[float, float] | None = None) -> Stretch:
+    """The stretch of a map. Raises ``InputError`` that names the file, the element and the rule.
+
+    ``origin``: the point in UTM (m) from which places count in Lanelet2, instead of the middle of the map.
+    """
     if path.suffix in LANELETS:  # such maps need numpy
         from roadproof.world.maps import lanelet_map
 
-        return lanelet_map.stretch_of(lanelet_map.read_lanelets(path), selection)
+        return lanelet_map.stretch_of(lanelet_map.read_lanelets(path, origin), selection)
     return stretch_of(path, read_map(path), selection)
 
 

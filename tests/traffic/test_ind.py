@@ -1,0 +1,214 @@
+"""inD, rounD and uniD on roads of maps: planted drives, who is left out, and damage."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import roadproof as rp
+from roadproof.errors import InputError, UsageError
+from roadproof.recordings.evaluate.one_trace import read_pair
+from roadproof.recordings.formats.recording import Floats
+from roadproof.recordings.formats.sources import find_source, find_sources
+from tables import read_table
+from traffic.make_recording import Track, make_recording
+from traffic.planar_exid import osm_of, write_exid
+from traffic.test_exid import CASES, aside, cell, planted, rampwards, turn_over
+from traffic.test_ngsim import matches, on_road
+from traffic.test_topology import with_ramps
+from traffic.tiny_ind import add_track, write_ind
+from world.test_maps import lane, road, section
+
+RATE = 25
+CHART = "maps/location3.osm"
+
+
+def main_road(folder: Path) -> str:
+    return f"{folder / CHART}#road=1"
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_planted_drives_have_the_verdicts_of_their_samples(case: str, tmp_path: Path) -> None:
+    name, shift, begin, bend = CASES[case]
+    recording, who = planted(begin)
+    recording = replace(recording, vehicle_id=recording.vehicle_id - 1)  # as the files number them
+    path = write_ind(recording, with_ramps(name), tmp_path, bend)
+    found = matches(find_source(path, road=main_road(tmp_path)).read())
+    assert found == matches(on_road(recording, with_ramps(name), RATE))
+    shown = {(sv, pov, scenario) for sv, pov, _, scenario, *_ in found}
+    assert {(sv, pov, number + shift) for number, (sv, *_, pov) in who.items() if number != 2} <= shown
+
+
+def test_a_map_in_degrees_counts_from_the_origin_of_the_recording(tmp_path: Path) -> None:
+    recording, _ = planted(-95.0)
+    ramps = with_ramps("merge")
+    path = write_ind(recording, ramps, tmp_path / "a", rampwards)
+    one = find_source(path, road=main_road(tmp_path / "a")).read()
+    degrees = osm_of(ramps, rampwards, step=60.0, local=False)
+    path = write_ind(recording, ramps, tmp_path / "b", rampwards, degrees)
+    other = find_source(path, road=main_road(tmp_path / "b")).read()
+    assert np.abs(one.s - other.s).max() < 0.01
+    assert np.abs(one.d - other.d).max() < 0.01
+    assert one.occupancy.tolist() == other.occupancy.tolist()
+
+
+def beside_a_line(s: Floats, d: Floats) -> tuple[Floats, Floats, Floats]:
+    """To the right of a line that begins in (10, 20), turned by 30 degrees."""
+    turn = math.radians(30)
+    x, y = s * np.cos(turn) - (d - 7) * np.sin(turn), s * np.sin(turn) + (d - 7) * np.cos(turn)
+    return x + 10, y + 20, np.full_like(s, turn)
+
+
+def test_a_road_in_opendrive(tmp_path: Path) -> None:
+    recording, _ = planted(5.0)
+    recording = replace(recording, vehicle_id=recording.vehicle_id - 1)
+    path = write_ind(recording, with_ramps("merge"), tmp_path, beside_a_line)
+    geometry = f'<geometry s="0" x="10" y="20" hdg="{math.radians(30)!r}" length="900"><line/></geometry>'
+    chart = tmp_path / "location3.xodr"
+    lanes = section(lane(-1) + lane(-2))
+    chart.write_text(f"<OpenDRIVE><header/>{road(1, geometry, lanes, length='900')}</OpenDRIVE>")
+    read = find_source(path, road=str(chart)).read()
+    assert read.s == pytest.approx(recording.s, abs=2e-3)
+    assert read.d + 7 == pytest.approx(recording.d, abs=2e-3)
+    assert matches(read) == matches(on_road(recording, rp.road("main-2"), RATE))
+    assert f"road {chart}: edges of its lanes are up to 0 m from the map's" in read.notes
+    assert find_source(path, road=str(chart)).files[0] == chart
+
+
+def two_cars(folder: Path) -> Path:
+    """Numbers 0 and 1, in both lanes beside the merge lane."""
+    rows = [
+        [(s + 1.2 * k, d + 0.9, 30.0, 0.0, 0.0, 0.0) for k in range(60)]
+        for s, d in ((-150, 1.75), (-60, 5.25))
+    ]
+    return write_ind(make_recording([Track(2, 4, x, 4.4, 1.8) for x in rows]), with_ramps("merge"), folder)
+
+
+def going(x: float, y: float, heading: float, v: float, count: int = 60) -> list[list[float]]:
+    cos, sin = math.cos(math.radians(heading)), math.sin(math.radians(heading))
+    return [[x + v * cos * k / RATE, y + v * sin * k / RATE, heading, v * cos, v * sin] for k in range(count)]
+
+
+def test_who_is_not_in_traffic_is_left_out_and_counted(tmp_path: Path) -> None:
+    path = two_cars(tmp_path)
+    add_track(tmp_path, 2, "pedestrian", (0, 0), going(0, -5, 90, 1.5))
+    add_track(tmp_path, 3, "bicycle", (0, 0), going(0, -6, 90, 4))
+    add_track(tmp_path, 4, "bicycle", (1.8, 0.6), going(10, -6, 90, 4))
+    add_track(tmp_path, 5, "car", (4.5, 1.8), going(40, 1.75, 0, 0))
+    add_track(tmp_path, 6, "car", (4.5, 1.8), going(40, 80, 0, 12))
+    add_track(tmp_path, 7, "truck_bus", (9.0, 2.5), going(60, -40, 90, 20, 100))
+    arc = [[60 + 20 * math.sin(a), 21.75 - 20 * math.cos(a)] for a in np.linspace(-1, 1.4, 100)]
+    turning = [
+        [x, y, math.degrees(a), 12 * math.cos(a), 12 * math.sin(a)]
+        for (x, y), a in zip(arc, np.linspace(-1, 1.4, 100), strict=True)
+    ]
+    add_track(tmp_path, 8, "car", (4.5, 1.8), turning)
+    r = find_source(path, road=main_road(tmp_path)).read()
+    assert r.vehicle_id.tolist() == [0, 1, 8]
+    for told in (
+        "left out 1 of 9 vehicles (2): they are pedestrians",
+        "left out 2 of 9 vehicles (3, 4): they are cyclists",
+        "left out 1 of 6 vehicles (5): they are parked, or stand all the time",
+        "left out 2 of 6 vehicles (6, 7): they are not on the road along it for a second",
+        "1 vehicles (8) count while they are on the road, along it",
+    ):
+        assert told in r.notes
+    begin, end = r.start[2:].tolist()
+    assert 25 <= end - begin < 100
+    assert r.first_frame[2] > 0
+    assert r.s[begin] == pytest.approx(turning[int(r.first_frame[2])][0] + 600 + 2.25, abs=0.5)
+
+
+def test_a_bus_of_ind_is_a_truck(tmp_path: Path) -> None:
+    path = two_cars(tmp_path)
+    add_track(tmp_path, 2, "truck_bus", (12.0, 2.5), going(40, 1.75, 0, 20))
+    assert find_source(path, road=main_road(tmp_path)).read().kind.tolist() == ["Car", "Car", "Truck"]
+
+
+def test_the_first_frame_is_that_in_which_it_is_on_the_road(tmp_path: Path) -> None:
+    """A car that comes in from aside, by two lines of its file."""
+    path = two_cars(tmp_path)
+    way = [*going(0, 40, -90, 25, 30), *going(0, 5.25, 0, 25, 50)]
+    add_track(tmp_path, 2, "car", (4.5, 1.8), way)
+    assert find_source(path, road=main_road(tmp_path)).read().first_frame[-1] == 30
+
+
+@pytest.mark.parametrize("said", [None, "main-2"])
+def test_a_road_is_needed(said: str | None, tmp_path: Path) -> None:
+    path = two_cars(tmp_path)
+    told = r"07_tracks.csv: the files name no lanes: give a road of a map.*; maps near are .*location3.osm"
+    with pytest.raises(InputError, match=told):
+        find_source(path, road=said).read()
+
+
+def test_other_formats_have_their_own_road(tmp_path: Path) -> None:
+    path = write_exid(
+        make_recording([Track(2, 4, [(0.0, 1.0, 30.0, 0, 0, 0)] * 3)]), with_ramps("merge"), tmp_path
+    )
+    assert find_source(path).format.name == "exiD"
+    with pytest.raises(UsageError, match=r"07_tracks\.csv has the road of its recording; omit it"):
+        find_source(path, road=main_road(tmp_path))
+
+
+def test_recordings_of_the_location_of_the_map(tmp_path: Path) -> None:
+    """Of several in a folder those of location 3."""
+    two_cars(tmp_path)
+    for kind in ("recordingMeta", "tracksMeta", "tracks"):
+        rows = [line.split(",") for line in (tmp_path / f"07_{kind}.csv").read_text().splitlines()]
+        for row in rows[1:]:
+            row[0] = "8"
+            if kind == "recordingMeta":
+                row[1] = "5"
+        (tmp_path / f"08_{kind}.csv").write_text("".join(",".join(row) + "\n" for row in rows))
+    assert [x.name for x in find_sources(tmp_path)] == ["07", "08"]
+    assert [x.name for x in find_sources(tmp_path, road=main_road(tmp_path))] == ["07"]
+    (tmp_path / "chart.osm").write_bytes((tmp_path / CHART).read_bytes())
+    assert [x.name for x in find_sources(tmp_path, road=f"{tmp_path}/chart.osm#road=1")] == ["07", "08"]
+
+
+def test_the_road_is_part_of_what_marks_results(tmp_path: Path) -> None:
+    path = two_cars(tmp_path)
+    one, same, other = (
+        find_source(path, road=f"{tmp_path / CHART}#{x}").digests() for x in ("road=1", "road=1", "way=1")
+    )
+    assert one == same
+    assert one != other
+
+
+def test_commands_take_the_road(tmp_path: Path) -> None:
+    path, said = two_cars(tmp_path), main_road(tmp_path)
+    names = [x[0] for x in rp.roads(path, said)[0].lanes]
+    assert names == ["main-1", "main-2", "merge-1"]
+    rp.convert(path, tmp_path / "kept", jobs=1, road=said)
+    assert find_source(tmp_path / "kept").read().vehicles == 2
+    ours = rp.evaluate(path, road=said, among=[9, 10])
+    kept = rp.evaluate(tmp_path / "kept", among=[9, 10])
+    assert ours.totals.samples == kept.totals.samples == 120
+    assert read_pair(f"{path}:0,1", road=said).lanes == {"SV": "main-1", "POV": "main-2"}
+    answer = rp.monitor("s(POV) > s(SV)", f"{path}:0,1", road=said)
+    assert str(answer).startswith("s(POV) > s(SV): true")
+
+
+DAMAGE: dict[str, tuple[Callable[[Path], None], str]] = {
+    **{name: (cell(*place), said) for name, *place, said in read_table(__file__, "damaged_cells")},
+    "y grows down": (turn_over, "does y grow up, and is heading in degrees"),
+    "off the road": (
+        aside,
+        "no vehicle is on road .*location3.osm#road=1 for a second; do map and positions fit",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", DAMAGE)
+def test_damage_is_named(name: str, tmp_path: Path) -> None:
+    rows = [(-150 + 1.2 * k, 2.65, 30.0, 0.0, 0.0, 0.0) for k in range(60)]
+    recording = make_recording([Track(2, 4, rows, 4.4, 1.8)])
+    path = write_ind(recording, with_ramps("merge"), tmp_path, rampwards)
+    assert find_source(path, road=main_road(tmp_path)).read().vehicles == 1
+    damage, said = DAMAGE[name]
+    damage(tmp_path)
+    with pytest.raises(InputError, match=said):
+        find_source(path, road=main_road(tmp_path)).read()
