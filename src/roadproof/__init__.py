@@ -72,6 +72,8 @@ if TYPE_CHECKING:
     from roadproof.frontends.api.studies import redundancy as redundancy
     from roadproof.frontends.api.traces import monitor as monitor
     from roadproof.frontends.api.traces import trace as trace
+    from roadproof.frontends.api.tracing import requirement_changes as requirement_changes
+    from roadproof.frontends.api.tracing import requirements as requirements
     from roadproof.frontends.atlas.atlas import atlas as atlas
     from roadproof.library.diagnose import Proofreader as Proofreader
     from roadproof.runtime.executors import Cluster as Cluster
@@ -124,6 +126,8 @@ _HOMES = {
     "assurance": "frontends.api.assuring",
     "atlas": "frontends.atlas.atlas",
     "check": "frontends.api.checking",
+    "requirements": "frontends.api.tracing",
+    "requirement_changes": "frontends.api.tracing",
     "Verdict": "verdict",
     "Stage": "runtime.progress",
     "Cancelled": "runtime.progress",

@@ -13,7 +13,10 @@ LONG = ("roadproof overlap --among 1-8", "roadproof classify --among 1-8")
 """Questions of the README that ``make findings`` asks; shorter ones of these commands are in the book."""
 EXAMPLES = sorted(ROOT.glob("examples/*/README.md"))
 TUTORIALS = ("first-scenario", "catalogue", "recordings", "careful-driver")
-GUIDES = ("interop", "signals", "rss", "roads", "solvers", "terminal", "recordings", "certificates", "c")
+GUIDES = (
+    *("interop", "requirements", "signals", "rss", "roads", "solvers", "terminal", "recordings"),
+    *("certificates", "c"),
+)
 PAGES = [
     *sorted(Path(__file__).parent.joinpath("book").glob("*.md")),
     *sorted(ROOT.joinpath("tests/attacks").glob("*.md")),

@@ -50,7 +50,10 @@ INTERNAL = {
     "roadproof/shares/1",
     "roadproof/shown/1",
 }
-NOT_HEADED = {"road.json", "drive.json", "certificate.json", "question.json", "answer.json", "common.json"}
+NOT_HEADED = {
+    *("road.json", "drive.json", "certificate.json", "question.json", "answer.json", "common.json"),
+    "trace-lock.json",
+}
 
 STRANGE = {"stranger": [[7]]}  # is nowhere what is wanted
 OPTIONAL = {
@@ -73,7 +76,7 @@ MAPS = {
     *("together", "notes", "failed", "elsewhere", "situations", "begins", "covered", "start"),
     "open",
     *("fixed", "at"),
-    *("not_checked", "sets"),
+    *("not_checked", "sets", "parts", "counts"),
 }
 Place = tuple[str | int, ...]
 Run = Callable[..., Any]
@@ -373,6 +376,20 @@ def of_explore(run: Run, out: Path, traffic: Path) -> None:
     assert varied["explored"][0]["boundaries"]
     assert least["explored"][0]["extremes"]
     examine(varied, least, folder=out)
+
+
+def of_trace(run: Run, out: Path, traffic: Path) -> None:
+    (out / "brake.json").write_bytes(DRIVE.read_bytes())
+    text = '[trace]\nevidence = ["brake.json"]\n[[requirement]]\nid = "A"\ntext = "B"\nscenarios = [{}]\n'
+    file = out / "requirements.toml"
+    for number in (4, 5):
+        file.write_text(text.format(number), "utf-8")
+        told = run("trace", file, "--accept", "--out", out / str(number), "--jobs", 1)
+        examine(told, json.loads((out / "requirements.lock.json").read_text("utf-8")))
+        assert [x["state"] for x in told["requirements"]] == [{4: "witnessed", 5: "missing"}[number]]
+    changes = run("trace", "--baseline", out / "4" / "trace.json", out / "5" / "trace.json")
+    assert {x["how"] for x in changes["changes"]} == {"added", "removed", "worse"}
+    examine(changes)
 
 
 ASKED: Mapping[str, Callable[[Run, Path, Path], None]] = {

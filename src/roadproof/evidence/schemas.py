@@ -28,6 +28,9 @@ from roadproof.evidence.answers import (
     road_map,
     shared,
     show,
+    trace,
+    trace_changes,
+    trace_lock,
     traffic,
     tree,
 )
@@ -80,6 +83,9 @@ TITLES: Mapping[type, str] = {
         "prevents a collision"
     ),
     road_map.Answer: "roadproof road --json: the roads of a map",
+    trace.Answer: "roadproof trace --json: which requirements are shown",
+    trace_changes.Changes: "roadproof trace --baseline --json: what changed between two states",
+    trace_lock.Lock: "requirements.lock.json: what every link of a trace rested on when it was accepted",
     redundancy.Index: (
         "roadproof redundancy --json, and index.json of its folder: which parts could be left out"
     ),

@@ -3,13 +3,14 @@
 import hashlib
 import re
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 
 from roadproof.library.scenarios import TEMPLATE_NAMES, name_of
 from roadproof.library.specification import Specification
 from roadproof.library.uses import definitions_used, parameters_used
 from roadproof.logic import syntax
-from roadproof.logic.syntax import Call
+from roadproof.logic.syntax import Call, Definition, ParameterDeclaration
 
 _NAME = re.compile(r"[A-Za-z_]\w*(?:@\w+)?")
 
@@ -39,12 +40,36 @@ def _parts_of(specification: Specification, name: str) -> dict[str, str]:
     """The definitions and parameters below a name, each with all that it says; none for other names."""
     known = specification.worked_out.get((_parts_of, name))
     if known is None:
-        call = Call(name, ())
-        used = definitions_used(specification, call)
-        known = {definition.name: repr(definition) for definition in used}
-        known |= {
-            f"parameter {x.name}": repr(x)
-            for x in parameters_used(specification.library, syntax.Name(name), used)
-        }
+        below = used_below(specification, name)
+        known = {x.name: repr(x) for x in below.definitions}
+        known |= {f"parameter {x.name}": repr(x) for x in below.parameters}
         specification.worked_out[_parts_of, name] = known
     return dict(known)
+
+
+@dataclass(frozen=True)
+class Used:
+    """Definitions and parameters that a text uses, and those that these use, once each."""
+
+    definitions: tuple[Definition, ...] = ()
+    parameters: tuple[ParameterDeclaration, ...] = ()
+
+    def __or__(self, other: "Used") -> "Used":
+        return Used(
+            tuple({x.name: x for x in (*self.definitions, *other.definitions)}.values()),
+            tuple({x.name: x for x in (*self.parameters, *other.parameters)}.values()),
+        )
+
+
+def used_by(specification: Specification, text: str) -> Used:
+    """All that the names in a text are made of; names without a definition are passed over."""
+    found = Used()
+    for name in dict.fromkeys(_NAME.findall(text)):
+        found |= used_below(specification, name)
+    return found
+
+
+def used_below(specification: Specification, name: str) -> Used:
+    """The definition or parameter of a name, and what it is made of."""
+    used = definitions_used(specification, Call(name, ()))
+    return Used(used, parameters_used(specification.library, syntax.Name(name), used))

@@ -152,6 +152,13 @@ class PageKeywords(WorkersKeywords, total=False):
     progress: Progress | None
 
 
+class RequirementsKeywords(WorkersKeywords, total=False):
+    accept: bool
+    solver: Solver
+    specs: Iterable[str | Path]
+    progress: Progress | None
+
+
 class AskKeywords(SurveyKeywords, total=False):
     pass
 

@@ -176,3 +176,16 @@ class Page(groups.Workers):
     solver: Solver = groups.checker_of("solver that checks certificates")
     specs: Iterable[str | Path] = groups.specifications_of("the results")
     progress: Progress | None = option(None)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Requirements(groups.Answered, groups.Workers):
+    """Options of ``trace``, which is ``requirements`` in Python."""
+
+    accept: bool = option(
+        False, "--accept", "write the lock file: what each link rests on now is as it should be"
+    )
+    solver: Solver = groups.checker_of("solver that checks certificates")
+    specs: Iterable[str | Path] = groups.specifications_of("requirements and evidence")
+    out: str | Path | None = groups.folder_for("a page, CSV, Markdown and JSON", command_line_only=True)
+    progress: Progress | None = option(None)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple, TypeAlias
 
 from roadproof.errors import InputError
-from roadproof.evidence.answers import compare
+from roadproof.evidence.answers import compare, trace
 from roadproof.evidence.codec import read
 from roadproof.evidence.finding import Finding
 from roadproof.frontends.report.page import catalogues, claims, values
@@ -14,6 +14,7 @@ from roadproof.frontends.report.page.results import Result, Words
 from roadproof.frontends.report.page.summary import Overview, Statement, overview
 from roadproof.frontends.report.page.templates import render
 from roadproof.frontends.report.preventable import page_plates
+from roadproof.frontends.report.trace import counted
 from roadproof.library.words import spans
 
 Values: TypeAlias = Mapping[str, object]
@@ -115,6 +116,12 @@ def _read_as(answer: type) -> Callable[[Result, PageContext, Words], Values]:
     return lambda result, context, words: {"answer": read(answer, result.data, result.name)}
 
 
+def _traced(result: Result, context: PageContext, words: Words) -> Values:
+    """The requirements of an answer, and how many are in each state."""
+    answer = read(trace.Answer, result.data, result.name)
+    return {"answer": answer, "counted": counted(answer)}
+
+
 _CLAIMS = _Kind("Claims", "Which claims hold in all traffic?", "claims", claims.claims)
 _KINDS: Mapping[str, _Kind] = {
     "index": _CLAIMS,
@@ -137,6 +144,7 @@ _KINDS: Mapping[str, _Kind] = {
     "traffic-results": _Kind(
         "Recordings", "How often do the scenarios occur in traffic?", "traffic-results", values.traffic
     ),
+    "trace": _Kind("Requirements", "Which of them are shown?", "trace", _traced),
     "list": _Kind("Library", "Which definitions does it hold?", "plain", _plain),
     "show": _Kind("Definition", "What does it say?", "plain", _plain),
     "check": _Kind("Check of evidence", "Does independent code accept it?", "plain", _plain),

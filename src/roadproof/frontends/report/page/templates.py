@@ -51,6 +51,12 @@ SIGNS: Mapping[str, Sign] = {
     "UNKNOWN": _UNKNOWN,
     "true": Sign("✓", "proof"),
     "false": Sign("✗", "against"),
+    "proved": Sign("✓", "proof"),
+    "witnessed": Sign("■", "drive"),
+    "stale": Sign("↻", "doubt"),
+    "missing": Sign("–", "against"),
+    "rejected": Sign("✗", "against"),
+    "refuted": Sign("✗", "against"),
 }
 
 

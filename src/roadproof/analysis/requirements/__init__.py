@@ -1,0 +1,1 @@
+"""Requirements, and the claims, drives, tests and plates that show each of them."""

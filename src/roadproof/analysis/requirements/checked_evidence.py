@@ -1,0 +1,194 @@
+"""Findings of ``roadproof check`` with the formula, definitions and values that each of them is about."""
+
+import hashlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from pathlib import Path
+
+from roadproof.errors import RoadproofError
+from roadproof.evidence.answers.catalogue_index import SCHEMA as CATALOGUE
+from roadproof.evidence.answers.entry import read_evidence
+from roadproof.evidence.answers.trace import LinkedEvidence
+from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.finding import Finding
+from roadproof.evidence.folder import INDEX
+from roadproof.evidence.journal import HEAD
+from roadproof.evidence.specifications import read_beside
+from roadproof.evidence.strict import LARGEST_INDEX, Fields, JsonObject, read_json
+from roadproof.library.elaborate import read_claim
+from roadproof.library.loading import load_library
+from roadproof.library.motion import split
+from roadproof.library.specification import Library, Specification
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.runtime.files import read_limited
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """What a claim says: a formula without names of definitions, under assumptions as text."""
+
+    formula: Formula
+    assuming: tuple[str, ...] = ()
+
+    @property
+    def opposite(self) -> "Meaning":
+        """Of a claim without assumptions: that it is false."""
+        return Meaning(f.negation(self.formula), self.assuming)
+
+
+@dataclass(frozen=True)
+class CheckedEvidence:
+    """A finding, and what it is about.
+
+    ``meaning`` None: its claim cannot be read. ``values``: of parameters, as the evidence itself names them.
+    ``digest``: SHA-256 of its file, empty where there is none. ``vehicles``: those of a drive. ``remark``:
+    what the catalogue says against a test.
+    """
+
+    finding: Finding
+    specification: Specification
+    meaning: Meaning | None = None
+    values: Mapping[str, Fraction] = field(default_factory=dict)
+    digest: str = ""
+    vehicles: tuple[str, ...] = ()
+    remark: str = ""
+
+    @property
+    def path(self) -> Path:
+        """The file of the evidence, or of the index that it is in."""
+        path = Path(self.finding.where)
+        return path if path.exists() else Path(self.finding.where.partition(f"{INDEX}, ")[0] or path)
+
+    @property
+    def is_drive(self) -> bool:
+        """Whether a drive shows it, which has one value for each parameter."""
+        return self.finding.kind in ("drive", "test")
+
+    @property
+    def kept(self) -> LinkedEvidence:
+        """As answers have it."""
+        x = self.finding
+        return LinkedEvidence(
+            where=x.where,
+            label=x.label,
+            verdict=x.verdict,
+            claim=" ".join(x.claim.split()),
+            outcome=x.outcome,
+            reason=x.reason,
+        )
+
+
+def meaning_of(specification: Specification, claim: str, source: str = "claim") -> Meaning:
+    """What a claim means in a specification. Raises ``InputError``."""
+    assuming, rest = split(claim, source)
+    return Meaning(without_names(read_claim(specification, rest, source).formula), assuming)
+
+
+def without_names(formula: Formula) -> Formula:
+    """A formula with the body of each definition in place of its name."""
+    return f.transform(formula, lambda x: x.body if isinstance(x, f.Application) else x)
+
+
+def read_findings(
+    findings: Iterable[Finding], specs: Sequence[Path], home: Specification
+) -> list[CheckedEvidence]:
+    """What each finding is about. ``specs``: files that all evidence was made with; ``home``: the set and the
+    readings of evidence that does not name its own."""
+    reader = _Reader(tuple(specs), home)
+    return [reader.read(x) for x in findings]
+
+
+class _Reader:
+    """Reads files of evidence and indices, each folder's definitions once."""
+
+    def __init__(self, specs: tuple[Path, ...], home: Specification) -> None:
+        self.specs = specs
+        self.home = home
+        self.libraries: dict[Path | None, Library] = {None: load_library(specs)}
+        self.remarks: dict[Path, dict[str, str]] = {}
+
+    def read(self, finding: Finding) -> CheckedEvidence:
+        path = Path(finding.where)
+        library = self._library(path)
+        remark = self._remark(finding)
+        if not path.is_file() or path.name in (INDEX, HEAD):
+            specification = self._named_in(finding.label, library)
+            return CheckedEvidence(
+                finding, specification, _meaning(specification, finding.claim), remark=remark
+            )
+        digest = hashlib.sha256(read_limited(path, LARGEST_INDEX, "no evidence is larger")).hexdigest()
+        try:
+            said = read_evidence(path)
+            specification = library.select(said.set_name, said.options)
+        except RoadproofError:
+            specification = self._named_in(finding.label, library)
+            meaning = _meaning(specification, finding.claim)
+            return CheckedEvidence(finding, specification, meaning, digest=digest)
+        drive = None if isinstance(said, Certificate) else said
+        return CheckedEvidence(
+            finding,
+            specification,
+            _meaning(specification, finding.claim),
+            {} if drive is None else drive.values,
+            digest,
+            () if drive is None else tuple(drive.drive.vehicles),
+        )
+
+    def _library(self, path: Path) -> Library:
+        """The definitions of the nearest folder of an answer above a file."""
+        folder = next((x for x in path.parents if (x / INDEX).is_file() or (x / HEAD).is_file()), None)
+        if folder not in self.libraries:
+            assert folder is not None
+            try:
+                self.libraries[folder] = read_beside(_said(folder), folder, self.specs)[0]
+            except RoadproofError:
+                self.libraries[folder] = self.libraries[None]
+        return self.libraries[folder]
+
+    def _named_in(self, label: str, library: Library) -> Specification:
+        """The set that a label ends with, such as ``P1 scenario 4 ext``."""
+        last = label.rpartition(" ")[2]
+        options = {name: x for name, x in self.home.options.items() if name in library.options}
+        return library.select(last if last in library.sets else self.home.set_name, options)
+
+    def _remark(self, finding: Finding) -> str:
+        if finding.kind != "test":
+            return ""
+        index = Path(finding.where)
+        if index not in self.remarks:
+            self.remarks[index] = dict(_remarks(index))
+        return self.remarks[index].get(finding.label.removeprefix("test "), "")
+
+
+def _meaning(specification: Specification, claim: str) -> Meaning | None:
+    """None where a claim cannot be read, as of damaged evidence, or is none, as of a test."""
+    try:
+        return meaning_of(specification, claim) if claim else None
+    except RoadproofError:
+        return None
+
+
+def _said(folder: Path) -> Fields | None:
+    """What an index, or the head of kept answers, says once for all. Raises ``InputError``."""
+    if (folder / INDEX).is_file():
+        return Fields(read_json(folder / INDEX, LARGEST_INDEX), str(folder / INDEX))
+    head = Fields(read_json(folder / HEAD), str(folder / HEAD))
+    return Fields(head.mapping("said"), str(folder / HEAD)) if head.has("said") else None
+
+
+def _remarks(index: Path) -> Iterator[tuple[str, str]]:
+    """What a catalogue says against its tests: that one is not what it claims, or contradicts a proof."""
+    try:
+        content = Fields(read_json(index, LARGEST_INDEX), str(index))
+        if content.get("schema") != CATALOGUE:
+            return
+        for field_name in ("faults", "contradictions"):
+            for item in content.items(field_name):
+                remark: JsonObject = item if isinstance(item, dict) else {}
+                tests = remark.get("tests")
+                for test in tests if isinstance(tests, list) else ():
+                    yield str(test), str(remark.get("told", ""))
+    except RoadproofError:
+        return

@@ -1,0 +1,226 @@
+"""Which evidence shows which link, and the state that follows from it."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import TypeAlias
+
+from roadproof.analysis.requirements.checked_evidence import (
+    CheckedEvidence,
+    Meaning,
+    meaning_of,
+    without_names,
+)
+from roadproof.analysis.requirements.requirement import Link
+from roadproof.errors import TextError
+from roadproof.evidence.answers.trace import LinkState
+from roadproof.evidence.finding import Acceptance
+from roadproof.library.bind import default_values
+from roadproof.library.elaborate import apply_definition
+from roadproof.library.scenario_references import read_query
+from roadproof.library.specification import Query, Specification
+
+_LABEL = re.compile(r"[A-Za-z][\w-]*( scenario \d+)?( [A-Za-z]\w*)?")
+_SHOWN = {
+    "PROVED": LinkState.PROVED,
+    "IMPOSSIBLE": LinkState.PROVED,
+    "COVERED": LinkState.PROVED,
+    "WITNESSED": LinkState.WITNESSED,
+    "JUDGED": LinkState.WITNESSED,
+    "DERIVED": LinkState.WITNESSED,
+    "REFUTED": LinkState.REFUTED,
+    "GAPS": LinkState.REFUTED,
+}
+"""What an accepted verdict says of a file of evidence; all others are not decided."""
+NO_DRIVE = "it is proved that no drive shows it"
+ONE_DRIVE = "a drive shows it once; a claim about all traffic needs a proof"
+VACUOUS = "it holds only because its premise never does"
+
+
+@dataclass(frozen=True)
+class Target:
+    """A link as it is read: ``meaning`` None where its name is no formula; ``specification``: of its set."""
+
+    link: Link
+    specification: Specification
+    meaning: Meaning | None = None
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What one piece of evidence says of a link."""
+
+    evidence: CheckedEvidence
+    state: LinkState
+    reason: str = ""
+
+
+Values: TypeAlias = Mapping[str, Fraction]
+
+
+def read_target(link: Link, home: Specification, source: str) -> Target:
+    """A link read with the definitions of a trace. Raises ``InputError``, which names ``source``."""
+    if link.kind == "claim":
+        try:
+            return Target(link, home, meaning_of(home, link.target, source))
+        except TextError:
+            if _LABEL.fullmatch(link.target):
+                return Target(link, home)
+            raise
+    if link.kind == "scenario":
+        query, specification = _scenario(link.target, home, source)
+        return Target(link, specification, Meaning(without_names(query.formula)))
+    return Target(link, home)
+
+
+def _scenario(target: str, home: Specification, source: str) -> tuple[Query, Specification]:
+    """A scenario by number, number@set, name or definition, or a formula. Raises ``InputError``."""
+    word, _, set_name = target.partition("@")
+    if set_name in home.library.sets and re.fullmatch(r"\d+|\w+", word):
+        home, target = home.in_set(set_name), word
+    if target in home.definitions:
+        return apply_definition(home, target), home
+    return read_query(home, target, source)[1], home
+
+
+def shown_by(
+    target: Target, evidence: Sequence[CheckedEvidence], values: Values, folder: Path
+) -> list[Shown]:
+    """What the evidence says of a link. ``values``: of all parameters; paths begin in ``folder``."""
+    match target.link.kind:
+        case "claim" | "scenario":
+            found = _of_formula(target, evidence)
+        case "test":
+            found = _of_test(target.link.target, evidence)
+        case "plate":
+            found = (Shown(x, _plain_state(x)) for x in evidence if _is_plate(x, target.link.target))
+        case "evidence":
+            place = (folder / target.link.target).resolve()
+            found = (Shown(x, _plain_state(x)) for x in evidence if _is_at(x, place))
+    return [_with_values(x, values) for x in found]
+
+
+def combined(kind: str, found: Sequence[Shown]) -> tuple[LinkState, str]:
+    """The state of a link. A refutation counts before all else, then evidence that is rejected.
+
+    Of plates and files all parts must be shown, of other links one is enough.
+    """
+    if not found:
+        return LinkState.MISSING, "there is no evidence for it"
+    worst = max(found, key=lambda x: x.state.rank)
+    if worst.state in (LinkState.REFUTED, LinkState.REJECTED) or kind in ("plate", "evidence"):
+        return worst.state, worst.reason
+    best = min(found, key=lambda x: x.state.rank)
+    return best.state, best.reason
+
+
+def _not_accepted(x: CheckedEvidence) -> Shown | None:
+    """What evidence that is not accepted says; None where it is."""
+    finding = x.finding
+    if finding.outcome is Acceptance.ACCEPTED:
+        return None
+    undecided = finding.outcome is Acceptance.UNDECIDED
+    return Shown(x, LinkState.UNKNOWN if undecided else LinkState.REJECTED, finding.reason)
+
+
+def _plain_state(x: CheckedEvidence) -> LinkState:
+    """What evidence says of itself."""
+    wrong = _not_accepted(x)
+    if wrong is not None:
+        return wrong.state
+    if x.remark:
+        return LinkState.REFUTED
+    return _SHOWN.get(x.finding.verdict, LinkState.UNKNOWN)
+
+
+def _of_formula(target: Target, evidence: Sequence[CheckedEvidence]) -> Iterator[Shown]:
+    label = " ".join(target.link.target.split())
+    for x in evidence:
+        if x.finding.kind == "test":
+            continue
+        by_label = target.meaning is None and x.finding.label == label
+        if by_label or (target.meaning is not None and x.meaning == target.meaning):
+            yield _not_accepted(x) or _same(target.link.kind, x)
+        elif target.meaning is not None and x.meaning == target.meaning.opposite:
+            yield from _opposite(target.link.kind, x)
+
+
+def _same(kind: str, x: CheckedEvidence) -> Shown:
+    """What accepted evidence of the very formula says."""
+    verdict, reason = x.finding.verdict, x.finding.reason
+    if kind == "claim":
+        if verdict == "IMPOSSIBLE":
+            return Shown(x, LinkState.REFUTED, "it is proved that it never holds")
+        if verdict == "WITNESSED":
+            return Shown(x, LinkState.UNKNOWN, ONE_DRIVE)
+        if verdict == "REFUTED":
+            return Shown(x, LinkState.REFUTED, "a judged drive or trace refutes it")
+    elif verdict == "IMPOSSIBLE":
+        return Shown(x, LinkState.REFUTED, NO_DRIVE)
+    elif verdict == "REFUTED":
+        return Shown(x, LinkState.UNKNOWN, "a drive shows the opposite; that alone excludes nothing")
+    if verdict == "VACUOUS":
+        reason = VACUOUS
+    state = _SHOWN.get(verdict, LinkState.UNKNOWN)
+    return Shown(x, state, "" if state.is_shown else f"{verdict}: {reason}" if reason else verdict)
+
+
+def _opposite(kind: str, x: CheckedEvidence) -> Iterator[Shown]:
+    """What evidence of the opposite says, where it is accepted."""
+    if x.finding.outcome is not Acceptance.ACCEPTED:
+        return
+    if x.finding.verdict == "PROVED":
+        yield Shown(x, LinkState.REFUTED, NO_DRIVE if kind == "scenario" else "the opposite is proved")
+    elif x.finding.verdict == "WITNESSED" and kind == "claim":
+        yield Shown(x, LinkState.REFUTED, "a judged drive refutes it")
+
+
+def _of_test(name: str, evidence: Sequence[CheckedEvidence]) -> Iterator[Shown]:
+    """What a catalogue says of a test; without one, of the drive whose file has its name."""
+    mine = [x for x in evidence if x.finding.label in (name, f"test {name}", f"{name} runs")]
+    if not mine:
+        mine = [x for x in evidence if x.finding.kind == "drive" and Path(x.finding.where).stem == name]
+    for x in mine:
+        wrong = _not_accepted(x)
+        if wrong is not None:
+            yield wrong
+        elif x.remark:
+            yield Shown(x, LinkState.REFUTED, x.remark)
+        elif x.finding.claim.startswith("cannot be read"):
+            yield Shown(x, LinkState.REJECTED, x.finding.claim)
+        elif x.finding.claim == "shows no scenario":
+            yield Shown(x, LinkState.UNKNOWN, "it shows no scenario")
+        elif x.finding.verdict == "READ":
+            yield Shown(x, LinkState.UNKNOWN, "no drive of its formula was found")
+        elif x.finding.verdict == "IMPOSSIBLE":
+            yield Shown(x, LinkState.REFUTED, NO_DRIVE)
+        else:
+            yield Shown(x, _SHOWN.get(x.finding.verdict, LinkState.UNKNOWN))
+
+
+def is_of_test(link: Link, x: CheckedEvidence) -> bool:
+    """Whether evidence is a fact of a catalogue about the test, such as ``CUT-1 excludes scenario_4``."""
+    return link.kind == "test" and x.finding.label.startswith(f"{link.target} ")
+
+
+def _is_plate(x: CheckedEvidence, name: str) -> bool:
+    return x.finding.label == name or x.finding.label.startswith(f"{name},")
+
+
+def _is_at(x: CheckedEvidence, place: Path) -> bool:
+    here = x.path.resolve()
+    return here == place or place in here.parents
+
+
+def _with_values(x: Shown, values: Values) -> Shown:
+    """The same, stale where its drive was judged with other values of parameters than are in force."""
+    if not (x.state.is_shown and x.evidence.values):
+        return x
+    library = x.evidence.specification.library
+    here = default_values(library) | dict(values)
+    other = [
+        f"{n} = {v} (now {here[n]})" for n, v in sorted(x.evidence.values.items()) if here.get(n, v) != v
+    ]
+    return Shown(x.evidence, LinkState.STALE, f"judged with {', '.join(other)}") if other else x

@@ -1,0 +1,31 @@
+"""Requirements in any format, by the ending of the file."""
+
+from pathlib import Path
+
+from roadproof.analysis.requirements.requirement import Requirements, check_requirements
+from roadproof.analysis.requirements.toml_file import read_toml_requirements
+from roadproof.errors import InputError
+
+_FORMATS = "requirements.toml, .reqif, .sdoc (StrictDoc) or a folder of Doorstop"
+
+
+def read_requirements(path: Path) -> Requirements:
+    """The requirements of a file or a folder. Raises ``InputError``."""
+    found = _read(path)
+    check_requirements(found.requirements)
+    if not found.requirements:
+        raise InputError(f"{path}: there is no requirement in it")
+    return found
+
+
+def _read(path: Path) -> Requirements:
+    if not path.exists():
+        raise InputError(f"{path} does not exist: name {_FORMATS}")
+    if path.suffix == ".toml":
+        return read_toml_requirements(path, _read_source)
+    return _read_source(path)
+
+
+def _read_source(path: Path) -> Requirements:
+    """The requirements of a file that is no TOML. Raises ``InputError``."""
+    raise InputError(f"{path}: this is no file of requirements: name {_FORMATS}")
