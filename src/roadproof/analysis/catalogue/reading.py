@@ -16,6 +16,7 @@ from roadproof.library.specification import Specification
 from roadproof.recordings.evaluate.one_trace import is_pair
 from roadproof.recordings.formats.samples import HEADER
 from roadproof.recordings.formats.source import TRACK_FILES, first_line
+from roadproof.recordings.formats.storyboard.distributions import scenarios_of, split
 
 _LOOK = 400  # bytes of a file that tell what it is
 
@@ -80,11 +81,11 @@ def _with_own_ids(found: Iterable[_Found]) -> Iterator[Entry]:
 
 
 def _file(path: Path, specification: Specification) -> list[_Found]:
-    if not path.exists():
+    if not path.exists() and split(path) is None:
         raise InputError(f"{path} does not exist")
     if path.suffix == ".toml":
         return _listed(path, specification)
-    return [_Found(Concrete(path.stem, str(path)), str(path))]
+    return [_Found(Concrete(x.stem, str(x)), str(path)) for x in scenarios_of(path)]
 
 
 def _listed(path: Path, specification: Specification) -> list[_Found]:
@@ -109,10 +110,11 @@ def _folder(
         if answers & {*path.parents}:
             continue
         if is_test(path):
-            name = path.relative_to(folder).with_suffix("").as_posix()
-            known = {*taken, *(x.entry.id for x in found)}
-            own_id = path.as_posix() if name in known else name
-            found.append(_Found(Concrete(own_id, str(path)), str(path)))
+            for one in scenarios_of(path):
+                name = one.relative_to(folder).with_suffix("").as_posix()
+                known = {*taken, *(x.entry.id for x in found)}
+                own_id = one.as_posix() if name in known else name
+                found.append(_Found(Concrete(own_id, str(one)), str(path)))
         elif path.suffix in (".json", ".csv", ".parquet", ".xml", ".xosc"):
             others += 1
     if others:

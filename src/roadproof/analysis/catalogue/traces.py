@@ -24,6 +24,7 @@ from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.samples import ROAD_ENDING
 from roadproof.recordings.formats.source import beside
 from roadproof.recordings.formats.sources import find_source
+from roadproof.recordings.formats.storyboard.distributions import read_distribution, split
 from roadproof.world.motion import state_at
 from roadproof.world.road import Road
 
@@ -183,6 +184,9 @@ def files_of(place: str) -> tuple[Path, ...]:
         except InputError:
             return ()
     path = Path(place)
+    varied = split(path)
+    if varied is not None:
+        return varied[0], read_distribution(varied[0]).scenario
     return (path, *(beside(path, ROAD_ENDING) if path.suffix in (".csv", ".parquet") else ()))
 
 

@@ -23,7 +23,8 @@ from roadproof.recordings.formats.source import Files, Format, with_suffix
 from roadproof.recordings.formats.storyboard.box import Box
 from roadproof.recordings.formats.storyboard.conditions import TICKS
 from roadproof.recordings.formats.storyboard.curves import curve
-from roadproof.recordings.formats.storyboard.document import open_document
+from roadproof.recordings.formats.storyboard.distributions import read_distribution, scenarios_of, split
+from roadproof.recordings.formats.storyboard.document import Document, open_document
 from roadproof.recordings.formats.storyboard.routes import longer, stretch_of
 from roadproof.recordings.formats.storyboard.run import Play, run_storyboard
 from roadproof.recordings.formats.straight import of_road
@@ -83,7 +84,7 @@ def read_scenario(path: Path) -> Scenario:
     """The vehicles of a file. Raises ``InputError`` that names element and rule."""
     document = open_document(path)
     root = document.root
-    road_path = _road_path(path, root)
+    road_path = _road_path(document)
     boxes = dict(_boxes(path, root))
     if not any(x.recorded for x in boxes.values()):
         raise InputError(f"{path}: no ScenarioObject is a motor vehicle")
@@ -91,10 +92,11 @@ def read_scenario(path: Path) -> Scenario:
     road = load_road(stretch)
     modes = {x.get("followingMode") for x in root.iter("TrajectoryFollowingMode")}
     follows = (_FOLLOWS,) if "follow" in modes else ()
+    varied = (document.told,) if document.told else ()
     if _follows_polylines(root, boxes):
         ways = {name: _in_road(x, boxes[name], road) for name, x in _vertices(path, root, boxes)}
         note = f"speeds and accelerations are those of curves through the vertices, {RATE} samples a second"
-        return Scenario(_sampled(path, boxes, ways), road, road_path, (note, *follows))
+        return Scenario(_sampled(path, boxes, ways), road, road_path, (note, *follows, *varied))
     play = run_storyboard(document, boxes, road)
     while play.at_end and (more := longer(stretch)) is not None:
         try:
@@ -107,7 +109,7 @@ def read_scenario(path: Path) -> Scenario:
     told = f"the storyboard ends at {(len(play.states) - 1) / TICKS:g} s: {play.ending}"
     note = f"the storyboard was run with conditions evaluated {TICKS} times a second, {RATE} samples a second"
     table, left_out = _of_play(path, boxes, play)
-    return Scenario(table, road, road_path, (note, told, *follows, *left_out))
+    return Scenario(table, road, road_path, (note, told, *follows, *varied, *left_out))
 
 
 def read_columns(path: Path) -> tuple[Table, Road, Path]:
@@ -126,9 +128,10 @@ def read_recording(path: Path, strict: bool = True) -> Recording:
     return recording_of(found.table, road, path.stem, found.notes, strict)
 
 
-def _road_path(path: Path, root: Element) -> Path:
+def _road_path(document: Document) -> Path:
     """The map that the file names, or that of the name beside it, as CARLA names maps."""
-    found = path.parent / _text(path, root.find("RoadNetwork/LogicFile"), "filepath", "a LogicFile")
+    path, node = document.path, document.root.find("RoadNetwork/LogicFile")
+    found = document.folder / _text(path, node, "filepath", "a LogicFile")
     if not found.suffix:
         found = found.with_suffix(".xodr")
     if found.suffix != ".xodr":
@@ -374,7 +377,17 @@ def _joined(path: Path, tables: list[dict[str, Column]]) -> Table:
 
 
 def _find(path: Path) -> dict[str, Files]:
-    return {x.stem: (x,) for x in with_suffix(path, ".xosc")}
+    """The scenarios of a folder or a file, and those of distributions."""
+    if split(path) is not None:
+        return {path.stem: _files(path)}
+    files = (y for x in with_suffix(path, ".xosc") for y in scenarios_of(x))
+    return {x.stem: _files(x) for x in files}
+
+
+def _files(path: Path) -> Files:
+    """The files that a scenario is read from, but for maps and catalogues."""
+    found = split(path)
+    return (path,) if found is None else (found[0], read_distribution(found[0]).scenario, path)
 
 
 FORMAT = Format(

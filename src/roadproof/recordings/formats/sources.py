@@ -14,6 +14,7 @@ from roadproof.recordings.formats.source import (
     find_files,
     first_line,
 )
+from roadproof.recordings.formats.storyboard.distributions import split
 from roadproof.world.maps.selection import read_selection
 
 
@@ -58,7 +59,7 @@ def find_sources(path: Path, strict: bool = False, road: str | None = None) -> t
     ``strict``: a recording is read as a whole or not at all. ``road``: of a map, for recordings that do not
     say theirs; ``UsageError`` for others.
     """
-    if not path.exists():
+    if not path.exists() and split(path) is None:
         raise InputError(f"recordings={path}: not a folder and not a file; check the path")
     by_format = {x: found for x in FORMATS if (found := x.find(path))}
     if not by_format:

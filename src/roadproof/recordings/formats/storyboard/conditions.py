@@ -5,24 +5,17 @@ time to collision needs vehicles that come closer. Headway and distance have no 
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from roadproof.recordings.formats.storyboard.box import Box
 from roadproof.recordings.formats.storyboard.document import Document
 from roadproof.recordings.formats.storyboard.positions import Positions, State, States
+from roadproof.recordings.formats.storyboard.rules import RULES, texts_compare
 from roadproof.runtime.xml_reader import Element
 
 TICKS = 100
 """A second is divided into so many steps, at which conditions are evaluated."""
-_RULES: Mapping[str, Callable[[float, float], bool]] = {
-    "greaterThan": lambda x, y: x > y,
-    "lessThan": lambda x, y: x < y,
-    "equalTo": lambda x, y: math.isclose(x, y, abs_tol=1e-6),
-    "notEqualTo": lambda x, y: not math.isclose(x, y, abs_tol=1e-6),
-    "greaterOrEqual": lambda x, y: x >= y,
-    "lessOrEqual": lambda x, y: x <= y,
-}
 _EDGES = ("none", "rising", "falling", "risingOrFalling")
 _CRITERION = "criteria_"
 """Names of conditions that CARLA's scenario_runner takes as criteria of a test, not as conditions."""
@@ -96,15 +89,10 @@ class ConditionReader:
         name = read.text(node, node.tag.removesuffix("Condition").lower() + "Ref").lstrip("$")
         if name not in now.values:
             raise read.error(node, f"there is no parameter or variable {name}")
-        one, other = now.values[name], read.text(node, "value")
         try:
-            return self._compare(node, float(one))
-        except ValueError:
-            pass
-        rule = read.text(node, "rule")
-        if rule not in ("equalTo", "notEqualTo"):
-            raise read.error(node, f"rule={rule}: {one} is no number")
-        return (one == other) == (rule == "equalTo")
+            return texts_compare(read.text(node, "rule"), now.values[name], read.text(node, "value"))
+        except ValueError as error:
+            raise read.error(node, str(error)) from None
 
     def _by_entity(self, node: Element, name: str, now: Situation) -> bool:
         read, state = self.document, now.states[name]
@@ -205,9 +193,9 @@ class ConditionReader:
 
     def _compare(self, node: Element, value: float) -> bool:
         rule = self.document.text(node, "rule")
-        if rule not in _RULES:
-            raise self.document.error(node, f"rule={rule}: one of {', '.join(_RULES)} is needed")
-        return _RULES[rule](value, self.document.number(node, "value"))
+        if rule not in RULES:
+            raise self.document.error(node, f"rule={rule}: one of {', '.join(RULES)} is needed")
+        return RULES[rule](value, self.document.number(node, "value"))
 
 
 def _speeds(state: State) -> tuple[float, float]:

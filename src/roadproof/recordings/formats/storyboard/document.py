@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from roadproof.errors import InputError
+from roadproof.recordings.formats.storyboard.distributions import Values, numbered, read_distribution, split
 from roadproof.runtime.xml_reader import Element, number_in, read_xml
 
 _NAME = re.compile(r"\$([A-Za-z_][\w.]*)")
@@ -87,11 +88,16 @@ def replaced(text: str, values: Mapping[str, str]) -> str:
 
 @dataclass(frozen=True)
 class Document:
-    """A file and, for each of its elements, where it is in the file."""
+    """A file and, for each of its elements, where it is in the file.
+
+    ``folder``: where it names other files from. ``told``: which scenario of a distribution it is, if any.
+    """
 
     path: Path
     root: Element
     places: dict[Element, str]
+    folder: Path
+    told: str
 
     def error(self, node: Element, rule: str) -> InputError:
         """The error for an element that breaks a rule."""
@@ -124,14 +130,22 @@ class Document:
 
 def open_document(path: Path) -> Document:
     """The file with its parameters and catalogues put in. Raises ``InputError``."""
-    root = read_xml(path, "OpenSCENARIO")
+    of_distribution = split(path)
+    file, values, told = path, dict[str, str](), ""
+    if of_distribution is not None:
+        distribution = read_distribution(of_distribution[0])
+        file, values = distribution.scenario, dict(distribution.values(of_distribution[1]))
+        told = f"values: {', '.join(f'{x}={y}' for x, y in values.items())}; {distribution.told}"
+    root = read_xml(file, "OpenSCENARIO")
     if root.find("Catalog") is not None:
         raise InputError(f"{path}: this is a catalogue, which has no storyboard; name a scenario")
     if root.find("ParameterValueDistribution") is not None:
-        raise InputError(f"{path}: ParameterValueDistribution: name a scenario with values in place of it")
+        one = numbered(path, 1).name
+        raise InputError(f"{path}: ParameterValueDistribution: name one of its scenarios, such as {one}")
+    _assign(path, root, values)
     places = dict[Element, str]()
     _put_values(path, root, {}, "", places)
-    document = Document(path, root, places)
+    document = Document(path, root, places, file.parent, told)
     for owner in [x for x in root.iter() if x.tag in _OWNERS]:
         reference = owner.find("CatalogReference")
         if reference is not None:
@@ -144,6 +158,18 @@ def open_document(path: Path) -> Document:
                 if place.get(name):
                     place.set(name, repr(-document.number(place, name)))
     return document
+
+
+def _assign(path: Path, root: Element, values: Values) -> None:
+    """Give the parameters of a scenario the values of a distribution. Raises ``InputError``."""
+    declared = {
+        (x.get("name") or "").lstrip("$"): x
+        for x in root.findall("ParameterDeclarations/ParameterDeclaration")
+    }
+    for name, value in values.items():
+        if name not in declared:
+            raise InputError(f"{path}: the scenario declares no parameter {name}, which is varied")
+        declared[name].set("value", value)
 
 
 def _put_values(
@@ -177,7 +203,7 @@ def _entry(document: Document, reference: Element) -> Element:
         document.text(x, "parameterRef").lstrip("$"): document.text(x, "value")
         for x in reference.findall("ParameterAssignments/ParameterAssignment")
     }
-    folders = [document.path.parent / document.text(x, "path") for x in document.root.findall(_FOLDERS)]
+    folders = [document.folder / document.text(x, "path") for x in document.root.findall(_FOLDERS)]
     for file in (file for folder in dict.fromkeys(folders) for file in _files(folder)):
         for known in read_xml(file, "OpenSCENARIO").findall("Catalog"):
             entry = next((x for x in known if x.get("name") == name), None)
