@@ -74,6 +74,16 @@ class Requirements:
     settings: TraceSettings = TraceSettings()
     notes: tuple[str, ...] = ()
 
+    def without_strange_parents(self) -> "Requirements":
+        """The same, without parents that are in other documents; a note names each."""
+        known = {x.id for x in self.requirements}
+        strange = [(x, y) for x in self.requirements for y in x.parents if y not in known]
+        notes = tuple(f"{told(x.place)}: {x.id} is derived from {y}, which is not here" for x, y in strange)
+        every = tuple(
+            replace(x, parents=tuple(y for y in x.parents if y in known)) for x in self.requirements
+        )
+        return replace(self, requirements=every, notes=(*self.notes, *notes))
+
     def with_specs(self, specs: Iterable[Path]) -> "Requirements":
         """The same, with further specification files."""
         every = tuple(dict.fromkeys((*self.settings.specs, *specs)))

@@ -1,8 +1,12 @@
 """Requirements in any format, by the ending of the file."""
 
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from roadproof.analysis.requirements.doorstop import read_doorstop
+from roadproof.analysis.requirements.reqif_file import read_reqif
 from roadproof.analysis.requirements.requirement import Requirements, check_requirements
+from roadproof.analysis.requirements.strictdoc import read_strictdoc
 from roadproof.analysis.requirements.toml_file import read_toml_requirements
 from roadproof.errors import InputError
 
@@ -19,13 +23,24 @@ def read_requirements(path: Path) -> Requirements:
 
 
 def _read(path: Path) -> Requirements:
-    if not path.exists():
-        raise InputError(f"{path} does not exist: name {_FORMATS}")
-    if path.suffix == ".toml":
+    if path.suffix == ".toml" and path.exists():
         return read_toml_requirements(path, _read_source)
-    return _read_source(path)
+    return _read_source(path).without_strange_parents()
 
 
 def _read_source(path: Path) -> Requirements:
     """The requirements of a file that is no TOML. Raises ``InputError``."""
+    if not path.exists():
+        raise InputError(f"{path} does not exist: name {_FORMATS}")
+    if path.is_dir():
+        return read_doorstop(path)
+    if path.suffix in _READERS:
+        return _READERS[path.suffix](path)
     raise InputError(f"{path}: this is no file of requirements: name {_FORMATS}")
+
+
+_READERS: Mapping[str, Callable[[Path], Requirements]] = {
+    ".reqif": read_reqif,
+    ".xml": read_reqif,
+    ".sdoc": read_strictdoc,
+}

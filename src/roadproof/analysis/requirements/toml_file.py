@@ -47,7 +47,8 @@ def read_toml_requirements(path: Path, read: Callable[[Path], Requirements]) -> 
         return Requirements(path, tuple(own), settings)
     given = [x for source in sources for x in source.requirements]
     notes = tuple(note for source in sources for note in source.notes)
-    return Requirements(path, tuple(_joined(given, own)), settings, notes)
+    joined = Requirements(path, tuple(_joined(given, own)), settings, notes)
+    return joined.without_strange_parents()
 
 
 def _joined(given: list[Requirement], own: list[Requirement]) -> Iterator[Requirement]:

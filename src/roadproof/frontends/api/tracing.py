@@ -1,7 +1,9 @@
 """Requirements, and the evidence that shows each of them."""
 
+import os
 from collections import Counter
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Unpack
 
@@ -11,6 +13,7 @@ from roadproof.analysis.requirements.fingerprints import Surroundings, lock_data
 from roadproof.analysis.requirements.requirement import Requirements
 from roadproof.analysis.requirements.sources import read_requirements
 from roadproof.analysis.requirements.states import States, Targets, read_targets, states_of
+from roadproof.analysis.requirements.write_reqif import as_reqif
 from roadproof.errors import InputError
 from roadproof.evidence.answers import trace as kept
 from roadproof.evidence.answers import trace_changes
@@ -76,6 +79,15 @@ class Traced(Table):
         write_whole(home / "trace.md", report.as_markdown(self.answer).encode())
         page(home / "trace.json", out=home / "trace.html", title=f"Requirements: {self.given.file.name}")
         return home
+
+    def save_reqif(self, file: str | Path) -> Path:
+        """Write the requirements with their states and links as ReqIF 1.2. Raises ``InputError``."""
+        path = Path(file)
+        fixed = os.environ.get("SOURCE_DATE_EPOCH", "")
+        changed = int(fixed) if fixed.isdecimal() else int(self.given.file.stat().st_mtime)
+        when = datetime.fromtimestamp(changed, UTC)
+        write_whole(path, as_reqif(self.answer, self.given.file.stem, when))
+        return path
 
     def __repr__(self) -> str:
         told = ", ".join(f"{n} {state}" for state, n in Counter(self.states.values()).items())

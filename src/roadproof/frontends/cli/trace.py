@@ -16,6 +16,7 @@ examples:
   roadproof trace requirements.toml                      the state of each requirement and link
   roadproof trace requirements.toml --out trace          also as page, CSV, Markdown and JSON
   roadproof trace requirements.toml --accept             remember what each link rests on
+  roadproof trace requirements.toml --reqif states.reqif for a requirements tool
   roadproof trace --baseline old/trace.json new/trace.json    what got better, got worse, is new or gone
 
 requirements.toml:
@@ -53,8 +54,8 @@ def run(args: argparse.Namespace) -> int:
     if (args.file is None) == (args.baseline is None):
         raise UsageError("name a file of requirements, or two answers with --baseline A B")
     if args.baseline is not None:
-        if args.accept or args.out is not None:
-            raise UsageError("--baseline compares saved answers: omit --accept and --out")
+        if args.accept or args.out is not None or args.reqif is not None:
+            raise UsageError("--baseline compares saved answers: omit --accept, --out and --reqif")
         changes = requirement_changes(*args.baseline)
         print_answer(changes, args.json)
         return changes.exit_code
@@ -62,5 +63,7 @@ def run(args: argparse.Namespace) -> int:
     clear()
     if args.out is not None:
         found.save(args.out)
+    if args.reqif is not None:
+        found.save_reqif(args.reqif)
     print_answer(found, args.json)
     return found.exit_code

@@ -188,4 +188,7 @@ class Requirements(groups.Answered, groups.Workers):
     solver: Solver = groups.checker_of("solver that checks certificates")
     specs: Iterable[str | Path] = groups.specifications_of("requirements and evidence")
     out: str | Path | None = groups.folder_for("a page, CSV, Markdown and JSON", command_line_only=True)
+    reqif: Path | None = output(
+        None, "--reqif FILE", "write the requirements with their states as ReqIF", read=Path, keyword=False
+    )
     progress: Progress | None = option(None)
