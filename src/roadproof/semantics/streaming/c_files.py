@@ -80,6 +80,7 @@ def _header(source: CSource) -> Iterator[str]:
         "is outside of its declared range. From then on every verdict is UNKNOWN, until reset.",
     )
     yield from ("", f"#ifndef {big}_H", f"#define {big}_H", "", "#include <stdint.h>", "")
+    yield from ("#ifdef __cplusplus", 'extern "C" {', "#endif", "")
     yield f"typedef enum {{ {big}_FALSE, {big}_UNKNOWN, {big}_TRUE }} {name}_verdict;"
     yield from ("", *_comment("One sample; a flag is 0 or not."), "typedef struct {")
     for field in source.fields.values():
@@ -89,7 +90,7 @@ def _header(source: CSource) -> Iterator[str]:
     yield f"}} {name}_sample;"
     for monitor in source.monitors:
         yield from ("", *_declarations(source, monitor))
-    yield from ("", "#endif", "")
+    yield from ("", "#ifdef __cplusplus", "}", "#endif", "", "#endif", "")
 
 
 def _declarations(source: CSource, monitor: StreamMonitor) -> Iterator[str]:
