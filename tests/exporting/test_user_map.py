@@ -12,6 +12,7 @@ import roadproof as rp
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.recordings.export import commonroad as made
+from roadproof.recordings.export import opendrive
 from roadproof.recordings.export.registry import numbers_in
 from roadproof.recordings.export.subject import Subject
 from roadproof.world.drive import Drive, motion_of
@@ -104,3 +105,41 @@ def test_a_map_that_was_changed_is_refused(tmp_path: Path) -> None:
     path.write_text(commonroad(RAMP, 1 / 300))
     with pytest.raises(InputError, match="the map has another road than drive one; find the drive again"):
         made.files(subject)
+
+
+def test_an_opendrive_file_of_lanelets_has_no_steps_where_lanes_go_on(tmp_path: Path) -> None:
+    """Edges of lanes are constant on lanelets; in the file they go over into each other in a metre."""
+    shifted = (replace(x, d=(x.d[0] + 0.06, x.d[1] + 0.06)) if x.s[0] == 120 else x for x in RAMP)
+    path = tmp_path / "mine.xml"
+    path.write_text(commonroad([*shifted], 1 / 400))
+    file = file_on(path)
+    (made,) = opendrive.files(Subject("one", 1, file)).values()
+    (tmp_path / "one.xodr").write_bytes(made)
+    sections = list(ElementTree.fromstring(made).iter("laneSection"))
+    assert len(sections) == 3
+    ends: dict[str, float] = {}
+    for section in sections:
+        begins, edge, edges = {}, 0.0, {}
+        total = 0.0
+        for lane in section.iter("lane"):
+            widths = [{k: float(v) for k, v in x.attrib.items()} for x in lane.findall("width")]
+            if not widths:
+                continue
+            first, last = widths[0], widths[-1]
+            if len(widths) == 2:
+                assert first["a"] + first["b"] * last["sOffset"] == pytest.approx(last["a"])
+            name = next((x.get("value", "") for x in lane.findall("userData")), "")
+            begins[name] = (edge, edge + first["a"])
+            edge += first["a"]
+            edges[name] = (total, total + last["a"])
+            total += last["a"]
+        for name in (begins.keys() & ends.keys()) - {""}:
+            assert begins[name] == pytest.approx(ends[name])
+        ends = edges
+    again = load_road(tmp_path / "one.xodr")
+    for x in file.road.lanelets:
+        low, high = x.s
+        assert low is not None
+        assert high is not None
+        there = [y for y in again.lanelets if y.lane == x.lane and y.s[0] < (low + high) / 2 < y.s[1]]
+        assert [tuple(map(float, y.d)) for y in there] == [pytest.approx(tuple(map(float, x.d)))]

@@ -18,25 +18,34 @@ from interop.damage import DAMAGES
 from interop.environments import OUT, Client, clients, python_of
 from interop.expected import expected
 from roadproof.evidence.drive_file import load_drive
+from roadproof.frontends.api.drives import witness
 from roadproof.frontends.api.exporting import export
 from roadproof.frontends.cli.main import main as roadproof
 from tally import rows, write
+from world.measured_lanelets import RAMPS, commonroad
 
 ROOT = Path(__file__).parents[2]
 TABLE = ROOT / "docs/data/interop.csv"
 EACH = 2
 """So many files are damaged in each way."""
+MOTORWAY = ROOT / "examples/maps/motorway.xodr"
+BENT, ON_LANELETS = "bent", (9, 12, 17, 20)
 _ALL = 6
 """Entries where a metric of each kind is told, so that damage shows in all of them."""
 
 
 @dataclass
 class Outcome:
-    """``skipped`` says why where nobody was asked; ``accepted``: damaged copies that were not refused."""
+    """``skipped`` says why where nobody was asked; ``accepted``: damaged copies that were not refused.
+
+    ``bent``: files of drives on roads with bends; ``issues`` and ``bent_issues``: of these and of the others.
+    """
 
     client: Client
     files: int = 0
+    bent: int = 0
     issues: list[str] = field(default_factory=list)
+    bent_issues: list[str] = field(default_factory=list)
     damaged: int = 0
     accepted: list[str] = field(default_factory=list)
     skipped: str = ""
@@ -44,9 +53,10 @@ class Outcome:
     @property
     def row(self) -> list[str]:
         if self.skipped:
-            return [self.client.packages[0], self.client.about, f"skipped: {self.skipped}", "", ""]
+            return [self.client.packages[0], self.client.about, f"skipped: {self.skipped}", *[""] * 4]
         refused = f"{self.damaged - len(self.accepted)} of {self.damaged}"
-        return [self.client.packages[0], self.client.about, str(self.files), str(len(self.issues)), refused]
+        counts = (self.files, len(self.issues), self.bent, len(self.bent_issues))
+        return [self.client.packages[0], self.client.about, *map(str, counts), refused]
 
 
 def find_drives(folder: Path) -> Path:
@@ -65,6 +75,22 @@ def find_drives(folder: Path) -> Path:
         ]
         if roadproof(line) != 0:
             sys.exit("not every scenario has a drive")
+    return folder
+
+
+def find_bent(folder: Path) -> Path:
+    """The witnesses of all 24 scenarios on the motorway with a bend, and of some on lanelets with one."""
+    if len([*folder.glob("*.json")]) < 24 + len(ON_LANELETS):
+        print("looking for drives on bends (some minutes)", flush=True)
+        lanelets = folder / "maps" / "lanelets.xml"
+        lanelets.parent.mkdir(parents=True, exist_ok=True)
+        lanelets.write_text(commonroad(RAMPS, 1 / 400), "utf-8")
+        for name, what, road in (("motorway", (), MOTORWAY), ("lanelets", ON_LANELETS, lanelets)):
+            where = f"{road}#lanes=right" if name == "motorway" else str(road)
+            found = witness(*what, road=where, pictures=False)
+            for x in found.drives:
+                path = folder / f"{name}-{x.file.scenario:02d}.json"
+                path.write_text(json.dumps(x.as_data()), "utf-8")
     return folder
 
 
@@ -108,8 +134,13 @@ def examine(client: Client, folder: Path, told: Mapping[str, Any], work: Path) -
         return outcome
     tasks = {path: told[path.stem] for path in sorted((folder / client.format).glob(client.files))}
     found = ask(client, python, tasks, work)
-    outcome.files = len(found)
     outcome.issues = [f"{path.name}: {text}" for path, texts in found.items() for text in texts]
+    outcome.files = len(found)
+    paths = sorted((folder / BENT / client.format).glob(client.files))
+    bent = {x: told[x.stem] for x in paths if x.name != MOTORWAY.name}  # which is the user's own file
+    found = ask(client, python, bent, work)
+    outcome.bent_issues = [f"{path.name}: {text}" for path, texts in found.items() for text in texts]
+    outcome.bent = len(found)
     copies = {path: (what, expects) for path, what, expects in damaged(client, tasks, work)}
     answers = ask(client, python, {path: x[1] for path, x in copies.items()}, work)
     outcome.damaged = len(answers)
@@ -127,21 +158,25 @@ def main() -> int:
     asked = [x for x in clients() if not args.only or x.name in args.only]
     drives = find_drives(args.drives)
     folder = OUT / "exported"
+    bent = find_bent(args.drives.with_name("bent"))
     print(export(drives, ["openscenario", "opendrive", "commonroad", "highd", "csv"], folder), flush=True)
-    told = {path.stem: expected(load_drive(path)) for path in sorted(drives.glob("scenario-*.json"))}
+    print(export(bent, ["openscenario", "opendrive", "commonroad"], folder / BENT), flush=True)
+    paths = (*sorted(drives.glob("scenario-*.json")), *sorted(bent.glob("*.json")))
+    told = {path.stem: expected(load_drive(path)) for path in paths}
     outcomes = []
     for client in asked:
         outcome = examine(client, folder, told, OUT / "answers" / client.name)
         outcomes.append(outcome)
         print(" | ".join(outcome.row), flush=True)
-        for text in outcome.issues[:5]:
+        for text in (*outcome.issues[:5], *outcome.bent_issues[:5]):
             print(f"  issue: {text}")
         for text in outcome.accepted:
             print(f"  a damaged copy is accepted: {text}")
     if not args.only and not any(x.skipped for x in outcomes):
-        heading = ("client", "what it is asked", "files", "issues", "damaged copies refused")
+        heading = ("client", "what it is asked", "files", "issues", "files with bends", "issues there")
+        heading = (*heading, "damaged copies refused")
         write(TABLE, rows(heading, [x.row for x in outcomes]))
-    return int(any(x.issues or x.accepted for x in outcomes))
+    return int(any(x.issues or x.bent_issues or x.accepted for x in outcomes))
 
 
 if __name__ == "__main__":

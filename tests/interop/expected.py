@@ -4,8 +4,12 @@ import math
 from bisect import bisect_right
 from fractions import Fraction
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from exporting.integration import curvature_at, integrated
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.world.drive import Motion
 from roadproof.world.motion import State, starts_of, state_at
@@ -22,21 +26,61 @@ _TYPES = {"main": "driving", "merge": "entry", "departure": "exit"}
 def expected(file: DriveFile) -> dict[str, Any]:
     """Boxes in time, the lanes of each section from the left, and metrics of SV with each other vehicle."""
     names = sorted(file.drive.vehicles, key=lambda name: (name != "SV", name))
+    first = 1000 if from_lanelets(file) else 0  # numbers of lanelets are below
     states = {x: [state_at(file.drive.vehicles[x], t) for t in _times(file, RATE)] for x in names}
     vehicles = {}
     for number, name in enumerate(names, 1):
         car = file.drive.vehicles[name]
         dense = _times(file, 100)
         vehicles[name] = {
-            "id": number,
+            "id": first + number,
             "length": float(car.length),
             "width": float(car.width),
             "times": [*map(float, dense)],
-            "centres": [_centre(state_at(car, t), car) for t in dense],
-            "samples": [(*_centre(x, car), float(x.v_lon)) for x in states[name]],
+            "centres": [x[:2] for x in _seen(file, [state_at(car, t) for t in dense], car)],
+            "samples": _seen(file, states[name], car),
         }
+    sections, bends = _sections(file), file.road.line is not None
     metrics = [x for other in names[1:] for x in _metrics(file, states, ("SV", other))]
-    return {"vehicles": vehicles, "sections": _sections(file), "metrics": metrics}
+    return {
+        "vehicles": vehicles,
+        "sections": sections,
+        "lanelets": _count(file, sections),
+        "metrics": [] if bends else metrics,  # on bends clients measure along lanelets
+        "bends": bends,
+        "within": [0.01, 0.02] if bends else [1e-9, 1e-9],  # m and m/s
+    }
+
+
+def from_lanelets(file: DriveFile) -> bool:
+    """Whether the road is from a map in CommonRoad."""
+    return (file.road.map or "").partition("#")[0].endswith(".xml")
+
+
+def _count(file: DriveFile, sections: list[dict[str, Any]]) -> int:
+    """Lanelets: those of the map, or one for each lane of a section."""
+    if from_lanelets(file):
+        return Path((file.road.map or "").partition("#")[0]).read_text("utf-8").count("<lanelet ")
+    return sum(len(x["lanes"]) for x in sections)
+
+
+def _seen(
+    file: DriveFile, states: list[State], car: Motion
+) -> list[tuple[float, float, float | None, float]]:
+    """x and y of the centre (m), speed along the box (m/s; None where it is not compared), its direction.
+
+    On the motorway by an integration of its curvature, on other bends by the line of the drive file.
+    """
+    places = [_centre(x, car) for x in states]
+    line = file.road.line
+    if line is None:
+        return [(*place, float(x.v_lon), 0.0) for place, x in zip(places, states, strict=True)]
+    if from_lanelets(file):
+        return [(*line.place(s, d), None, line.pose(s).heading) for s, d in places]
+    s, d = np.array(places).T
+    speeds = np.array([float(x.v_lon) for x in states]) * (1 - curvature_at(s) * d)
+    x, y, turned = integrated(s, d)
+    return [*zip(x.tolist(), y.tolist(), speeds.tolist(), turned.tolist(), strict=True)]
 
 
 def _times(file: DriveFile, rate: int) -> list[Fraction]:
@@ -58,7 +102,8 @@ def _sections(file: DriveFile) -> list[dict[str, Any]]:
             {"width": float(x.d[1] - x.d[0]), "type": _TYPES[x.attribute], "speed": _limit(file)}
             for x in there
         ]
-        found.append({"lanes": lanes})
+        if lanes:
+            found.append({"lanes": lanes})
     return found
 
 

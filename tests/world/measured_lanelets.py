@@ -48,6 +48,21 @@ RAMP = (
 """Two lanes with a merge lane from 120 m to 320 m."""
 
 
+_FIVE = [(300 * k, 300 * k + 300) for k in range(5)]
+RAMPS = (
+    *(MapLane(11 + k, s, (0, 3.75), (12 + k,) if k < 4 else (), right=21 + k) for k, s in enumerate(_FIVE)),
+    *(
+        MapLane(
+            *(21 + k, s, (-3.75, 0), (22 + k,) if k < 4 else (), 11 + k, {1: 32, 3: 34}.get(k)),
+        )
+        for k, s in enumerate(_FIVE)
+    ),
+    MapLane(32, _FIVE[1], (-7.25, -3.75), (), left=22, kind="accessRamp"),
+    MapLane(34, _FIVE[3], (-7.25, -3.75), (), left=24, kind="exitRamp"),
+)
+"""Two lanes of 1500 m with an access ramp from 300 m to 600 m and an exit ramp from 900 m to 1200 m."""
+
+
 def commonroad(lanes: Sequence[MapLane], curvature: float = 0.0, version: str = "2020a") -> str:
     made = "".join(_lanelet(x, curvature) for x in lanes)
     return f'<commonRoad commonRoadVersion="{version}" timeStepSize="0.1">{made}</commonRoad>'

@@ -8,8 +8,9 @@ A road that is from a map in OpenDRIVE is exported as that map, byte for byte. F
 map's reference line, as cubics, and its s from where the drive needs the road.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
+from itertools import pairwise
 from math import ceil
 
 from roadproof.recordings.export import plan_view
@@ -21,6 +22,10 @@ from roadproof.world.road import Attribute, Lanelet
 
 _TYPES: Mapping[Attribute, str] = {"main": "driving", "merge": "entry", "departure": "exit"}
 _GAP = "none"
+BESIDE, RAMP, HIGHEST_STEP = Fraction(1, 4), Fraction(1), Fraction(1, 2)
+"""Metres: between the reference line and lanes with steps; in which an edge goes from one place to the next;
+and how far that is at most, as ends of lanes are no steps.
+"""
 ENDING = ".xodr"
 SPEED = 130
 """The speed limit in km/h, which our roads do not have: the recommended speed of German motorways."""
@@ -41,7 +46,7 @@ def file_name(subject: Subject) -> str:
 def road_file(subject: Subject) -> bytes:
     """The road of the drive, as far as the drive goes."""
     layout = subject.layout
-    left = max(x.d[1] for x in layout.road.lanelets)
+    left = max(x.d[1] for x in layout.road.lanelets) + (BESIDE if _has_steps(layout) else 0)
     right = min(x.d[0] for x in layout.road.lanelets)
     header = element(
         "header",
@@ -90,19 +95,48 @@ def _road(layout: Layout, left: Fraction, limit: int) -> Element:
     )
 
 
+def _has_steps(layout: Layout) -> bool:
+    """Whether lanes of a map go on with other edges; other tools want edges without steps."""
+    if layout.road.line is None:
+        return False
+    lanes = [{x.lane: x.d for x in section.lanelets} for section in layout.sections]
+    return any(a[x] != b[x] for a, b in pairwise(lanes) for x in a.keys() & b.keys())
+
+
+def _begins(
+    strips: Sequence[tuple[Lanelet | None, Fraction]], before: Section | None, left: Fraction
+) -> list[Fraction]:
+    """Widths where a section begins: edges are where lanes of the section before have them."""
+    known = {} if before is None else {x.lane: x.d for x in before.lanelets}
+    edges, own = [left], left
+    for (lanelet, width), (following, _) in zip(strips, [*strips[1:], (None, 0)], strict=True):
+        own -= width
+        edge = own
+        if lanelet is not None and lanelet.lane in known:
+            edge = known[lanelet.lane][0]
+        elif following is not None and following.lane in known:
+            edge = known[following.lane][1]
+        edges.append(edge if abs(edge - own) <= HIGHEST_STEP and edge < edges[-1] else own)
+    return [a - b for a, b in pairwise(edges)]
+
+
 def _sections(layout: Layout, left: Fraction, limit: int) -> Iterator[Element]:
     strips = [_strips(section, left) for section in layout.sections]
+    steps = _has_steps(layout)
     numbers = [{x: -k for k, (x, _) in enumerate(each, 1) if x is not None} for each in strips]
     linked = [{x.lane: number for x, number in each.items()} for each in numbers]
     around = [{}, *linked, {}]
     for k, section in enumerate(layout.sections):
         lanes = []
+        begins = _begins(strips[k], layout.sections[k - 1] if k and steps else None, left)
+        ramp = min(RAMP, (section.high - section.low) / 2)
         for place, (lanelet, width) in enumerate(strips[k]):
             neighbour = strips[k][place + 1][0] if place + 1 < len(strips[k]) else None
             marked = _mark(lanelet, neighbour, layout)
             before = None if lanelet is None else around[k].get(lanelet.lane)
             after = None if lanelet is None else around[k + 2].get(lanelet.lane)
-            lanes.append(_lane(-place - 1, lanelet, width, marked, (before, after), limit))
+            widths = _widths(begins[place], width, ramp)
+            lanes.append(_lane(-place - 1, lanelet, widths, marked, (before, after), limit))
         first = strips[k][0][0]
         middle = element(
             "lane", _line("none" if first is None else "solid"), id="0", type="none", level="false"
@@ -144,10 +178,19 @@ def _line(kind: str) -> Element:
     return element("roadMark", sOffset="0", **mark)
 
 
+def _widths(begin: Fraction, width: Fraction, ramp: Fraction) -> list[Element]:
+    """The width of a lane, which it has at once, or after some metres in which it grows or falls."""
+    whole = {"a": decimal(width), "b": "0", "c": "0", "d": "0"}
+    if begin == width:
+        return [element("width", sOffset="0", **whole)]
+    grows = {"a": decimal(begin), "b": decimal((width - begin) / ramp), "c": "0", "d": "0"}
+    return [element("width", sOffset="0", **grows), element("width", sOffset=decimal(ramp), **whole)]
+
+
 def _lane(
     number: int,
     lanelet: Lanelet | None,
-    width: Fraction,
+    widths: list[Element],
     marked: str,
     links: tuple[int | None, int | None],
     limit: int,
@@ -157,7 +200,7 @@ def _lane(
     linked = [element(tag, id=str(end)) for tag, end in ends if end is not None]
     if linked:
         parts.append(element("link", *linked))
-    parts.append(element("width", sOffset="0", a=decimal(width), b="0", c="0", d="0"))
+    parts += widths
     parts.append(_line(marked))
     if lanelet is not None:
         parts.append(element("speed", sOffset="0", max=str(limit), unit="km/h"))

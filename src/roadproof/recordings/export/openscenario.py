@@ -14,7 +14,8 @@ too, which moves the centre by l·|θ''|·h²/8 at most. All together: h²/8·(|
 axle and for the centre, each with the greatest value between the vertices or more. A heading is nowhere
 greater than at a vertex by more than |θ''|·h²/8, and not at all where n keeps its sign, as without jerk.
 
-On a road with a reference line the bound is that of the distances at seven instants between two vertices.
+On a road with a reference line the bound is a fifth more than the distances at seven instants between two
+vertices, as they may be greater between, where the line is one of straight lines.
 """
 
 import math
@@ -41,6 +42,7 @@ ROUNDING = 1e-6
 _SHORTEST = Fraction(1, 1024)
 _SAME = 1e-9
 _INSTANTS = 8
+BETWEEN = 1.2
 
 
 @dataclass(frozen=True)
@@ -132,7 +134,7 @@ def _halved(
     """Parts of a stretch in which the speed along grows or falls, halved until the bound is small enough."""
     part = _part(state, duration, motion.length)
     if line is not None and part.bound <= within:
-        part = replace(part, bound=max(part.bound, _apart(part, motion, line)))
+        part = replace(part, bound=max(part.bound, BETWEEN * _apart(part, motion, line)))
     if part.bound <= within:
         yield part
         return
