@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
+from roadproof.analysis.assurance.reading import read_case
 from roadproof.analysis.assurance.states import State
 from roadproof.errors import InputError
 from roadproof.frontends.cli.main import main
@@ -166,3 +167,35 @@ def test_a_case_is_checked_alone(case: Path, capsys: pytest.CaptureFixture[str])
     case.write_text("[", "utf-8")
     with pytest.raises(InputError, match="is no TOML"):
         rp.assurance(case)
+
+
+def test_a_case_is_drawn_and_written_as_a_page(case: Path, tmp_path: Path) -> None:
+    files = {"svg": tmp_path / "case.svg", "page": tmp_path / "case.html"}
+    found = rp.assurance(case, jobs=1, **files)
+    picture, page = (x.read_text("utf-8") for x in files.values())
+    assert found.page == page
+    for element in found.elements:
+        assert f"{element.kind} {element.id}: {element.text.split()[0]}" in picture
+        assert element.id in page
+    for solution in found.solutions.values():
+        assert solution.sha256 in page
+    assert "<script" not in page
+
+
+def test_the_template_is_filled_in_with_folders(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = case.parent / "new.toml"
+    asked = ["assurance", "--template", "catalogue-coverage", "--evidence", str(case.parent / "claims")]
+    assert main([*asked, "--out", str(out)]) == 0
+    read = read_case(out)
+    assert [x.evidence.path for x in read.solutions if x.evidence] == ["claims"]
+    assert [x.id for x in read.elements.values() if x.undeveloped] == ["G3", "G4"]
+    assert main(["assurance", str(out), "--jobs", "1"]) == 10  # the claims are no template properties
+    assert "no entry of claims matches P*" in capsys.readouterr().out
+    for words, told in (
+        (["--evidence", str(case.parent)], "has no answers: name a folder"),
+        (["--template", "other"], "template='other'; there is catalogue-coverage"),
+    ):
+        assert main([*asked, "--out", str(out), *words]) == 3
+        assert told in capsys.readouterr().err
+    assert main(asked) == 2
+    assert main(["assurance"]) == 2

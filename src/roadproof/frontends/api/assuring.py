@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Unpack
+from xml.etree.ElementTree import Element as XmlElement
 
 from roadproof.analysis.assurance.case import Case, Element, Kind
 from roadproof.analysis.assurance.limits import Limit
@@ -19,11 +20,14 @@ from roadproof.evidence.heading import heading
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.checking import Solver
 from roadproof.frontends.api.solutions import SolutionCheck, check_evidence, digest_of, judge_solution
+from roadproof.frontends.report.argument.argument_page import argument_page
+from roadproof.frontends.report.argument.drawing import as_file, as_markup, draw_argument
 from roadproof.frontends.settings.keywords import AssuranceKeywords, CheckKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Assurance
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library
+from roadproof.runtime.files import write_whole
 from roadproof.verdict import ExitCode
 
 
@@ -72,8 +76,26 @@ class AssuranceReport:
 
     def as_data(self) -> JsonObject:
         """As the plain data of ``--json``."""
-        return write(
-            kept.Answer(
+        return write(self._answer)
+
+    @cached_property
+    def picture(self) -> bytes:
+        """The argument as an SVG file."""
+        return as_file(self._drawing)
+
+    @property
+    def page(self) -> str:
+        """The argument, its evidence and its limits as an HTML page."""
+        return argument_page(self._answer, as_markup(self._drawing))
+
+    @cached_property
+    def _drawing(self) -> XmlElement:
+        more = {name: _evidence_told(self.case.elements[name], x) for name, x in self.solutions.items()}
+        return draw_argument(self.case.title, self.elements, self.case.top, self.states, more)
+
+    @cached_property
+    def _answer(self) -> kept.Answer:
+        return kept.Answer(
                 **heading(kept.SCHEMA, self.library),
                 case=str(self.case.path),
                 sha256=digest_of(self.case.path),
@@ -89,8 +111,7 @@ class AssuranceReport:
                     )
                     for x in self.open_points
                 ),
-            )
-        )  # fmt: skip
+            )  # fmt: skip
 
     def _kept(self, element: Element) -> kept.Element:
         found, said = self.solutions.get(element.id), element.evidence
@@ -156,10 +177,17 @@ def _with_limits(element: Element, limited: Mapping[str, str]) -> Element:
     return replace(element, in_context_of=(*element.in_context_of, *more))
 
 
+def _evidence_told(solution: Element, found: SolutionCheck) -> str:
+    """What the picture says of the evidence of a solution."""
+    path = solution.evidence.path if solution.evidence else ""
+    counts = ", ".join(f"{n} {word}" for word, n in found.verdicts.items())
+    return f"{path}: {counts}" if counts else path
+
+
 def _limits_told(solution: str, limits: Sequence[Limit]) -> str:
     """The limits of a solution in a line: those that are few in words, the others counted."""
     told = [f"{x.name}: {x.told[0]}" if len(x.told) == 1 else f"{x.name} ({len(x.told)})" for x in limits]
-    return f"The evidence of {solution} holds within its limits. {'; '.join(told)}."
+    return f"{solution} holds within: {'; '.join(told)}"
 
 
 @takes(Assurance)
@@ -184,4 +212,10 @@ def assurance(case: str | Path, **options: Unpack[AssuranceKeywords]) -> Assuran
             reports[path] = check_evidence(path, told)
         found[solution.id] = judge_solution(path, solution.evidence, reports.get(path), asked.strict)
     states = propagate(read, {name: x.state for name, x in found.items()})
-    return AssuranceReport(read, found, states, asked.solver, load_library([Path(x) for x in asked.specs]))
+    library = load_library([Path(x) for x in asked.specs])
+    report = AssuranceReport(read, found, states, asked.solver, library)
+    if asked.svg is not None:
+        write_whole(Path(asked.svg), report.picture)
+    if asked.page is not None:
+        write_whole(Path(asked.page), report.page.encode())
+    return report

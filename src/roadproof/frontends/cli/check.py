@@ -7,7 +7,7 @@ from roadproof.errors import UsageError
 from roadproof.frontends.cli.options import print_answer, write_build_results
 from roadproof.frontends.cli.progress import Counter
 from roadproof.frontends.settings.flags import read_keywords
-from roadproof.frontends.settings.questions import Assurance, Check
+from roadproof.frontends.settings.questions import Check
 from roadproof.verdict import ExitCode
 
 SUMMARY = "check certificates and drive files again, independently"
@@ -64,7 +64,8 @@ def _check_case(args: argparse.Namespace) -> int:
         raise UsageError(
             "an assurance case is checked alone and with a solver: name one CASE, and omit --kernel"
         )
-    checked = assurance(args.paths[0], **read_keywords(args, Assurance) | {"progress": Counter()})
+    keywords = {name: x for name, x in read_keywords(args, Check).items() if name != "kernel"}
+    checked = assurance(args.paths[0], **keywords | {"progress": Counter()})
     print_answer(checked, args.json)
     return checked.exit_code
 

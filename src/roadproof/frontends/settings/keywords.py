@@ -142,6 +142,8 @@ class AssuranceKeywords(BudgetKeywords, WorkersKeywords, total=False):
     solver: Solver
     specs: Iterable[str | Path]
     strict: bool
+    svg: str | Path | None
+    page: str | Path | None
     progress: Progress | None
 
 

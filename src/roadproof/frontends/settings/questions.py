@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from roadproof.frontends.settings import groups
 from roadproof.frontends.settings.option import option, output, search
-from roadproof.frontends.settings.readers import named, seconds, text_or_none, whole
+from roadproof.frontends.settings.readers import file_names, named, seconds, text_or_none, whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -165,6 +165,19 @@ class Assurance(groups.Answered, groups.Budget, groups.Workers):
         False, "--strict", "leave undecided what expects a verdict without evidence (NONE-WITHIN)"
     )
     effort: float = groups.effort_for("a query", 60.0)
+    svg: str | Path | None = output(None, "--svg FILE", "draw the argument to FILE", read=Path)
+    page: str | Path | None = output(
+        None, "--page FILE", "write the argument as a page, NAME.html", read=Path
+    )
+    template: str | None = output(
+        None, "--template NAME", "write a case instead (catalogue-coverage)", keyword=False
+    )
+    evidence: tuple[str, ...] = output(
+        (), "--evidence DIR,…", "with --template: folders of evidence", keyword=False, read=file_names
+    )
+    out: Path | None = output(
+        None, "--out FILE", "with --template: the case, NAME.toml", read=Path, keyword=False
+    )
     progress: Progress | None = option(None)
 
 

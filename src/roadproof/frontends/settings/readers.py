@@ -155,3 +155,8 @@ def driver_models_or_none(text: str) -> tuple[str, ...]:
 def flat(lists: Iterable[Iterable[str]]) -> list[str]:
     """The texts of several lists in one."""
     return [text for texts in lists for text in texts]
+
+
+def file_names(text: str) -> tuple[str, ...]:
+    """Names of files or folders with commas between them."""
+    return tuple(x for x in text.split(",") if x)

@@ -115,6 +115,11 @@ def style_without_scripts() -> str:
     return design() + _resource("pieces.css")
 
 
+def page_style() -> str:
+    """Styles of a page without viewers."""
+    return "\n".join((design(), _resource("page.css"), _resource("pieces.css")))
+
+
 def render(template: str, **values: object) -> str:
     """A template of the folder ``templates``, or of the atlas, as HTML; it escapes ``values``."""
     return _environment().get_template(template).render(values)

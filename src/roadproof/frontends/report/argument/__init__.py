@@ -1,0 +1,1 @@
+"""Arguments in Goal Structuring Notation as pictures and pages."""
