@@ -15,7 +15,7 @@ EXAMPLES = sorted(ROOT.glob("examples/*/README.md"))
 TUTORIALS = ("first-scenario", "catalogue", "recordings", "careful-driver")
 GUIDES = (
     *("interop", "requirements", "signals", "rss", "roads", "solvers", "terminal", "recordings"),
-    *("certificates", "c"),
+    *("certificates", "c", "assurance"),
 )
 PAGES = [
     *sorted(Path(__file__).parent.joinpath("book").glob("*.md")),

@@ -28,8 +28,9 @@ class Evidence:
     """The evidence of a solution.
 
     ``path``: a file or folder, as it is from the folder of the case. ``expect``: verdicts of which each
-    selected entry has one. ``select``: patterns such as ``P4 *`` for labels or names of files; without them
-    every entry is selected. ``sha256``: the digest that the file or folder must have; empty for any.
+    selected entry has one. ``select``: patterns such as ``P4 *`` for labels or names of files, or where a
+    catalogue is to be COVERED for scenarios and classes; without them every entry is selected.
+    ``sha256``: the digest that the file or folder must have; empty for any.
     """
 
     path: str

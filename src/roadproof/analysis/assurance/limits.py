@@ -115,7 +115,7 @@ def _of_findings(findings: Iterable[Finding]) -> Found:
             if told == "declared parameters" or told.startswith("with "):
                 yield PARAMETERS, told
             elif told.startswith(("boxes apart up to", "collisions allowed")):
-                yield COLLISIONS, told.split(":")[0]
+                yield COLLISIONS, told.split(":")[0].removeprefix("collisions ")
         for told in finding.unchecked:
             yield UNCHECKED, told
 

@@ -46,7 +46,10 @@ _SCENARIOS: Mapping[str, _Use] = {
 }
 _TESTS: Mapping[str, _Use] = {
     "catalogue": _Use(
-        "The tests show every scenario and are what they claim", "Review of the test catalogue", ("COVERED",)
+        "The tests show every scenario and are what they claim",
+        "Review of the test catalogue",
+        ("COVERED",),
+        ("scenario_*",),
     ),
 }
 _DRIVER: Mapping[str, _Use] = {

@@ -21,7 +21,7 @@ from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.checking import Solver
 from roadproof.frontends.api.solutions import SolutionCheck, check_evidence, digest_of, judge_solution
 from roadproof.frontends.report.argument.argument_page import argument_page
-from roadproof.frontends.report.argument.drawing import as_file, as_markup, draw_argument
+from roadproof.frontends.report.argument.drawing import as_file, draw_argument
 from roadproof.frontends.settings.keywords import AssuranceKeywords, CheckKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Assurance
@@ -86,7 +86,7 @@ class AssuranceReport:
     @property
     def page(self) -> str:
         """The argument, its evidence and its limits as an HTML page."""
-        return argument_page(self._answer, as_markup(self._drawing))
+        return argument_page(self._answer, self._drawing)
 
     @cached_property
     def _drawing(self) -> XmlElement:

@@ -89,7 +89,8 @@ def judge_solution(
     if report is None:
         limits = (Limit(DIGEST, (f"{evidence.path} is compared with its SHA-256 only",)),)
     else:
-        counted = [x for x in report if _counts(x, evidence.select)]
+        entries = () if {*WHOLE} & {*evidence.expect} else evidence.select
+        counted = [x for x in report if _counts(x, entries)]
         accepted = [x for x in counted if x.outcome is Acceptance.ACCEPTED]
         faults += _faults(path, evidence, counted, strict)
         verdicts = Counter(str(x.verdict) for x in accepted)
@@ -111,8 +112,7 @@ class _Fault:
 
 def _counts(finding: Finding, select: Sequence[str]) -> bool:
     """Whether a finding is about a selected entry, or damage that concerns all of them."""
-    names = (finding.label, Path(finding.where).name)
-    if not select or any(fnmatchcase(name, x) for name in names for x in select):
+    if _is_selected((finding.label, Path(finding.where).name), select):
         return True
     return finding.outcome is not Acceptance.ACCEPTED and not finding.label
 
@@ -124,12 +124,12 @@ def _faults(path: Path, evidence: Evidence, counted: Sequence[Finding], strict: 
             yield _Fault(state, f"{x.outcome}: {_named(x)}: {x.reason}", x.outcome.exit_code)
     whole = [x for x in evidence.expect if x in WHOLE]
     each = [x for x in evidence.expect if x not in WHOLE]
-    if whole and (word := whole_verdict(path)) not in whole:
+    word, why = whole_verdict(path, evidence.select) if whole else ("", "")
+    if whole and word not in whole:
         state = State.UNDECIDED if word in ("UNKNOWN", "") else State.BROKEN
         code = ExitCode.UNKNOWN if state is State.UNDECIDED else ExitCode.UNEXPECTED
-        yield _Fault(
-            state, f"{evidence.path} is {word or 'without a verdict'}, expected {' or '.join(whole)}", code
-        )
+        told = f"{evidence.path} is {word or 'without a verdict'}, expected {' or '.join(whole)}"
+        yield _Fault(state, f"{told}: {why}" if why else told, code)
     accepted = [x for x in counted if x.outcome is Acceptance.ACCEPTED]
     if not counted:
         told = f"no entry of {evidence.path} matches {', '.join(evidence.select) or 'anything'}"
@@ -149,16 +149,28 @@ def _named(finding: Finding) -> str:
     return finding.label or Path(finding.where).name
 
 
-def whole_verdict(path: Path) -> str:
-    """The verdict of an answer as a whole: its own, or of a catalogue whether its tests cover all that was
-    asked and are what they claim; empty where it has none."""
+def whole_verdict(path: Path, select: Sequence[str] = ()) -> tuple[str, str]:
+    """The verdict of an answer as a whole, empty where it has none, and why it is so.
+
+    Of a catalogue: COVERED where its tests show every scenario and class that ``select`` names (all where it
+    names none), and are what they claim.
+    """
     try:
         data = Fields(read_json(path / INDEX if path.is_dir() else path, LARGEST_INDEX), str(path))
     except RoadproofError:
-        return ""
+        return "", ""
     if "not_tested" in data.content:
-        return "GAPS" if data.items("not_tested") or data.items("faults") else "COVERED"
-    return data.text("verdict") if data.has("verdict") and isinstance(data.get("verdict"), str) else ""
+        names = [x for x in data.texts("not_tested") if _is_selected((x,), select)]
+        faults = len(data.items("faults"))
+        told = [f"not tested: {', '.join(names[:5])}{', …' * (len(names) > 5)}"] if names else []
+        told += [f"{faults} not what they claim"] if faults else []
+        return "GAPS" if told else "COVERED", "; ".join(told)
+    word = data.content.get("verdict")
+    return (word if isinstance(word, str) else ""), ""
+
+
+def _is_selected(names: Sequence[str], select: Sequence[str]) -> bool:
+    return not select or any(fnmatchcase(name, x) for name in names for x in select)
 
 
 def _files(path: Path, accepted: Sequence[Finding], evidence: Evidence) -> list[Path]:

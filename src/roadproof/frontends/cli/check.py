@@ -60,10 +60,9 @@ def run(args: argparse.Namespace) -> int:
 def _check_case(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.assuring import assurance
 
-    if len(args.paths) > 1 or args.kernel is not None:
-        raise UsageError(
-            "an assurance case is checked alone and with a solver: name one CASE, and omit --kernel"
-        )
+    if len(args.paths) > 1 or args.kernel or args.junit or args.sarif:
+        told = "name one CASE, and omit --kernel, --junit and --sarif"
+        raise UsageError(f"an assurance case is checked alone and with a solver: {told}")
     keywords = {name: x for name, x in read_keywords(args, Check).items() if name != "kernel"}
     checked = assurance(args.paths[0], **keywords | {"progress": Counter()})
     print_answer(checked, args.json)

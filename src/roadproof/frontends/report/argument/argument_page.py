@@ -2,9 +2,11 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from xml.etree.ElementTree import Element as XmlElement
 
 from roadproof.evidence.answers.assurance import Answer, Element
-from roadproof.frontends.report.argument.drawing import STYLE
+from roadproof.frontends.report.argument.drawing import STYLE, as_markup
+from roadproof.frontends.report.argument.layout import SHEETS, Rectangle, scale_on
 from roadproof.frontends.report.page.templates import Sign, page_style, render
 
 _SIGNS: Mapping[str, Sign] = {
@@ -24,8 +26,10 @@ class Row:
     again: bool
 
 
-def argument_page(answer: Answer, picture: str) -> str:
-    """The page of a checked case; ``picture`` is its SVG. It prints on sheets of A3."""
+def argument_page(answer: Answer, picture: XmlElement) -> str:
+    """The page of a checked case with its picture. It prints on sheets of A3, as the picture fits best."""
+    width, height = (float(picture.get(x, "1")) for x in ("width", "height"))
+    frame = Rectangle(0, 0, width, height)
     elements = {x.id: x for x in answer.elements}
     return render(
         "assurance.html",
@@ -34,7 +38,8 @@ def argument_page(answer: Answer, picture: str) -> str:
         rows=[*_rows(answer.top, elements, 0, set())],
         solutions=[x for x in answer.elements if x.solution is not None],
         limited=[x for x in answer.elements if x.limits],
-        picture=picture,
+        picture=as_markup(picture),
+        sheet=max(SHEETS, key=lambda x: scale_on(frame, x)),
         signs=_SIGNS,
         style=f"{page_style()}\n{STYLE}",
     )

@@ -18,8 +18,8 @@ from roadproof.frontends.report.argument.measured_text import LEADING, TextBlock
 SIDE, BELOW, BETWEEN, STACKED = 30.0, 38.0, 24.0, 14.0
 """Distances in px: to contexts, to supporting elements, between neighbours, between stacked boxes."""
 PAD, SLANT, DIAMOND, TRUNK = 9.0, 14.0, 18.0, 18.0
-SHEET = (1510.0, 1000.0)
-"""The room of a sheet of A3 in px, less margins and a heading."""
+SHEETS = {"landscape": (1510.0, 850.0), "portrait": (1047.0, 1300.0)}
+"""Width and height of a sheet of A3 in px, less margins and a heading with open points."""
 _WIDTHS = {
     Kind.GOAL: (150.0, 200.0, 3.0), Kind.STRATEGY: (140.0, 190.0, 3.5), Kind.SOLUTION: (80.0, 150.0, 1.5),
     Kind.CONTEXT: (110.0, 170.0, 2.5), Kind.ASSUMPTION: (110.0, 190.0, 2.2),
@@ -108,14 +108,15 @@ class Labels:
 
 def lay_out(elements: Sequence[Element], top: str, labels: Labels) -> Layout:
     """The layout that is largest on a sheet of A3, of those with rows above and columns below some depth."""
-    depths = range(1, 10)
-    layouts = (_Tree({x.id: x for x in elements}, labels, depth).whole(top) for depth in depths)
-    return max(layouts, key=_scale)
+    by_id = {x.id: x for x in elements}
+    layouts = (_Tree(by_id, labels, rows).whole(top) for rows in range(1, 10))
+    return max(layouts, key=lambda x: max(scale_on(x.frame, sheet) for sheet in SHEETS))
 
 
-def _scale(layout: Layout) -> float:
-    frame = layout.frame
-    return min(1.0, SHEET[0] / (frame.x1 - frame.x0), SHEET[1] / (frame.y1 - frame.y0))
+def scale_on(frame: Rectangle, sheet: str) -> float:
+    """By how much a picture shrinks on a sheet of A3; 1 where it is not larger."""
+    width, height = SHEETS[sheet]
+    return min(1.0, width / (frame.x1 - frame.x0), height / (frame.y1 - frame.y0))
 
 
 class _Tree:

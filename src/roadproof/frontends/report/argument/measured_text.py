@@ -14,6 +14,8 @@ _BY_WIDTH = {
 _WIDTHS = {letter: width for width, letters in _BY_WIDTH.items() for letter in letters}
 _OTHER = 1.0  # em, of letters that the table lacks
 _BOLD = 1.2
+_SEAMS = "/_-."
+"""Letters after which a long word is divided first."""
 FONT, LEADING = 12.0, 15.0
 
 
@@ -38,7 +40,8 @@ def wrap(text: str, most: float) -> list[str]:
 
 def _pieces(word: str, most: float) -> Iterator[str]:
     while width_of(word) > most:
-        cut = next(k for k in range(len(word), 0, -1) if k == 1 or width_of(word[:k]) <= most)
+        fits = [k for k in range(1, len(word)) if k == 1 or width_of(word[:k]) <= most]
+        cut = next((k for k in reversed(fits) if word[k - 1] in _SEAMS), fits[-1])
         yield word[:cut]
         word = word[cut:]
     yield word
