@@ -488,7 +488,7 @@ def test_order_of_rows_does_not_matter(tmp_path: Path, capsys: pytest.CaptureFix
         (["4", "{drive}", "--dt", "0"], 2, "--dt 0"),
         (["4", "{drive}", "--lane", "main-9"], 3, "lane L=main-9"),
         (["4", "{folder}/01_tracks.csv:1,2", "--frames", "5"], 2, "--frames 5"),
-        (["4", "{folder}/01_tracks.csv:1,2", "--view", "dense"], 2, "requires a drive file"),
+        (["4", "{folder}/01_tracks.csv:1,2", "--view", "dense"], 2, "requires a drive or OpenSCENARIO file"),
         (["F[0,1/3] v_lon(SV) > 0", "{drive}", "--view", "recorded"], 3, "no multiple of the time step"),
         (["v_lon(SV) >", "{drive}"], 3, "claim, line 1"),
     ],

@@ -22,7 +22,7 @@ from roadproof.recordings.export.subject import Subject
 from roadproof.recordings.formats import openscenario
 from roadproof.recordings.formats.openscenario import RATE, read_columns, read_recording
 from roadproof.recordings.formats.sources import find_source
-from roadproof.recordings.formats.storyboard import curves
+from roadproof.recordings.formats.storyboard import curves, stage
 from roadproof.world.motion import state_at
 from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.signals import RECORDED
@@ -175,8 +175,8 @@ def test_what_is_wrong_is_said(change: Callable[[str], str], told: str, tmp_path
 
 
 def the_reference_point_is_the_centre(monkeypatch: pytest.MonkeyPatch) -> None:
-    made = openscenario.Box
-    monkeypatch.setattr(openscenario, "Box", lambda *told: made(*told[:4], (0, 0)))
+    made = stage.Box
+    monkeypatch.setattr(stage, "Box", lambda *told: made(*told[:4], (0, 0)))
 
 
 def the_corner_is_the_centre(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -41,6 +41,7 @@ from roadproof.recordings.evaluate.one_trace import (
     sample_drive,
 )
 from roadproof.recordings.formats.sources import has_numbers
+from roadproof.recordings.formats.storyboard.drives import read_storyboard_drive
 from roadproof.recordings.formats.table import Frame, columns_of
 from roadproof.verdict import ExitCode
 from roadproof.world.length_error import LengthError, length_error_of
@@ -158,6 +159,7 @@ def monitor(
     """Where a formula holds on one trace.
 
     ``on``: a drive (judged exactly in dense time unless ``view`` is "recorded"; then sampled every ``dt`` s),
+    an OpenSCENARIO file (samples, unless ``view`` is "dense"),
     columns as for ``trace`` or a CSV or Parquet file of them on ``road`` (by default that beside the file, or
     main-2), or vehicles of a recording such as "highd/01_tracks.csv:12,15" on ``frames``. What a drive file
     says of set, readings and parameters holds where ``using`` is None. ``lanes``: for each free lane its
@@ -171,8 +173,10 @@ def monitor(
         return _on_drive(what, load_drive(Path(on)), str(on), using, given)
     if isinstance(on, JudgedDrive | DriveFile):
         return _on_drive(what, on.file if isinstance(on, JudgedDrive) else on, "drive", using, given)
+    if given.view == "dense" and str(on).endswith(".xosc"):
+        return _on_storyboard(what, Path(str(on)), using or load(), given)
     if given.view == "dense":
-        raise UsageError("--view dense requires a drive file: other traces have samples only")
+        raise UsageError("--view dense requires a drive or OpenSCENARIO file: others have samples only")
     home = using or load()
     return _on_trace(what, _read(on, given), home, home.all_values(), {}, given)
 
@@ -236,6 +240,16 @@ def _on_drive(
     observed = observe_drive(query.text, formula, drive, file.horizon, step)
     place = _place(played, home, query, lanes, overruled)
     return MonitorAnswer(home.library, observed, place, road=file.road)
+
+
+def _on_storyboard(what: What, path: Path, home: Definitions, given: Monitor) -> MonitorAnswer:
+    if given.road is not None:
+        raise UsageError(f"--road: {path} has the road of its storyboard; omit --road")
+    found = read_storyboard_drive(path)
+    set_name, formula = home.specification.set_name, "true"
+    file = DriveFile(None, set_name, formula, found.horizon, {}, {}, {}, found.road, found.drive)
+    answer = _on_drive(what, file, str(path), home, given)
+    return replace(answer, notes=(*answer.notes, found.note))
 
 
 def _overruled(file: DriveFile, home: Definitions, values: Mapping[str, Fraction]) -> Iterator[Override]:

@@ -29,7 +29,7 @@ exit codes: 0 true, 10 false, 20 undecided (it depends on what comes after the t
 examples:
   roadproof monitor 4 drives/scenario-04-base.json
   roadproof monitor 'initSafe(SV,POV)' samples.csv --road main-3
-  roadproof monitor 1 ego-and-target.xosc --roles SV=Ego,POV=Target
+  roadproof monitor 1 ego-and-target.xosc --roles SV=Ego,POV=Target --view dense
   roadproof monitor 1 highd/01_tracks.csv:12,15 --set ext --picture pair.png
   roadproof monitor 'F danger(SV,POV)' highd/01_tracks.csv:12,15 --frames 100-400 --end clip
 """

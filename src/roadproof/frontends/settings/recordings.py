@@ -61,7 +61,7 @@ class Monitor(groups.Definitions, groups.Traces):
         "road of samples (default: NAME_road.toml beside the file, else main-2); for inD: of a map",
     )
     view: View | None = option(
-        None, "--view", "judge a drive in dense time (default), or as samples", choices=("dense", "recorded")
+        None, "--view", "judge in dense time (default: drives), or as samples", choices=("dense", "recorded")
     )
     dt: Number = option(
         Fraction(1, 25), "--dt S", "seconds between samples of a drive (default: 1/25)", read=seconds

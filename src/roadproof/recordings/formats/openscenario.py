@@ -24,30 +24,17 @@ from roadproof.recordings.formats.storyboard.box import Box
 from roadproof.recordings.formats.storyboard.conditions import TICKS
 from roadproof.recordings.formats.storyboard.curves import curve
 from roadproof.recordings.formats.storyboard.distributions import read_distribution, scenarios_of, split
-from roadproof.recordings.formats.storyboard.document import Document, open_document
-from roadproof.recordings.formats.storyboard.routes import longer, stretch_of
-from roadproof.recordings.formats.storyboard.run import Play, run_storyboard
+from roadproof.recordings.formats.storyboard.run import Play
+from roadproof.recordings.formats.storyboard.stage import number_of, open_stage, played, text_of
 from roadproof.recordings.formats.straight import of_road
 from roadproof.recordings.formats.table import Column, Table
-from roadproof.runtime.xml_reader import Element, number_in
-from roadproof.world.models import load_road
+from roadproof.runtime.xml_reader import Element
 from roadproof.world.road import Road
 from roadproof.world.signals import RECORDED, SIZES
 
 RATE = 25
 """Samples a second."""
-_KINDS = {
-    "car": "Car",
-    "van": "Car",
-    "truck": "Truck",
-    "semitrailer": "Truck",
-    "trailer": "Truck",
-    "bus": "Truck",
-    "motorbike": "Motorcycle",
-}
-_OTHERS = ("Pedestrian", "MiscObject", "ExternalObjectReference")
 _FOLLOWS = "followingMode=follow is taken as position: vehicles are on their trajectories, as in esmini"
-_UNRECORDED = ("bicycle", "pedestrian", "wheelchair")
 _PLACES = "PrivateAction/RoutingAction/FollowTrajectoryAction"
 
 
@@ -82,14 +69,9 @@ class Scenario:
 
 def read_scenario(path: Path) -> Scenario:
     """The vehicles of a file. Raises ``InputError`` that names element and rule."""
-    document = open_document(path)
+    stage = open_stage(path)
+    document, boxes, road, road_path = stage.document, stage.boxes, stage.road, stage.road_path
     root = document.root
-    road_path = _road_path(document)
-    boxes = dict(_boxes(path, root))
-    if not any(x.recorded for x in boxes.values()):
-        raise InputError(f"{path}: no ScenarioObject is a motor vehicle")
-    stretch = stretch_of(document, road_path)
-    road = load_road(stretch)
     modes = {x.get("followingMode") for x in root.iter("TrajectoryFollowingMode")}
     follows = (_FOLLOWS,) if "follow" in modes else ()
     varied = (document.told,) if document.told else ()
@@ -97,19 +79,13 @@ def read_scenario(path: Path) -> Scenario:
         ways = {name: _in_road(x, boxes[name], road) for name, x in _vertices(path, root, boxes)}
         note = f"speeds and accelerations are those of curves through the vertices, {RATE} samples a second"
         return Scenario(_sampled(path, boxes, ways), road, road_path, (note, *follows, *varied))
-    play = run_storyboard(document, boxes, road)
-    while play.at_end and (more := longer(stretch)) is not None:
-        try:
-            road = load_road(more)
-        except InputError:
-            break
-        stretch, play = more, run_storyboard(document, boxes, road)
+    stage, play = played(stage)
     if len(play.states) < 2 * TICKS // RATE:
         raise InputError(f"{path}: the storyboard ends at {len(play.states) / TICKS:g} s: {play.ending}")
     told = f"the storyboard ends at {(len(play.states) - 1) / TICKS:g} s: {play.ending}"
     note = f"the storyboard was run with conditions evaluated {TICKS} times a second, {RATE} samples a second"
     table, left_out = _of_play(path, boxes, play)
-    return Scenario(table, road, road_path, (note, told, *follows, *varied, *left_out))
+    return Scenario(table, stage.road, road_path, (note, told, *follows, *varied, *left_out))
 
 
 def read_columns(path: Path) -> tuple[Table, Road, Path]:
@@ -126,17 +102,6 @@ def read_recording(path: Path, strict: bool = True) -> Recording:
     found = read_scenario(path)
     road = of_road(found.road, DIRECTION, found.road_path)
     return recording_of(found.table, road, path.stem, found.notes, strict)
-
-
-def _road_path(document: Document) -> Path:
-    """The map that the file names, or that of the name beside it, as CARLA names maps."""
-    path, node = document.path, document.root.find("RoadNetwork/LogicFile")
-    found = document.folder / _text(path, node, "filepath", "a LogicFile")
-    if not found.suffix:
-        found = found.with_suffix(".xodr")
-    if found.suffix != ".xodr":
-        raise InputError(f"{path}: LogicFile filepath={found.name}: a road in OpenDRIVE (.xodr) is needed")
-    return found
 
 
 def _follows_polylines(root: Element, boxes: Mapping[str, Box]) -> bool:
@@ -156,63 +121,12 @@ def _is_timed_polyline(action: Element) -> bool:
     return not shapes & {"Clothoid", "ClothoidSpline", "Nurbs"} and kinds <= {"WorldPosition"}
 
 
-def _text(path: Path, node: Element | None, attribute: str, what: str) -> str:
-    value = None if node is None else node.get(attribute)
-    if not value:
-        raise InputError(f"{path}: {what} with {attribute} is needed")
-    return value
-
-
-def _number(path: Path, node: Element | None, attribute: str, what: str) -> float:
-    return number_in(path, _text(path, node, attribute, what), f"{attribute} of {what}")
-
-
-def _boxes(path: Path, root: Element) -> Iterator[tuple[str, Box]]:
-    """The motor vehicles by name."""
-    seen: set[str] = set()
-    for node in root.findall("Entities/ScenarioObject"):
-        name = _text(path, node, "name", "a ScenarioObject")
-        if name in seen:
-            raise InputError(f"{path}: two ScenarioObjects are called {name}")
-        seen.add(name)
-        told = f"ScenarioObject {name}"
-        vehicle = node.find("Vehicle")
-        other = next((x for x in node if x.tag in _OTHERS), None)
-        if vehicle is None and other is not None:
-            yield name, _other_box(path, other, told)
-            continue
-        if vehicle is None:
-            raise InputError(f"{path}: {told} is no Vehicle")
-        category = vehicle.get("vehicleCategory", "car")
-        if category in _UNRECORDED:
-            yield name, _other_box(path, vehicle, told)
-            continue
-        if category not in _KINDS:
-            raise InputError(f"{path}: {told}: vehicleCategory={category} is none of {', '.join(_KINDS)}")
-        size, centre = vehicle.find("BoundingBox/Dimensions"), vehicle.find("BoundingBox/Center")
-        length, width = (_number(path, size, x, f"the Dimensions of {told}") for x in ("length", "width"))
-        ahead, left = (_number(path, centre, x, f"the Center of {told}") for x in ("x", "y"))
-        yield name, Box(_KINDS[category], category, length, width, (ahead, left))
-    if not seen:
-        raise InputError(f"{path}: there is no ScenarioObject")
-
-
-def _other_box(path: Path, node: Element, told: str) -> Box:
-    """That of an object that is not recorded, without size where the file says none."""
-    if node.find("BoundingBox") is None:
-        return Box(node.tag, node.tag, 0.0, 0.0, (0.0, 0.0), recorded=False)
-    size, centre = node.find("BoundingBox/Dimensions"), node.find("BoundingBox/Center")
-    length, width = (_number(path, size, x, f"the Dimensions of {told}") for x in ("length", "width"))
-    ahead, left = (_number(path, centre, x, f"the Center of {told}") for x in ("x", "y"))
-    return Box(node.tag, node.tag, length, width, (ahead, left), recorded=False)
-
-
-def _vertices(path: Path, root: Element, boxes: dict[str, Box]) -> Iterator[tuple[str, Floats]]:
+def _vertices(path: Path, root: Element, boxes: Mapping[str, Box]) -> Iterator[tuple[str, Floats]]:
     """By vehicle, rows of time, x, y and heading."""
     seen: set[str] = set()
     acts = root.findall("Storyboard/Story/Act")
     for act, group in ((x, y) for x in acts for y in x.findall("ManeuverGroup")):
-        actors = [_text(path, x, "entityRef", "an EntityRef") for x in group.findall("Actors/EntityRef")]
+        actors = [text_of(path, x, "entityRef", "an EntityRef") for x in group.findall("Actors/EntityRef")]
         for event, action in ((x, y) for x in group.findall("Maneuver/Event") for y in x.findall("Action")):
             told = f"Action {action.get('name')} of {', '.join(actors)}"
             follow = action.find(_PLACES)
@@ -238,8 +152,8 @@ def _check_begin(path: Path, node: Element, first: float, told: str) -> None:
         if clock is None or clock.get("rule") not in ("greaterThan", "greaterOrEqual"):
             return False
         trigger = f"a StartTrigger of {told}"
-        begin = _number(path, clock, "value", trigger)
-        delay = _number(path, condition, "delay", trigger) if condition.get("delay") else 0.0
+        begin = number_of(path, clock, "value", trigger)
+        delay = number_of(path, condition, "delay", trigger) if condition.get("delay") else 0.0
         return begin + delay <= first
 
     groups = node.findall("StartTrigger/ConditionGroup")
@@ -251,21 +165,19 @@ def _check_begin(path: Path, node: Element, first: float, told: str) -> None:
 def _check_exact(path: Path, follow: Element, told: str) -> None:
     """Raise ``InputError`` where vehicles need not be on the vertices at their times."""
     offset = "initialDistanceOffset"
-    if follow.get(offset) and _number(path, follow, offset, told) != 0:
+    if follow.get(offset) and number_of(path, follow, offset, told) != 0:
         raise InputError(f"{path}: {told}: {offset}={follow.get(offset)}: begin at the first Vertex")
     if any(x.get("closed") in ("true", "1") for x in follow.iter("Trajectory")):
         raise InputError(f"{path}: {told}: closed=true: write out the way back as vertices with times")
 
 
-def _polyline(path: Path, follow: Element, told: str, begin: float | None = None) -> Floats:
-    """Rows of time, x, y and heading; times may be relative where the action begins at ``begin`` (s)."""
+def _polyline(path: Path, follow: Element, told: str) -> Floats:
+    """Rows of time, x, y and heading."""
     _check_exact(path, follow, told)
     timing = follow.find("TimeReference/Timing")
-    domain = None if timing is None else timing.get("domainAbsoluteRelative")
-    if timing is None or (domain != "absolute" and (begin is None or domain != "relative")):
+    if timing is None or timing.get("domainAbsoluteRelative") != "absolute":
         raise InputError(f"{path}: {told}: a Timing with domainAbsoluteRelative=absolute is needed")
-    scale, offset = (_number(path, timing, x, f"the Timing of {told}") for x in ("scale", "offset"))
-    offset += begin if begin is not None and domain == "relative" else 0.0
+    scale, offset = (number_of(path, timing, x, f"the Timing of {told}") for x in ("scale", "offset"))
     shape = next((x for x in follow.iter("Shape")), None)
     shapes = [] if shape is None else [x.tag for x in shape]
     if shape is None or shapes != ["Polyline"]:
@@ -276,9 +188,9 @@ def _polyline(path: Path, follow: Element, told: str, begin: float | None = None
         place = vertex.find("Position/WorldPosition")
         if place is None:
             raise InputError(f"{path}: {at}: a WorldPosition is needed")
-        time = _number(path, vertex, "time", at) * scale + offset
-        heading = _number(path, place, "h", at) if place.get("h") else 0.0
-        rows.append((time, *(_number(path, place, x, at) for x in ("x", "y")), heading))
+        time = number_of(path, vertex, "time", at) * scale + offset
+        heading = number_of(path, place, "h", at) if place.get("h") else 0.0
+        rows.append((time, *(number_of(path, place, x, at) for x in ("x", "y")), heading))
     found = np.array(rows).reshape(-1, 4)
     if len(found) < 2 or not (np.diff(found[:, 0]) > 0).all():
         raise InputError(f"{path}: {told}: at least two vertices are needed, each later than the one before")
@@ -297,7 +209,7 @@ def _in_road(vertices: Floats, box: Box, road: Road) -> CentreLine:
     return CentreLine(time, s, d)
 
 
-def _sampled(path: Path, boxes: dict[str, Box], ways: dict[str, CentreLine]) -> Table:
+def _sampled(path: Path, boxes: Mapping[str, Box], ways: dict[str, CentreLine]) -> Table:
     tables = []
     for name, way in ways.items():
         first, last = math.ceil(way.time[0] * RATE - 1e-6), math.floor(way.time[-1] * RATE + 1e-6)
@@ -309,7 +221,7 @@ def _sampled(path: Path, boxes: dict[str, Box], ways: dict[str, CentreLine]) -> 
     return _joined(path, tables)
 
 
-def _of_play(path: Path, boxes: dict[str, Box], play: Play) -> tuple[Table, list[str]]:
+def _of_play(path: Path, boxes: Mapping[str, Box], play: Play) -> tuple[Table, list[str]]:
     """The states of a storyboard, RATE a second, and notes on objects that are left out.
 
     An object is another vehicle after it was put somewhere else, or was away.

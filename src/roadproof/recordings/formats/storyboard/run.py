@@ -7,7 +7,8 @@ storyboard elements are seen by conditions one tick later. An object without pla
 conditions on it do not hold.
 """
 
-from collections.abc import Iterator, Mapping
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from roadproof.recordings.formats.storyboard.actions import ActionReader, Actor, Scene, turned
@@ -26,6 +27,8 @@ LONGEST, REST, JUMP = 120, 5, 0.5
 _STANDS = 1e-6
 """m/s"""
 _FOLLOW = "RoutingAction/FollowTrajectoryAction"
+_SOON = 1e-6
+"""Ticks"""
 _ANYWHERE = Point(0.0, 0.0)
 
 
@@ -33,12 +36,26 @@ _ANYWHERE = Point(0.0, 0.0)
 class Play:
     """States of the objects' reference points at each tick from 0 on, and why it ended.
 
-    ``at_end``: as a vehicle came to the end of the road.
+    ``at_end``: as a vehicle came to the end of the road. ``history``: the objects with their courses, each
+    from a tick on.
     """
 
     states: tuple[Mapping[str, State], ...]
     ending: str
+    history: Mapping[str, Sequence[tuple[int, Actor]]]
     at_end: bool = False
+
+    def state_at(self, name: str, time: float) -> State:
+        """Of an object that is on the road, at any time (s)."""
+        return self._state(name, time, bisect_right(self.history[name], time * TICKS + _SOON, key=_tick))
+
+    def state_before(self, name: str, time: float) -> State:
+        """As ``state_at``, without what begins at the time."""
+        return self._state(name, time, bisect_left(self.history[name], time * TICKS - _SOON, key=_tick))
+
+    def _state(self, name: str, time: float, later: int) -> State:
+        _, actor = self.history[name][max(later - 1, 0)]
+        return _state(actor, time)
 
     def jumps(self, name: str, tick: int) -> bool:
         """Whether an object is put somewhere else at a tick: more than JUMP m from where its speed leads."""
@@ -73,6 +90,7 @@ class _Runner:
         self.travelled: dict[str, float] = {}
         self.still: dict[str, int] = {}
         self.values = initial_values(document)
+        self.history: dict[str, list[tuple[int, Actor]]] = {}
         self.tick = 0
 
     def run(self) -> Play:
@@ -84,20 +102,29 @@ class _Runner:
             states = self._states()
             self._count(found[-1] if found else states, states)
             if ahead := [x for x, state in states.items() if self._is_beyond(x, state)]:
-                return Play(tuple(found), f"{ahead[0]} comes to the end of the road", at_end=True)
+                return Play(
+                    tuple(found), f"{ahead[0]} comes to the end of the road", self.history, at_end=True
+                )
             found.append(states)
             now = self._situation(states)
             if self.stop.fires(now):
-                return Play(tuple(found), "its StopTrigger fires")
+                return Play(tuple(found), "its StopTrigger fires", self.history)
             self._steer(states)
             for story in self.stories:
                 self._advance(story, now)
             found[-1] = self._states()  # steps of speed
+            self._remember()
             if complete is None and all(x.state == "complete" for x in self.stories):
                 complete = tick
             if complete is not None and not self.stop.can_fire and tick >= complete + REST * TICKS:
-                return Play(tuple(found), f"all is complete for {REST} s")
-        return Play(tuple(found), f"it does not end by itself within {LONGEST} s")
+                return Play(tuple(found), f"all is complete for {REST} s", self.history)
+        return Play(tuple(found), f"it does not end by itself within {LONGEST} s", self.history)
+
+    def _remember(self) -> None:
+        for name, actor in self.actors.items():
+            known = self.history.setdefault(name, [])
+            if not known or known[-1][1] is not actor:
+                known.append((self.tick, actor))
 
     def _is_beyond(self, name: str, state: State) -> bool:
         """Whether a vehicle that is recorded comes to the end of the road."""
@@ -291,6 +318,10 @@ def _places(action: Element) -> Element | None:
     """The element of a PrivateAction that puts a vehicle without place on the road."""
     place = action.find("TeleportAction")
     return action.find(_FOLLOW) if place is None else place
+
+
+def _tick(known: tuple[int, Actor]) -> int:
+    return known[0]
 
 
 def _along(actor: Actor, time: float) -> Point:
