@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from roadproof.errors import TextErrors as TextErrors
     from roadproof.errors import UsageError as UsageError
     from roadproof.frontends.api.assuring import assurance as assurance
+    from roadproof.frontends.api.bundling import bundle as bundle
     from roadproof.frontends.api.cataloguing import catalogue as catalogue
     from roadproof.frontends.api.checking import check as check
     from roadproof.frontends.api.classifying import classify as classify
@@ -124,6 +125,7 @@ _HOMES = {
     "export": "frontends.api.exporting",
     "page": "frontends.api.reporting",
     "assurance": "frontends.api.assuring",
+    "bundle": "frontends.api.bundling",
     "atlas": "frontends.atlas.atlas",
     "check": "frontends.api.checking",
     "requirements": "frontends.api.tracing",

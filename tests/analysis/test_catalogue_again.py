@@ -154,6 +154,12 @@ def test_tables_are_compared(home: Path, name: str) -> None:
     assert reasons(home / "report") == ["it is not the table of these tests"]
 
 
+def test_specifications_for_other_evidence_change_nothing(home: Path) -> None:
+    own = home / "own.spec"
+    own.write_text("def slow(a: vehicle) := v_lon(a) < 3 m/s\n", "utf-8")
+    assert main(["check", str(home / "report"), "--spec", str(own), "--jobs", "1"]) == 0
+
+
 def test_stale_tests_are_named(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     drive = home / "tests" / "braking.json"
     drive.write_bytes((home / "tests" / "from-behind.json").read_bytes())

@@ -9,6 +9,7 @@ from typing import Annotated, Literal, get_args
 
 from roadproof.evidence.answers import (
     assurance,
+    bundle,
     catalogue_index,
     certificate,
     check,
@@ -82,6 +83,7 @@ TITLES: Mapping[type, str] = {
         "roadproof preventable --json, and index.json of its folder: from which initial values a driver "
         "prevents a collision"
     ),
+    bundle.Manifest: "manifest.json of roadproof bundle: what is in it, and what checks it",
     road_map.Answer: "roadproof road --json: the roads of a map",
     trace.Answer: "roadproof trace --json: which requirements are shown",
     trace_changes.Changes: "roadproof trace --baseline --json: what changed between two states",

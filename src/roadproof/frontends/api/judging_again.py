@@ -45,7 +45,7 @@ _DERIVED = (
     "contradictions",
     "notes",
 )
-_ASKED = ("scenarios", "options", "parameters", "specs")
+_ASKED = ("scenarios", "options", "parameters")
 
 
 @dataclass(frozen=True)
@@ -254,6 +254,9 @@ def _whole(index: Fields, again: Index, where: str) -> Iterator[Finding]:
     """Whether all that follows from tests and facts is as it is derived now; one finding where it is."""
     said, now, gaps = index.content, write(again), write(again.gaps)
     wrong = [key for key in (*_ASKED, *_DERIVED) if said.get(key) != now[key]]
+    # Further files of --spec are read for other evidence.
+    named = index.texts("specs") if index.has("specs") else ()
+    wrong += [] if {*named} <= {*again.specs} else ["specs"]
     found = Fields(index.mapping("gaps"), f"{where}, gaps").content
     evidence = ("claims", "classes")  # what the reader of the index checks with their files
     wrong += [

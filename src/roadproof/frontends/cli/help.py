@@ -19,7 +19,7 @@ _JOBS: Mapping[str, Sequence[str]] = {
         *("overlap", "order", "redundancy", "coverage", "classify", "preventable", "catalogue"),
     ),
     "work with recordings and maps": ("monitor", "compile", "evaluate", "simulate", "convert", "road"),
-    "show and share results": ("report", "trace", "assurance", "atlas", "export", "studio"),
+    "show and share results": ("report", "trace", "assurance", "bundle", "atlas", "export", "studio"),
     "set up": ("completion", "cache"),
 }
 _OTHERS = "other commands"

@@ -161,6 +161,14 @@ class RequirementsKeywords(WorkersKeywords, total=False):
     progress: Progress | None
 
 
+class BundleKeywords(WorkersKeywords, total=False):
+    specs: Iterable[str | Path]
+    wheel: str | Path | None
+    wheels: bool
+    sign: str | Path | None
+    progress: Progress | None
+
+
 class AskKeywords(SurveyKeywords, total=False):
     pass
 

@@ -205,3 +205,18 @@ class Requirements(groups.Answered, groups.Workers):
         None, "--reqif FILE", "write the requirements with their states as ReqIF", read=Path, keyword=False
     )
     progress: Progress | None = option(None)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bundle(groups.Answered, groups.Workers):
+    """Options of ``bundle``."""
+
+    specs: Iterable[str | Path] = groups.specifications_of("the evidence")
+    wheel: str | Path | None = option(
+        None, "--wheel FILE", "the wheel of this version (default: made by pip)", read=Path
+    )
+    wheels: bool = option(False, "--wheels", "put all packages inside, so that the check needs no network")
+    sign: str | Path | None = option(
+        None, "--sign KEY", "sign with an Ed25519 key in PEM, into FILE.sig", read=Path
+    )
+    progress: Progress | None = option(None)

@@ -1,0 +1,37 @@
+"""The manifest of an auditor's bundle: what is in it, and what checks it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Annotated, Final, Literal
+
+from roadproof.evidence.answers import shared
+from roadproof.evidence.codec import Doc
+
+SCHEMA: Final = "roadproof/bundle/1"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Package:
+    """A package that the check installs."""
+
+    name: str
+    version: str
+    sha256: Annotated[str, Doc("Of the file that is installed.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Manifest:
+    """What is in a bundle."""
+
+    schema: Literal["roadproof/bundle/1"] = SCHEMA
+    roadproof: shared.Version
+    library: shared.Fingerprint
+    python: Annotated[str, Doc("Version of Python that the packages are for, such as 3.12.")]
+    platform: Annotated[str, Doc("Platform that the packages are for, such as linux-x86_64.")]
+    evidence: Annotated[tuple[str, ...], Doc("Folders and files that are checked again, as they were named.")]
+    specs: Annotated[tuple[str, ...], Doc("Specification files that they are read with.")]
+    accepted: Annotated[int, Doc("Claims that were accepted when the bundle was made.")]
+    claims: Annotated[int, Doc("Claims that were checked then.")]
+    exit_code: Annotated[int, Doc("Exit code of roadproof check then.")]
+    packages: tuple[Package, ...]
+    files: Annotated[Mapping[str, str], Doc("SHA-256 of every other file but SHA256SUMS, by path.")]
