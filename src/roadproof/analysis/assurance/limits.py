@@ -82,6 +82,8 @@ def _of_answer(content: Mapping[str, Json]) -> Found:
             PREVENTION,
             f"only {said.get('of')} that are {said.get('side')} for driver model {said.get('driver')}",
         )
+    if said := _mapping(content.get("length_error")):
+        yield ROADS, f"lengths in lanes differ by up to {_told(dict(said))}"
     for recording, why in _mapping(content.get("failed")).items():
         yield RECORDINGS, f"{recording} left out: {why}"
     notes = content.get("notes")

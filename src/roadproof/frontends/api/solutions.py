@@ -10,7 +10,7 @@ from pathlib import Path
 from roadproof.analysis.assurance.case import Evidence
 from roadproof.analysis.assurance.limits import BOUNDED, DIGEST, Limit, limits_of
 from roadproof.analysis.assurance.states import State
-from roadproof.errors import RoadproofError
+from roadproof.errors import MissingSolverError, RoadproofError
 from roadproof.evidence.answers import drives, proofs
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
 from roadproof.evidence.folder import INDEX
@@ -22,6 +22,8 @@ from roadproof.verdict import ExitCode
 WHOLE = ("COVERED", "GAPS")
 """Verdicts of a whole answer."""
 ANSWERS = (proofs.ANSWER_SCHEMA, drives.SCHEMA)
+RESULTS = "results.json"
+"""The results of recordings in a folder, which ``check`` does not read."""
 _OPEN = ("UNKNOWN", "NONE-WITHIN")
 
 
@@ -46,6 +48,8 @@ def check_evidence(path: Path, told: CheckKeywords) -> tuple[Finding, ...] | Roa
     try:
         stated = _stated(path) if path.is_file() else None
         return check(path, **told).findings if stated is None else stated
+    except MissingSolverError:
+        raise
     except RoadproofError as error:
         return error
 
@@ -87,7 +91,8 @@ def judge_solution(
     limits: tuple[Limit, ...] = ()
     verdicts: Mapping[str, int] = {}
     if report is None:
-        limits = (Limit(DIGEST, (f"{evidence.path} is compared with its SHA-256 only",)),)
+        alone = Limit(DIGEST, (f"{evidence.path} is compared with its SHA-256 only",))
+        limits = (alone, *limits_of([path, path / RESULTS], ()))
     else:
         entries = () if {*WHOLE} & {*evidence.expect} else evidence.select
         counted = [x for x in report if _counts(x, entries)]
