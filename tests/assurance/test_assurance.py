@@ -125,6 +125,7 @@ def test_a_changed_file_without_evidence_breaks_the_case(case: Path) -> None:
         ('["PROVED", "REFUTED"]', '"PROVED"', 10, "REFUTED: base, expected PROVED"),
         ('["PROVED", "REFUTED"]', '"COVERED"', 20, "claims is without a verdict, expected COVERED"),
         ('["PROVED", "REFUTED"]', '"PROVED"\nselect = "P9 *"', 10, "no entry of claims matches P9 *"),
+        ('"REFUTED"]', '"REFUTED"]\nentries = 3', 10, "claims has 2 entries, expected 3"),
         ('"claims"', '"other"', 3, "other does not exist"),
     ],
 )  # fmt: skip

@@ -30,13 +30,15 @@ class Evidence:
     ``path``: a file or folder, as it is from the folder of the case. ``expect``: verdicts of which each
     selected entry has one. ``select``: patterns such as ``P4 *`` for labels or names of files, or where a
     catalogue is to be COVERED for scenarios and classes; without them every entry is selected.
-    ``sha256``: the digest that the file or folder must have; empty for any.
+    ``entries``: how many are selected, None for any number. ``sha256``: the digest that the file or folder
+    must have; empty for any.
     """
 
     path: str
     expect: tuple[str, ...] = ()
     select: tuple[str, ...] = ()
     sha256: str = ""
+    entries: int | None = None
 
 
 @dataclass(frozen=True)

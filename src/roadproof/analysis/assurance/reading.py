@@ -4,7 +4,7 @@ The file has a ``title`` and a table for each element, whose name is the element
 is the field with its text: ``goal``, ``strategy``, ``solution``, ``context``, ``assumption`` or
 ``justification``. Goals and strategies have ``supported-by`` and ``in-context-of`` (ids), or
 ``undeveloped = true``. Solutions have ``evidence`` (a path from the folder of the case) with ``expect``
-(verdicts), ``select`` (patterns of labels) and ``sha256``.
+(verdicts), ``select`` (patterns of labels), ``entries`` (how many these are) and ``sha256``.
 """
 
 import re
@@ -26,7 +26,7 @@ _DIGEST = re.compile("[0-9a-f]{64}")
 _KINDS = tuple(map(str, Kind))
 _ARGUING, _OF_SOLUTIONS = (
     ("supported-by", "in-context-of", "undeveloped"),
-    ("evidence", "expect", "select", "sha256"),
+    ("evidence", "expect", "select", "entries", "sha256"),
 )
 FIELDS = (*_KINDS, *_ARGUING, *_OF_SOLUTIONS)
 LONGEST = 1000  # characters of a text
@@ -121,6 +121,7 @@ def _evidence(table: Mapping[str, object], name: str, place: _Place) -> Evidence
         _texts(table, "expect", name, place),
         _texts(table, "select", name, place),
         _text(table, "sha256", name, place) if "sha256" in table else "",
+        _count(table, "entries", name, place),
     )
     if Path(found.path).is_absolute():
         raise place.error(name, "evidence", f"evidence of {name}: write the path from the folder of the case")
@@ -132,8 +133,9 @@ def _evidence(table: Mapping[str, object], name: str, place: _Place) -> Evidence
     if not found.expect and not found.sha256:
         told = 'add expect = "VERDICT", or sha256 of a file that roadproof cannot check'
         raise place.error(name, "", f"solution {name} expects nothing of its evidence: {told}")
-    if found.select and not found.expect:
-        raise place.error(name, "select", f"select of {name} requires expect")
+    for field in ("select", "entries"):
+        if field in table and not found.expect:
+            raise place.error(name, field, f"{field} of {name} requires expect")
     return found
 
 
@@ -155,6 +157,13 @@ def _texts(table: Mapping[str, object], field: str, name: str, place: _Place) ->
     if twice := next((x for k, x in enumerate(items) if x in items[:k]), None):
         raise place.error(name, field, f"{field} of {name} names '{twice}' twice")
     return tuple(items)
+
+
+def _count(table: Mapping[str, object], field: str, name: str, place: _Place) -> int | None:
+    value = table.get(field)
+    if value is not None and (type(value) is not int or value < 1):
+        raise place.error(name, field, f"{field} of {name} must be a whole number greater than 0")
+    return value if isinstance(value, int) else None
 
 
 def _flag(table: Mapping[str, object], field: str, name: str, place: _Place) -> bool:

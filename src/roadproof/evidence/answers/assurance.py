@@ -30,6 +30,7 @@ class Solution:
     evidence: Annotated[str, Doc("File or folder, as it is from the folder of the case.")]
     expect: Annotated[tuple[str, ...], Doc("Verdicts that the case expects; empty where only a digest is.")]
     select: Annotated[tuple[str, ...], Doc("Patterns of the entries that count; empty for all.")]
+    entries: Annotated[int | None, Doc("How many entries the case expects; null for any number.")]
     sha256: Annotated[
         str,
         Rule(pattern="^([0-9a-f]{64})?$"),

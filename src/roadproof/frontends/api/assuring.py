@@ -118,8 +118,8 @@ class AssuranceReport:
         solution = None
         if found is not None and said is not None:
             solution = kept.Solution(
-                evidence=said.path, expect=said.expect, select=said.select, sha256=found.sha256,
-                verdicts=found.verdicts, reasons=found.reasons,
+                evidence=said.path, expect=said.expect, select=said.select, entries=said.entries,
+                sha256=found.sha256, verdicts=found.verdicts, reasons=found.reasons,
             )  # fmt: skip
         state = self.states.get(element.id)
         limits = () if element.line else self.solutions[element.id.removesuffix(".limits")].limits

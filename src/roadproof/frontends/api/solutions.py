@@ -139,6 +139,9 @@ def _faults(path: Path, evidence: Evidence, counted: Sequence[Finding], strict: 
     if not counted:
         told = f"no entry of {evidence.path} matches {', '.join(evidence.select) or 'anything'}"
         yield _Fault(State.BROKEN, told, ExitCode.UNEXPECTED)
+    elif evidence.entries not in (None, len(counted)):
+        told = f"{evidence.path} has {len(counted)} entries, expected {evidence.entries}"
+        yield _Fault(State.BROKEN, told, ExitCode.UNEXPECTED)
     for x in accepted if each else ():
         told = f"{x.verdict}: {_named(x)}, expected {' or '.join(each)}"
         if x.verdict not in each:
