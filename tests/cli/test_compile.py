@@ -57,3 +57,45 @@ def test_nothing_is_written_where_a_formula_is_refused(
     assert main(line) == 3
     assert "is no multiple of the time step" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def test_the_header_counts_what_a_sample_costs() -> None:
+    header = rp.compile("G F[0, 200 ms] (v_lon(SV) > 1 m/s U a_lon(SV) > 0)").files["monitor.h"]
+    # two operators without a bound, so four rows; five tables are remembered beside that of the first sample
+    assert "A sample costs 24 look-ups in tables." in " ".join(header.replace("\n *", "").split())
+
+
+@pytest.mark.parametrize(
+    ("formula", "options", "told"),
+    [
+        (
+            "G[0, 0.05] v_lon(SV) > 3 m/s",
+            {},
+            "bound 0.05 s is no multiple of the time step dt=0.04 s",
+        ),
+        (
+            "F (v_lon(SV) > 3 m/s and G[0, 600] v_lon(SV) < 30 m/s and a_lon(SV) > 0)",
+            {"memory": 1000},
+            "the monitor needs 1904 bytes, to remember 15000 values, and the limit is 1000; raise --memory",
+        ),
+        (
+            " or ".join(f"F G v_lon(SV) > {k} m/s" for k in range(4)),
+            {},
+            "8 temporal operators of the formula have no upper bound",
+        ),
+        (
+            "some l in lanelets(L): occ(SV, l) and v_lon(SV) > 3 m/s",
+            {},
+            "name the road of the monitor with --road",
+        ),
+        ("G[0, 100000] v_lon(SV) > 3 m/s", {}, "the formula looks 2500000 samples ahead at a step of 0.04 s"),
+        ("some M in lanes: F atLane(SV, M)", {}, "name the road of the monitor with --road"),
+        ("4", {"lanes": {"L": "main-1"}}, "lanes: the lanes of which road?"),
+        ("4", {"name": "a b"}, "name=a b: write letters, digits and _"),
+        ("4", {"to": "rust"}, "there is no target 'rust'; there are c"),
+    ],
+)
+def test_refused(formula: str, options: dict[str, object], told: str) -> None:
+    with pytest.raises(rp.RoadproofError) as refused:
+        rp.compile(formula, **options)  # type: ignore[arg-type]
+    assert told in str(refused.value)

@@ -110,16 +110,19 @@ def _about(monitor: StreamMonitor, dt: Fraction) -> str:
     plan = monitor.plan
     late = f"{plan.delay} samples ({float(plan.delay * dt):g} s)"
     work = f" A sample costs {plan.look_ups} look-ups in tables." if plan.look_ups else ""
+    cost = f"finish costs as much as {2 * plan.delay} samples and changes nothing: call it at any time.{work}"
     if plan.at_start:
         return (
             f"Verdicts are about the first sample. step returns one at most {late} after the samples decide "
             "it, and the same from then on. finish writes the verdict on the samples so far, at once, and "
-            f"returns 1. It changes nothing, so it may be called at any time.{work}"
+            f"returns 1. {cost}"
         )
+    if not plan.delay:
+        return "step returns the verdict about its sample. finish writes none, and returns 0."
     return (
         f"step returns the verdict about the sample {late} before, and UNKNOWN while there is none. finish "
         f"writes the verdicts about the last samples, at most {plan.delay}, UNKNOWN where later samples "
-        "decide, and returns how many. It changes nothing, so it may be called at any time."
+        f"decide, and returns how many. {cost}"
     )
 
 

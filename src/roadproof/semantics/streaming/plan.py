@@ -152,8 +152,8 @@ class Plan:
 
     @property
     def look_ups(self) -> int:
-        """How many bits of tables a sample looks up."""
-        tables = sum(node.kept + 1 for node in self.nodes if node.table and node.kept)
+        """How many bits of tables a sample looks up: those that are remembered, and that of the start."""
+        tables = sum(node.kept for node in self.nodes if node.table)
         return self.rows * (tables + 1) if self.at_start else 0
 
 
