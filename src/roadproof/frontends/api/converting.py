@@ -45,7 +45,7 @@ def convert(
     Whatever reads recordings reads the folder ``out`` with the same answers. ``path``: a folder of recordings
     in one format, or the file of one. Raises ``InputError`` for the first that cannot be read; those that are
     done stay. ``strict``: reject a recording of which vehicles would be left out. ``road``: of a map,
-    for recordings that name no lanes (inD, rounD, uniD).
+    for recordings that name no lanes (such as inD).
     """
     sources, folder = find_sources(Path(path), strict, road), Path(out)
     if sources[0].format is FORMAT:

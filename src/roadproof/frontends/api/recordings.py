@@ -300,7 +300,7 @@ class RecordedRoad:
 def roads(path: str | Path, road: str | None = None) -> tuple[RecordedRoad, ...]:
     """The roads of the recordings of ``path``, each read and checked as a whole.
 
-    ``road``: of a map, for recordings that name no lanes (inD, rounD, uniD). Raises ``InputError``,
+    ``road``: of a map, for recordings that name no lanes (such as inD). Raises ``InputError``,
     ``UsageError``.
     """
     return tuple(_road(x.format.name, x.read()) for x in find_sources(Path(path), road=road))

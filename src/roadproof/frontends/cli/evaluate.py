@@ -24,8 +24,9 @@ MOST_NOTES = 12
 
 EXAMPLES = """\
 PATH is a folder of recordings, or the file of one: highD (XX_recordingMeta.csv, XX_tracksMeta.csv,
-XX_tracks.csv), exiD (the same, and maps in .osm), inD, rounD and uniD (the same, and --road), NGSIM
-(NAME.csv), CommonRoad 2020a (NAME.xml), or samples (NAME.csv or NAME.parquet, with NAME_road.toml).
+XX_tracks.csv), exiD (the same, and maps in .osm), inD, rounD and uniD (the same, and --road), OSI (NAME.osi,
+and --road), NGSIM (NAME.csv), CommonRoad 2020a (NAME.xml), or samples (NAME.csv or NAME.parquet, with
+NAME_road.toml).
 A run that was killed goes on where it was.
 
 examples:

@@ -65,7 +65,7 @@ def strict_reading() -> Any:
 
 def map_road() -> Any:
     """``road``: the road of recordings that name no lanes."""
-    return option(None, "--road MAP#ROAD", "road of a map, for recordings without lanes (inD, rounD, uniD)")
+    return option(None, "--road MAP#ROAD", "road of a map, for recordings without lanes (such as inD, OSI)")
 
 
 def checker_of(what: str) -> Any:

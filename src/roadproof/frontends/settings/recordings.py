@@ -58,7 +58,7 @@ class Monitor(groups.Definitions, groups.Traces):
     road: RoadLike | None = option(
         None,
         "--road R",
-        "road of samples (default: NAME_road.toml beside the file, else main-2); for inD: of a map",
+        "road of samples (default: NAME_road.toml beside the file, else main-2); for inD and OSI: of a map",
     )
     view: View | None = option(
         None, "--view", "judge in dense time (default: drives), or as samples", choices=("dense", "recorded")

@@ -28,7 +28,7 @@ from roadproof.recordings.formats.levelx import (
 )
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.reliable import left_out_note, reliable
-from roadproof.recordings.formats.selected_roads import network_on, place_on
+from roadproof.recordings.formats.selected_roads import chart_of, place_on_road
 from roadproof.recordings.formats.source import Files, Format
 from roadproof.recordings.formats.table import Table
 from roadproof.recordings.formats.tracks import (
@@ -39,7 +39,6 @@ from roadproof.recordings.formats.tracks import (
     read_tracks,
     usable,
 )
-from roadproof.world.maps.selection import is_map, read_selection, select
 
 NO_VEHICLES: Mapping[str, str] = {
     "pedestrian": "pedestrians",
@@ -55,26 +54,17 @@ def read_ind(folder: Path, name: str, strict: bool = True, road: str | None = No
     Raises ``InputError`` that names file, element, value and rule; ``UsageError`` for a road that is not well
     said.
     """
-    if road is None or not is_map(road):
-        raise InputError(f"{folder / name}{TRACKS}: {_ask_for_road(folder)}")
+    chart_of(road, folder / f"{name}{TRACKS}", maps_near(folder))
     about, rate = read_about(folder, name)
     meta = read_vehicles(folder, name)
     tracks, notes = read_samples(folder, name, {})
     meta, tracks, absent = _vehicles(meta, tracks)
     meta, tracks, start, left_out = usable(meta, tracks, "trackId", strict, check_cells)
     notes += (*absent, *left_out, *check_velocities(tracks))
-    path, selection = read_selection(road)
-    stretch = select(path, selection, (about["xUtmOrigin"][0], about["yUtmOrigin"][0]))
-    traffic = traffic_of(name, rate, meta, tracks, start, notes)
-    recording, rows = place_on(replace(traffic, name=str(tracks.path)), network_on(stretch, road))
+    traffic = traffic_of(str(tracks.path), rate, meta, tracks, start, notes)
+    origin = float(about["xUtmOrigin"][0]), float(about["yUtmOrigin"][0])
+    recording, rows = place_on_road(traffic, str(road), origin)
     return reliable(replace(recording, name=name), strict, partial(check_plausible, tracks.at(rows)))
-
-
-def _ask_for_road(folder: Path) -> str:
-    known = [str(x) for x in maps_near(folder)]
-    shown = f"; maps near are {', '.join(known)}" if known else ""
-    advice = "give a road of a map, as --road MAP#way=ID; roadproof road MAP lists them"
-    return f"the files name no lanes: {advice}{shown}"
 
 
 def _vehicles(meta: Table, tracks: Table) -> tuple[Table, Table, list[str]]:

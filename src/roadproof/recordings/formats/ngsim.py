@@ -23,10 +23,11 @@ from roadproof.recordings.formats.contradictions import contradictions, seldom
 from roadproof.recordings.formats.ngsim_lanes import FOOT, FREEWAYS, measured_road
 from roadproof.recordings.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED, check
 from roadproof.recordings.formats.recording import Bools, Floats, Integers, Recording, with_notes
-from roadproof.recordings.formats.reliable import MOST_LEFT_OUT, left_out_note, rate_of_change, reliable
+from roadproof.recordings.formats.reliable import rate_of_change, reliable
 from roadproof.recordings.formats.source import Files, Format, find_files, first_line
 from roadproof.recordings.formats.straight import StraightRoad, of_road, record
-from roadproof.recordings.formats.table import CellError, Kind, Table, kinds_of, read_table
+from roadproof.recordings.formats.table import Kind, Table, kinds_of, read_table
+from roadproof.recordings.formats.tracks import Rule, without_bad
 from roadproof.world.models import load_recorded_road
 from roadproof.world.signals import SignalName, SizeName
 
@@ -82,12 +83,8 @@ def read_ngsim(path: Path, strict: bool = True) -> Recording:
     """
     rows, streets = _freeways(_read(path))
     rows, late, periods = _in_order(rows)
-    faults = _faults(rows, late)
-    vehicles = len(np.unique(rows["track"]))
-    if faults and (strict or len(faults) > MOST_LEFT_OUT * vehicles):
-        raise next(iter(faults.values()))
-    left_out = [left_out_note([track], vehicles, x.told) for track, x in faults.items()]
-    rows = rows.at(np.flatnonzero(~np.isin(rows["track"], [*faults])))
+    kept, left_out = without_bad(rows["track"], _rules(rows, late), rows.refuse, strict)
+    rows = rows.at(np.flatnonzero(kept))
     road, way = _road_of(path, rows)
     recording = with_notes(_recording(rows, road, path.stem), (*streets, *periods, *left_out, _TOLD))
     whole = reliable(recording, strict, partial(_check_plausible, rows))
@@ -176,13 +173,13 @@ def _periods(table: Table, way: Integers) -> tuple[Integers, Bools]:
     return np.unique(known[group], return_inverse=True)[1], (known != np.arange(len(share)))[group]
 
 
-def _faults(rows: Table, late: Bools) -> dict[int, CellError]:
-    """The first cell of each bad vehicle that breaks a rule."""
+def _rules(rows: Table, late: Bools) -> list[Rule]:
+    """For each column which rows are fine, and what they break if not; ``late``: whose time is wrong."""
     same = np.diff(rows["track"], prepend=-1) == 0
     step = np.diff(rows["frame"], prepend=0)
     aside = np.abs(np.diff(rows["Local_X"], prepend=0))
     jump = f"no vehicle moves across the road by more than {_ASIDE:g} ft from one frame to the next"
-    rules = [
+    rules: list[Rule] = [
         (~late, "Global_Time", _CLOCK),
         (~same | (step > 0), "Frame_ID", "vehicle and frame occur together once"),
         (~same | (step < 2), "Frame_ID", "the frame before it is missing; those of a vehicle have no gaps"),
@@ -194,13 +191,7 @@ def _faults(rows: Table, late: Bools) -> dict[int, CellError]:
         rules.append((np.abs(rows[name]) <= most, name, f"must lie between {-most:.0f} and {most:.0f}"))
     for name in _SIZES:
         rules.append((rows[name] > 0, name, "the size of a vehicle is greater than zero"))
-    rules.append((~same | (aside <= _ASIDE), "Local_X", jump))
-    found: dict[int, CellError] = {}
-    for holds, column, rule in rules:
-        bad = np.flatnonzero(~holds)
-        for k in np.unique(rows["track"][bad], return_index=True)[1].tolist():
-            found.setdefault(int(rows["track"][bad[k]]), rows.refuse(int(bad[k]), column, rule))
-    return found
+    return [*rules, (~same | (aside <= _ASIDE), "Local_X", jump)]
 
 
 def _road_of(path: Path, rows: Table) -> tuple[StraightRoad, bool]:

@@ -5,9 +5,11 @@ at most 45 degrees from it. Those without a second of it are left out, and those
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 
@@ -26,7 +28,8 @@ from roadproof.recordings.formats.reliable import left_out_note, named
 from roadproof.world.lanelet_rules import shared_boundaries
 from roadproof.world.maps.lines import even_line
 from roadproof.world.maps.network import MeasuredLane, Network
-from roadproof.world.maps.selection import Stretch
+from roadproof.world.maps.projections import UtmPoint
+from roadproof.world.maps.selection import Selection, Stretch, is_map, read_selection, select
 from roadproof.world.maps.topology import MeasuredLanelet
 from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.road import Lanelet
@@ -36,6 +39,30 @@ _SPACING = 2.0
 _STANDS = 1.0
 """m: a vehicle that is never farther than that from its first place stands all the time."""
 _LINE = "reference line"
+
+
+def chart_of(road: str | None, path: Path, near: Sequence[Path] = ()) -> tuple[Path, Selection]:
+    """The map of a road and what is selected of it, for the recording in ``path``; maps that are ``near`` it.
+
+    Raises ``InputError`` where no map is named, ``UsageError`` for a road that is not well said.
+    """
+    if road is None or not is_map(road):
+        shown = f"; maps near are {', '.join(map(str, near))}" if near else ""
+        advice = "give a road of a map, as --road MAP#way=ID; roadproof road MAP lists them"
+        raise InputError(f"{path}: the files name no lanes: {advice}{shown}")
+    return read_selection(road)
+
+
+def place_on_road(
+    traffic: MeasuredTraffic, road: str, origin: UtmPoint | None = None
+) -> tuple[Recording, Integers]:
+    """The recording of the vehicles on a road of a map, and the rows of ``traffic`` that are in it.
+
+    ``origin``: the point in UTM from which places of ``traffic`` count, for maps in degrees. Raises
+    ``InputError``, which begins with the name of ``traffic`` where no vehicle is on the road.
+    """
+    path, selection = read_selection(road)
+    return place_on(traffic, network_on(select(path, selection, origin), road))
 
 
 def network_on(stretch: Stretch, called: str) -> Network:

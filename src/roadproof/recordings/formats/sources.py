@@ -4,7 +4,17 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from roadproof.errors import InputError, UsageError
-from roadproof.recordings.formats import commonroad, converted, exid, highd, ind, ngsim, openscenario, samples
+from roadproof.recordings.formats import (
+    commonroad,
+    converted,
+    exid,
+    highd,
+    ind,
+    ngsim,
+    openscenario,
+    osi,
+    samples,
+)
 from roadproof.recordings.formats.large import divide_large
 from roadproof.recordings.formats.source import (
     TRACK_FILES,
@@ -47,6 +57,7 @@ FORMATS: tuple[Format, ...] = (
     ngsim.FORMAT,
     commonroad.FORMAT,
     openscenario.FORMAT,
+    osi.FORMAT,
     CSV,
     PARQUET,
     converted.FORMAT,

@@ -1,12 +1,13 @@
 """Samples of tracks in one file and what another says of each track, as highD and exiD have them."""
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterable
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 
 from roadproof.errors import InputError
-from roadproof.recordings.formats.recording import Integers, Recording
+from roadproof.recordings.formats.recording import Bools, Integers, Recording
 from roadproof.recordings.formats.reliable import MOST_LEFT_OUT, left_out_note
 from roadproof.recordings.formats.source import TRACK_FILES, Files, first_line, with_suffix
 from roadproof.recordings.formats.table import CellError, Table
@@ -103,6 +104,30 @@ def usable(
             faults[int(table[column][row])] = error
     notes = (left_out_note([vehicle], meta.rows, x.told) for vehicle, x in faults.items())
     return known, samples, start, tuple(notes)
+
+
+Rule: TypeAlias = tuple[Bools, str, str]
+"""Which rows are fine, the column that is looked at, and the rule that others break."""
+
+
+def without_bad(
+    ids: Integers, rules: Iterable[Rule], refuse: Callable[[int, str, str], CellError], strict: bool
+) -> tuple[Bools, list[str]]:
+    """The rows of vehicles without a cell that breaks a rule, and notes on the others.
+
+    ``ids``: the vehicle of each row; ``refuse`` makes the error of a row, a column and a rule. Raises it
+    where it is ``strict``, and where more than half of the vehicles have one.
+    """
+    faults: dict[int, CellError] = {}
+    for holds, column, rule in rules:
+        bad = np.flatnonzero(~holds)
+        for k in np.unique(ids[bad], return_index=True)[1].tolist():
+            faults.setdefault(int(ids[bad[k]]), refuse(int(bad[k]), column, rule))
+    vehicles = len(np.unique(ids))
+    if faults and (strict or len(faults) > MOST_LEFT_OUT * vehicles):
+        raise next(iter(faults.values()))
+    notes = [left_out_note([vehicle], vehicles, x.told) for vehicle, x in faults.items()]
+    return ~np.isin(ids, [*faults]), notes
 
 
 def _without(table: Table, column: str, vehicles: Collection[int]) -> Table:
