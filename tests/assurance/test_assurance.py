@@ -10,6 +10,7 @@ import roadproof as rp
 from roadproof.analysis.assurance.reading import read_case
 from roadproof.analysis.assurance.states import State
 from roadproof.errors import InputError
+from roadproof.frontends.api.solutions import whole_verdict
 from roadproof.frontends.cli.main import main
 
 CLAIMS = ("false -> danger(SV,POV)", "v_lon(SV) > 2 m/s -> v_lon(SV) > 3 m/s")
@@ -200,3 +201,22 @@ def test_the_template_is_filled_in_with_folders(case: Path, capsys: pytest.Captu
         assert told in capsys.readouterr().err
     assert main(asked) == 2
     assert main(["assurance"]) == 2
+
+
+@pytest.mark.parametrize(
+    ("index", "select", "expected"),
+    [
+        ({"not_tested": [], "faults": []}, (), ("COVERED", "")),
+        ({"not_tested": ["class_1", "scenario_2"], "faults": []}, ("scenario_1",), ("COVERED", "")),
+        ({"not_tested": ["a", "s_2"], "faults": []}, ("s*",), ("GAPS", "not tested: s_2")),
+        ({"not_tested": [], "faults": [{}]}, (), ("GAPS", "1 not what they claim")),
+        ({"verdict": "COVERED"}, (), ("COVERED", "")),
+        ({"verdicts": []}, (), ("", "")),
+    ],
+)  # fmt: skip
+def test_the_verdict_of_a_whole_answer(
+    index: dict[str, object], select: tuple[str, ...], expected: tuple[str, str], tmp_path: Path
+) -> None:
+    (tmp_path / "index.json").write_text(json.dumps(index), "utf-8")
+    assert whole_verdict(tmp_path, select) == expected
+    assert whole_verdict(tmp_path / "missing") == ("", "")

@@ -44,3 +44,16 @@ def test_texts_over_several_lines_hide_no_fields(tmp_path: Path) -> None:
     text = GOOD.replace('"Is developed later"', '"""Is\n[G9]\ngoal = 7\nlater"""') + "colour = 1\n"
     with pytest.raises(InputError, match=r"line 29: there is no field 'colour'"):
         read_case(write(tmp_path, text))
+
+
+@pytest.mark.parametrize(
+    ("count", "deep", "told"), [(1001, False, "1001 elements"), (61, True, "more than 60")]
+)
+def test_cases_that_no_sheet_holds_are_refused(count: int, deep: bool, told: str, tmp_path: Path) -> None:
+    goals = [f"[G{k}]\ngoal = 'x'\n" for k in range(count)]
+    below = [[k + 1] if deep else [*range(1, count)] * (k == 0) for k in range(count)]
+    below[-1] = []
+    lists = [", ".join(f"'G{x}'" for x in some) for some in below]
+    support = [f"supported-by = [{x}]\n" if x else "undeveloped = true\n" for x in lists]
+    with pytest.raises(InputError, match=told):
+        read_case(write(tmp_path, "".join(map("".join, zip(goals, support, strict=True)))))

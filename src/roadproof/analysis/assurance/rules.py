@@ -15,6 +15,8 @@ SUPPORTS: Mapping[Kind, tuple[Kind, ...]] = {
     Kind.GOAL: (Kind.GOAL, Kind.STRATEGY, Kind.SOLUTION),
     Kind.STRATEGY: (Kind.GOAL,),
 }
+MOST, DEEPEST = 1000, 60
+"""Elements of a case, and elements one below the other."""
 CONTEXTS = (Kind.CONTEXT, Kind.ASSUMPTION, Kind.JUSTIFICATION)
 
 
@@ -27,6 +29,10 @@ def top_goal(elements: Mapping[str, Element], where: str) -> str:
         raise _error(
             where, elements[circle[0]], f"an argument must not support itself: {' -> '.join(circle)}"
         )
+    if len(elements) > MOST:
+        raise InputError(f"{where}: {len(elements)} elements (limit {MOST}): divide the case")
+    if deep := next((x for x, depth in _depths(elements).items() if depth > DEEPEST), None):
+        raise _error(where, elements[deep], f"more than {DEEPEST} elements below each other: divide the case")
     used = {x for e in elements.values() for x in (*e.supported_by, *e.in_context_of)}
     tops = [x for x in elements.values() if x.id not in used]
     goals = [x for x in tops if x.kind is Kind.GOAL]
@@ -70,3 +76,11 @@ def _circle(elements: Mapping[str, Element]) -> tuple[str, ...]:
     except CycleError as error:
         return tuple(reversed(error.args[1]))
     return ()
+
+
+def _depths(elements: Mapping[str, Element]) -> dict[str, int]:
+    """How many elements are one below the other from each element on."""
+    found: dict[str, int] = {}
+    for name in TopologicalSorter({x.id: x.supported_by for x in elements.values()}).static_order():
+        found[name] = 1 + max((found[x] for x in elements[name].supported_by), default=0)
+    return found
