@@ -2,6 +2,7 @@
 
 import json
 import shutil
+import xml.etree.ElementTree as xml
 from pathlib import Path
 
 import pytest
@@ -273,6 +274,26 @@ def test_files_of_out_say_the_same(home: Path) -> None:
     for name in ("trace.md", "trace.html"):
         text = (home / "out" / name).read_text("utf-8")
         assert all(x in text for x in ("LEAD", "BRAKE", "P4 scenario 3 base", "4 of 4 requirements shown"))
+
+
+def test_build_servers_are_told_line_and_evidence(home: Path) -> None:
+    ask(home, accept=True)
+    change(home / "ours.spec", "lookAhead = 30 m", "lookAhead = 29 m")
+    change(home / "requirements.toml", 'claims = ["P4 scenario 3 base"]', "")
+    (home / "proofs" / PROOFS[0]).write_text("{", "utf-8")
+    files = ["--junit", str(home / "trace.xml"), "--sarif", str(home / "trace.sarif")]
+    assert main(["trace", str(home / "requirements.toml"), "--jobs", "1", *files]) == 10
+    [run] = json.loads((home / "trace.sarif").read_text("utf-8"))["runs"]
+    told = {x["ruleId"]: x for x in run["results"]}
+    assert {*told} == {"STALE", "MISSING", "UNREADABLE"}
+    places = {name: x["locations"][0]["physicalLocation"]["region"] for name, x in told.items()}
+    assert places["STALE"] == {"startLine": 22, "startColumn": 1}
+    assert places["MISSING"]["startLine"] == 10
+    assert "parameter lookAhead: 30 -> 29" in told["STALE"]["message"]["text"]
+    assert any("near.json" in str(x) for x in told["STALE"]["relatedLocations"])
+    cases = {str(x.get("name")): x for x in xml.parse(home / "trace.xml").iter("testcase")}
+    assert {name for name, x in cases.items() if x.find("failure") is None} == {"BRAKE: scenario 4"}
+    assert len(cases) == 4
 
 
 @pytest.mark.parametrize(

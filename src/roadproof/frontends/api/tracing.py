@@ -2,10 +2,11 @@
 
 import os
 from collections import Counter
-from dataclasses import dataclass, field
+from collections.abc import Iterator
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Unpack
+from typing import ClassVar, Unpack
 
 from roadproof.analysis.requirements.changes import changes_between, counts_between
 from roadproof.analysis.requirements.checked_evidence import read_findings
@@ -22,9 +23,12 @@ from roadproof.evidence.finding import Finding
 from roadproof.evidence.heading import heading
 from roadproof.evidence.strict import LARGEST_INDEX, JsonObject, read_json
 from roadproof.frontends.api.checking import check
+from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.definitions import values_of
 from roadproof.frontends.api.table import Row, Table
 from roadproof.frontends.report import trace as report
+from roadproof.frontends.report.ci.cases import Case
+from roadproof.frontends.report.ci.requirements import requirement_cases
 from roadproof.frontends.report.sheet import as_csv, as_rows
 from roadproof.frontends.settings.keywords import CheckKeywords, RequirementsKeywords
 from roadproof.frontends.settings.option import takes
@@ -38,7 +42,7 @@ from roadproof.world.models import load_vehicle
 
 
 @dataclass(frozen=True, repr=False)
-class Traced(Table):
+class Traced(Table, BuildResult):
     """Requirements with the evidence that shows each; ``answer``: as ``--json`` has it.
 
     ``lock``: the file that says what the links rested on when they were accepted.
@@ -48,7 +52,11 @@ class Traced(Table):
     given: Requirements
     library: Library
     lock: Path
-    accepted: bool = field(default=False)
+    accepted: bool = False
+    command: ClassVar[str] = "trace"
+
+    def cases(self) -> Iterator[Case]:
+        return requirement_cases(self.answer)
 
     @property
     def states(self) -> dict[str, kept.LinkState]:

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from roadproof.errors import UsageError
-from roadproof.frontends.cli.options import print_answer
+from roadproof.frontends.cli.options import print_answer, write_build_results
 from roadproof.frontends.cli.progress import Counter, clear
 from roadproof.frontends.settings.flags import read_keywords
 from roadproof.frontends.settings.questions import Requirements
@@ -65,5 +65,6 @@ def run(args: argparse.Namespace) -> int:
         found.save(args.out)
     if args.reqif is not None:
         found.save_reqif(args.reqif)
+    write_build_results(args, found)
     print_answer(found, args.json)
     return found.exit_code

@@ -192,7 +192,7 @@ class Page(groups.Workers):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Requirements(groups.Answered, groups.Workers):
+class Requirements(groups.Answered, groups.Workers, groups.Reported):
     """Options of ``trace``, which is ``requirements`` in Python."""
 
     accept: bool = option(

@@ -25,6 +25,8 @@ class Rule(StrEnum):
     CONTRADICTION = "CONTRADICTION"
     REJECTED = "REJECTED"
     UNREADABLE = "UNREADABLE"
+    MISSING = "MISSING"
+    STALE = "STALE"
 
 
 MEANINGS = {
@@ -43,6 +45,8 @@ MEANINGS = {
     Rule.CONTRADICTION: "Tests or recordings contradict a proof.",
     Rule.REJECTED: "Evidence does not show what it says.",
     Rule.UNREADABLE: "A file cannot be read.",
+    Rule.MISSING: "There is no evidence for a requirement.",
+    Rule.STALE: "What a requirement rests on changed since it was accepted.",
 }
 """What each rule means, in a sentence."""
 
