@@ -296,6 +296,22 @@ def test_build_servers_are_told_line_and_evidence(home: Path) -> None:
     assert len(cases) == 4
 
 
+def test_the_page_begins_with_requirements_that_are_not_shown(home: Path) -> None:
+    good = ask(home).save(home / "good") / "trace.html"
+    assert "evidence was accepted when the requirements were traced" in good.read_text("utf-8")
+    (home / "drives" / "near.json").unlink()
+    (home / "proofs" / PROOFS[0]).write_text("{", "utf-8")
+    text = (ask(home).save(home / "bad") / "trace.html").read_text("utf-8")
+    begin, _, rest = text.partition("Requirements that are not shown")
+    assert "No open points" not in begin + rest
+    listed = rest.partition("</ul>")[0]
+    assert [name for name in ("ALL", "LEAD", "NEAR", "BRAKE") if f"{name}: " in listed] == [
+        "ALL",
+        "LEAD",
+        "NEAR",
+    ]
+
+
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [

@@ -27,6 +27,7 @@ from roadproof.world.vehicle import Vehicle
 
 Parts: TypeAlias = dict[str, str]
 """Digests and values by name."""
+_FILES = ("file ", "answer ")
 _TOOL, _VALUE, _DRIVES = "roadproof", "value of ", ("scenario", "test", "plate")
 
 
@@ -162,9 +163,15 @@ def lock_data(links: Mapping[Key, Parts]) -> JsonObject:
 
 
 def differences(before: Parts, now: Parts) -> tuple[str, ...]:
-    """What a link rested on and is another now, in words. What is new beside it changes nothing."""
+    """What a link rested on and is another now, in words.
+
+    What is new beside it changes nothing. A definition that nothing names any more is gone with the evidence,
+    or with a change of the definition that named it.
+    """
     return tuple(
-        _difference(name, value, now.get(name)) for name, value in before.items() if now.get(name) != value
+        _difference(name, value, now.get(name))
+        for name, value in before.items()
+        if now.get(name) != value and (name in now or name.startswith(_FILES))
     )
 
 

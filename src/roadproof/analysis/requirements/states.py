@@ -97,7 +97,7 @@ def _is_evidence(x: CheckedEvidence) -> bool:
 
 def _link(found: _Matched, changes: tuple[str, ...]) -> TracedLink:
     state, reason = combined(found.target.link.kind, found.shown)
-    if state.is_shown and changes:
+    if changes and (state.is_shown or state is LinkState.STALE):
         state, reason = LinkState.STALE, ""
     return TracedLink(
         kind=found.target.link.kind,

@@ -15,6 +15,8 @@ from roadproof.library.words import spans
 
 OPEN: Final = ("UNKNOWN", "NONE-WITHIN", "PROVED-BOUNDED", "VACUOUS", "CROSSCHECK-FAILED", "undecided")
 """Verdicts that leave a question open."""
+NOT_SHOWN: Final = ("unknown", "stale", "missing", "rejected", "refuted")
+"""States of requirements that evidence does not show."""
 _SKIPPED = ("drive", "drives", "counterexample", "boundaries", "missed", "surely", "words")
 _ANCHORS = {
     ("index", "claims"): "claim",
@@ -75,7 +77,8 @@ class Overview:
         if self.rejected:
             return 0
         surprising = any(x.verdict == "REFUTED" and x.expected is False for x in self.statements)
-        return 1 if surprising or self.remarked or any(x.verdict in OPEN for x in self.statements) else 2
+        is_open = any(x.verdict in (*OPEN, *NOT_SHOWN) for x in self.statements)
+        return 1 if surprising or self.remarked or is_open else 2
 
 
 def overview(result: Result, title: str, question: str, rejected: int = 0) -> Overview:
@@ -91,8 +94,8 @@ def overview(result: Result, title: str, question: str, rejected: int = 0) -> Ov
 
 def _statements(result: Result) -> Iterator[tuple[Mapping[str, Json], str]]:
     """The entries that have a verdict, each with the id of the part of the page that shows it."""
-    if result.kind == "order":
-        yield from _implications(result)
+    if result.kind in ("order", "trace"):
+        yield from _implications(result) if result.kind == "order" else _requirements(result)
         return
     count = 0
     for key, value in result.data.items():
@@ -107,6 +110,15 @@ def _statements(result: Result) -> Iterator[tuple[Mapping[str, Json], str]]:
                 yield x, target
     if not count and isinstance(result.data.get("verdict"), str):
         yield result.data, f"result-{result.id}"
+
+
+def _requirements(result: Result) -> Iterator[tuple[Mapping[str, Json], str]]:
+    """The requirements, whose state is their verdict."""
+    found = result.data.get("requirements")
+    for k, x in enumerate(found if isinstance(found, list) else []):
+        if isinstance(x, dict):
+            told = f"{_text(x, 'id')}: {_text(x, 'title') or _text(x, 'text')}"
+            yield {"verdict": x.get("state"), "name": told}, f"requirement-{result.id}-{k}"
 
 
 def _implications(result: Result) -> Iterator[tuple[Mapping[str, Json], str]]:
@@ -231,6 +243,10 @@ def summary_section(
         remarked=[x for x in overviews if x.remarked],
         wrong=[x for x in findings if x.outcome is not Acceptance.ACCEPTED and x.kind != NO_EVIDENCE],
         open=[x for x in said if x.verdict in OPEN],
+        unshown=sorted(
+            (x for x in said if x.verdict in NOT_SHOWN), key=lambda x: -NOT_SHOWN.index(x.verdict)
+        ),
+        traced=bool(results) and all(x.kind == "trace" for x in results),
         refuted=[x for x in said if x.verdict == "REFUTED" and x.expected is False],
         controls=[x for x in said if x.verdict == "REFUTED" and x.expected],
         lines=[*lines, *_origins(results)],
