@@ -41,16 +41,21 @@ def pins_of(more: Iterable[str] = ()) -> list[Pin]:
         limits.write_text("\n".join(sorted(set(installed))), "utf-8")
         asked = ["--dry-run", "--ignore-installed", "--only-binary", ":all:", "--report", str(report)]
         run_pip("install", *asked, "--constraint", str(limits), *needed, *more)
-        found = json.loads(report.read_text("utf-8"))["install"]
-    pins = (
-        Pin(
-            x["metadata"]["name"],
-            x["metadata"]["version"],
-            x["download_info"]["archive_info"]["hashes"]["sha256"],
-        )
-        for x in found
-    )
+        said = json.loads(report.read_text("utf-8"))
+    pins = (pin_in(x) for x in said.get("install", ()))
     return sorted(pins, key=lambda x: x.name.lower())
+
+
+def pin_in(entry: object) -> Pin:
+    """The pin that an entry of pip's report says (version 1). Raises ``MissingSolverError``."""
+    match entry:
+        case {
+            "metadata": {"name": str(name), "version": str(version)},
+            "download_info": {"archive_info": {"hashes": {"sha256": str(digest)}}},
+        }:
+            return Pin(name, version, digest)
+        case _:
+            raise MissingSolverError(f"pip names no digest of a package: {str(entry)[:120]}; update pip")
 
 
 def download(pins: Iterable[Pin], folder: Path) -> None:

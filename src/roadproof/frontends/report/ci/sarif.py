@@ -53,9 +53,8 @@ def _result(case: Case) -> dict[str, object]:
         "locations": [] if case.place is None else [_place(case.place, case.name, named=True)],
         "partialFingerprints": {"case/v1": _fingerprint(case)},
     }
-    if case.rule is not None:
-        result["ruleId"] = str(case.rule)
-    return result | ({"relatedLocations": related} if related else {})
+    rule = {} if case.rule is None else {"ruleId": str(case.rule)}
+    return result | rule | ({"relatedLocations": related} if related else {})
 
 
 def _fingerprint(case: Case) -> str:
@@ -65,10 +64,8 @@ def _fingerprint(case: Case) -> str:
 
 def _place(place: Location, name: str, whole: bool = False, named: bool = False) -> dict[str, object]:
     """A location; ``whole``: of a file as a whole; ``named``: it is that of the case called ``name``."""
-    physical: dict[str, object] = {"artifactLocation": _artifact(place.file)}
-    if not whole:
-        physical["region"] = {"startLine": place.line, "startColumn": place.column}
-    told: dict[str, object] = {"physicalLocation": physical}
+    region = {} if whole else {"region": {"startLine": place.line, "startColumn": place.column}}
+    told: dict[str, object] = {"physicalLocation": {"artifactLocation": _artifact(place.file), **region}}
     return told | ({"logicalLocations": [{"name": name}]} if named else {"message": {"text": name}})
 
 
