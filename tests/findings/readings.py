@@ -117,12 +117,6 @@ def kinds_of_places(outcome: Outcome) -> int:
     return counts.popitem()[1] if len(set(counts.values())) == 1 else 0
 
 
-def shares(outcome: Outcome) -> dict[str, float]:
-    """The share of each class among the situations of as many vehicles, in per cent."""
-    rows = re.findall(r"^class_(\S+) .*? (\d+) +([\d.]+) % ", outcome.printed, re.M)
-    return {name: float(part) for name, _, part in rows}
-
-
 def accepted(outcome: Outcome) -> str:
     """How many files ``roadproof check`` accepts, if that is all of them."""
     found = re.search(r"(\d+) of (\d+) accepted", outcome.printed)
@@ -190,21 +184,10 @@ def windows_with_ramps(outcome: Outcome) -> int:
     return sum(re.search(r"^  (merge|departure) lane", window, re.M) is not None for window in windows)
 
 
-def signed(outcome: Outcome) -> tuple[int, int]:
-    """With minDanger 0: traces on the main road, and those of ext that match in merge zones."""
-    rows = {(x["sector"], x["min_danger"], x["set"]): x for x in us101_counts(outcome)["table"]}
-    return rows["main road", "0", "ext"]["traces"], rows["merge zone", "0", "ext"]["matching"]
-
-
 def vanishing(outcome: Outcome) -> tuple[int, int]:
     """Disturbances with minDanger 0 that are none with 0.6, and all of them."""
     every, lasting = disturbances(outcome)
     return every - lasting, every
-
-
-def samples_on_no_lane(outcome: Outcome) -> int:
-    """Samples whose centre is on no lane, in all recordings."""
-    return sum(int(x[0]) for x in notes_of(outcome, r"(\d+) of \d+ samples have the centre"))
 
 
 def contradictions(outcome: Outcome) -> int:
@@ -232,13 +215,6 @@ def errors_of_lengths(outcome: Outcome) -> tuple[str, ...]:
     return min(columns[0], key=float), *(max(column, key=float) for column in columns)
 
 
-def others_with_a_lane(outcome: Outcome) -> int:
-    """Traces that match nothing although there is a common lane."""
-    found = re.search(r"(\d+) traces match .* (\d+) of them without", outcome.printed)
-    assert found is not None, outcome.printed
-    return int(found[1]) - int(found[2])
-
-
 def pairs_drives_proofs(outcome: Outcome) -> tuple[int, int, int]:
     """Pairs of scenarios: all, with a drive, with a proof."""
     together, apart = pairs_with(outcome, "WITNESSED"), pairs_with(outcome, "IMPOSSIBLE")
@@ -250,19 +226,6 @@ def doubts_and_traces(outcome: Outcome) -> tuple[str, ...]:
     found = re.search(r"^(\d+) changes: .* (\d+) by a trace, (\d+) in doubt", outcome.printed, re.M)
     assert found is not None, outcome.printed
     return found[3], found[1], found[2]
-
-
-def gaps_of_no_condition(outcome: Outcome) -> int:
-    """Drives of the class in which in every scenario two conditions or more are false."""
-    found = re.search(r"two or more are false\n +WITNESSED +(.*)", outcome.printed)
-    return len(re.findall(r"drive \d+", found[1])) if found else 0
-
-
-def beside_the_lane_in_traffic(outcome: Outcome) -> int:
-    """Disturbances that scenario 1 misses because SV and POV are in no lane together."""
-    part = outcome.printed.partition("\nbehaviourPOV_1: ")[2]
-    found = re.search(r"^  F\[0, minDanger\] sameLane\(SV, POV, L\) in cutIn .*?(\d+) in traffic", part, re.M)
-    return int(found[1]) if found else 0
 
 
 def picture_of_a_gap_beside_the_lane(outcome: Outcome) -> str:
@@ -322,16 +285,6 @@ def roles_differ(outcome: Outcome) -> tuple[int, int]:
     return found["0"], found["3/5"]
 
 
-def detections(outcome: Outcome) -> tuple[int, ...]:
-    """Pairs that each detector of US-101 shows."""
-    return tuple(us101_counts(outcome)["detectors"].values())
-
-
-def repeats(outcome: Outcome) -> tuple[str, ...]:
-    """No figure, if no two windows of US-101 show the same moment."""
-    return ("repeats",) if us101_counts(outcome)["repeats"] else ()
-
-
 def claims_of_classes(outcome: Outcome) -> int:
     return len(read(outcome, "classes/index.json")["claims"])
 
@@ -350,19 +303,8 @@ def classes_proofs_drives(outcome: Outcome) -> tuple[str, int, str]:
     return all_witnessed(outcome), claims_of_classes(outcome), all_witnessed(outcome)
 
 
-def classes_of_several(outcome: Outcome) -> int:
-    """Classes of several scenarios that occur in a recording."""
-    return sum(share > 0 for name, share in shares(outcome).items() if "_" in name)
-
-
 def needed_definitions(outcome: Outcome) -> int:
     return outcome.printed.count(": needed, by a drive on ")
-
-
-def implied_by_chains(outcome: Outcome) -> int:
-    """Proved implications that follow from others."""
-    index = read(outcome, "order/index.json")
-    return len(index["proved"]) - len(index["edges"])
 
 
 def counts_of_order(outcome: Outcome) -> tuple[int, ...]:

@@ -15,7 +15,7 @@ from findings.figures import Figures, Outcome, Picture, Source, Statement
 from findings.results import ROOT
 
 SESSIONS = (
-    *map(Sessions, ("README.md", "docs/reference/language.md", "docs/how-to/highd.md")),
+    *map(Sessions, ("README.md", "docs/reference/language.md")),
     *(
         Sessions(
             f"examples/{name}/README.md",

@@ -193,7 +193,6 @@ def test_pairs_are_read_from_the_matrix() -> None:
 def test_classes_are_read_from_the_table() -> None:
     outcome = printed(CLASSES)
     assert r.happenings(outcome) == (4, "1, 5", "1 with 5, 4 with 6, 8")
-    assert r.shares(outcome) == {"1": 60.0, "4_6_8": 26.7, "1_5": 13.3, "5": 0.0, "2": 100.0}
     assert r.all_witnessed(outcome) == "5"
     doubtful = CLASSES.replace("5 WITNESSED", "4 WITNESSED, 1 UNKNOWN")
     assert r.all_witnessed(printed(doubtful)) == "5 classes: 4 WITNESSED, 1 UNKNOWN"
