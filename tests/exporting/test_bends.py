@@ -232,3 +232,9 @@ def test_drives_on_one_map_share_it(tmp_path: Path) -> None:
     made = rp.export(tmp_path / "found", to="openscenario", out=tmp_path / "out")
     assert sorted(x.name for x in made.files) == sorted(x.name for x in (tmp_path / "out").iterdir())
     assert str(made).startswith("2 drives as openscenario: 3 files in ")
+
+
+def test_a_catalogue_says_which_tests_are_on_bends(tmp_path: Path) -> None:
+    (tmp_path / "one.json").write_text(json.dumps(drive_data(file_of(turning("30")), None)), "utf-8")
+    told = "one: road motorway bends: lengths in its lanes differ from those in s by up to 2.8 %, 16 m"
+    assert [x for x in rp.catalogue(tmp_path).notes if x.startswith(told)]

@@ -31,6 +31,7 @@ from roadproof.semantics.exact.exact import DriveJudge, LazyJudge
 from roadproof.semantics.exact.signals import DriveSignals
 from roadproof.semantics.exact.truth import START, Cut
 from roadproof.semantics.sampled.compiled import compile
+from roadproof.world.length_error import told_bends
 from roadproof.world.signals import SignalName
 
 _STATE: tuple[SignalName, ...] = ("s", "d", "v_lon")
@@ -116,6 +117,7 @@ def _of_drive(
     notes = (
         *(() if ruling.readable else (f"its own formula cannot be read here: {ruling.reason}",)),
         *((roles.note,) if roles.note else ()),
+        *filter(None, (told_bends(file.road),)),
         *(() if chosen or asked.role_names & {*played.drive.vehicles} else (no_role(played.drive.vehicles),)),
     )
     return ConcreteAnswer(
@@ -258,7 +260,7 @@ def _of_traces(
         first = first or trace
         if is_samples(entry):
             played = {role: name for role, name in told.items() if role in asked.role_names}
-        notes |= dict.fromkeys(trace.notes)
+        notes |= dict.fromkeys((*trace.notes, *filter(None, (told_bends(trace.road),))))
         for roles, vehicles in choices(
             asked.roles, asked.all_roles, tuple(trace.lanes), freedom.roles, any_way=True
         ):
