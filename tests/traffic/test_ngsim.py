@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import roadproof as rp
 from roadproof.errors import InputError
 from roadproof.recordings.evaluate.evaluate import evaluate_recording
 from roadproof.recordings.formats.ngsim import PERIOD, read_ngsim
@@ -274,6 +275,31 @@ def test_a_bad_vehicle_is_left_out(tmp_path: Path) -> None:
     assert r.vehicle_id.tolist() == [2, 3]
     assert "left out 1 of 3 vehicles (1): row 5, column v_Vel=900.0: must lie between -820 and 820" in r.notes
     assert offsets(np.diff(r.start)).tolist() == r.start.tolist()
+
+
+def test_rows_that_occur_twice_are_read_once(tmp_path: Path) -> None:
+    lines = two_cars().splitlines()
+    path = write_ngsim(tmp_path, "\n".join((*lines, *lines[3:9])) + "\n")
+    r = find_source(path).read()
+    assert r.s.tolist() == read_ngsim(write_ngsim(tmp_path, two_cars(), "plain")).s.tolist()
+    assert "6 of 126 rows occur twice; they were read once" in r.notes
+    with pytest.raises(InputError, match="row 122, column Frame_ID=2: vehicle and frame occur together once"):
+        find_source(path, strict=True).read()
+    other = lines[3].replace(lines[3].split(",")[4], "30.0")
+    path = write_ngsim(tmp_path, "\n".join((*lines, other)) + "\n")
+    assert find_source(path).read().vehicle_id.tolist() == [2, 3]
+
+
+def test_commands_read_it(tmp_path: Path) -> None:
+    """Kept as Parquet it is the same, and vehicles are named by their ids."""
+    path = write_ngsim(tmp_path, two_cars())
+    rp.convert(path, tmp_path / "kept", jobs=1)
+    kept, plain = find_source(tmp_path / "kept").read(), find_source(path).read()
+    assert (kept.s.tolist(), kept.lanes, kept.notes) == (plain.s.tolist(), plain.lanes, plain.notes)
+    one = rp.monitor("s(POV) > s(SV)", f"{path}:1,2")
+    other = rp.monitor("s(POV) > s(SV)", path, roles={"SV": "1", "POV": "2"})
+    assert str(one).startswith("s(POV) > s(SV): true")
+    assert str(one).rpartition("trace:")[0] == str(other).rpartition("trace:")[0]
 
 
 def test_lanes_that_are_not_straight_are_refused(tmp_path: Path) -> None:

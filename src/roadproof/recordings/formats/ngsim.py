@@ -83,6 +83,8 @@ def read_ngsim(path: Path, strict: bool = True) -> Recording:
     """
     rows, streets = _freeways(_read(path))
     rows, late, periods = _in_order(rows)
+    if not strict:
+        rows, late, periods = _without_copies(rows, late, periods)
     kept, left_out = without_bad(rows["track"], _rules(rows, late), rows.refuse, strict)
     rows = rows.at(np.flatnonzero(kept))
     road, way = _road_of(path, rows)
@@ -154,6 +156,17 @@ def _in_order(table: Table) -> tuple[Table, Bools, list[str]]:
     columns = {**table.columns, "track": track, "frame": frame, "way": way}
     order = np.lexsort((frame, track))
     return replace(table, columns=columns).at(order), wrong[order], notes
+
+
+def _without_copies(rows: Table, late: Bools, notes: list[str]) -> tuple[Table, Bools, list[str]]:
+    """The same without rows that say again what the one before says, with a note on these."""
+    names = ("track", "frame", *_WANTED)
+    again = np.logical_and.reduce([np.diff(rows[name], prepend=np.inf) == 0 for name in names])
+    count = int(np.count_nonzero(again))
+    if not count:
+        return rows, late, notes
+    told = f"{count} of {rows.rows} rows occur twice; they were read once"
+    return rows.at(np.flatnonzero(~again)), late[~again], [*notes, told]
 
 
 def _periods(table: Table, way: Integers) -> tuple[Integers, Bools]:
