@@ -10,8 +10,16 @@ import numpy as np
 import pytest
 
 import roadproof as rp
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.classify.cells import whole_cell
+from roadproof.analysis.classify.classes import Classes, plan_of, what_axis
+from roadproof.analysis.classify.shares import count_shares
+from roadproof.analysis.classify.text import with_classes, write_classes
+from roadproof.analysis.coverage.traffic import count_in_traffic, recordings_in
 from roadproof.errors import InputError
 from roadproof.frontends.cli.main import main
+from roadproof.frontends.settings import studies as settings
+from roadproof.library.loading import bundled_library
 from roadproof.recordings.evaluate.one_trace import read_pair
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.sources import find_source
@@ -312,6 +320,7 @@ def cell(path: Path, row: int, column: str, value: str) -> None:
         ("tracks", "xAcceleration", "500", "must lie between -100 and 100"),
         ("tracksMeta", "width", "0", "the size of a vehicle is greater than zero; people have none"),
         ("tracksMeta", "length", "90", "no vehicle is larger than 50 m"),
+        ("tracks", "heading", "nan", "column heading=nan: a number must be finite"),
     ],
 )
 def test_exid_without_bad_vehicles(file: str, column: str, value: str, told: str, tmp_path: Path) -> None:
@@ -344,6 +353,48 @@ def test_highd_without_bad_vehicles(tmp_path: Path) -> None:
     assert np.array_equal(read.s, np.concatenate((good.s[:20], good.s[40:])))
 
 
+@pytest.mark.parametrize(
+    ("column", "value", "told"),
+    [
+        ("x", "?", "row 26, column x=nan: a number must be finite"),
+        ("yVelocity", "", "row 26, column yVelocity=nan: a number must be finite"),
+        ("xAcceleration", "inf", "row 26, column xAcceleration=inf: a number must be finite"),
+        (
+            "frame",
+            "?",
+            "vehicle id=2, frame=5: the frame before it is 3; the frames of a vehicle have no gaps",
+        ),
+        ("laneId", "?", ""),
+        (
+            "frame",
+            "77",
+            "vehicle id=2, frame=5: the frame before it is 3; the frames of a vehicle have no gaps",
+        ),
+    ],
+)
+def test_gaps_and_unreadable_cells_of_highd(column: str, value: str, told: str, tmp_path: Path) -> None:
+    """They cost their vehicle; the number of a lane, which the markings say too, costs nothing."""
+    tracks = [Track(2, 0, cruise(30.0 * k, 20, 20)) for k in range(3)]
+    write_highd(make_recording(tracks), tmp_path)
+    path = tmp_path / "01_tracks.csv"
+    good = find_source(path).read()
+    cell(path, 25, column, value)
+    read, why = both(path)
+    if not told:
+        assert "column laneId='?': a whole number is needed" in why
+        assert read.vehicles == 3
+        return
+    assert note_in(read, "left out") == f"left out 1 of 3 vehicles (2): {told}"
+    assert np.array_equal(read.s, np.concatenate((good.s[:20], good.s[40:])))
+
+
+def test_an_unreadable_id_costs_the_recording(tmp_path: Path) -> None:
+    write_highd(make_recording([Track(2, 0, cruise(30.0 * k, 20, 20)) for k in range(3)]), tmp_path)
+    cell(tmp_path / "01_tracks.csv", 25, "id", "?")
+    with pytest.raises(InputError, match=r"row 26, column id='\?': a whole number is needed"):
+        find_source(tmp_path / "01_tracks.csv").read()
+
+
 # --- answers say what was left out ------------------------------------------------------------------
 
 
@@ -357,6 +408,23 @@ def test_evaluations_say_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert any(x.startswith("left out 1 of 6 vehicles (9)") for x in notes)
     assert main([*asked, "--strict"]) == ExitCode.BAD_INPUT
     assert "by a factor of 2" in capsys.readouterr().err
+
+
+def test_classes_and_gaps_say_it(tmp_path: Path) -> None:
+    path = written(tmp_path, document((*GOOD, car(9, 5.0, told=2.0))))
+    told = "recording a: left out 1 of 6 vehicles (9): velocities along the road"
+    basis = Basis(bundled_library().select())
+    [note] = count_in_traffic(basis, recordings_in(path), print).left_out
+    assert note.startswith(told)
+    assert settings.Coverage().strict is settings.Classify().strict is False
+    with pytest.raises(InputError, match="by a factor of 2"):
+        count_in_traffic(basis, recordings_in(path, strict=True), print)
+    home = basis.specification
+    (group,) = (plan := plan_of(home, (12,))).groups
+    classes = Classes(plan, ((whole_cell(what_axis(plan, group, home), (12,), ()),),), ())
+    library = with_classes(write_classes(classes, home), home)
+    shares = count_shares(classes, library, basis.all_values(), [find_source(path).read()])
+    assert shares.left_out == [note]
 
 
 def test_monitors_say_it(tmp_path: Path) -> None:

@@ -33,6 +33,7 @@ from roadproof.recordings.evaluate.questions import (
 from roadproof.recordings.evaluate.totals import Counts, without_repeats
 from roadproof.recordings.evaluate.traces import OTHER_LANE
 from roadproof.recordings.formats.recording import Recording
+from roadproof.recordings.formats.reliable import losses_of
 from roadproof.semantics.sampled.compiled import Monitor, compile
 
 K = TypeVar("K")
@@ -46,7 +47,8 @@ class Shares:
 
     ``all_traces``: traces in which danger arises; ``covered``: those with a class; ``broken``: situations in
     which classes are not what they are proved to be; ``repeated``: traces that an earlier recording shows
-    too, which are left out. ``source`` says in words what was counted.
+    too, which are left out. ``source`` says in words what was counted; ``left_out`` are notes on vehicles
+    that recordings were read without.
     """
 
     recordings: list[str] = field(default_factory=list)
@@ -58,6 +60,7 @@ class Shares:
     broken: list[str] = field(default_factory=list)
     repeated: int = 0
     source: str = ""
+    left_out: list[str] = field(default_factory=list)
 
     @property
     def told(self) -> classify.Shares:
@@ -102,6 +105,7 @@ def count_shares(
             known[recording.rate] = questions_of(classes, specification, settings, recording.rate)
         found = without_repeats(evaluate_recording(recording, known[recording.rate]), counted)
         add_shares(shares, classes, found)
+        shares.left_out += losses_of(recording)
     shares.repeated = sum(repeat.what == "trace" for repeat in counted.repeats)
     return shares
 

@@ -175,12 +175,16 @@ class GapTrace:
 
 @dataclass(frozen=True)
 class GapTraffic:
-    """What recordings hold. ``repeats``: how many disturbances an earlier window has shown already."""
+    """What recordings hold. ``repeats``: how many disturbances an earlier window has shown already.
+
+    ``left_out``: notes on vehicles that recordings were read without.
+    """
 
     folder: Path
     disturbances: int
     missed: tuple[GapTrace, ...]
     repeats: int
+    left_out: tuple[str, ...] = ()
 
     @property
     def told(self) -> Traffic:

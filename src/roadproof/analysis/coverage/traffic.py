@@ -21,6 +21,7 @@ from roadproof.recordings.evaluate.one_trace import OneTrace, cut_trace
 from roadproof.recordings.evaluate.questions import Settings, ask
 from roadproof.recordings.evaluate.totals import Counts, without_repeats
 from roadproof.recordings.formats.recording import Recording
+from roadproof.recordings.formats.reliable import losses_of
 from roadproof.recordings.formats.source import RecordingSource
 from roadproof.recordings.formats.sources import copies_among, find_sources
 from roadproof.semantics.sampled.batch import Array, Batch
@@ -45,9 +46,12 @@ class GapQuestion:
     without: str | None = None
 
 
-def recordings_in(folder: Path) -> Recordings:
-    """The recordings of a folder. Raises ``InputError``, also where two have the same content."""
-    sources = find_sources(folder, strict=True)
+def recordings_in(folder: Path, strict: bool = False) -> Recordings:
+    """The recordings of a folder; ``strict``: each as a whole or not at all.
+
+    Raises ``InputError``, also where two have the same content.
+    """
+    sources = find_sources(folder, strict)
     for fault in copies_among(sources, {source.name: source.digests() for source in sources}).values():
         raise InputError(fault)
     return Recordings(folder, sources)
@@ -58,17 +62,20 @@ def count_in_traffic(basis: Basis, recordings: Recordings, say: Callable[[str], 
     counted = Counts()
     disturbances = 0
     missed: list[GapTrace] = []
-    for disturbances, trace in enumerate(disturbances_in(basis, recordings, counted), 1):
+    left_out: list[str] = []
+    for disturbances, trace in enumerate(disturbances_in(basis, recordings, counted, left_out), 1):
         missed += [trace] if trace.missed else []
         say(f"{disturbances} disturbances in traffic, {len(missed)} of them missed")
     repeats = sum(repeat.what == "trace" for repeat in counted.repeats)
-    return GapTraffic(recordings.folder, disturbances, tuple(missed), repeats)
+    return GapTraffic(recordings.folder, disturbances, tuple(missed), repeats, tuple(left_out))
 
 
 def disturbances_in(
-    basis: Basis, recordings: Recordings, counted: Counts | None = None
+    basis: Basis, recordings: Recordings, counted: Counts | None = None, left_out: list[str] | None = None
 ) -> Iterator[GapTrace]:
     """The disturbances of all recordings; ``counted`` is told of those that are repeated.
+
+    ``left_out`` gets notes on vehicles that recordings were read without.
 
     Raises ``InputError`` for what is no recording.
     """
@@ -83,6 +90,8 @@ def disturbances_in(
     known = counted or Counts()
     for source in recordings.sources:
         recording = source.read()
+        if left_out is not None:
+            left_out += losses_of(recording)
         place = {int(number): k for k, number in enumerate(recording.vehicle_id)}
         monitors: dict[Road, Monitor[GapQuestion]] = {}
         findings = without_repeats(evaluate_recording(recording, ask(settings, recording.rate)), known)

@@ -126,7 +126,8 @@ def classify(
     """Divide scenarios into classes that exclude each other, and show a drive for each.
 
     ``among``: whole rows of the table, such as "1-8" (all where None). ``shares``: whether it is counted how
-    often each class occurs, in the recordings of ``on`` or else in simulated traffic. ``preventable``,
+    often each class occurs, in the recordings of ``on`` or else in simulated traffic; ``strict``: in none
+    without bad vehicles. ``preventable``,
     ``unpreventable``: as for ``witness``. ``out``: a folder in
     which answers are kept as they come. Raises ``InputError``, ``UsageError``.
     """
@@ -138,7 +139,7 @@ def classify(
     folder = None if given.out is None else Path(given.out)
     if folder is not None:
         make_folder(folder)
-    sources = () if given.on is None else find_sources(Path(given.on), strict=True)
+    sources = () if given.on is None else find_sources(Path(given.on), given.strict)
     division = divide(basis, plan, given.jobs, given.progress, fresh=given.fresh)
     study = classification_of(basis, division)
     if division.cut_off:

@@ -70,5 +70,6 @@ class _Converter:
     def __call__(self, source: RecordingSource) -> int:
         if source.format in (CSV, PARQUET) and source.files[-1].is_file() and is_large(source.files[-1]):
             digests = dict(zip((path.name for path in source.files), source.digests(), strict=True))
-            return samples_in(write_large(source.files[-1], self.folder, digests, source.format.name))
+            name = source.format.name
+            return samples_in(write_large(source.files[-1], self.folder, digests, name, source.strict))
         return len(write_converted(source, self.folder).s)

@@ -145,7 +145,8 @@ def coverage(
 
     ``wider``: the set that catches all (complete, where it extends the set); ``roads``: where drives are
     looked for; ``needed``: of a set that covers, also a drive for each definition that it needs. ``on``:
-    recordings in which the classes are counted; ``tell`` is told how far that is. ``preventable``,
+    recordings in which the classes are counted, ``strict``: none without bad vehicles; ``tell`` is told how
+    far that is. ``preventable``,
     ``unpreventable``: the name of a driver model, for drives that begin with a manoeuvre whose collision it
     prevents, or cannot prevent. ``out``: a folder in which
     answers are kept as they come. Raises ``InputError``, ``UsageError``.
@@ -164,7 +165,7 @@ def coverage(
         raise UsageError(f"--wider {wider} does not extend --set {name}: name a set that extends it")
     where = tuple(as_road(road) for road in dict.fromkeys(ROADS if given.roads is None else given.roads))
     study = Coverage(GapSurvey(basis, between, where, tuple(map(as_road, ELSEWHERE))), given.needed)
-    recordings = None if given.on is None else recordings_in(Path(given.on))
+    recordings = None if given.on is None else recordings_in(Path(given.on), given.strict)
 
     def count() -> dict[str, GapTraffic]:
         if recordings is None:

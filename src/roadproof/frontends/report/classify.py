@@ -163,6 +163,7 @@ def _of_shares(shares: Shares) -> Iterator[str]:
     if shares.repeated:
         of = f"{shares.repeated} of {shares.all_traces + shares.repeated}"
         yield f"{of} traces are shown by an earlier recording too, so they are left out"
+    yield from shares.left_out
     number = sum(shares.classified.values())
     if shares.broken:
         told = f"{len(shares.broken)} of {number} situations are not in exactly their own class"

@@ -46,7 +46,7 @@ def _in_traffic(traffic: GapTraffic) -> list[str]:
     lines = [f"of {traffic.disturbances} disturbances in traffic {len(traffic.missed)} are missed"]
     if traffic.repeats:
         lines.append(f"{traffic.repeats} more are shown again by windows that overlap, and count once")
-    return lines
+    return [*lines, *traffic.left_out]
 
 
 def _place(said: kept.CountedClass, names: Mapping[int, str]) -> str:

@@ -198,10 +198,12 @@ class CoverageKeywords(SurveyKeywords, PreventionKeywords, total=False):
     roads: Iterable[RoadLike] | None
     needed: bool
     on: str | Path | None
+    strict: bool
 
 
 class ClassifyKeywords(SurveyKeywords, PreventionKeywords, total=False):
     on: str | Path | None
+    strict: bool
     shares: bool
 
 

@@ -96,6 +96,7 @@ class Coverage(groups.Survey, groups.Prevention, groups.Reported):
     on: str | Path | None = option(
         None, "--on DIR", "count the classes of gaps in these recordings", read=Path
     )
+    strict: bool = groups.strict_reading()
     effort: float = groups.effort_for("a search", 10.0)
     out: str | Path | None = groups.folder_for("certificates, drives and pictures")
     pictures: bool = groups.pictures_of(command_line_only=True)
@@ -109,6 +110,7 @@ class Classify(groups.Survey, groups.Prevention):
     on: str | Path | None = option(
         None, "--on DIR", "recordings for the shares (default: simulated traffic)", read=Path
     )
+    strict: bool = groups.strict_reading()
     shares: bool = option(True, "--no-shares", "compute no shares")
     effort: float = groups.effort_for("a drive or a proof", 60.0)
     out: str | Path | None = groups.folder_for("classes.spec, claims, evidence, picture")

@@ -334,11 +334,16 @@ def _find(path: Path) -> dict[str, Files]:
     return {x.name.removesuffix(HEAD): (x, _table_of(x)) for x in found}
 
 
+def _divide(path: Path, strict: bool) -> WindowedRecording | None:
+    """Vehicles were left out, or not, where the recording was converted."""
+    return divide_converted(path)
+
+
 FORMAT = Format(
     "converted",
     f"NAME{HEAD} and NAME{SAMPLES}, of roadproof convert",
     _find,
     read_converted,
     "{1}, rate={rate}",
-    divide_converted,
+    _divide,
 )

@@ -193,7 +193,7 @@ def read_exid(folder: Path, name: str, strict: bool = True) -> Recording:
     """
     about, rate = read_about(folder, name)
     meta = read_vehicles(folder, name)
-    tracks, notes = read_samples(folder, name, {LANELETS: "list"})
+    tracks, notes = read_samples(folder, name, {LANELETS: "list"}, strict)
     meta, tracks, start, left_out = usable(meta, tracks, "trackId", strict, check_cells)
     notes += (*left_out, *check_velocities(tracks))
     path = _map_of(folder, int(about["locationId"][0]), about)

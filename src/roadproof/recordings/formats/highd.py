@@ -35,6 +35,7 @@ from roadproof.recordings.formats.straight import StraightRoad, of_bands, of_roa
 from roadproof.recordings.formats.table import Table, kinds_of, names_in, read_table, sample_rows
 from roadproof.recordings.formats.tracks import (
     RATE_AT,
+    cells_of,
     files_of,
     find_recordings,
     in_order,
@@ -92,6 +93,8 @@ SAMPLE_KINDS = kinds_of(
     number="x y width height xVelocity yVelocity xAcceleration yAcceleration",
 )
 
+_NUMBERS = tuple(x for x, kind in SAMPLE_KINDS.items() if kind == "number")
+
 
 def _check_cells(meta: Table, tracks: Table) -> Integers:
     """Where each vehicle's samples start. No cell may say what no vehicle does.
@@ -99,6 +102,7 @@ def _check_cells(meta: Table, tracks: Table) -> Integers:
     Both files must say the same of sizes: one of them would decide the pairs that are looked at.
     """
     start = match_vehicles(meta, tracks, "id", 1)
+    tracks.require_numbers(*_NUMBERS)
     for column in ("width", "height"):
         expected = np.repeat(meta[column], np.diff(start))
         tracks.require(tracks[column] > 0, column, "the size of a vehicle is greater than zero")
@@ -194,7 +198,8 @@ def read_highd(folder: Path, name: str, strict: bool = True) -> Recording:
     """
     rate, bands, counts = _read_recording(folder / f"{name}_recordingMeta.csv", name)
     meta = _read_vehicles(folder / f"{name}_tracksMeta.csv", counts)
-    tracks = read_table(folder / f"{name}_tracks.csv", SAMPLE_COLUMNS, SAMPLE_KINDS)
+    gaps = cells_of(SAMPLE_KINDS, ("id",), strict)
+    tracks = read_table(folder / f"{name}_tracks.csv", SAMPLE_COLUMNS, SAMPLE_KINDS, gaps=gaps)
     tracks, notes = in_order(tracks, "id")
     meta, tracks, start, left_out = usable(meta, tracks, "id", strict, _check_cells)
     sizes, notes = np.diff(start), (*left_out, *notes)

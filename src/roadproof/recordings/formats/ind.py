@@ -57,7 +57,7 @@ def read_ind(folder: Path, name: str, strict: bool = True, road: str | None = No
     chart_of(road, folder / f"{name}{TRACKS}", maps_near(folder))
     about, rate = read_about(folder, name)
     meta = read_vehicles(folder, name)
-    tracks, notes = read_samples(folder, name, {})
+    tracks, notes = read_samples(folder, name, {}, strict)
     meta, tracks, absent = _vehicles(meta, tracks)
     meta, tracks, start, left_out = usable(meta, tracks, "trackId", strict, check_cells)
     notes += (*absent, *left_out, *check_velocities(tracks))

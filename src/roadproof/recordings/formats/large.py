@@ -8,7 +8,7 @@ import hashlib
 import os
 import tempfile
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +26,14 @@ from roadproof.recordings.formats.converted import (
 )
 from roadproof.recordings.formats.plausible import ContradictionChecks
 from roadproof.recordings.formats.recording import OF_SAMPLES, OF_VEHICLES, Integers, Recording, offsets
+from roadproof.recordings.formats.reliable import (
+    MOST_LEFT_OUT,
+    Selection,
+    left_out_note,
+    selection_of,
+    stands,
+    too_many,
+)
 from roadproof.recordings.formats.samples import (
     ORDER,
     Clock,
@@ -38,7 +46,7 @@ from roadproof.recordings.formats.samples import (
     vehicles_of,
 )
 from roadproof.recordings.formats.straight import StraightRoad
-from roadproof.recordings.formats.table import Table, polars_module
+from roadproof.recordings.formats.table import CellError, Table, polars_module
 from roadproof.recordings.formats.windows import Window, WindowedRecording
 from roadproof.runtime.files import write_json
 
@@ -54,15 +62,17 @@ def is_large(path: Path) -> bool:
     return count_samples(path) > windows.MOST_SAMPLES
 
 
-def divide_large(path: Path) -> WindowedRecording | None:
+def divide_large(path: Path, strict: bool = True) -> WindowedRecording | None:
     """A file of samples in windows of time, None where it is small. Raises ``InputError``.
+
+    Unless it is ``strict``, bad vehicles are left out.
 
     It is converted into a temporary folder, which is gone when the windows are.
     """
     if not path.is_file() or not is_large(path):
         return None
     folder = tempfile.TemporaryDirectory()
-    made = divide_converted(write_large(path, Path(folder.name), {}, ""), checked=True)
+    made = divide_converted(write_large(path, Path(folder.name), {}, "", strict), checked=True)
     assert made is not None
 
     def read() -> Iterator[Window]:
@@ -72,10 +82,11 @@ def divide_large(path: Path) -> WindowedRecording | None:
     return replace(made, windows=read)
 
 
-def write_large(path: Path, folder: Path, digests: Mapping[str, str], form: str) -> Path:
+def write_large(path: Path, folder: Path, digests: Mapping[str, str], form: str, strict: bool = True) -> Path:
     """Write a file of samples as ``converted.write_converted`` does, and return the path of its head.
 
-    ``digests`` of what it is made of, in the format called ``form``. Raises ``InputError``.
+    ``digests`` of what it is made of, in the format called ``form``. Unless it is ``strict``, bad vehicles
+    are left out. Raises ``InputError``.
     """
     road = road_beside(path)
     with tempfile.TemporaryDirectory(dir=folder, prefix=".") as temporary:
@@ -84,26 +95,56 @@ def write_large(path: Path, folder: Path, digests: Mapping[str, str], form: str)
         require_unchanged(path, stamp)
         groups = _divide_rows(path, survey, Path(temporary))
         require_unchanged(path, stamp)
-        read = _GroupReader(path, road, survey, groups)
-        doubting = ContradictionChecks(survey.clock.rate, road.lanes)
-        heads, parts = [], []
-        for number in range(len(groups)):
-            recording = read.recording(number)
-            doubting.add(recording)
-            part = Path(temporary) / f"{number}{SAMPLES}"
-            frame_of_samples(recording).write_parquet(part, compression="zstd", statistics=False)
-            parts.append(part)
-            heads.append(_without_samples(recording))
-        whole = _joined(heads)
-        doubts = contradictions(path, doubting, read.place_of, read.vehicle_at, "lanelet of the road")
-        notes = (*survey.notes, *survey.clock.notes, *doubts)
+        read = _GroupReader(path, road, survey, groups, strict)
+        made = _write_parts(read, Selection(), Path(temporary))
+        if not strict and not stands(made.checks):
+            made = _write_parts(read, _chosen(read, made.checks), Path(temporary))
+        whole = _joined(made.heads)
+        chosen = made.chosen
+        left_out = (left_out_note([x], len(survey.names), y.told) for x, y in read.faults.items())
+        notes = (*left_out, *survey.notes, *survey.clock.notes, *chosen.notes, *read.doubts(made))
         table, head = folder / f"{path.stem}{SAMPLES}", folder / f"{path.stem}{HEAD}"
         head.unlink(missing_ok=True)  # it is there when the samples are
-        _join(parts, Path(temporary) / "whole", table)
+        _join(made.parts, Path(temporary) / "whole", table)
         with table.open("rb") as file:
             digest = hashlib.file_digest(file, "sha256").hexdigest()
-        write_json(head, head_of(replace(whole, notes=notes), form, digests, survey.rows, digest))
+        write_json(head, head_of(replace(whole, notes=notes), form, digests, int(whole.start[-1]), digest))
     return head
+
+
+@dataclass(frozen=True)
+class _Written:
+    """Files with the samples of groups of vehicles, the vehicles, and checks of all together."""
+
+    chosen: Selection
+    checks: ContradictionChecks
+    heads: list[Recording]
+    parts: list[Path]
+
+
+def _write_parts(read: "_GroupReader", chosen: Selection, folder: Path) -> _Written:
+    """Write the vehicles of each group that are ``chosen``."""
+    made = _Written(chosen, ContradictionChecks(read.survey.clock.rate, read.road.lanes), [], [])
+    for number, group in enumerate(read.recordings()):
+        recording = chosen.of(group)
+        made.checks.add(recording)
+        part = folder / f"{number}{SAMPLES}"
+        frame_of_samples(recording).write_parquet(part, compression="zstd", statistics=False)
+        made.parts.append(part)
+        made.heads.append(_without_samples(recording))
+    return made
+
+
+def _chosen(read: "_GroupReader", checks: ContradictionChecks) -> Selection:
+    """What to leave out. Raises ``InputError`` where that is more than half."""
+    chosen = selection_of(read.recordings)
+    if len(chosen.lost) <= MOST_LEFT_OUT * chosen.vehicles:
+        return chosen
+    try:
+        [*read.doubts(_Written(Selection(), checks, [], []))]
+    except InputError as error:
+        raise too_many(error, len(chosen.lost), chosen.vehicles) from None
+    return Selection()
 
 
 @dataclass(frozen=True)
@@ -199,12 +240,18 @@ def _divide_rows(path: Path, survey: _Survey, folder: Path) -> list[Path]:
 
 @dataclass(frozen=True)
 class _GroupReader:
-    """The recordings of groups of vehicles."""
+    """The recordings of groups of vehicles.
+
+    ``faults``: by name the vehicles of which a cell breaks a rule, unless it is ``strict``; they are left
+    out.
+    """
 
     path: Path
     road: StraightRoad
     survey: _Survey
     groups: list[Path]
+    strict: bool
+    faults: dict[str, CellError] = field(default_factory=dict)
 
     def table(self, number: int) -> tuple[Table, Integers]:
         """The rows of a group by vehicle, and the number of each row's vehicle.
@@ -218,9 +265,49 @@ class _GroupReader:
         table = Table(self.path, columns, frame.height, places)
         return by_vehicle(table, self.survey.numbers[columns["vehicle"]])
 
-    def recording(self, number: int) -> Recording:
-        table, ids = self.table(number)
-        return vehicles_of(table, ids, self.survey.clock, self.road, self.path.stem)
+    def recordings(self) -> Iterator[Recording]:
+        """Those of all groups. Raises ``InputError``."""
+        for number in range(len(self.groups)):
+            found = self._recording(number)
+            if found is not None:
+                yield found
+
+    def _recording(self, number: int) -> Recording | None:
+        whole, numbers = self.table(number)
+        while True:
+            bad = [self.survey.index[x] for x in self.faults]
+            rows = np.flatnonzero(~np.isin(whole["vehicle"], bad))
+            if not len(rows):
+                return None
+            table, ids = (whole.at(rows), numbers[rows]) if len(rows) < whole.rows else (whole, numbers)
+            try:
+                return vehicles_of(table, ids, self.survey.clock, self.road, self.path.stem)
+            except CellError as error:
+                if self.strict or len(self.faults) + 1 > MOST_LEFT_OUT * len(self.survey.names):
+                    raise next(iter(self.faults.values()), error) from None
+                row = int(np.argmax(table.places == error.place))
+                self.faults[self.survey.names[int(table["vehicle"][row])]] = error
+
+    def doubts(self, made: _Written) -> Iterator[str]:
+        """What the vehicles that are written contradict themselves in. Raises ``InputError``."""
+        bad = [self.survey.index[x] for x in self.faults]
+        kept = ~np.isin(self.survey.numbers, made.chosen.lost)
+        kept[bad] = False
+        counts = self.survey.counts
+        begins, ours = offsets(counts)[:-1][kept], offsets(counts[kept])
+
+        def whole_row(row: int) -> int:
+            vehicle = int(np.searchsorted(ours, row, "right")) - 1
+            return int(begins[vehicle] + row - ours[vehicle])
+
+        def place_of(row: int, signal: str) -> str:
+            cell, vehicle = self.cell(whole_row(row), signal)
+            return f"{cell} of vehicle {vehicle}"
+
+        def vehicle_at(row: int) -> str:
+            return self.cell(whole_row(row), "vehicle")[0]
+
+        return contradictions(self.path, made.checks, place_of, vehicle_at, "lanelet of the road")
 
     def cell(self, row: int, column: str) -> tuple[str, str]:
         """The cell in a row of the whole, in order of vehicles, in words; and the name of its vehicle."""
@@ -234,13 +321,6 @@ class _GroupReader:
                 return found.cell(0, column), name
             row -= table.rows
         raise IndexError(row)
-
-    def place_of(self, row: int, signal: str) -> str:
-        cell, vehicle = self.cell(row, signal)
-        return f"{cell} of vehicle {vehicle}"
-
-    def vehicle_at(self, row: int) -> str:
-        return self.cell(row, "vehicle")[0]
 
 
 def _without_samples(recording: Recording) -> Recording:

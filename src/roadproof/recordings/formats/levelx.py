@@ -16,7 +16,7 @@ from roadproof.recordings.formats.measured_roads import MeasuredTraffic
 from roadproof.recordings.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED, check
 from roadproof.recordings.formats.recording import Integers, Recording
 from roadproof.recordings.formats.table import Kind, Table, kinds_of, read_named
-from roadproof.recordings.formats.tracks import in_order, match_vehicles, rate_of, vehicles_by_id
+from roadproof.recordings.formats.tracks import cells_of, in_order, match_vehicles, rate_of, vehicles_by_id
 
 RECORDING_KINDS = kinds_of(
     integer="recordingId locationId",
@@ -49,9 +49,15 @@ def read_vehicles(folder: Path, name: str) -> Table:
     return vehicles_by_id(meta, "trackId")
 
 
-def read_samples(folder: Path, name: str, more: Mapping[str, Kind]) -> tuple[Table, tuple[str, ...]]:
-    """The samples with ``more`` columns by vehicle and frame, and notes. Raises ``InputError``."""
-    tracks = read_named(folder / f"{name}_tracks.csv", {**SAMPLE_KINDS, **more})
+def read_samples(
+    folder: Path, name: str, more: Mapping[str, Kind], strict: bool
+) -> tuple[Table, tuple[str, ...]]:
+    """The samples with ``more`` columns by vehicle and frame, and notes. Raises ``InputError``.
+
+    Unless it is ``strict``, unreadable cells are left to ``check_cells``.
+    """
+    gaps = cells_of(SAMPLE_KINDS, ("recordingId", "trackId"), strict)
+    tracks = read_named(folder / f"{name}_tracks.csv", {**SAMPLE_KINDS, **more}, gaps)
     tracks, notes = in_order(tracks, "trackId")
     tracks.require(tracks["recordingId"] == int(name), "recordingId", f"the file is of recording {name}")
     return tracks, notes
@@ -64,6 +70,7 @@ def check_cells(meta: Table, tracks: Table) -> Integers:
         meta.require(size > 0, column, "the size of a vehicle is greater than zero; people have none")
         meta.require(size <= LARGEST_SIZE, column, f"no vehicle is larger than {LARGEST_SIZE:g} m")
     start = match_vehicles(meta, tracks, "trackId", 0)
+    tracks.require_numbers(*(x for x, kind in SAMPLE_KINDS.items() if kind == "number"))
     tracks.require_within(LARGEST_PLACE, "xCenter", "yCenter")
     tracks.require_within(LARGEST_SPEED, "xVelocity", "yVelocity", "lonVelocity", "latVelocity")
     tracks.require_within(LARGEST_ACCELERATION, "xAcceleration", "yAcceleration")

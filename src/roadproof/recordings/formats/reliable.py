@@ -8,13 +8,19 @@ road that contradict the places are computed from these, where velocities along 
 then boxes are turned against the way that they move, such as by another grid of the map.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from roadproof.errors import InputError
-from roadproof.recordings.formats.plausible import SHARE, SHARE_OF_JUMPS, Implausible, check
+from roadproof.recordings.formats.plausible import (
+    SHARE,
+    SHARE_OF_JUMPS,
+    ContradictionChecks,
+    Implausible,
+    check,
+)
 from roadproof.recordings.formats.recording import (
     Bools,
     Floats,
@@ -54,6 +60,11 @@ def left_out_note(vehicles: Sequence[object], of: int, reason: str) -> str:
     return f"{LEFT_OUT} {len(vehicles)} of {of} vehicles ({named(vehicles)}): {reason}"
 
 
+def losses_of(recording: Recording) -> list[str]:
+    """The notes of a recording on vehicles that it was read without, with its name."""
+    return [f"recording {recording.name}: {x}" for x in recording.notes if x.startswith(LEFT_OUT)]
+
+
 def named(vehicles: Sequence[object]) -> str:
     """The first vehicles of some."""
     return ", ".join(map(str, vehicles[:SHOWN])) + (", …" if len(vehicles) > SHOWN else "")
@@ -70,13 +81,13 @@ def reliable(
     rows = np.arange(len(recording.s))
     if strict:
         return with_notes(recording, doubts(recording, rows))
-    part, wanted, found = _believable(recording)
-    out = recording.vehicles - int(np.count_nonzero(wanted))
+    found = selection_of(lambda: iter((recording,)))
+    out = len(found.lost)
     if out > MOST_LEFT_OUT * recording.vehicles:
         return with_notes(recording, _rejecting(recording, rows, out, doubts))
-    notes = [left_out_note(x.vehicles, recording.vehicles, x.reason) for x in found]
-    kept = np.repeat(wanted, np.diff(recording.start))
-    return with_notes(part, (*notes, *doubts(part, rows[kept])))
+    kept = np.repeat(~np.isin(recording.vehicle_id, found.lost), np.diff(recording.start))
+    part = with_notes(found.of(recording), found.notes)
+    return with_notes(part, doubts(part, rows[kept]))
 
 
 def _rejecting(
@@ -85,38 +96,105 @@ def _rejecting(
     try:
         return [*doubts(recording, rows)]
     except InputError as error:
-        if out == recording.vehicles:
-            raise  # it is a fault of all together
-        told = f"{out} of {recording.vehicles} vehicles would be left out, more than half"
-        raise InputError(f"{error}; {told}") from None
+        raise too_many(error, out, recording.vehicles) from None
 
 
-def _believable(recording: Recording) -> tuple[Recording, Bools, list[LeftOut]]:
-    """The part without vehicles that contradict themselves, which vehicles it has, and who was left out."""
-    part, wanted, found = recording, np.ones(recording.vehicles, np.bool_), list[LeftOut]()
-    repaired = set[SignalName]()
-    while part.vehicles:
-        checks = check(part)
+def too_many(error: InputError, out: int, of: int) -> InputError:
+    """The error of a recording of which too many vehicles would be left out; of all: it is a common fault."""
+    if out == of:
+        return error
+    return InputError(f"{error}; {out} of {of} vehicles would be left out, more than half")
+
+
+@dataclass
+class Selection:
+    """What a recording is read without. ``lost``: ids; ``repaired``: ids by the signal that is computed.
+
+    ``vehicles``: how many there are.
+    """
+
+    vehicles: int = 0
+    lost: list[int] = field(default_factory=list)
+    found: list[LeftOut] = field(default_factory=list)
+    repaired: dict[SignalName, list[int]] = field(default_factory=dict)
+    repairs: list[str] = field(default_factory=list)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """On what was computed, and on vehicles that were left out."""
+        return (*self.repairs, *(left_out_note(x.vehicles, self.vehicles, x.reason) for x in self.found))
+
+    def of(self, part: Recording) -> Recording:
+        """A recording, or some vehicles of it, without what is left out and with what is computed."""
+        made = keep_vehicles(part, ~np.isin(part.vehicle_id, self.lost)) if self.lost else part
+        for signal, ids in self.repaired.items():
+            made = _repaired(made, signal, np.isin(made.vehicle_id, ids))
+        return made
+
+
+def stands(checks: ContradictionChecks) -> bool:
+    """Whether nothing has to be left out of a recording with these checks."""
+    return checks.off_road() is None and not any(x.refused for x in checks.doubts())
+
+
+def selection_of(parts: Callable[[], Iterator[Recording]]) -> Selection:
+    """What to leave out of a recording, whose vehicles come in ``parts``, each time in the same ones."""
+    chosen = Selection()
+    while True:
+        checks: ContradictionChecks | None = None
+        count = 0
+        for part in map(chosen.of, parts()):
+            count += part.vehicles
+            checks = checks or ContradictionChecks(part.rate, part.lanes)
+            checks.add(part)
+        chosen.vehicles = chosen.vehicles or count
+        if checks is None or not count or stands(checks):
+            return chosen
         rules = {_rule_of(x): x for x in checks.doubts() if x.refused}
-        off = checks.off_road()
-        if off is not None:
-            broken = np.logical_or.reduceat(part.occupancy != 0, part.start[:-1]) == 0
-            reason = _OFF_ROAD
-        elif rules:
-            reason, rule = next(iter(rules.items()))
-            broken = np.array([_breaks(part, k, reason) for k in range(part.vehicles)], np.bool_)
-            if rule.unit == "moving seconds" and rule.signal in _REPAIRED.keys() - repaired:
-                repaired.add(rule.signal)
-                part = _repaired(part, rule.signal, broken)
-                continue
-        else:
-            break
-        if not broken.any():
-            break  # it is a fault of all together, and the recording is rejected for it
-        found.append(LeftOut(reason, tuple(part.vehicle_id[broken].tolist())))
-        wanted[np.flatnonzero(wanted)[broken]] = False
-        part = keep_vehicles(part, ~broken)
-    return part, wanted, found
+        off = checks.off_road() is not None
+        reason = _OFF_ROAD if off else next(iter(rules))
+        broken = [int(x) for part in map(chosen.of, parts()) for x in part.vehicle_id[_broken(part, reason)]]
+        signal = None if off else _computed(rules[reason])
+        if signal is not None and signal not in chosen.repaired:
+            _repair(chosen, parts, signal, broken)
+            continue
+        if not broken:
+            return chosen  # it is a fault of all together, and the recording is rejected for it
+        chosen.found.append(LeftOut(reason, tuple(broken)))
+        chosen.lost += broken
+
+
+def _broken(part: Recording, reason: str) -> Bools:
+    """Which vehicles of a part break a rule, each looked at alone."""
+    if not part.vehicles:
+        return np.zeros(0, np.bool_)
+    if reason == _OFF_ROAD:
+        nowhere: Bools = np.logical_or.reduceat(part.occupancy != 0, part.start[:-1]) == 0
+        return nowhere
+    return np.array([_breaks(part, k, reason) for k in range(part.vehicles)], np.bool_)
+
+
+def _computed(rule: Implausible) -> SignalName | None:
+    """The signal that is computed from others where it breaks a rule; None where there is none."""
+    moving = rule.unit == "moving seconds"
+    return next((x for x in _REPAIRED if moving and x == rule.signal), None)
+
+
+def _repair(
+    chosen: Selection, parts: Callable[[], Iterator[Recording]], signal: SignalName, broken: list[int]
+) -> None:
+    """Choose a signal of some vehicles to be computed.
+
+    Velocities across the road are not computed for vehicles that do not head along it.
+    """
+    ids = broken
+    if signal == "v_lat":
+        along = {int(x) for part in map(chosen.of, parts()) for x in part.vehicle_id[_heads_along(part)]}
+        ids = [x for x in broken if x in along]
+    chosen.repaired[signal] = ids
+    of = chosen.vehicles - len(chosen.lost)
+    if ids:
+        chosen.repairs.append(_REPAIRED[signal].format(f"{len(ids)} of {of} vehicles ({named(ids)})"))
 
 
 def _rule_of(doubt: Implausible) -> str:
@@ -140,12 +218,8 @@ def contradicts_motion(recording: Recording, vehicle: int) -> bool:
     return any(x.unit in limits and x.broken > limits[x.unit] * x.asked for x in doubts)
 
 
-def _repaired(recording: Recording, signal: SignalName, broken: Bools) -> Recording:
-    """The recording with a signal of some vehicles computed from others, and a note on that.
-
-    Velocities across are computed where they follow from headings, for vehicles that head along the road.
-    """
-    vehicles = broken & _heads_along(recording) if signal == "v_lat" else broken
+def _repaired(recording: Recording, signal: SignalName, vehicles: Bools) -> Recording:
+    """The recording with a signal of some vehicles computed from others."""
     if not vehicles.any():
         return recording
     made = {x: getattr(recording, x).copy() for x in ("a_lon", "v_lat", "a_lat")}
@@ -156,14 +230,12 @@ def _repaired(recording: Recording, signal: SignalName, broken: Bools) -> Record
             made["a_lat"][rows] = rate_of_change(made["v_lat"][rows], recording.rate)
         else:
             made["a_lon"][rows] = rate_of_change(recording.v_lon[rows], recording.rate)
-    ids = recording.vehicle_id[vehicles].tolist()
-    told = _REPAIRED[signal].format(f"{len(ids)} of {recording.vehicles} vehicles ({named(ids)})")
-    return with_notes(replace(recording, **made), [told])
+    return replace(recording, **made)
 
 
 def _heads_along(recording: Recording) -> Bools:
     """Which boxes are turned in the plane, and head along the road but for a share of their samples."""
-    if recording.slack is None:
+    if recording.slack is None or not recording.vehicles:
         return np.zeros(recording.vehicles, np.bool_)
     beside = np.add.reduceat(~np.isfinite(recording.slack.along), recording.start[:-1])
     along: Bools = beside <= SHARE * np.diff(recording.start)

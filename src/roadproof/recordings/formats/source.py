@@ -25,8 +25,8 @@ class Format:
     vehicle is left out (reliable.py). It raises ``InputError``.
     ``rate_at``: where the files, {0} being the last, say the ``rate`` (1/s) and ``step`` (s) of samples.
     ``told``: the files in words. ``divide``: a recording that is too large to be read as a whole, in windows,
-    None for others; formats without it are always read as a whole. ``on_road``: the format for recordings on
-    a road of a map, as ``maps.selection`` reads it, where they do not say their own.
+    None for others, strict or not; formats without it are always read as a whole. ``on_road``: the format for
+    recordings on a road of a map, as ``maps.selection`` reads it, where they do not say their own.
     """
 
     name: str
@@ -34,7 +34,7 @@ class Format:
     find: Callable[[Path], dict[str, Files]]
     read: Callable[[Path, bool], Recording]
     rate_at: str
-    divide: Callable[[Path], WindowedRecording | None] | None = None
+    divide: Callable[[Path, bool], WindowedRecording | None] | None = None
     on_road: "Callable[[str], Format] | None" = None
 
 
@@ -55,7 +55,7 @@ class RecordingSource:
     def divided(self) -> WindowedRecording:
         """The recording in windows, one where it is small enough. Raises ``InputError``, reading them too."""
         divide = self.format.divide
-        return (divide and divide(self.files[-1])) or undivided(self.read())
+        return (divide and divide(self.files[-1], self.strict)) or undivided(self.read())
 
     def digests(self) -> list[str]:
         """A digest of the content of each file, empty for one that cannot be read.

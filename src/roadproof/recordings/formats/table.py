@@ -7,7 +7,7 @@ first cell that breaks a rule is named by file, row (the header is row 1), colum
 
 import io
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
@@ -92,6 +92,11 @@ class Table:
             if not max(-values.min(), values.max()) <= most:
                 self.require(np.abs(values) <= most, column, f"must lie between {-most:g} and {most:g}")
 
+    def require_numbers(self, *columns: str) -> None:
+        """Raise for the first cell of the columns that is no finite number."""
+        for column in columns:
+            self.require(np.isfinite(self[column]), column, "a number must be finite")
+
     def require(self, holds: npt.NDArray[np.bool_], column: str, rule: str) -> None:
         """Raise for the first row where ``holds`` is false."""
         if not holds.all():
@@ -114,11 +119,16 @@ def cell_error(path: Path, row: int, column: str, value: object, rule: str) -> I
 
 
 def read_table(
-    path: Path, header: Sequence[str], wanted: Mapping[str, Kind], thousands: bool = False
+    path: Path,
+    header: Sequence[str],
+    wanted: Mapping[str, Kind],
+    thousands: bool = False,
+    gaps: Collection[str] = (),
 ) -> Table:
     """The columns ``wanted`` of a CSV file whose header is exactly ``header``.
 
-    ``thousands``: whether commas in quoted numbers part them.
+    ``thousands``: whether commas in quoted numbers part them. ``gaps``: columns that may have
+    unreadable cells, which come as NaN, as -1 among integers.
     Integers come as int64, numbers as finite float64, texts as str. Raises ``InputError`` for a
     file that cannot be read, is empty or truncated, or breaks a rule above.
     """
@@ -129,7 +139,13 @@ def read_table(
         raise InputError(f"{path}: the file {other}")
     _check_header(path, beginning.partition(b"\n")[0], header)
     rows = _check_shape(content, len(header))
-    return Table(path, _columns(content, content.source(), header, wanted, rows), rows)
+    try:
+        return Table(path, _columns(content, content.source(), header, wanted, rows), rows)
+    except InputError:
+        columns = _read_fast(content.source(), wanted, rows, gaps) if gaps else None
+        if columns is None:
+            raise
+        return Table(path, columns, rows)
 
 
 def read_pieces(path: Path, header: Sequence[str], wanted: Mapping[str, Kind]) -> Iterator[Table]:
@@ -177,10 +193,10 @@ def _columns(
     return columns
 
 
-def read_named(path: Path, wanted: Mapping[str, Kind]) -> Table:
+def read_named(path: Path, wanted: Mapping[str, Kind], gaps: Collection[str] = ()) -> Table:
     """As ``read_table``, for a file that may have other columns too, in any order. Raises ``InputError``."""
     header = Content.of(path).beginning().partition(b"\n")[0].decode("utf-8", "replace").strip().split(",")
-    return read_table(path, header if set(wanted) <= set(header) else tuple(wanted), wanted)
+    return read_table(path, header if set(wanted) <= set(header) else tuple(wanted), wanted, gaps=gaps)
 
 
 def sample_rows(path: Path, header: Sequence[str], names: Sequence[str], count: int) -> list[list[float]]:
@@ -193,8 +209,9 @@ def sample_rows(path: Path, header: Sequence[str], names: Sequence[str], count: 
             file.seek(size * k // count)
             file.readline()
             cells = file.readline().decode("ascii").strip().split(",")
-            if len(cells) == len(header):
-                found.append([float(cells[place]) for place in places])
+            numbers = [cells[place] for place in places] if len(cells) == len(header) else []
+            if numbers and all(_fits(x, "number") for x in numbers):
+                found.append([float(x) for x in numbers])
     return found
 
 
@@ -284,8 +301,10 @@ def _check_shape(content: Content, fields: int) -> int:
     return lines - 1
 
 
-def _read_fast(source: Path | bytes, wanted: Mapping[str, Kind], rows: int) -> dict[str, Column] | None:
-    """All wanted columns, or None if some cell is wrong."""
+def _read_fast(
+    source: Path | bytes, wanted: Mapping[str, Kind], rows: int, gaps: Collection[str] = ()
+) -> dict[str, Column] | None:
+    """All wanted columns, or None if some cell is wrong, but for those in ``gaps``."""
     pl = polars_module()
 
     types = {"integer": pl.Int64, "number": pl.Float64, "text": pl.String, "list": pl.String}
@@ -296,12 +315,14 @@ def _read_fast(source: Path | bytes, wanted: Mapping[str, Kind], rows: int) -> d
             schema_overrides={name: types[kind] for name, kind in wanted.items()},
             quote_char=None,
             infer_schema=False,
+            ignore_errors=bool(gaps),
         )
     except (pl.exceptions.PolarsError, UnicodeDecodeError):
         return None
     full = {
         name: frame[name].fill_null("") if kind == "list" else frame[name] for name, kind in wanted.items()
     }
+    full |= {name: full[name].fill_null(math.nan if wanted[name] == "number" else -1) for name in gaps}
     if frame.height != rows or any(values.null_count() for values in full.values()):
         return None
     return {name: values.to_numpy() for name, values in full.items()}

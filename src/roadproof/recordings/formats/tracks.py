@@ -1,6 +1,6 @@
 """Samples of tracks in one file and what another says of each track, as highD and exiD have them."""
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import Path
 from typing import TypeAlias
 
@@ -10,7 +10,7 @@ from roadproof.errors import InputError
 from roadproof.recordings.formats.recording import Bools, Integers, Recording
 from roadproof.recordings.formats.reliable import MOST_LEFT_OUT, left_out_note
 from roadproof.recordings.formats.source import TRACK_FILES, Files, first_line, with_suffix
-from roadproof.recordings.formats.table import CellError, Table
+from roadproof.recordings.formats.table import CellError, Kind, Table
 
 TRACKS = "_tracks.csv"
 RATE_AT = "{2}, row 2, column frameRate={rate}"
@@ -49,6 +49,13 @@ def rate_of(meta: Table, column: str, number: int, rule: str) -> int:
     if not (0 < rate <= 1000 and rate == int(rate)):
         raise meta.refuse(0, "frameRate", "a whole number of frames a second is needed")
     return int(rate)
+
+
+def cells_of(kinds: Mapping[str, Kind], ids: Collection[str], strict: bool) -> tuple[str, ...]:
+    """The columns of tracks whose unreadable cells cost their vehicle; ``ids`` say which that is."""
+    if strict:
+        return ()
+    return tuple(x for x, kind in kinds.items() if x not in ids and kind in ("integer", "number"))
 
 
 def vehicles_by_id(meta: Table, column: str) -> Table:
@@ -157,12 +164,14 @@ def match_vehicles(meta: Table, tracks: Table, column: str, least: int) -> Integ
     if len(gaps):
         before, after = tracks["frame"][gaps[0]], tracks["frame"][gaps[0] + 1]
         vehicle = tracks[column][gaps[0]]
-        where = f"{tracks.path}, vehicle {column}={vehicle}, frame={after}"
-        raise InputError(f"{where}: the frame before it is {before}; the frames of a vehicle have no gaps")
+        told = f"vehicle {column}={vehicle}, frame={after}: the frame before it is {before}"
+        place = tracks.place(int(gaps[0]) + 1)
+        raise CellError(tracks.path, f"{told}; the frames of a vehicle have no gaps", place)
     for name, found in (("initialFrame", tracks["frame"][first]), ("numFrames", counts)):
         wrong = np.flatnonzero(meta[name] != found)
         if len(wrong):
             k = wrong[0]
-            where = f"{meta.path}, vehicle {column}={meta[column][k]}, column {name}={meta[name][k]}"
-            raise InputError(f"{where}: {tracks.path.name} has {found[k]}; the files must agree")
+            where = f"vehicle {column}={meta[column][k]}, column {name}={meta[name][k]}"
+            told = f"{where}: {tracks.path.name} has {found[k]}; the files must agree"
+            raise CellError(meta.path, told, meta.place(int(k)))
     return start
