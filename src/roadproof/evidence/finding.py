@@ -35,6 +35,8 @@ _EXIT = {
 
 
 Kind: TypeAlias = Literal["certificate", "drive", "index", "journal", "test", "none", ""]
+STALE: Final = "is stale; ask again"
+"""The end of the reason where an answer is about tests that are others now."""
 NO_EVIDENCE: Final = "none"  # the kind of an answer that promises nothing, or nothing that is for all time
 
 

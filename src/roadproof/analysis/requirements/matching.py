@@ -16,13 +16,13 @@ from roadproof.analysis.requirements.checked_evidence import (
 from roadproof.analysis.requirements.requirement import Link
 from roadproof.errors import TextError
 from roadproof.evidence.answers.trace import LinkState
-from roadproof.evidence.finding import Acceptance
+from roadproof.evidence.finding import STALE, Acceptance
 from roadproof.library.bind import default_values
 from roadproof.library.elaborate import apply_definition
 from roadproof.library.scenario_references import read_query
 from roadproof.library.specification import Query, Specification
 
-_LABEL = re.compile(r"[A-Za-z][\w-]*( scenario \d+)?( [A-Za-z]\w*)?")
+_LABEL = re.compile(r"[A-Za-z][\w-]*( scenario \d+)? [A-Za-z][\w-]*")
 _SHOWN = {
     "PROVED": LinkState.PROVED,
     "IMPOSSIBLE": LinkState.PROVED,
@@ -95,10 +95,10 @@ def shown_by(
         case "test":
             found = _of_test(target.link.target, evidence)
         case "plate":
-            found = (Shown(x, _plain_state(x)) for x in evidence if _is_plate(x, target.link.target))
+            found = (_by_itself(x) for x in evidence if _is_plate(x, target.link.target))
         case "evidence":
             place = (folder / target.link.target).resolve()
-            found = (Shown(x, _plain_state(x)) for x in evidence if _is_at(x, place))
+            found = (_by_itself(x) for x in evidence if _is_at(x, place))
     return [_with_values(x, values) for x in found]
 
 
@@ -121,18 +121,21 @@ def _not_accepted(x: CheckedEvidence) -> Shown | None:
     finding = x.finding
     if finding.outcome is Acceptance.ACCEPTED:
         return None
-    undecided = finding.outcome is Acceptance.UNDECIDED
-    return Shown(x, LinkState.UNKNOWN if undecided else LinkState.REJECTED, finding.reason)
+    if finding.outcome is Acceptance.UNDECIDED:
+        return Shown(x, LinkState.UNKNOWN, finding.reason)
+    state = LinkState.STALE if finding.reason.endswith(STALE) else LinkState.REJECTED
+    return Shown(x, state, finding.reason)
 
 
-def _plain_state(x: CheckedEvidence) -> LinkState:
+def _by_itself(x: CheckedEvidence) -> Shown:
     """What evidence says of itself."""
     wrong = _not_accepted(x)
     if wrong is not None:
-        return wrong.state
+        return wrong
     if x.remark:
-        return LinkState.REFUTED
-    return _SHOWN.get(x.finding.verdict, LinkState.UNKNOWN)
+        return Shown(x, LinkState.REFUTED, x.remark)
+    state = _SHOWN.get(x.finding.verdict, LinkState.UNKNOWN)
+    return Shown(x, state, "" if state.is_shown else x.finding.verdict)
 
 
 def _of_formula(target: Target, evidence: Sequence[CheckedEvidence]) -> Iterator[Shown]:

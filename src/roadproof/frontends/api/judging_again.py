@@ -21,7 +21,7 @@ from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers import coverage
 from roadproof.evidence.answers.catalogue_index import SCHEMA, AbstractTest, ConcreteTest, Index, KeptFact
 from roadproof.evidence.codec import read, write
-from roadproof.evidence.finding import Acceptance, Finding
+from roadproof.evidence.finding import STALE, Acceptance, Finding
 from roadproof.evidence.folder import INDEX, FolderStatements
 from roadproof.evidence.strict import Fields, JsonObject, read_json
 from roadproof.frontends.api.definitions import Definitions
@@ -151,15 +151,15 @@ def _tests(index: Fields, again: Index, where: str) -> Iterator[Finding]:
         yield _of_test(name, said.get(name), test, where)
     for name in said:
         if name not in now:
-            yield _rejected(where, "there is no such test now: the answer is stale; ask again", name)
+            yield _rejected(where, f"there is no such test now: the answer {STALE}", name)
 
 
 def _of_test(name: str, said: JsonObject | None, now: ConcreteTest | AbstractTest, where: str) -> Finding:
     if said is None:
-        return _rejected(where, "the answer does not know this test: it is stale; ask again", name)
+        return _rejected(where, f"the answer does not know this test: it {STALE}", name)
     if isinstance(now, ConcreteTest) and said.get("sha256") != now.sha256:
         gone = "is not there any more" if not now.sha256 else "has changed since it was judged"
-        return _rejected(where, f"{now.file} {gone}: the answer is stale; ask again", name)
+        return _rejected(where, f"{now.file} {gone}: the answer {STALE}", name)
     data = write(now)
     wrong = [key for key in dict.fromkeys((*said, *data)) if said.get(key) != data.get(key)]
     if wrong:

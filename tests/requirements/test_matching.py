@@ -1,0 +1,137 @@
+"""What evidence of each kind says of a link, on findings that are put together here."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from roadproof.analysis.requirements.checked_evidence import CheckedEvidence, read_findings
+from roadproof.analysis.requirements.matching import combined, read_target, shown_by
+from roadproof.analysis.requirements.requirement import Link
+from roadproof.errors import TextError
+from roadproof.evidence.answers.trace import LinkState
+from roadproof.evidence.finding import STALE, Acceptance, Finding
+from roadproof.library.loading import bundled_library
+
+HOME = bundled_library().select()
+GOOD = Acceptance.ACCEPTED
+PLATE = Finding("p.json", "drive", GOOD, "", "WITNESSED", "careful-Vy-1, unpreventable", "v_lon(SV) > 1 m/s")
+TEST = Finding("index.json", "test", GOOD, "", "JUDGED", "test CUT-1", "shows class_1, scenario_1")
+OURS = "F v_lon(SV) > 3 m/s"
+
+
+def state(link: Link, *findings: Finding) -> tuple[LinkState, str]:
+    return combined(link.kind, shown_by(read_target(link, HOME, "here"), checked(*findings), {}, Path()))
+
+
+def checked(*findings: Finding) -> list[CheckedEvidence]:
+    return read_findings(findings, (), HOME)
+
+
+@pytest.mark.parametrize(
+    ("verdict", "claim", "scenario"),
+    [
+        ("PROVED", "proved", "proved"),
+        ("VACUOUS", "unknown", "unknown"),
+        ("REFUTED", "refuted", "unknown"),
+        ("WITNESSED", "unknown", "witnessed"),
+        ("IMPOSSIBLE", "refuted", "refuted"),
+        ("NONE-WITHIN", "unknown", "unknown"),
+        ("PROVED-BOUNDED", "unknown", "unknown"),
+        ("UNKNOWN", "unknown", "unknown"),
+        ("CROSSCHECK-FAILED", "unknown", "unknown"),
+    ],
+)
+def test_each_verdict_says_what_it_shows(verdict: str, claim: str, scenario: str) -> None:
+    found = Finding("x.json", "certificate", GOOD, "", verdict, "", OURS)
+    assert state(Link("claim", f" {OURS} "), found)[0] == claim
+    assert state(Link("scenario", OURS), found)[0] == scenario
+    other = replace(found, claim="F v_lon(SV) > 4 m/s")
+    assert state(Link("claim", OURS), other)[0] == state(Link("scenario", OURS), other)[0] == "missing"
+
+
+@pytest.mark.parametrize(
+    ("outcome", "expected"),
+    [
+        (Acceptance.REJECTED, "rejected"),
+        (Acceptance.UNREADABLE, "rejected"),
+        (Acceptance.FAULT, "rejected"),
+        (Acceptance.UNDECIDED, "unknown"),
+    ],
+)
+@pytest.mark.parametrize("kind", ["claim", "scenario", "test", "plate"])
+def test_evidence_that_is_not_accepted_shows_nothing(outcome: Acceptance, expected: str, kind: str) -> None:
+    links = {"claim": OURS, "scenario": OURS, "test": "CUT-1", "plate": "careful-Vy-1"}
+    found = {
+        "test": TEST,
+        "plate": PLATE,
+        **dict.fromkeys(
+            ("claim", "scenario"), Finding("x.json", "certificate", GOOD, "", "PROVED", "", OURS)
+        ),
+    }
+    bad = replace(found[kind], outcome=outcome, reason="why")
+    assert state(Link(kind, links[kind]), bad) == (expected, "why")  # type: ignore[arg-type]
+
+
+def test_a_refutation_counts_before_a_proof_and_a_proof_before_a_doubt() -> None:
+    proof = Finding("x.json", "certificate", GOOD, "", "PROVED", "", OURS)
+    doubt, no = replace(proof, verdict="UNKNOWN"), replace(proof, verdict="WITNESSED", claim=f"not ({OURS})")
+    damaged = replace(proof, outcome=Acceptance.REJECTED)
+    assert state(Link("claim", OURS), doubt, proof)[0] == "proved"
+    assert state(Link("claim", OURS), damaged, proof)[0] == "rejected"
+    assert state(Link("claim", OURS), proof, no, damaged)[0] == "refuted"
+
+
+def test_assumptions_are_a_part_of_a_claim() -> None:
+    assumed = f"at minDanger = 0.6 s: {OURS}"
+    found = Finding("x.json", "certificate", GOOD, "", "PROVED", "", assumed)
+    assert state(Link("claim", assumed), found)[0] == "proved"
+    assert state(Link("claim", OURS), found)[0] == "missing"
+    assert state(Link("claim", f"at minDanger = 0.7 s: {OURS}"), found)[0] == "missing"
+
+
+@pytest.mark.parametrize(
+    ("change", "expected", "reason"),
+    [
+        ({}, "witnessed", ""),
+        ({"claim": "shows no scenario"}, "unknown", "it shows no scenario"),
+        ({"claim": "cannot be read: torn"}, "rejected", "cannot be read: torn"),
+        ({"verdict": "READ", "kind": "index"}, "unknown", "no drive of its formula was found"),
+        ({"label": "CUT-1 runs", "verdict": "WITNESSED", "kind": "drive"}, "witnessed", ""),
+        ({"label": "CUT-1 runs", "verdict": "IMPOSSIBLE"}, "refuted", "it is proved that no drive shows it"),
+        ({"label": "CUT-1 excludes scenario_4"}, "missing", "there is no evidence for it"),
+        ({"label": "test CUT-11"}, "missing", "there is no evidence for it"),
+        (
+            {"label": "CUT-1", "outcome": Acceptance.REJECTED, "reason": f"the answer {STALE}"},
+            "stale",
+            f"the answer {STALE}",
+        ),
+    ],
+)
+def test_tests_of_a_catalogue(change: dict[str, str], expected: str, reason: str) -> None:
+    found = replace(TEST, **change)  # type: ignore[arg-type]
+    assert state(Link("test", "CUT-1"), found) == (expected, reason)
+
+
+def test_a_test_that_is_not_what_it_claims_is_refuted(tmp_path: Path) -> None:
+    index = {"schema": "roadproof/catalogue/1", "contradictions": []}
+    faults = [{"tests": ["CUT-1"], "told": "claims scenario_4, and shows scenario_1"}]
+    (tmp_path / "index.json").write_text(json.dumps(index | {"faults": faults}), "utf-8")
+    found = replace(TEST, where=str(tmp_path / "index.json"))
+    told = (LinkState.REFUTED, "claims scenario_4, and shows scenario_1")
+    assert state(Link("test", "CUT-1"), found) == told
+    assert state(Link("test", "CUT-2"), replace(found, label="test CUT-2"))[0] == "witnessed"
+
+
+def test_all_parts_of_a_plate_count() -> None:
+    other = replace(PLATE, label="careful-Vy-1, preventable")
+    link = Link("plate", "careful-Vy-1")
+    assert state(link, PLATE, other)[0] == "witnessed"
+    assert state(link, PLATE, replace(other, verdict="UNKNOWN")) == (LinkState.UNKNOWN, "UNKNOWN")
+    assert state(link, replace(PLATE, label="careful-Vy-10, preventable"))[0] == "missing"
+
+
+def test_a_word_is_no_label() -> None:
+    with pytest.raises(TextError):
+        state(Link("claim", "base"))
