@@ -26,6 +26,7 @@ READERS_OF_NODES = {
         "frontends/report/viewer_data.py",
         "semantics/sampled/recursive.py",
         "semantics/sampled/semantics.py",
+        "semantics/streaming/plan.py",
         "engines/encode/unroll.py",
     ),
     *(

@@ -6,7 +6,7 @@ A relation is what a formula says of lanes (``atLane(SV, L)``): whoever calls th
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TypeAlias, assert_never
+from typing import TypeAlias
 
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
@@ -21,6 +21,16 @@ from roadproof.world.units import unit_text
 Lane: TypeAlias = f.Occupies | f.Some | f.Every
 Source: TypeAlias = t.Signal | t.Size | t.Own | Lane
 """What a field of a sample says."""
+_MEANINGS: Mapping[SignalName, tuple[str, str]] = {
+    "s": ("front end", "along the road"),
+    "d": ("left side", "across the road, growing to the left"),
+    "v_lon": ("velocity", "along the road"),
+    "v_lat": ("velocity", "across the road, to the left"),
+    "a_lon": ("acceleration", "along the road"),
+    "a_lat": ("acceleration", "across the road, to the left"),
+    "j_lon": ("jerk", "along the road"),
+}
+"""What a signal is of a vehicle, and in which direction."""
 _RELATIONS = (f.Occupies, f.Some, f.Every, f.Not, f.And, f.Or, f.Application, f.Truth)
 
 
@@ -66,27 +76,8 @@ def _about(leaf: t.Signal | t.Size) -> str:
         if leaf.name == "kind":
             return ", ".join(f"{k} {kind}" for k, kind in enumerate(KINDS, 1))
         return f"{SIZES[leaf.name]}: {leaf.name} of {leaf.vehicle}, greater than 0"
-    return f"{SIGNALS[leaf.name].unit}: {_meaning(leaf.name, leaf.vehicle)}"
-
-
-def _meaning(name: SignalName, vehicle: str) -> str:
-    match name:
-        case "s":
-            return f"front end of {vehicle} along the road"
-        case "d":
-            return f"left side of {vehicle} across the road, growing to the left"
-        case "v_lon":
-            return f"velocity of {vehicle} along the road"
-        case "v_lat":
-            return f"velocity of {vehicle} across the road, to the left"
-        case "a_lon":
-            return f"acceleration of {vehicle} along the road"
-        case "a_lat":
-            return f"acceleration of {vehicle} across the road, to the left"
-        case "j_lon":
-            return f"jerk of {vehicle} along the road"
-        case _:
-            assert_never(name)
+    what, where = _MEANINGS.get(leaf.name, (leaf.name, ""))
+    return f"{SIGNALS[leaf.name].unit}: {what} of {leaf.vehicle} {where}".rstrip()
 
 
 def _about_own(own: t.Own) -> str:
