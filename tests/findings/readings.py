@@ -46,11 +46,11 @@ def pairs_of_a_sector(outcome: Outcome) -> tuple[str, int]:
     return _as_list(of_sector[0]), 21 - len(of_sector[0])
 
 
-def disturbances_apart(outcome: Outcome) -> tuple[int, str, int, int, int]:
-    """Kinds of disturbances that exclude each other in all sectors: how many, which, and pairs by verdict."""
+def disturbances_apart(outcome: Outcome) -> tuple[int, str]:
+    """Kinds of disturbances that exclude each other in all sectors: how many, and which."""
     apart, together = pairs_with(outcome, "IMPOSSIBLE"), pairs_with(outcome, "WITNESSED")
     kinds = sorted({_kinds(pair) for pair in apart} - {_kinds(pair) for pair in together})
-    return len(kinds), _as_list(kinds), len(apart), len(apart | together), len(together)
+    return len(kinds), _as_list(kinds)
 
 
 def _kinds(pair: tuple[int, int]) -> tuple[int, int]:
