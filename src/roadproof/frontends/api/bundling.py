@@ -9,7 +9,7 @@ import sys
 import sysconfig
 import tarfile
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
@@ -69,8 +69,9 @@ class Bundle:
 def bundle(*results: str | Path, out: str | Path, **options: Unpack[BundleKeywords]) -> Bundle:
     """Write evidence with all that its check needs into one archive, which is the same for the same content.
 
-    ``results``: folders of evidence and files, all below the working directory, whose paths are kept; the
-    tests of a catalogue come with its answer. ``out``: NAME.tar.gz. ``specs``: specification files.
+    ``results``: folders of evidence, and other files such as requirements, all below the working directory,
+    whose paths are kept; the tests of a catalogue come with its answer. ``out``: NAME.tar.gz.
+    ``specs``: specification files.
     ``wheel``: the wheel of this version, where pip cannot make it; ``wheels``: whether the files of all
     packages are inside, so that the check needs no network. ``sign``: an Ed25519 key in PEM, by which
     NAME.tar.gz.sig is made. Raises ``InputError``, ``UsageError``, ``MissingSolverError``.
@@ -79,17 +80,16 @@ def bundle(*results: str | Path, out: str | Path, **options: Unpack[BundleKeywor
     target = Path(out)
     if not target.name.endswith(".tar.gz"):
         raise UsageError(f"out={target}: name a file that ends with .tar.gz")
-    if not results:
-        raise UsageError("name at least one folder of evidence")
     key = None if asked.sign is None else _signing_key(Path(asked.sign))
     named, specs = [_inside(Path(x)) for x in results], [_inside(Path(x)) for x in asked.specs]
-    evidence = _with_tests(named)
-    files = {path.as_posix(): path.read_bytes() for path in _files([*evidence, *specs])}
-    content, checked = _page(named, specs, asked.progress)
+    evidence = [x for x in named if x.is_dir() or x.suffix == ".json"]
+    everything = dict.fromkeys([*named, *_tests_of(evidence), *specs])
+    files = {path.as_posix(): path.read_bytes() for path in _files(everything)}
+    content, checked = _page(evidence, specs, asked.progress)
     files[PAGE] = content
     pinned = _packages(files, asked.wheel, asked.wheels)
     files[REQUIREMENTS] = "".join(f"{x.line}\n" for x in pinned).encode()
-    checkable = [x.as_posix() for x in read_results(named).checkable]
+    checkable = [x.as_posix() for x in read_results(evidence).checkable]
     files["check.sh"] = _script(checkable, [x.as_posix() for x in specs], checked.exit_code, asked.wheels)
     manifest = _manifest(checkable, specs, checked, pinned, files)
     files[MANIFEST] = (json.dumps(write(manifest), indent=1) + "\n").encode()
@@ -110,17 +110,15 @@ def _inside(path: Path) -> Path:
     return absolute.relative_to(Path.cwd().resolve())
 
 
-def _with_tests(named: Sequence[Path]) -> list[Path]:
-    """The same with the tests of catalogues, whose answers are judged again from them."""
-    tests: list[Path] = []
-    for result in read_results(named).results:
+def _tests_of(evidence: Sequence[Path]) -> Iterator[Path]:
+    """The tests of catalogues, whose answers are judged again from them. Raises ``InputError``."""
+    for result in read_results(evidence).results:
         request = result.data.get("request") if result.schema == CATALOGUE else None
         paths = request.get("paths") if isinstance(request, Mapping) else None
-        tests += [_inside(Path(str(x))) for x in paths] if isinstance(paths, list) else []
-    return list(dict.fromkeys([*named, *tests]))
+        yield from (_inside(Path(str(x))) for x in (paths if isinstance(paths, list) else ()))
 
 
-def _files(paths: Sequence[Path]) -> Iterator[Path]:
+def _files(paths: Iterable[Path]) -> Iterator[Path]:
     """All files of folders and files, once; hidden ones are left out."""
     found = (y for x in paths for y in (sorted(x.rglob("*")) if x.is_dir() else [x]))
     yield from dict.fromkeys(x for x in found if x.is_file() and not x.name.startswith("."))
@@ -131,6 +129,8 @@ def _page(
 ) -> tuple[bytes, CheckReport]:
     """The page about the evidence, and what was found of it. Raises ``UsageError`` where there is none."""
     with tempfile.TemporaryDirectory() as folder:
+        if not named:
+            raise UsageError("name at least one folder of evidence")
         made = page(*named, out=Path(folder) / PAGE, specs=specs, progress=progress, title="Bundle")
         if made.checked is None:
             raise UsageError(f"{', '.join(map(str, named))}: no evidence to check; name folders of --out")
