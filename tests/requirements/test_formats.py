@@ -2,6 +2,7 @@
 
 import json
 import os
+import random
 import shutil
 import subprocess
 import sys
@@ -126,8 +127,8 @@ text: |
 
 
 def bare(found: Sequence[Requirement]) -> list[Requirement]:
-    """Requirements without their places, one space between words of links."""
-    return [replace(x, place=NOWHERE) for x in found]
+    """Requirements without their places, and without identifiers of ReqIF."""
+    return [replace(x, place=NOWHERE, identifier="") for x in found]
 
 
 def test_strictdoc(tmp_path: Path) -> None:
@@ -347,6 +348,11 @@ def test_reqif_of_other_tools(tmp_path: Path) -> None:
         Requirement("o2", "Two things.", NOWHERE, parents=("17",), links=links),
         Requirement("o3", "Three.", NOWHERE, parents=("17",)),
     ]
+    assert [x.identifier for x in found.requirements] == ["o1", "o2", "o3"]
+    again = read_requirements(rp.requirements(path, jobs=1).save_reqif(tmp_path / "again.reqif"))
+    assert [replace(x, place=NOWHERE) for x in again.requirements] == [
+        replace(x, place=NOWHERE) for x in found.requirements
+    ]
     assert found.notes == (f"{path}: 1 objects have no text, such as headings, and are left out",)
 
 
@@ -399,3 +405,25 @@ def test_another_library_reads_the_reqif(exported: Path) -> None:
     assert "if a &lt; b &amp; c &gt; d," in second["ReqIF.Text"]
     assert found["relations"] == [[found["ids"][1], found["ids"][0]]]
     assert found["order"] == found["ids"]
+    command = [python, "-m", "reqif.cli.main", "validate", "--use-reqif-schema", str(exported)]
+    checked = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert "0 errors, 0 schema issues found, 0 semantic issues" in checked.stdout, checked.stdout
+
+
+@pytest.mark.parametrize("name", ["a.sdoc", "a.reqif", "TOP001.yml", "a.toml"])
+def test_damaged_files_are_read_or_refused(doorstop: Path, name: str) -> None:
+    """A file with a piece cut out, doubled or replaced never ends in another error than ``InputError``."""
+    text = {"a.sdoc": SDOC, "a.reqif": FOREIGN, "TOP001.yml": ITEM, "a.toml": TOML}[name]
+    path, dice, refused = doorstop / name, random.Random(7), 0
+    for _ in range(200):
+        begin = dice.randrange(len(text))
+        end = min(len(text), begin + dice.randrange(1, 40))
+        piece = dice.choice(
+            ["", text[begin:end] * 2, "\x00", ">>>", "<<<", "'", "- ", "[", "]]", "ä\n", "&a;"]
+        )
+        path.write_text(text[:begin] + piece + text[end:], "utf-8")
+        try:
+            read_requirements(doorstop if name.endswith(".yml") else path)
+        except InputError:
+            refused += 1
+    assert refused

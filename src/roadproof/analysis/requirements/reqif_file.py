@@ -58,6 +58,7 @@ def read_reqif(path: Path) -> Requirements:
             x.first(_TITLES),
             tuple(dict.fromkeys(ids[y] for y in parents.get(x.identifier, ()))),
             split_links(x.values),
+            x.identifier,
         )
         for x in objects
         if x.identifier in ids

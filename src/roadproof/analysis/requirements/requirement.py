@@ -33,7 +33,8 @@ class Link:
 @dataclass(frozen=True)
 class Requirement:
     """``parents``: the requirements that it is a part of or derived from, by id; ``place``: where it is
-    written."""
+    written. ``identifier``: that of its object in ReqIF, empty in other formats.
+    """
 
     id: str
     text: str
@@ -41,6 +42,7 @@ class Requirement:
     title: str = ""
     parents: tuple[str, ...] = ()
     links: tuple[Link, ...] = ()
+    identifier: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)

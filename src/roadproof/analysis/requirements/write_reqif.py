@@ -1,7 +1,7 @@
 """Requirements with their states as ReqIF 1.2, for a requirements tool."""
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from datetime import datetime
 
 from roadproof.analysis.requirements.requirement import FIELDS
@@ -14,21 +14,24 @@ _XHTML = "http://www.w3.org/1999/xhtml"
 _STRINGS = ("ReqIF.ForeignID", "ReqIF.Name", "roadproof.state", *(f"roadproof.{x}" for x in FIELDS))
 _TEXT = "ReqIF.Text"
 _LONGEST = "100000"
+# The schema of ReqIF 1.2 allows no other REQ-IF-VERSION than 1.0.
 
 
-def as_reqif(answer: Answer, title: str, changed: datetime) -> bytes:
+def as_reqif(answer: Answer, title: str, changed: datetime, identifiers: Mapping[str, str]) -> bytes:
     """A .reqif file: an object for each requirement, its parents as relations, its links as attributes.
 
-    ``changed``: when the requirements were changed last.
+    ``changed``: when the requirements were changed last. ``identifiers``: of the objects of requirements that
+    came from ReqIF, so that a tool knows them again.
     """
-    return _Writer(changed.isoformat(timespec="seconds")).file(answer, title)
+    return _Writer(changed.isoformat(timespec="seconds"), identifiers).file(answer, title)
 
 
 class _Writer:
     """Writes elements that all say when they were changed last."""
 
-    def __init__(self, changed: str) -> None:
+    def __init__(self, changed: str, identifiers: Mapping[str, str]) -> None:
         self.changed = changed
+        self.identifiers = identifiers
 
     def file(self, answer: Answer, title: str) -> bytes:
         content = element(
@@ -53,7 +56,7 @@ class _Writer:
             "REQ-IF-HEADER",
             element("CREATION-TIME", text=self.changed),
             element("REQ-IF-TOOL-ID", text=f"roadproof {VERSION}"),
-            element("REQ-IF-VERSION", text="1.2"),
+            element("REQ-IF-VERSION", text="1.0"),
             element("SOURCE-TOOL-ID", text="roadproof"),
             element("TITLE", text=title),
             IDENTIFIER=_id("header", title),
@@ -83,10 +86,13 @@ class _Writer:
         values = [_string(name, value) for name, value in said.items() if value]
         return self._plain(
             "SPEC-OBJECT",
-            _id("object", x.id),
+            self._object_id(x.id),
             element("TYPE", element("SPEC-OBJECT-TYPE-REF", text=_id("type", "Requirement"))),
             element("VALUES", *values, _formatted(x.text)),
         )
+
+    def _object_id(self, name: str) -> str:
+        return self.identifiers.get(name) or _id("object", name)
 
     def _relations(self, answer: Answer) -> Iterator[Element]:
         for x in answer.requirements:
@@ -95,8 +101,8 @@ class _Writer:
                     "SPEC-RELATION",
                     _id("relation", f"{x.id}\n{parent}"),
                     element("TYPE", element("SPEC-RELATION-TYPE-REF", text=_id("type", "derived from"))),
-                    element("SOURCE", element("SPEC-OBJECT-REF", text=_id("object", x.id))),
-                    element("TARGET", element("SPEC-OBJECT-REF", text=_id("object", parent))),
+                    element("SOURCE", element("SPEC-OBJECT-REF", text=self._object_id(x.id))),
+                    element("TARGET", element("SPEC-OBJECT-REF", text=self._object_id(parent))),
                 )
 
     def _specification(self, answer: Answer, title: str) -> Element:
@@ -104,7 +110,7 @@ class _Writer:
             self._plain(
                 "SPEC-HIERARCHY",
                 _id("place", x.id),
-                element("OBJECT", element("SPEC-OBJECT-REF", text=_id("object", x.id))),
+                element("OBJECT", element("SPEC-OBJECT-REF", text=self._object_id(x.id))),
             )
             for x in answer.requirements
         )

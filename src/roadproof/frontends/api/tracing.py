@@ -94,7 +94,8 @@ class Traced(Table, BuildResult):
         fixed = os.environ.get("SOURCE_DATE_EPOCH", "")
         changed = int(fixed) if fixed.isdecimal() else int(self.given.file.stat().st_mtime)
         when = datetime.fromtimestamp(changed, UTC)
-        write_whole(path, as_reqif(self.answer, self.given.file.stem, when))
+        identifiers = {x.id: x.identifier for x in self.given.requirements}
+        write_whole(path, as_reqif(self.answer, self.given.file.stem, when, identifiers))
         return path
 
     def __repr__(self) -> str:
