@@ -14,6 +14,7 @@ from roadproof.runtime.progress import listening
 
 if TYPE_CHECKING:
     from roadproof.analysis.claims import ClaimResult, Claims
+    from roadproof.engines.prove.properties import WrittenClaim
     from roadproof.frontends.report.ci.cases import Location
 
 SUMMARY = "prove claims for all time, or refute them"
@@ -57,7 +58,7 @@ def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.report.claims import details, line
 
     given = Prove.of(study_keywords(args, Prove))
-    asked, places = _asked(args, given)
+    asked = _asked(args, given)
 
     def show(name: str, answer: "ClaimResult") -> None:
         clear()
@@ -74,29 +75,37 @@ def run(args: argparse.Namespace) -> int:
         found = found.put_to_kernel(given.jobs, Counter())
         if args.json != "-":
             print(found.kernel_text())
-    write_build_results(args, replace(found, places=places))
+    write_build_results(args, replace(found, places=_places(args, asked)))
     if args.json:
         write_json(found.as_data(), args.json)
     tell_bends(found.road)
     return found.exit_code
 
 
-def _asked(args: argparse.Namespace, given: Prove) -> "tuple[Claims, dict[str, Location]]":
-    """The claims, and where those of a file are written, by ``task.name``."""
-    from roadproof.engines.prove.properties import read_claims
+def _asked(args: argparse.Namespace, given: Prove) -> "Claims":
     from roadproof.frontends.api.proofs import claims_asked
-    from roadproof.frontends.report.ci.cases import Location
     from roadproof.library.motion import read_under
 
     home = read_definitions(args, Prove)
-    written = [] if args.file is None else read_claims(args.file)
+    written = _written(args)
     if args.file is not None and not (written or args.claims):
         raise UsageError(f"{args.file} contains no claim: write one per paragraph")
     what = [*args.claims, *(read_under(home.specification, x.text) for x in written)]
-    asked = claims_asked(home, what, args.sets[0] if args.sets else None, given)
+    return claims_asked(home, what, args.sets[0] if args.sets else None, given)
+
+
+def _written(args: argparse.Namespace) -> "list[WrittenClaim]":
+    """The claims of the file of ``--claims``, which are asked last."""
+    from roadproof.engines.prove.properties import read_claims
+
+    return [] if args.file is None else read_claims(args.file)
+
+
+def _places(args: argparse.Namespace, asked: "Claims") -> "dict[str, Location]":
+    """Where the claims of a file are written, by ``task.name``."""
+    from roadproof.frontends.report.ci.cases import Location
+
+    written = _written(args)
     tasks = asked.tasks[len(asked.tasks) - len(written) :]
-    places = {
-        task.name: Location(str(args.file), x.at.line, x.at.column)
-        for task, x in zip(tasks, written, strict=True)
-    }
-    return asked, places
+    places = (Location(str(args.file), x.at.line, x.at.column) for x in written)
+    return dict(zip((x.name for x in tasks), places, strict=True))

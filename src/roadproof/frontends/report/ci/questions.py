@@ -1,15 +1,12 @@
 """The cases of each question."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from roadproof.analysis.catalogue.tested import Targets
-from roadproof.analysis.claims import ClaimResult, Claims
-from roadproof.analysis.coverage.answers import Survey
-from roadproof.analysis.preventable.study import LemmaResult, Plate
-from roadproof.engines.search.ask import Outcome
-from roadproof.evidence.answers.catalogue_index import Remark
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
 from roadproof.frontends.report.ci.cases import (
     Case,
@@ -25,6 +22,14 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Specification
 from roadproof.logic.syntax import Expression
 from roadproof.verdict import Verdict
+
+if TYPE_CHECKING:
+    from roadproof.analysis.catalogue.tested import Targets
+    from roadproof.analysis.claims import ClaimResult, Claims
+    from roadproof.analysis.coverage.answers import Survey
+    from roadproof.analysis.preventable.study import LemmaResult, Plate
+    from roadproof.engines.search.ask import Outcome
+    from roadproof.evidence.answers.catalogue_index import Remark
 
 
 def written(case: Case, specification: Specification, expression: Expression) -> Case:
