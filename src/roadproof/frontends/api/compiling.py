@@ -20,6 +20,7 @@ from roadproof.logic.formula import Application, Formula
 from roadproof.logic.rewrite import with_values
 from roadproof.runtime.files import hold_folder, write_whole
 from roadproof.semantics.streaming.c_files import FLAGS, CSource, compile_c
+from roadproof.semantics.streaming.functions import StreamMonitor
 
 Target: TypeAlias = Literal["c"]
 
@@ -42,7 +43,7 @@ class CompiledMonitors(Table):
             {
                 "function": f"{x.label}_step",
                 "formula": x.told,
-                "about": "the first sample" if x.plan.at_start else "each sample",
+                "about": _about(x),
                 "delay": float(x.plan.delay * self.source.dt),
                 "memory": x.memory,
             }
@@ -52,8 +53,8 @@ class CompiledMonitors(Table):
     def __str__(self) -> str:
         head = ("function", "verdicts about", "delay", "memory")
         body = [
-            (str(x["function"]), str(x["about"]), f"{x['delay']:g} s", f"{x['memory']} bytes")
-            for x in self.rows()
+            (f"{x.label}_step", _about(x), f"{float(x.plan.delay * self.source.dt):g} s", f"{x.memory} bytes")
+            for x in self.source.monitors
         ]
         lines = aligned([head, *body], [False, False, False, False])
         if self.folder is not None:
@@ -63,6 +64,11 @@ class CompiledMonitors(Table):
 
     def __repr__(self) -> str:
         return f"<Monitors in C: {', '.join(x.label for x in self.source.monitors)}>"
+
+
+def _about(monitor: StreamMonitor) -> str:
+    """What the verdicts of a monitor are about."""
+    return "the first sample" if monitor.plan.at_start else "each sample"
 
 
 @takes(Compile)

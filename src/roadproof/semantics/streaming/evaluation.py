@@ -13,17 +13,17 @@ from dataclasses import dataclass
 from typing import assert_never
 
 from roadproof.semantics.streaming.plan import (
+    BoundedUntil,
     Constant,
     Forever,
     Junction,
+    LeafValue,
     Negation,
     Node,
     Operand,
     Plan,
-    Seen,
     Widening,
     Window,
-    Within,
 )
 
 _WORD = 64
@@ -145,7 +145,7 @@ def members_of(plan: Plan) -> list[Member]:
             words.append(Member(f"past_{k}", node.kept + 1 if node.table else _words(node.kept)))
         if isinstance(node.operation, Window) and not node.table:
             numbers.append(Member(f"left_{k}", None))
-        elif isinstance(node.operation, Within) and not node.table:
+        elif isinstance(node.operation, BoundedUntil) and not node.table:
             words.append(Member(f"met_{k}", _words(node.operation.width)))
             numbers.append(Member(f"waiting_{k}", None))
     return words + numbers
@@ -181,7 +181,7 @@ class _Writer:
     def lines(self) -> Iterator[str]:
         k, node = self.k, self.node
         match node.operation:
-            case Seen(leaf):
+            case LeafValue(leaf):
                 yield self.set(f"seen[{leaf}]")
             case Constant():
                 raise AssertionError("a constant is written where it is read")
@@ -198,10 +198,10 @@ class _Writer:
                 yield self.set(f"{name}(state->past_{operand.node}, {width}, {self.over}, {self.pad})")
             case Window(universal, operand, width):
                 yield from self.window(universal, operand, width)
-            case Within(left, right, width) if node.table:
+            case BoundedUntil(left, right, width) if node.table:
                 both = f"state->past_{left.node}, state->past_{right.node}"
                 yield self.set(f"reach({both}, {width}, {self.over}, {self.pad})")
-            case Within(left, right, width):
+            case BoundedUntil(left, right, width):
                 yield from self.within(left, right, width)
             case Forever():
                 yield from self.forever(node.operation)

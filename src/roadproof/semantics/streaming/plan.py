@@ -35,7 +35,7 @@ class Operand:
 
 
 @dataclass(frozen=True)
-class Seen:
+class LeafValue:
     """The truth of a leaf at the newest sample."""
 
     leaf: int
@@ -76,7 +76,7 @@ class Window:
 
 
 @dataclass(frozen=True)
-class Within:
+class BoundedUntil:
     """Until over the last ``width`` + 1 values."""
 
     left: Operand
@@ -97,7 +97,7 @@ class Forever:
     variable: int
 
 
-Operation: TypeAlias = Seen | Constant | Negation | Junction | Widening | Window | Within | Forever
+Operation: TypeAlias = LeafValue | Constant | Negation | Junction | Widening | Window | BoundedUntil | Forever
 
 
 @dataclass(frozen=True)
@@ -188,13 +188,13 @@ def plan_of(formula: Formula, dt: Fraction, names: Mapping[Formula, str]) -> Pla
 def operands(operation: Operation) -> tuple[Operand, ...]:
     """The values that an operation reads."""
     match operation:
-        case Seen() | Constant():
+        case LeafValue() | Constant():
             return ()
         case Negation(operand) | Widening(operand) | Window(_, operand, _):
             return (operand,)
         case Junction(_, parts):
             return parts
-        case Within(left, right, _):
+        case BoundedUntil(left, right, _):
             return (left, right)
         case Forever(_, left, right, _):
             return (right,) if left is None else (left, right)
@@ -207,7 +207,7 @@ def _kept(nodes: list[Node]) -> Mapping[int, int]:
     found = dict[int, int]()
     for node in nodes:
         operation = node.operation
-        wide = operation.width if isinstance(operation, Window | Within) and node.table else 0
+        wide = operation.width if isinstance(operation, Window | BoundedUntil) and node.table else 0
         for operand in operands(operation):
             if not isinstance(nodes[operand.node].operation, Constant):
                 found[operand.node] = max(found.get(operand.node, 0), operand.lag + wide)
@@ -265,7 +265,7 @@ class _Planner:
             case f.Truth(value):
                 return self._add(Node(Constant(value), 0, 0))
             case f.Compare() | f.Occupies() | f.Some() | f.Every():
-                return self._add(Node(Seen(self.leaves.setdefault(formula, len(self.leaves))), 0, 0))
+                return self._add(Node(LeafValue(self.leaves.setdefault(formula, len(self.leaves))), 0, 0))
             case f.Application(_, _, body):
                 return self.place(body, opposite, delay)
             case f.Not(body):
@@ -318,7 +318,7 @@ class _Planner:
             forever = Forever(universal, left[0] if left else None, right, variable)
             return self._add(Node(forever, ready, delay, opposite, table=True))
         width = high - low
-        operation = Within(left[0], right, width) if left else Window(universal, right, width)
+        operation = BoundedUntil(left[0], right, width) if left else Window(universal, right, width)
         return self._add(Node(operation, ready, delay, opposite, table))
 
     def _widened(self, below: int, delay: int) -> int:
