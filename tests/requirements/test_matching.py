@@ -7,11 +7,12 @@ from pathlib import Path
 import pytest
 
 from roadproof.analysis.requirements.checked_evidence import CheckedEvidence, read_findings
+from roadproof.analysis.requirements.fingerprints import Surroundings, differences, parts_of
 from roadproof.analysis.requirements.matching import combined, read_target, shown_by
-from roadproof.analysis.requirements.requirement import Link
+from roadproof.analysis.requirements.requirement import Link, Requirement
 from roadproof.errors import TextError
-from roadproof.evidence.answers.trace import LinkState
-from roadproof.evidence.finding import STALE, Acceptance, Finding
+from roadproof.evidence.answers.trace import LinkState, Position
+from roadproof.evidence.finding import STALE, Acceptance, Finding, Kind
 from roadproof.library.loading import bundled_library
 
 HOME = bundled_library().select()
@@ -89,6 +90,27 @@ def test_assumptions_are_a_part_of_a_claim() -> None:
     assert state(Link("claim", assumed), found)[0] == "proved"
     assert state(Link("claim", OURS), found)[0] == "missing"
     assert state(Link("claim", f"at minDanger = 0.7 s: {OURS}"), found)[0] == "missing"
+
+
+@pytest.mark.parametrize(
+    ("kind", "claim", "values"),
+    [
+        ("certificate", "v_lon(SV) > 1 m/s -> danger(SV,POV)", False),
+        ("certificate", "at minDanger = 0.6 s: danger(SV,POV)", True),
+        ("drive", "danger(SV,POV)", True),
+    ],
+)
+def test_only_proofs_without_assumptions_hold_for_every_value(kind: Kind, claim: str, values: bool) -> None:
+    found = checked(Finding("x.json", kind, GOOD, "", "PROVED", "P1 base", claim))
+    link = Link("claim", "P1 base")
+    owner = Requirement("A", "text", Position(file="r.toml"), links=(link,))
+    around = Surroundings(HOME, Path())
+    parts = parts_of(owner, read_target(link, HOME, "here"), found, around)
+    assert ("value of minDanger" in parts) == values
+    assert {"parameter minDanger", "definition danger", "text of A", "roadproof"} <= parts.keys()
+    changed = parts | {"value of minDanger": "1"}
+    told = differences(parts, changed)
+    assert told == (("parameter minDanger: 3/5 -> 1",) if values else ())
 
 
 @pytest.mark.parametrize(

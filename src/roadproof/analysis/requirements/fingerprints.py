@@ -2,7 +2,8 @@
 
 A lock file says what every link rested on when it was accepted: the text of its requirement, its evidence,
 definitions, parameters, vehicle models and the version of roadproof. A proof holds for every value of a
-parameter and every vehicle, so it rests on how a parameter is declared, and not on its value.
+parameter and every vehicle, so it rests on how a parameter is declared, and not on its value; one that
+assumes values or motion rests on them.
 """
 
 import hashlib
@@ -56,7 +57,8 @@ def parts_of(
         text = f"scenario_{name}" if name.isdecimal() else link.target
         parts |= _of_text(target.specification, text, around, link.kind == "scenario")
     for x in evidence:
-        parts |= _of_text(x.specification, x.finding.claim, around, x.is_drive)
+        assumes = x.meaning is not None and bool(x.meaning.assuming)
+        parts |= _of_text(x.specification, x.finding.claim, around, x.is_drive or assumes)
         if x.digest:
             parts[f"file {_relative(x.path, around.folder)}"] = x.digest
         else:
