@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
+from cli.test_schemas import accept
 from roadproof.errors import InputError, MissingSolverError, UsageError
 from roadproof.frontends.cli.main import main
 from roadproof.runtime import pins
@@ -72,6 +73,7 @@ def test_it_has_evidence_definitions_packages_page_and_script(home: Path) -> Non
     sums = dict(reversed(line.split("  ")) for line in inside["SHA256SUMS"].decode().splitlines())
     assert sums == {name: hashlib.sha256(x).hexdigest() for name, x in inside.items() if name != "SHA256SUMS"}
     manifest = json.loads(inside["manifest.json"])
+    accept("bundle.json", manifest)
     assert manifest == found.as_data()
     assert manifest["evidence"] == ["proofs", "report"]
     assert manifest["claims"] == manifest["accepted"] == len(found.checked.findings) > 1
