@@ -3,7 +3,8 @@
     python benchmarks/storyboards.py FOLDER ... --out table.csv
 
 Each storyboard is run, and every scenario of the paper's sets is judged on its samples. Files with the same
-content count once; catalogues, which have no storyboard, do not count. The table has a row a file.
+content count once; catalogues, which have no storyboard, do not count. Of a distribution of parameters one
+scenario is judged. The table has a row a file.
 """
 
 import argparse
@@ -21,6 +22,7 @@ from roadproof.recordings.evaluate.evaluate import evaluate_recording
 from roadproof.recordings.evaluate.questions import Questions, ask, default_settings
 from roadproof.recordings.formats.openscenario import RATE
 from roadproof.recordings.formats.sources import find_source
+from roadproof.recordings.formats.storyboard.distributions import scenarios_of
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,8 @@ def judge(folder: Path, path: Path, questions: Questions) -> Row:
     """Run and judge a file."""
     begun = time.perf_counter()
     try:
-        recording = find_source(path).read()
+        scenarios = scenarios_of(path)
+        recording = find_source(scenarios[len(scenarios) // 2]).read()
         matches = len(evaluate_recording(recording, questions).matches)
         outcome, vehicles, told = "judged", recording.vehicles, "; ".join(recording.notes)
     except InputError as error:

@@ -13,6 +13,7 @@ from traffic.board import (
     EGO,
     at,
     at_time,
+    element_is,
     event,
     init,
     lane,
@@ -103,22 +104,44 @@ def test_vehicles_come_and_go(tmp_path: Path) -> None:
 
 
 def test_a_polyline_without_times(tmp_path: Path) -> None:
-    """The car goes on with its speed, from d = -6 to d = -2 between s = 200 and s = 250; by hand."""
+    """From s = 120 straight on to 200 and then by 30 m along and 4 m to the left; speed is that on the path.
+
+    The car brakes from 20 to 10 m/s with 5 m/s² at 5 s, where it comes to the corner.
+    """
 
     def vertex(s: float, lane_id: int) -> str:
         return f"<Vertex>{lane(lane_id, s)}</Vertex>"
 
-    shape = f"<Polyline>{vertex(150, -2)}{vertex(200, -2)}{vertex(250, -1)}</Polyline>"
+    shape = f"<Polyline>{vertex(120, -2)}{vertex(200, -2)}{vertex(230, -1)}</Polyline>"
     go = event("go", follow(shape), when(at_time(1)))
-    brake = event("brake", to_speed(10, "linear", "time", 2), when(at_time(6)))
+    brake = event("brake", to_speed(10, "linear", "time", 2), when(at_time(5)))
     found = rows(put(tmp_path, {"Ego": EGO}, maneuver("Ego", go, brake), stop=END))["Ego"]
+    length = math.hypot(30, 4)
     assert at(found, 2, "d") == pytest.approx(-5)
-    assert at(found, 6, "s") == pytest.approx(222)
-    assert at(found, 6, "d") == pytest.approx(-5 + 4 * 20 / 50)
-    assert at(found, 6, "v_lat") == pytest.approx(1.6)
-    assert at(found, 7, "v_lat") == pytest.approx(15 * 4 / 50)
-    assert at(found, 7, "a_lat") == pytest.approx(-5 * 4 / 50)
+    assert at(found, 5, "s") == pytest.approx(202)
+    assert at(found, 6, "s") == pytest.approx(202 + 17.5 * 30 / length)
+    assert at(found, 6, "d") == pytest.approx(-5 + 17.5 * 4 / length)
+    assert at(found, 6, "v_lon") == pytest.approx(15 * 30 / length)
+    assert at(found, 6, "v_lat") == pytest.approx(15 * 4 / length)
+    assert at(found, 6, "a_lat") == pytest.approx(-5 * 4 / length)
     assert at(found, 12, "d") == pytest.approx(-1)
+    assert at(found, 12, "s") == pytest.approx(232 + (30 + 50 - length), abs=1e-6)
+
+
+def test_a_pedestrian_crosses_on_a_path(tmp_path: Path) -> None:
+    """8 m across with 2 m/s from 1 s on, and Ego brakes when it is on the other side, at 5 s."""
+    places = "".join(f"<Vertex>{lane(k, 400)}</Vertex>" for k in (-3, -1))
+    shape = f"<Polyline>{places}</Polyline>"
+    events = event("walk", to_speed(2), when(at_time(1))), event("cross", follow(shape), when(at_time(1)))
+    ended = when(element_is("event", "cross", "completeState"))
+    brake = event("brake", to_speed(10, "step"), ended)
+    begin = {"Ego": EGO, "Man": init("Man", lane(-3, 400), 0)}
+    path = put(tmp_path, begin, maneuver("Man", *events), maneuver("Ego", brake), stop=END)
+    man = f'<ScenarioObject name="Man">{CAR}'
+    text = path.read_text("utf-8")
+    path.write_text(text.replace(man, man.replace("Vehicle", "Pedestrian")), "utf-8")
+    found = rows(path)["Ego"]
+    assert found["time"][np.argmax(found["v_lon"] < 15)] == pytest.approx(1 + 4, abs=0.06)
 
 
 def test_a_clothoid_is_that_of_an_integration(tmp_path: Path) -> None:
@@ -156,7 +179,7 @@ def test_a_spline_of_clothoids_ends_where_its_arcs_do(tmp_path: Path) -> None:
     go = event("go", follow(f"<ClothoidSpline>{pieces}</ClothoidSpline>"), when(at_time(1)))
     found = rows(put(tmp_path, {"Ego": EGO}, maneuver("Ego", go), stop=END))["Ego"]
     assert at(found, 10, "d") == pytest.approx(-5 + 400 * (1 - math.cos(0.2)), abs=1e-3)
-    assert at(found, 10, "s") == pytest.approx(302)
+    assert at(found, 10, "s") == pytest.approx(302 - 80 + 400 * math.sin(0.2), abs=1e-3)
 
 
 def test_a_nurbs_may_be_a_circle(tmp_path: Path) -> None:
@@ -420,3 +443,37 @@ def test_criteria_of_carla_are_no_conditions(tmp_path: Path) -> None:
     clock = when(at_time(3), tag="StopTrigger").removeprefix("<StopTrigger>")
     path = put(tmp_path, {"Ego": EGO}, stop=stop.replace("</StopTrigger>", clock))
     assert rows(path)["Ego"]["time"][-1] == pytest.approx(3)
+
+
+@pytest.mark.parametrize(("free", "time"), [("false", 3), ("true", 3.4)])
+def test_a_lane_is_clear(free: str, time: float, tmp_path: Path) -> None:
+    """Ego, 10 m/s faster, passes a vehicle that is 10 m ahead on its left: clear when it is 20 m behind.
+
+    Between boxes of 4 m that is when the reference points are 24 m apart.
+    """
+    clear = (
+        f'<RelativeClearanceCondition distanceForward="30" distanceBackward="20" freeSpace="{free}" '
+        'oppositeLanes="false"><RelativeLaneRange from="1" to="1"/></RelativeClearanceCondition>'
+    )
+    change = event("left", to_speed(35, "step"), when(of("Ego", clear)))
+    begin = {"Ego": EGO, "Other": init("Other", lane(-1, 110), 10), "Third": init("Third", lane(-3, 105), 20)}
+    found = rows(put(tmp_path, begin, maneuver("Ego", change), stop=END))["Ego"]
+    assert found["time"][np.argmax(found["v_lon"] > 30)] == pytest.approx(time, abs=0.051)
+
+
+def test_there_must_be_a_lane_to_be_clear(tmp_path: Path) -> None:
+    clear = (
+        '<RelativeClearanceCondition distanceForward="30" distanceBackward="20" freeSpace="false" '
+        'oppositeLanes="false"><RelativeLaneRange from="2" to="3"/></RelativeClearanceCondition>'
+    )
+    change = event("left", to_speed(35, "step"), when(of("Ego", clear)))
+    found = rows(put(tmp_path, {"Ego": EGO}, maneuver("Ego", change), stop=END))["Ego"]
+    assert found["v_lon"].max() == pytest.approx(20)
+
+
+def test_a_collision_with_any_vehicle(tmp_path: Path) -> None:
+    """The gap of 46 m between boxes closes with 10 m/s."""
+    hit = of("Ego", '<CollisionCondition><ByType type="vehicle"/></CollisionCondition>')
+    begin = {"Ego": EGO, "Other": init("Other", lane(-2, 150), 10), "Far": init("Far", lane(-1, 110), 10)}
+    found = rows(put(tmp_path, begin, stop=when(hit, tag="StopTrigger")))["Ego"]
+    assert found["time"][-1] == pytest.approx(4.6, abs=0.05)

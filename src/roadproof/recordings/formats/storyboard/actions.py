@@ -21,8 +21,10 @@ from roadproof.recordings.formats.storyboard.controllers import (
 from roadproof.recordings.formats.storyboard.courses import (
     SHAPES,
     Course,
+    OnPath,
     PlaceOverDistance,
     PlaceTransition,
+    Point,
     SpeedTransition,
     Steady,
 )
@@ -86,10 +88,8 @@ class ActionReader:
         if node.tag in _IGNORED:
             return {}
         match node.tag:
-            case "SpeedAction":
-                return {"along": self._speed(node, actor, scene)}
-            case "SpeedProfileAction":
-                return {"along": self._speed_profile(node, actor, scene)}
+            case "SpeedAction" | "SpeedProfileAction":
+                return self._on_path(node, actor, scene) or {"along": self._of_speed(node, actor, scene)}
             case "LongitudinalDistanceAction":
                 return {"along": self._keep_distance(node, actor, scene, "along")}
             case "LateralDistanceAction":
@@ -106,6 +106,21 @@ class ActionReader:
                 found = read.courses(node, before, scene.time, scene.states)
                 return {"along": found[0], "across": found[1]}
         raise self.document.error(node, "this action is not supported")
+
+    def _of_speed(self, node: Element, actor: Actor, scene: Scene) -> Course:
+        read = self._speed if node.tag == "SpeedAction" else self._speed_profile
+        return read(node, actor, scene)
+
+    def _on_path(self, node: Element, actor: Actor, scene: Scene) -> dict[Axis, Course]:
+        """An action of speed on a path without times: the courses on the path; none for other vehicles."""
+        along, across = actor.courses["along"], actor.courses["across"]
+        if not isinstance(along, OnPath) or not isinstance(across, OnPath):
+            return {}
+        gone = along.motion.at(scene.time, Point(0.0, 0.0))
+        state = replace(scene.states[actor.name], s=gone.place, v_lon=gone.speed, a_lon=gone.acceleration)
+        inside = Scene(scene.time, {**scene.states, actor.name: state})
+        motion = self._of_speed(node, actor, inside)
+        return {"along": replace(along, motion=motion), "across": replace(across, motion=motion)}
 
     def placed(self, position: Element, name: str, scene: Scene) -> Actor:
         """A vehicle that is put to a Position, or to the first point of a trajectory; it keeps its speed.

@@ -16,6 +16,7 @@ from roadproof.runtime.xml_reader import Element
 
 TICKS = 100
 """A second is divided into so many steps, at which conditions are evaluated."""
+_TYPES = {"Pedestrian": "pedestrian", "MiscObject": "miscellaneous"}
 _EDGES = ("none", "rising", "falling", "risingOrFalling")
 _CRITERION = "criteria_"
 """Names of conditions that CARLA's scenario_runner takes as criteria of a test, not as conditions."""
@@ -108,6 +109,8 @@ class ConditionReader:
             case "RelativeSpeedCondition":
                 speeds = [self._on_axis(node, _speeds(x)) for x in (state, self._other(node, now)[1])]
                 return self._compare(node, speeds[0] - speeds[1])
+            case "RelativeClearanceCondition":
+                return self._is_clear(node, name, now)
             case "OffroadCondition":
                 return self._is_off_road(node, name, now)
             case "StandStillCondition":
@@ -127,11 +130,47 @@ class ConditionReader:
                 distance = self._distance(node, name, there, other, now)
                 return abs(state.v_lon) > _SLOWEST and self._compare(node, distance / abs(state.v_lon))
             case "CollisionCondition":
-                other, there = self._other(read.child(node, "EntityRef"), now)
-                return all(x <= 0 for x in self._gaps(name, other, (there.s - state.s, there.d - state.d)))
+                return any(self._touch(name, x, now) for x in self._hit(node, name, now))
             case "TimeToCollisionCondition":
                 return self._time_to_collision(node, name, now)
         raise read.error(node, "this condition is not supported")
+
+    def _hit(self, node: Element, name: str, now: Situation) -> list[str]:
+        """The objects that a CollisionCondition is about: the one that it names, or all of a type."""
+        kind = node.find("ByType")
+        if kind is None:
+            return [self._other(self.document.child(node, "EntityRef"), now)[0]]
+        wanted = self.document.text(kind, "type")
+        return [x for x in now.states if x != name and _TYPES.get(self.boxes[x].kind, "vehicle") == wanted]
+
+    def _touch(self, name: str, other: str, now: Situation) -> bool:
+        one, there = now.states[name], now.states[other]
+        return all(x <= 0 for x in self._gaps(name, other, (there.s - one.s, there.d - one.d)))
+
+    def _is_clear(self, node: Element, name: str, now: Situation) -> bool:
+        """Whether lanes beside an object exist and no other object is near on them, as in esmini."""
+        read, state = self.document, now.states[name]
+        way = 1 if state.forward else -1
+        back, ahead = (read.number(node, f"distance{x}", 0.0) for x in ("Backward", "Forward"))
+        ranges = node.findall("RelativeLaneRange")
+        spans = [(read.number(x, "from", -99.0), read.number(x, "to", 99.0)) for x in ranges]
+        spans = spans or [(-99.0, 99.0)]
+        here, lanes = self.positions.lane_at(node, (state.s, state.d))
+        if not any(low <= (k - here) * way <= high for k in range(lanes) for low, high in spans):
+            return False
+        named = {x.get("entityRef") for x in node.findall("EntityRef")}
+        for other, there in now.states.items():
+            if other == name or (named and other not in named):
+                continue
+            if there.forward != state.forward and node.get("oppositeLanes") not in ("true", "1"):
+                continue
+            apart, length = (there.s - state.s) * way, 0.0
+            if node.get("freeSpace") in ("true", "1"):
+                length = (self.boxes[name].length + self.boxes[other].length) / 2
+            beside = (self.positions.lane_at(node, (there.s, there.d))[0] - here) * way
+            if -back - length <= apart <= ahead + length and any(x <= beside <= y for x, y in spans):
+                return False
+        return True
 
     def _on_axis(self, node: Element, values: tuple[float, float]) -> float:
         """The value along the vehicle, or across it where the ``direction`` says so."""

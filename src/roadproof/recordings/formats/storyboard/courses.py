@@ -162,32 +162,56 @@ class PlaceOverDistance:
 
 
 @dataclass(frozen=True)
-class AlongPath:
-    """d as a function of s along a path; ``before`` up to its first point, at rest after its last one.
+class Shifted:
+    """Another motion that is counted from another place."""
 
-    ``straight``: between its points; otherwise on cubics through them.
-    """
-
-    before: Course
-    s: Floats
-    d: Floats
-    straight: bool
+    course: Course
+    by: float
 
     def at(self, time: float, along: Point) -> Point:
-        if along.place < self.s[0] - _SOON:
-            return self.before.at(time, along)
-        if along.place > self.s[-1]:
-            return Point(float(self.d[-1]), 0.0)
-        if self.straight:
-            k = min(int(np.searchsorted(self.s, along.place, side="right")), len(self.s) - 1)
-            slope = float((self.d[k] - self.d[k - 1]) / (self.s[k] - self.s[k - 1]))
-            here = float(self.d[k - 1] + slope * (along.place - self.s[k - 1]))
-            return Point(here, slope * along.speed, slope * along.acceleration)
-        d, slope, bend = (float(x[0]) for x in curve(self.s, self.d, np.array([along.place])))
-        return Point(d, slope * along.speed, bend * along.speed**2 + slope * along.acceleration)
+        found = self.course.at(time, along)
+        return Point(found.place - self.by, found.speed, found.acceleration)
 
     def ended(self, time: float, along: Point) -> bool:
-        return along.place >= float(self.s[-1])
+        return self.course.ended(time, along)
+
+
+@dataclass(frozen=True)
+class OnPath:
+    """Places, along the road or across it, at lengths of a path on which a vehicle moves as ``motion`` says.
+
+    ``straight``: between points; otherwise on cubics through them. ``across``: at rest after the last point;
+    otherwise on along the road.
+    """
+
+    motion: Course
+    lengths: Floats
+    places: Floats
+    straight: bool
+    across: bool
+
+    def at(self, time: float, along: Point) -> Point:
+        gone = self.motion.at(time, along)
+        more = gone.place - float(self.lengths[-1])
+        if more > 0:
+            last = float(self.places[-1])
+            return Point(last, 0.0) if self.across else Point(last + more, gone.speed, gone.acceleration)
+        if self.straight:
+            later = int(np.searchsorted(self.lengths, gone.place, side="right"))
+            k = min(max(later, 1), len(self.lengths) - 1)
+            low, high = self.lengths[k - 1], self.lengths[k]
+            slope = float((self.places[k] - self.places[k - 1]) / (high - low))
+            place, bend = float(self.places[k - 1] + slope * (gone.place - low)), 0.0
+        else:
+            place, slope, bend = (
+                float(x[0]) for x in curve(self.lengths, self.places, np.array([gone.place]))
+            )
+        return Point(place, slope * gone.speed, bend * gone.speed**2 + slope * gone.acceleration)
+
+    def ended(self, time: float, along: Point) -> bool:
+        if not self.across:
+            return self.motion.ended(time, along)
+        return self.motion.at(time, along).place >= float(self.lengths[-1]) - _SOON
 
 
 @dataclass(frozen=True)

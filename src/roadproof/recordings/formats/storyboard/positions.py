@@ -173,11 +173,22 @@ class Positions:
         d = self.lane_called(inside, (s, d), round(read.number(inside, "laneId")))
         return s, d + (1 if ways else -1) * read.number(inside, "laneOffset", 0.0)
 
-    def lane_beside(self, node: Element, at: tuple[float, float], number: int) -> float:
-        """d of the middle of the lane so many to the left of that at a place."""
+    def lane_at(self, node: Element, at: tuple[float, float]) -> tuple[int, int]:
+        """The number of the lane at a place, from the right and from 0 on, and how many there are."""
+        middles = self._middles(node, at)
+        if not middles:
+            raise self.document.error(node, f"there is no lane at s={at[0]:.2f}")
+        return min(range(len(middles)), key=lambda k: abs(middles[k] - at[1])), len(middles)
+
+    def _middles(self, node: Element, at: tuple[float, float]) -> list[float]:
+        """d of the middles of the lanes beside a place, from the right."""
         road, s = self._road_at(node, at)
         ids = [x.id for x in _section(road, s).lanes.values() if x.type in DRIVEN or x.type in RAMPS]
-        middles = sorted(self._on_map(road, s, self._middle(node, road, s, x))[1] for x in ids)
+        return sorted(self._on_map(road, s, self._middle(node, road, s, x))[1] for x in ids)
+
+    def lane_beside(self, node: Element, at: tuple[float, float], number: int) -> float:
+        """d of the middle of the lane so many to the left of that at a place."""
+        middles = self._middles(node, at)
         here = min(range(len(middles)), key=lambda k: abs(middles[k] - at[1]), default=None)
         if here is None or not 0 <= here + number < len(middles):
             side = "left" if number > 0 else "right"

@@ -15,7 +15,7 @@ from roadproof.recordings.formats.storyboard.actions import ActionReader, Actor,
 from roadproof.recordings.formats.storyboard.box import Box
 from roadproof.recordings.formats.storyboard.conditions import TICKS, ConditionReader, Situation, Trigger
 from roadproof.recordings.formats.storyboard.controllers import Arrive, Axis, KeepDistance
-from roadproof.recordings.formats.storyboard.courses import Course, Point, Steady
+from roadproof.recordings.formats.storyboard.courses import Course, OnPath, Point, Steady
 from roadproof.recordings.formats.storyboard.document import Document
 from roadproof.recordings.formats.storyboard.elements import StoryElement, read_element, starts
 from roadproof.recordings.formats.storyboard.global_actions import act_globally, initial_values
@@ -215,7 +215,8 @@ class _Runner:
         reader, seen = (self.actions, states) if actor.forward else (self.actions.turned(), turned(states))
         courses = reader.courses(action, actor, Scene(time, seen))
         self._set(name, courses)
-        return tuple(courses)
+        stays = isinstance(actor.courses["across"], OnPath) and action.find(_FOLLOW) is None
+        return tuple(x for x in courses if not (stays and isinstance(courses[x], OnPath) and x == "across"))
 
     def _put(self, name: str, position: Element) -> None:
         """Put a vehicle somewhere."""

@@ -2,7 +2,7 @@
 
 Clothoids and NURBS become points at most SPACING m apart, but at most MOST; cubics through the points are
 less than a millimetre from a curve of more than 10 m radius. A trajectory with times says where the vehicle
-is. One without times says d by s, where s ascends: the speed along the road stays that of the vehicle.
+is. On one without times it begins at the first point, as in esmini, and its speed is that on the path.
 """
 
 import math
@@ -14,7 +14,16 @@ import numpy as np
 
 from roadproof.recordings.formats.recording import Floats
 from roadproof.recordings.formats.storyboard.box import Box
-from roadproof.recordings.formats.storyboard.courses import AlongPath, Course, Guided, Point
+from roadproof.recordings.formats.storyboard.controllers import Phases
+from roadproof.recordings.formats.storyboard.courses import (
+    Course,
+    Guided,
+    OnPath,
+    Point,
+    Shifted,
+    SpeedTransition,
+    Steady,
+)
 from roadproof.recordings.formats.storyboard.curves import curve
 from roadproof.recordings.formats.storyboard.document import Document
 from roadproof.recordings.formats.storyboard.positions import Positions, States
@@ -67,9 +76,9 @@ class TrajectoryReader:
         s, d = self._in_road(points)
         times = self._times(node, points.times, begin)
         if times is None:
-            if not (np.diff(s) > 0).all():
-                raise read.error(node, "without times, the trajectory must go forward along the road")
-            return before[0], AlongPath(before[1], s, d, points.straight)
+            if not (np.diff(s).any() or np.diff(d).any()):
+                raise read.error(node, "all points are at one place")
+            return _on_path(before[0], (s, d), points.straight, begin)
         if times[0] < begin - _LATE:
             told = f"it begins at {begin:g} s, after the first point at {times[0]:g} s"
             raise read.error(node, told)
@@ -221,6 +230,20 @@ class TrajectoryReader:
         found = np.array([de_boor(float(u), order, knots, values) for u in spans])
         x, y, time = (found[:, :3] / found[:, 3:]).T
         return _Points(x, y, np.arctan2(np.gradient(y), np.gradient(x)), time if timed else None)
+
+
+def _on_path(
+    motion: Course, places: tuple[Floats, Floats], straight: bool, begin: float
+) -> tuple[Course, Course]:
+    """The courses of a vehicle that goes on with its speed, from the first point of a path."""
+    steps = np.hypot(*np.diff(np.array(places), axis=1))
+    apart = np.concatenate(([True], steps > 0))
+    s, d = (x[apart] for x in places)
+    lengths = np.concatenate(([0.0], np.cumsum(steps[steps > 0])))
+    now = motion.at(begin, Point(0.0, 0.0))
+    goes_on = isinstance(motion, SpeedTransition | Phases)
+    inner: Course = Shifted(motion, now.place) if goes_on else Steady(begin, 0.0, now.speed)
+    return OnPath(inner, lengths, s, straight, across=False), OnPath(inner, lengths, d, straight, across=True)
 
 
 def de_boor(u: float, order: int, knots: Floats, values: Floats) -> Floats:
