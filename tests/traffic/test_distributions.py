@@ -117,6 +117,19 @@ def test_constraints_leave_sets_out(tmp_path: Path) -> None:
     assert read_distribution(path).told == "2 of 4 scenarios of cars.xosc are read"
 
 
+def test_constraints_may_use_other_parameters(tmp_path: Path) -> None:
+    """Of 61 and 70 m only 61, and that with speeds of more than 61 / 6 = 10.17 m/s."""
+    inside = f"<Deterministic>{one('where', SIDES.replace('-1', '61').replace('-3', '70'))}{one('v', SPEEDS)}"
+    path = logical(tmp_path, f"{inside}</Deterministic>")
+    scenario = tmp_path / "scenario/story.xosc"
+    where = '<ParameterDeclaration name="where" parameterType="double" value="100"/>'
+    limit = '<ConstraintGroup><ValueConstraint rule="lessThan" value="${$v * 6}"/></ConstraintGroup>'
+    text = scenario.read_text("utf-8")
+    assert where in text
+    scenario.write_text(text.replace(where, where.replace("/>", f">{limit}</ParameterDeclaration>")), "utf-8")
+    assert [(x["where"], x["v"]) for x in values(path)] == [("61", "10.2"), ("61", "10.3")]
+
+
 def test_of_many_combinations_some_are_drawn(tmp_path: Path) -> None:
     many = '<DistributionRange stepWidth="1"><Range lowerLimit="1" upperLimit="100"/></DistributionRange>'
     path = logical(tmp_path, f"<Deterministic>{one('v', many)}{one('where', many)}</Deterministic>")

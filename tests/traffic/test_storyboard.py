@@ -8,7 +8,7 @@ import pytest
 
 from roadproof.errors import InputError
 from roadproof.recordings.formats.openscenario import read_recording, read_scenario
-from roadproof.recordings.formats.storyboard.document import expression_value, replaced
+from roadproof.recordings.formats.storyboard.expressions import expression_value, replaced
 from traffic.board import (
     CAR,
     EGO,

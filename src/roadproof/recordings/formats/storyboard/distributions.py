@@ -19,6 +19,7 @@ from statistics import NormalDist
 from typing import TypeAlias
 
 from roadproof.errors import InputError
+from roadproof.recordings.formats.storyboard.expressions import replaced
 from roadproof.recordings.formats.storyboard.rules import texts_compare
 from roadproof.runtime.xml_reader import Element, number_in, read_xml
 
@@ -106,18 +107,24 @@ class Distribution:
 
     def _is_allowed(self, root: Element, values: Values) -> bool:
         """Whether each value keeps all constraints of one of its parameter's groups."""
+        known: dict[str, str] = {}
         for node in root.findall("ParameterDeclarations/ParameterDeclaration"):
-            value = values.get(node.get("name", ""))
-            groups = node.findall("ConstraintGroup")
-            if value is None or not groups:
-                continue
-            if not any(all(self._keeps(value, x) for x in group) for group in groups):
+            name, groups = (node.get("name") or "").lstrip("$"), node.findall("ConstraintGroup")
+            known[name] = self._value(node, values.get(name, node.get("value") or ""), known)
+            if groups and not any(all(self._keeps(known, name, x) for x in group) for group in groups):
                 return False
         return True
 
-    def _keeps(self, value: str, constraint: Element) -> bool:
+    def _value(self, node: Element, text: str, known: Values) -> str:
         try:
-            return texts_compare(constraint.get("rule", ""), value, constraint.get("value", ""))
+            return replaced(text, known)
+        except ValueError as error:
+            raise InputError(f"{self.scenario}: {node.tag} {node.get('name', '')}={text}: {error}") from None
+
+    def _keeps(self, known: Values, name: str, constraint: Element) -> bool:
+        limit = self._value(constraint, constraint.get("value", ""), known)
+        try:
+            return texts_compare(constraint.get("rule", ""), known[name], limit)
         except ValueError as error:
             raise InputError(f"{self.scenario}: {constraint.tag}: {error}") from None
 
