@@ -5,7 +5,8 @@
 FOLDER may have folders for the sources of files, to any depth. Read are CommonRoad (``.xml``), OpenDRIVE
 (``.xodr``) and Lanelet2 (``.osm``), each content once. A CommonRoad file counts as a recording where it has
 dynamic obstacles, and each file as a map. ``files.csv`` has a row a file and use, ``reasons.csv`` a row a
-kind of refusal or omission.
+kind of refusal or omission. Of a recording that is refused the row says how far its vehicles move in the
+plane, as a share of what their speeds say: 1 where a file agrees with itself.
 """
 
 import argparse
@@ -20,9 +21,13 @@ from collections.abc import Iterator
 from dataclasses import astuple, dataclass, fields
 from pathlib import Path
 
+import numpy as np
+
 from roadproof.errors import RoadproofError
 from roadproof.recordings.formats.commonroad import read_commonroad
+from roadproof.recordings.formats.commonroad_obstacles import ObstacleRules, read_obstacles
 from roadproof.recordings.formats.reliable import LEFT_OUT
+from roadproof.runtime.xml_reader import read_xml
 from roadproof.world.maps.overview import all_stretches
 
 ENDINGS = (".xml", ".xodr", ".osm")
@@ -64,6 +69,26 @@ def traffic_row(path: Path) -> tuple[str, int, int, str]:
     return ("read in part" if omissions else "read"), recording.vehicles, there, "; ".join(omissions)
 
 
+def plane_share(path: Path) -> str:
+    """How far vehicles of a refused recording move in the plane, as a share of speed by time."""
+    root = read_xml(path, "commonRoad")
+    rate = round(1 / float(root.get("timeStepSize", "0.1")))
+    try:
+        obstacles, _ = read_obstacles(path, root, ObstacleRules(rate, 7.0, False))
+    except RoadproofError:
+        return ""
+    shares = []
+    for x in obstacles:
+        told = float(np.abs(x.states[:-1, 3] + x.states[1:, 3]).sum()) / 2 / rate
+        moved = float(np.hypot(*np.diff(x.states[:, :2], axis=0).T).sum())
+        if max(told, moved) > 5:
+            shares.append(moved / max(told, 1e-3))
+    if not shares:
+        return ""
+    low, middle, high = np.percentile(shares, [10, 50, 90])
+    return f"; of the way that speeds say, vehicles move {middle:.2f} in the median ({low:.2f} to {high:.2f})"
+
+
 def road_row(path: Path) -> tuple[str, int, int, str]:
     """The result for a map, stretches that are usable, stretches there, and why others are not."""
     found = [x for x in all_stretches(path) if "left out as no roads" not in x.refused]
@@ -85,7 +110,8 @@ def rows_of(folder: Path, path: Path, limit: float) -> Iterator[Row]:
         try:
             result, done, of, told = read(path)
         except RoadproofError as error:
-            result, done, of, told = "refused", 0, 0, str(error)
+            more = plane_share(path) if use == "traffic" else ""
+            result, done, of, told = "refused", 0, 0, f"{error}{more}"
         except TimeoutError:
             result, done, of, told = "too slow", 0, 0, f"not within {limit:g} s"
         except Exception as error:  # a crash is a row of the table

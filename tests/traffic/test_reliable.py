@@ -102,6 +102,15 @@ def test_too_many_cost_the_recording(tmp_path: Path) -> None:
         find_source(written(tmp_path, document((*GOOD, *bad)))).read()
 
 
+def test_a_vehicle_that_is_suddenly_elsewhere_is_left_out(tmp_path: Path) -> None:
+    """One step of 120 m is enough, though it is one of forty."""
+    jumping = car(9, 5.0, speed=3.0)
+    far = tuple((s + (120.0 if k > 20 else 0.0), d) for k, (s, d) in enumerate(jumping.centres))
+    read, why = both(written(tmp_path, document((*GOOD, replace(jumping, centres=far)))))
+    assert "does not move by more than 100 m from one frame to the next" in why
+    assert read.vehicle_id.tolist() == [1, 2, 3, 4, 5]
+
+
 def test_accelerations_come_from_velocities(tmp_path: Path) -> None:
     """Places confirm the velocities, so that these say what accelerations are that a file has as zero."""
     braking = tuple(car(k, 10.0 * k, speed=12.0, pull=-2.0) for k in range(1, 4))

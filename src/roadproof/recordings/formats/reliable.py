@@ -207,7 +207,7 @@ def _breaks(recording: Recording, vehicle: int, rule: str) -> bool:
     for doubt in check(one_vehicle(recording, vehicle)).doubts():
         if _rule_of(doubt) == rule:
             share = {"moving seconds": SHARE, "steps": SHARE_OF_JUMPS}.get(doubt.unit, 0.0)
-            return doubt.broken > share * doubt.asked
+            return doubt.refused or doubt.broken > share * doubt.asked
     return False
 
 

@@ -19,13 +19,17 @@ from roadproof.world.maps.lanelet_steps import MapLanelet, edges_along, lanelets
 from roadproof.world.maps.lines import crossing, joined, reference_line, thinned
 from roadproof.world.maps.network import Network, network_of, zones_of
 from roadproof.world.maps.projections import UtmPoint
-from roadproof.world.maps.selection import Selection, Stretch, cut
+from roadproof.world.maps.selection import STEP, Selection, Stretch, cut
 from roadproof.world.maps.topology import Floats, chains_of, closure, length_of
 from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.road import Attribute, Lanelet, Zone
 
 _SPACING, _ENDS = 2.0, 1.0
 """Metres between points of lines that may cross, and from their ends, where lanelets part or join."""
+_STEPS = (STEP, 2 * STEP, 4 * STEP, 8 * STEP)
+"""How much (m) an edge may change on a lanelet where nothing else is selected: the first that is enough."""
+_MANY = 50
+"""So many lanelets are enough: with more of them a search soon takes minutes."""
 
 
 @dataclass(frozen=True)
@@ -133,8 +137,12 @@ def stretch_of(known: LaneletMap, selection: Selection) -> Stretch:
             "along one road; cut the file"
         )
     line = reference_line(joined([lanelets[x].centre for x in way]))
-    made = lanelets_of(_measured(known, way, line, where), way, selection.step, where)
-    found = cut(known.path, made, selection.span)
+    measured = _measured(known, way, line, where)
+    for step in _STEPS if selection.step is None else (selection.step,):
+        made = lanelets_of(measured, way, step, where)
+        found = cut(known.path, made, selection.span)
+        if len(found) <= _MANY:
+            break
     _refuse_crossing(known, way, line, found)
     check_lanelets(tuple(found), where)
     return Stretch(tuple(found), line, made.width_error)

@@ -120,8 +120,8 @@ def lanelets_of(
     for begin, end in pairwise(sorted(set(places.values()))):
         there = [x for x in lanelets if places[x.ends[0]] <= begin and end <= places[x.ends[1]]]
         there.sort(key=lambda x: _between(x.right, begin, end) + _between(x.left, begin, end))
-        for part in _divided(there, (begin, end), float(step)):
-            strips += _strips(there, part, where)
+        divided = _divided(there, (begin, end), float(step))
+        strips += _joined([[*_strips(there, part, where)] for part in divided], step)
     counts, parts = Counter(x.lanelet.id for x in strips), Counter[str]()
     names, numbers = dict[str, str](), Counter[Attribute]()
     found = []
@@ -233,6 +233,50 @@ class _Edges:
                 return other.left <= other.right
             self.right, self.moved_right = other.left, True
         return False
+
+
+def _joined(parts: list[list[_Strip]], step: Fraction) -> list[_Strip]:
+    """The strips of a step with those of a lanelet as one along which neither of its edges changes much.
+
+    Every edge is constant for as long as it changes by no more than ``step``, so that lanelets side by side
+    still have it in common. Where lanelets begin or end beside others, all remain as they are.
+    """
+    plain = [x for part in parts for x in part]
+    if any([x.lanelet for x in part] != [x.lanelet for x in parts[0]] for part in parts):
+        return plain
+    rights, lefts = (
+        [_evened([part[k].d[side] for part in parts], step) for k in range(len(parts[0]))] for side in (0, 1)
+    )
+    for n, part in enumerate(parts):
+        for k in range(1, len(part)):
+            apart, now = part[k].d[0] - part[k - 1].d[1], rights[k][n] - lefts[k - 1][n]
+            if now < 0 or (now == 0) != (apart == 0):
+                return plain
+    found: list[_Strip] = []
+    for k, first in enumerate(parts[0]):
+        edges = [*zip(rights[k], lefts[k], strict=True)]
+        for n, d in enumerate(edges):
+            x = parts[n][k]
+            moved = max(abs(float(a - b)) for a, b in zip(x.d, d, strict=True))
+            if n and edges[n - 1] == d:
+                before = found.pop()
+                x = _Strip(first.lanelet, (before.s[0], x.s[1]), d, max(before.error, x.error + moved))
+            else:
+                x = _Strip(first.lanelet, x.s, d, x.error + moved)
+            found.append(x)
+    return found
+
+
+def _evened(values: list[Fraction], step: Fraction) -> list[Fraction]:
+    """Values with the middle of each run of them in which they differ by no more than ``step``."""
+    found: list[Fraction] = []
+    run: list[Fraction] = []
+    for value in values:
+        if run and max(*run, value) - min(*run, value) > step:
+            found += [_milli(float(min(run) + max(run)) / 2)] * len(run)
+            run = []
+        run.append(value)
+    return found + [_milli(float(min(run) + max(run)) / 2)] * len(run) if run else found
 
 
 def _middle(values: Floats) -> Fraction:

@@ -9,7 +9,7 @@ from roadproof.errors import InputError
 from roadproof.world.length_error import LengthError, length_error
 from roadproof.world.maps.carriageway import DRIVEN, RAMPS
 from roadproof.world.maps.opendrive import MapRoad, RoadMap, read_map
-from roadproof.world.maps.selection import LANELETS, STEP, Selection, Stretch, stretch_of
+from roadproof.world.maps.selection import LANELETS, Selection, Stretch, stretch_of
 from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.road import Lanelet, Zone
 
@@ -108,7 +108,7 @@ def _stretch(path: Path, roads: RoadMap, road: MapRoad, side: str) -> MapStretch
         return None
     forward = (side == "right") == (road.rule == "RHT")
     try:
-        found = stretch_of(path, roads, Selection((road.id,), side == "left", (None, None), STEP))
+        found = stretch_of(path, roads, Selection((road.id,), side == "left", (None, None)))
     except InputError as error:
         return MapStretch(select, road.name, road.length, refused=str(error))
     direction = "along s" if forward else "against s"

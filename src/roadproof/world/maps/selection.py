@@ -34,13 +34,14 @@ _MILLI = 1000
 class Selection:
     """``roads``: ids, none for the only one; ``against``: lanes that are driven against s of the map.
 
-    ``way``: a lanelet on whose way s is measured.
+    ``way``: a lanelet on whose way s is measured. ``step`` None: ``STEP``, or more where a map of measured
+    lanelets has too many (``lanelet_map``).
     """
 
     roads: tuple[str, ...] = ()
     against: bool | None = None
     span: tuple[Fraction | None, Fraction | None] = (None, None)
-    step: Fraction = STEP
+    step: Fraction | None = None
     way: str | None = None
 
 
@@ -82,7 +83,7 @@ def read_selection(text: str) -> tuple[Path, Selection]:
     if step is not None and step < Fraction(1, 100):
         raise UsageError(f"road {text}: step={float(step):g}: at least 0.01 m is needed")
     against = None if lanes is None else lanes == "left"
-    return Path(name), Selection(roads, against, (low, high), STEP if step is None else step, way)
+    return Path(name), Selection(roads, against, (low, high), step, way)
 
 
 def _metres(text: str, key: str, value: str | None) -> Fraction | None:
@@ -107,7 +108,7 @@ def select(path: Path, selection: Selection, origin: tuple[float, float] | None 
 def stretch_of(path: Path, known_map: RoadMap, selection: Selection) -> Stretch:
     """As ``select``, from the roads of the file."""
     ways = directed(path, known_map, selection)
-    made = carriageway(ways, selection.step)
+    made = carriageway(ways, selection.step or STEP)
     if not made.lanelets:
         raise InputError(
             f"{ways[0].road.where}: no lane is driven on in this direction; try lanes=left or right"
