@@ -8,6 +8,7 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import InputError
+from roadproof.frontends.cli.main import main
 from roadproof.world.maps.opendrive import outer_edge, read_map
 from roadproof.world.models import load_road
 from world.test_maps import lane, line, road, section, write
@@ -92,3 +93,13 @@ def test_the_narrow_end_of_a_lane_beside_the_rest_of_it_is_left_out(tmp_path: Pa
     assert 45 < max(x.s[1] or 0 for x in ending) < 50
     assert all(a.d[0] < b.d[1] and b.d[0] < a.d[1] for a, b in pairwise(ending))
     assert {x.s[1] for x in found if x.lane == "main-1"} >= {F(100)}
+
+
+def test_ramps_without_a_type_are_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A lane that ends is on the main road unless its type says that it is a ramp."""
+    told = "no lane is of a type for ramps (entry, exit, onRamp, offRamp): all are main road"
+    for kind in ("driving", "entry"):
+        ending = section(lane(-1) + lane(-2, kind=kind)) + section(lane(-1), s="60")
+        path = write(tmp_path, road(1, line(), ending))
+        assert main(["road", str(path)]) == 0
+        assert (told in capsys.readouterr().out) == (kind == "driving")

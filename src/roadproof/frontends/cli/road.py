@@ -62,6 +62,8 @@ def _lines(stretch: "MapStretch", in_full: bool) -> Iterator[str]:
     yield f"  {float(stretch.length):g} m{named}, {count}{driven}"
     for zone in stretch.zones:
         yield f"  {zone.zone} zone from {float(zone.begin):g} m to {float(zone.end):g} m"
+    if low != high and stretch.untyped_ramps:
+        yield "  no lane is of a type for ramps (entry, exit, onRamp, offRamp): all are main road"
     if stretch.width_error:
         yield f"  edges of lanelets are within {float(stretch.width_error):.3f} m of the lanes'"
     if stretch.radius is None:

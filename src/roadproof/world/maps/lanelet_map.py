@@ -26,8 +26,8 @@ from roadproof.world.road import Attribute, Lanelet, Zone
 
 _SPACING, _ENDS = 2.0, 1.0
 """Metres between points of lines that may cross, and from their ends, where lanelets part or join."""
-_STEPS = (STEP, 2 * STEP, 4 * STEP, 8 * STEP)
-"""How much (m) an edge may change on a lanelet where nothing else is selected: the first that is enough."""
+_COARSER = (2 * STEP, 4 * STEP, 8 * STEP)
+"""How much (m) an edge may change on a lanelet where there are too many: the first that is enough."""
 _MANY = 50
 """So many lanelets are enough: with more of them a search soon takes minutes."""
 
@@ -138,14 +138,28 @@ def stretch_of(known: LaneletMap, selection: Selection) -> Stretch:
         )
     line = reference_line(joined([lanelets[x].centre for x in way]))
     measured = _measured(known, way, line, where)
-    for step in _STEPS if selection.step is None else (selection.step,):
-        made = lanelets_of(measured, way, step, where)
-        found = cut(known.path, made, selection.span)
+    made = lanelets_of(measured, way, selection.step or STEP, where)
+    found = cut(known.path, made, selection.span)
+    for step in _COARSER if selection.step is None and len(found) > _MANY else ():
+        coarser = lanelets_of(measured, way, step, where)
+        fewer = cut(known.path, coarser, selection.span)
+        if not _keeps_rules(fewer, where):
+            break
+        made, found = coarser, fewer
         if len(found) <= _MANY:
             break
     _refuse_crossing(known, way, line, found)
     check_lanelets(tuple(found), where)
     return Stretch(tuple(found), line, made.width_error)
+
+
+def _keeps_rules(lanelets: list[Lanelet], where: str) -> bool:
+    """Whether lanelets of a lane still meet, though their edges are coarser."""
+    try:
+        check_lanelets(tuple(lanelets), where)
+    except InputError:
+        return False
+    return True
 
 
 def _measured(

@@ -47,6 +47,12 @@ class MapStretch:
     line: ReferenceLine | None = None
     refused: str = ""
 
+    @property
+    def untyped_ramps(self) -> bool:
+        """Whether lanes that begin or end are main road as none has a type for ramps, in OpenDRIVE."""
+        typed = any(x.attribute != "main" for x in self.lanelets)
+        return Path(self.select.partition("#")[0]).suffix not in LANELETS and not typed
+
 
 def stretches_of(path: Path, roads: RoadMap) -> tuple[MapStretch, ...]:
     """Every road of a map in every direction that lanes are driven in, then those that cannot be read."""
