@@ -10,7 +10,7 @@ from roadproof.analysis.requirements.checked_evidence import CheckedEvidence, re
 from roadproof.analysis.requirements.fingerprints import Surroundings, differences, parts_of
 from roadproof.analysis.requirements.matching import combined, read_target, shown_by
 from roadproof.analysis.requirements.requirement import Link, Requirement
-from roadproof.errors import TextError
+from roadproof.errors import InputError, TextError
 from roadproof.evidence.answers.trace import LinkState, Position
 from roadproof.evidence.finding import STALE, Acceptance, Finding, Kind
 from roadproof.library.loading import bundled_library
@@ -157,3 +157,9 @@ def test_all_parts_of_a_plate_count() -> None:
 def test_a_word_is_no_label() -> None:
     with pytest.raises(TextError):
         state(Link("claim", "base"))
+
+
+@pytest.mark.parametrize("target", ["99", "99@ext"])
+def test_a_scenario_that_is_not_there_is_told_with_its_place(target: str) -> None:
+    with pytest.raises(InputError, match=r"^r\.toml, line 3: there is no scenario 99"):
+        read_target(Link("scenario", target), HOME, "r.toml, line 3")

@@ -14,7 +14,7 @@ from roadproof.analysis.requirements.checked_evidence import (
     without_names,
 )
 from roadproof.analysis.requirements.requirement import Link
-from roadproof.errors import TextError
+from roadproof.errors import InputError, TextError, UsageError
 from roadproof.evidence.answers.trace import LinkState
 from roadproof.evidence.finding import STALE, Acceptance
 from roadproof.library.bind import default_values
@@ -70,7 +70,12 @@ def read_target(link: Link, home: Specification, source: str) -> Target:
                 return Target(link, home)
             raise
     if link.kind == "scenario":
-        query, specification = _scenario(link.target, home, source)
+        try:
+            query, specification = _scenario(link.target, home, source)
+        except TextError:
+            raise
+        except (InputError, UsageError) as error:
+            raise InputError(f"{source}: {error}") from None
         return Target(link, specification, Meaning(without_names(query.formula)))
     return Target(link, home)
 
