@@ -397,7 +397,7 @@ def test_a_caret_shows_where() -> None:
             "--steps 1: write a number from 2 to 201",
         ),
         (lambda: rp.monitor(4, "x.csv", view="x"), "view='x': write 'dense' or 'recorded'"),
-        (lambda: rp.monitor(4, "x.csv", view="dense"), "other traces have samples only"),
+        (lambda: rp.monitor(4, "x.csv", view="dense"), "others have samples only"),
         (lambda: rp.monitor(4, "x.csv", end="x"), "end='x': write 'truncated' or 'clip'"),
         (lambda: rp.evaluate("x", end="x"), "end='x': write 'truncated' or 'clip'"),
         (lambda: rp.simulate("x", recordings=0), "recordings=0: write 1 to 999"),

@@ -25,7 +25,7 @@ requirements.toml:
   [[requirement]]
   id = "LEAD-1"
   text = "The vehicle keeps its distance from a vehicle ahead that brakes."
-  claims = ["P4 scenario 3 base"]          # a formula, or the name that check prints: needs a proof
+  claims = ["scenario_4(SV,POV,L) -> F danger(SV,POV)"]   # or a name that check prints: needs a proof
   scenarios = [4]                          # a number, name, class or formula: needs a judged drive
   tests = ["cut-in-3"]                     # tests of a catalogue; also: plates, evidence, parent
 
