@@ -28,11 +28,11 @@ _SMALL = 1e-7
 def coq(polynomial: Polynomial[int]) -> str:
     """As a term of Products.v."""
     terms = sorted(polynomial.terms.items(), key=lambda x: sorted(Counter(x[0]).items()))
-    shown = [_joined("mul_", _factors(m, q)) for m, q in terms]
-    return _joined("add_", shown or ["(c_ 0 1)"])
+    shown = [joined("mul_", _factors(m, q)) for m, q in terms]
+    return joined("add_", shown or ["(c_ 0 1)"])
 
 
-def _joined(word: str, parts: Iterable[str]) -> str:
+def joined(word: str, parts: Iterable[str]) -> str:
     """A word of Products.v for two parts, applied to several: the first two, then the next."""
     return reduce(lambda one, other: f"({word} {one} {other})", parts)
 
@@ -53,7 +53,7 @@ class Constraint:
 
 
 @dataclass(frozen=True)
-class _Column:
+class Column:
     """A product, ``strict`` where it is above 0, ``free`` where it is 0 and may be subtracted.
 
     ``places``: of which constraints. ``written``: with a multiplier, for Coq; constraints as they are told.
@@ -68,14 +68,14 @@ class _Column:
 
 # Constraints by their places, their product, and whether it is above 0.
 _Product: TypeAlias = tuple[tuple[int, ...], Polynomial[int], bool]
-_Parts: TypeAlias = tuple[tuple[_Column, Fraction], ...]
+Parts: TypeAlias = tuple[tuple[Column, Fraction], ...]
 
 
 @dataclass(frozen=True)
 class Sum:
     """A sum of products that is absurd; ``scales`` make the coefficients of each constraint whole."""
 
-    parts: _Parts
+    parts: Parts
     scales: tuple[Fraction, ...]
 
     def written(self) -> str:
@@ -84,7 +84,7 @@ class Sum:
         The last constraint is number 0 there.
         """
         multipliers = [q / prod(self.scales[place] for place in x.places) for x, q in self.parts]
-        whole = _whole(multipliers)
+        whole = whole_factor(multipliers)
         shown = [x.written(q * whole, self._given) for (x, _), q in zip(self.parts, multipliers, strict=True)]
         found = shown[-1]
         for part in reversed(shown[:-1]):
@@ -93,16 +93,16 @@ class Sum:
 
     def _given(self, place: int) -> str:
         told = f"(given_ {len(self.scales) - 1 - place})"
-        return told if self.scales[place] == 1 else f"(product_ {_number(self.scales[place])} {told})"
+        return told if self.scales[place] == 1 else f"(product_ {number(self.scales[place])} {told})"
 
 
-def _whole(numbers: Iterable[Fraction]) -> Fraction:
+def whole_factor(numbers: Iterable[Fraction]) -> Fraction:
     """What makes them whole numbers without a common factor; 1 where there are none but 0."""
     found = [q for q in numbers if q]
     return Fraction(lcm(*(q.denominator for q in found)), gcd(*(q.numerator for q in found)) or 1)
 
 
-def _number(value: Fraction) -> str:
+def number(value: Fraction) -> str:
     return f"(number_ {value.numerator} {value.denominator})"
 
 
@@ -114,15 +114,15 @@ def contradiction(constraints: Sequence[Constraint], level: int) -> tuple[Sum | 
     if len(columns) > MOST_COLUMNS:
         return None, len(columns)
     try:
-        parts = _solved(columns)
+        parts = solved(columns)
     except OverflowError:  # a number that no float has
         return None, len(columns)
-    scales = tuple(_whole(x.polynomial.terms.values()) for x in constraints)
+    scales = tuple(whole_factor(x.polynomial.terms.values()) for x in constraints)
     return Sum(parts, scales) if parts is not None else None, len(columns)
 
 
-def _columns(constraints: Sequence[Constraint], level: int) -> Iterator[_Column]:
-    yield _Column(constant(Fraction(1)), True, False, (), lambda q, _: _number(q))
+def _columns(constraints: Sequence[Constraint], level: int) -> Iterator[Column]:
+    yield Column(constant(Fraction(1)), True, False, (), lambda q, _: number(q))
     signed = [(place, x) for place, x in enumerate(constraints) if x.kind != "zero"]
     made: list[_Product] = [((), constant(Fraction(1)), True)]
     for _ in range(level):
@@ -136,41 +136,41 @@ def _columns(constraints: Sequence[Constraint], level: int) -> Iterator[_Column]
     variables = sorted({v for x in constraints for v in x.polynomial.variables})
     for place, x in enumerate(constraints):
         if x.kind == "zero":
-            for monomial in _monomials(variables, level if level > 1 else 0):
+            for monomial in monomials(variables, level if level > 1 else 0):
                 yield _equation(place, x.polynomial * Polynomial({monomial: Fraction(1)}), monomial)
     if level > 1:
         degree = 2 if level > 2 and len(variables) <= FEW_VARIABLES else 1
-        roots = [Polynomial({m: Fraction(1)}) for m in _monomials(variables, degree)]
+        roots = [Polynomial({m: Fraction(1)}) for m in monomials(variables, degree)]
         yield from map(_square, roots)
         for one, other in combinations(roots, 2):
             yield _square(one - other)
             yield _square(one + other)
 
 
-def _product(made: _Product) -> _Column:
+def _product(made: _Product) -> Column:
     places, polynomial, strict = made
 
     def written(q: Fraction, given: Callable[[int], str]) -> str:
-        return f"(product_ {_number(q)} {_joined('product_', map(given, places))})"
+        return f"(product_ {number(q)} {joined('product_', map(given, places))})"
 
-    return _Column(polynomial, strict, False, places, written)
+    return Column(polynomial, strict, False, places, written)
 
 
-def _equation(place: int, product: Polynomial[int], factor: Monomial) -> _Column:
+def _equation(place: int, product: Polynomial[int], factor: Monomial) -> Column:
     def written(q: Fraction, given: Callable[[int], str]) -> str:
         return f"(times_ {coq(Polynomial({factor: q}))} {given(place)})"
 
-    return _Column(product, False, True, (place,), written)
+    return Column(product, False, True, (place,), written)
 
 
-def _square(root: Polynomial[int]) -> _Column:
+def _square(root: Polynomial[int]) -> Column:
     def written(q: Fraction, given: Callable[[int], str]) -> str:
-        return f"(product_ {_number(q)} (square_ {coq(root)}))"
+        return f"(product_ {number(q)} (square_ {coq(root)}))"
 
-    return _Column(root * root, False, False, (), written)
+    return Column(root * root, False, False, (), written)
 
 
-def _monomials(variables: Sequence[int], degree: int) -> Iterator[Monomial]:
+def monomials(variables: Sequence[int], degree: int) -> Iterator[Monomial]:
     """Those of at most that degree."""
     for size in range(degree + 1):
         yield from combinations_with_replacement(variables, size)
@@ -179,7 +179,7 @@ def _monomials(variables: Sequence[int], degree: int) -> Iterator[Monomial]:
 # --- multipliers ---------------------------------------------------------------------------------
 
 
-def _solved(columns: Sequence[_Column]) -> _Parts | None:
+def solved(columns: Sequence[Column]) -> Parts | None:
     """Multipliers whose sum is 0, those of what is above 0 adding up to 1."""
     from scipy.optimize import linprog
     from scipy.sparse import csr_array
@@ -206,7 +206,7 @@ def _solved(columns: Sequence[_Column]) -> _Parts | None:
     return _exactly(used)
 
 
-def _exactly(used: Sequence[_Column]) -> _Parts | None:
+def _exactly(used: Sequence[Column]) -> Parts | None:
     """The multipliers of these columns in rationals; None where they are not what floats said."""
     rows: dict[Monomial | None, dict[int, Fraction]] = {None: {}}
     for place, x in enumerate(used):
@@ -215,17 +215,25 @@ def _exactly(used: Sequence[_Column]) -> _Parts | None:
         if x.strict:
             rows[None][place] = Fraction(1)
     rows[None][len(used)] = Fraction(1)  # the right hand side
-    solved = _eliminated(list(rows.values()), len(used))
-    if solved is None:
+    found = eliminated(list(rows.values()), len(used))
+    if found is None:
         return None
-    parts = [(x, solved.get(place, Fraction(0))) for place, x in enumerate(used)]
+    parts = [(x, found.get(place, Fraction(0))) for place, x in enumerate(used)]
     if any(q < 0 and not x.free for x, q in parts):
         return None
     return tuple((x, q) for x, q in parts if q)
 
 
-def _eliminated(rows: list[dict[int, Fraction]], last: int) -> Mapping[int, Fraction] | None:
+def eliminated(rows: list[dict[int, Fraction]], last: int) -> Mapping[int, Fraction] | None:
     """A solution of linear equations, None where there is none; ``last`` is the right hand side."""
+    pivots = echelon(rows, last)
+    if pivots is None:
+        return None
+    return {place: row.get(last, Fraction(0)) for place, row in pivots.items()}
+
+
+def echelon(rows: Iterable[Mapping[int, Fraction]], last: int) -> dict[int, dict[int, Fraction]] | None:
+    """Linear equations solved: each row by the variable that stands in no other. None: no solution."""
     pivots: dict[int, dict[int, Fraction]] = {}
     for row in rows:
         current = dict(row)
@@ -244,4 +252,4 @@ def _eliminated(rows: list[dict[int, Fraction]], last: int) -> Mapping[int, Frac
             if pivot in other:
                 add_to(other, current, -other[pivot])
         pivots[pivot] = current
-    return {place: row.get(last, Fraction(0)) for place, row in pivots.items()}
+    return pivots

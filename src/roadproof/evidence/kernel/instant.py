@@ -1,8 +1,8 @@
 """The search for a reason of a fact about one instant, as proofs/kernel/Products.v checks it. Not trusted.
 
 The fact is taken to be false and taken apart; maxima and minima by cases, quotients as numbers of their own;
-then a contradiction of polynomial constraints is looked for (``cone.py``), at last with quotients taken to
-be at least 0, or below.
+then a contradiction of polynomial constraints is looked for (``cone.py``, then ``squares.py``), at last with
+quotients taken to be at least 0, or below.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from roadproof.errors import InputError
-from roadproof.evidence.kernel import cone
+from roadproof.evidence.kernel import cone, squares
 from roadproof.evidence.kernel.plain import atoms_of, binary, comparisons, extrema, plain
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
@@ -20,6 +20,7 @@ from roadproof.world.polynomial import Polynomial, constant, variable
 
 MOST_CASES = 400
 MOST_WORK = 100_000  # products that are looked at
+MOST_SUMS = 20  # cases in which sums of squares are looked for
 MOST_PARTS = 400  # of a polynomial
 MOST_CUTS = 2
 LEVELS = (1, 2, 3)
@@ -80,6 +81,7 @@ class _Search:
     atoms: dict[Term, int] = field(default_factory=dict)
     left: int = MOST_CASES
     work: int = MOST_WORK
+    sums: int = MOST_SUMS
 
     def run(self) -> str:
         for x in comparisons(self.fact):
@@ -114,6 +116,7 @@ class _Search:
             or self._extremum(state)
             or self._divide(state)
             or self._closed(state, LEVELS[1:])
+            or self._squares(state)
             or self._cut(state)
         )
 
@@ -130,6 +133,14 @@ class _Search:
         if found is None and self.work < 0:
             raise NoReasonError
         return found
+
+    def _squares(self, state: _State) -> str | None:
+        """By sums of squares, which are asked before the signs of quotients are told apart."""
+        if state.cuts or self.sums <= 0:
+            return None
+        self.sums -= 1
+        found = squares.contradiction(state.constraints)
+        return None if found is None else f"(Absurd {found})"
 
     # --- facts -------------------------------------------------------------------------------------
 

@@ -1,0 +1,102 @@
+"""Sums of squares from semidefinite programming: found, written for Coq, refused where changed."""
+
+import random
+import re
+from fractions import Fraction
+
+import pytest
+
+import roadproof as rp
+from kernel.needs import needs_coq
+from kernel.test_products import asked
+from planting import plant
+from roadproof.evidence.kernel import squares
+from roadproof.evidence.kernel.accept import prepare
+from roadproof.evidence.kernel.cone import Constraint
+from roadproof.evidence.kernel.coq import ready
+from roadproof.evidence.kernel.reduction import reduce_constraints
+from roadproof.evidence.kernel.source import HEAD
+from roadproof.library.loading import bundled_library
+from roadproof.world.polynomial import Polynomial
+
+CLAIMS = """
+given x: unitless: 100*x^2 - 2002*x + 10021 > 0
+given x, y: unitless: x^4 + y^4 + 1 >= 1.3*x*y + 0.7*x^2*y
+given v: m/s: 0 m/s <= v and b_min <= b_max -> 0 m <= dRSS_lon(v,v) - v*rho
+""".strip().splitlines()
+
+
+def _module(claim):
+    found = rp.prove(claim, drive=False, jobs=1)
+    return prepare("one", found.answers[0].settled.result.certificate, bundled_library()).module
+
+
+@needs_coq
+def test_coq_accepts_sums_of_squares_without_its_tactics():
+    found = rp.prove(*CLAIMS, kernel="coq", drive=False, jobs=1)
+    assert [x["kernel"]["says"] for x in found.as_data()["verdicts"]] == ["accepted"] * len(CLAIMS)
+    for answer in found.answers:
+        text = prepare("one", answer.settled.result.certificate, found.study.library).module.text
+        assert "some_instant" not in text
+
+
+@needs_coq
+def test_a_square_with_a_wrong_weight_is_not_accepted(monkeypatch):
+    plant(monkeypatch, squares, "_column", "weight /= whole**2", "weight /= whole")
+    found = rp.prove(CLAIMS[0], kernel="coq", drive=False, jobs=1)
+    (entry,) = found.as_data()["verdicts"]
+    assert entry["kernel"]["says"] == "unknown (lemma 1)"
+
+
+@needs_coq
+def test_roots_with_a_changed_number_are_refused():
+    r = random.Random(1)
+    before, claimed, reason = asked(_module(CLAIMS[0]).text)
+    places = [m for m in re.finditer(r"\d+", reason) if "square_" in reason[: m.start()]]
+    tried = [reason] + [
+        reason[: m.start()] + str(int(m[0]) + 1) + reason[m.end() :] for m in r.sample(places, 8)
+    ]
+    out = [HEAD, before]
+    for place, changed in enumerate(tried):
+        out.append(f"Definition reason_{place} : Roadproof.Products.reason := {changed}.\n")
+        out.append(f"Eval vm_compute in (Roadproof.Products.settles {claimed} reason_{place}).\n")
+    with ready() as coq:
+        ran = coq.run("".join(out) + "End one.\n")
+    assert ran.code == 0, ran.complained[:500]
+    answers = re.findall(r"= (true|false)\n", ran.said)
+    assert answers[0] == "true"
+    assert answers[1:].count("false") >= 5, answers
+
+
+def _polynomial(**terms):
+    return Polynomial(
+        {tuple(map(int, m[1:].split("_"))) if m != "one" else (): Fraction(q) for m, q in terms.items()}
+    )
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_reduced_inequalities_have_the_signs_of_those_given(seed):
+    """On points where the equation is true; two positions become their difference."""
+    r = random.Random(seed)
+    gap = _polynomial(x1=1, x2=-1)
+    speed = _polynomial(x3=1)
+    constraints = [
+        Constraint("above", gap * gap + speed),
+        Constraint("at least", gap * speed - _polynomial(x4=1)),
+        Constraint("zero", _polynomial(x4=2, x3_3=-1)),
+    ]
+    reduction = reduce_constraints(constraints)
+    assert not reduction.equations
+    assert len(reduction.lifted) == 2
+    for _ in range(20):
+        point = {v: Fraction(r.randint(-9, 9), r.randint(1, 4)) for v in (1, 2, 3)}
+        point[4] = point[3] ** 2 / 2
+        for one, other in zip(constraints, reduction.inequalities, strict=False):
+            given = one.polynomial.value(point.__getitem__)
+            found = reduction.lift(other.polynomial).value(point.__getitem__)
+            assert (given > 0, given < 0) == (found > 0, found < 0)
+
+
+def test_no_sum_of_squares_is_found_for_what_has_a_solution():
+    x = _polynomial(x1=1)
+    assert squares.contradiction([Constraint("at least", x), Constraint("above", x * x - x)]) is None
