@@ -81,6 +81,10 @@ def name_of(number: int) -> str:
     return f"scenario_{number}"
 
 
+EVERY_SCENARIO = "scenario_*"
+"""A pattern of what the definitions of all scenarios are called."""
+
+
 def definition_of(scenario: Scenario) -> str:
     """What the definition of a scenario is called from every set."""
     return f"{name_of(scenario.number)}@{scenario.set_name}"

@@ -10,6 +10,7 @@ from roadproof.errors import InputError
 from roadproof.evidence.folder import INDEX
 from roadproof.evidence.journal import HEAD
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
+from roadproof.library.scenarios import EVERY_SCENARIO
 
 TEMPLATES = ("catalogue-coverage",)
 Table = Mapping[str, str | Sequence[str] | bool]
@@ -49,7 +50,7 @@ _TESTS: Mapping[str, _Use] = {
         "The tests show every scenario and are what they claim",
         "Review of the test catalogue",
         ("COVERED",),
-        ("scenario_*",),
+        (EVERY_SCENARIO,),
     ),
 }
 _DRIVER: Mapping[str, _Use] = {

@@ -22,6 +22,7 @@ from roadproof.evidence.codec import read, write
 from roadproof.evidence.strict import LARGEST_INDEX, JsonObject, read_json
 from roadproof.library.bind import default_values
 from roadproof.library.dependence import Used, used_by
+from roadproof.library.scenarios import name_of
 from roadproof.library.specification import Specification
 from roadproof.version import VERSION
 from roadproof.world.vehicle import Vehicle
@@ -54,7 +55,7 @@ def parts_of(
     link = target.link
     if link.kind == "claim" or link.kind == "scenario":
         name = link.target.partition("@")[0]
-        text = f"scenario_{name}" if name.isdecimal() else link.target
+        text = name_of(int(name)) if name.isdecimal() else link.target
         parts |= _of_text(target.specification, text, around, link.kind == "scenario")
     for x in evidence:
         assumes = x.meaning is not None and bool(x.meaning.assuming)

@@ -15,6 +15,7 @@ from roadproof.frontends.settings.keywords import CompileKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.recordings import Compile
 from roadproof.library.bind import bind, refuse_variables
+from roadproof.library.scenarios import name_of
 from roadproof.library.specification import Query, unknown
 from roadproof.logic.formula import Application, Formula
 from roadproof.logic.rewrite import with_values
@@ -118,7 +119,7 @@ def _with_values(query: Query, home: Definitions, given: Compile) -> Formula:
 def _label(number: int | None, query: Query, place: int) -> str:
     """The beginning of the names of functions: scenario_4, danger_SV_POV, or formula_1."""
     if number is not None:
-        return f"scenario_{number}"
+        return name_of(number)
     if isinstance(query.formula, Application):
         return re.sub(r"\W+", "_", "_".join((query.formula.name, *query.formula.arguments)))
     return f"formula_{place}"
