@@ -167,12 +167,15 @@ def test_bad_recordings(folder: Path, tmp_path: Path) -> None:
     shutil.copytree(folder, ours)
     text = (ours / "02_tracks.csv").read_text().splitlines()
     (ours / "02_tracks.csv").write_text("\n".join(text[:-30]) + "\n")
+    lenient = run_experiment(Experiment(ours, tmp_path / "lenient", default_settings()))
+    assert not lenient.failed
+    assert any("left out" in note for note in lenient.totals.notes["02"])
     with pytest.raises(InputError, match="02_tracks"):
-        run_experiment(Experiment(ours, tmp_path / "a", default_settings()))
+        run_experiment(Experiment(ours, tmp_path / "a", default_settings(), strict=True))
     assert not (tmp_path / "a" / "results.json").exists()
     told: list[str] = []
     outcome = run_experiment(
-        Experiment(ours, tmp_path / "b", default_settings(), keep_going=True), told.append
+        Experiment(ours, tmp_path / "b", default_settings(), keep_going=True, strict=True), told.append
     )
     assert list(outcome.failed) == ["02"]
     assert outcome.totals.recordings == 2
@@ -181,7 +184,7 @@ def test_bad_recordings(folder: Path, tmp_path: Path) -> None:
     for number in ("01", "03"):
         (ours / f"{number}_tracks.csv").write_text("")
     with pytest.raises(InputError, match="none could be used"):
-        run_experiment(Experiment(ours, tmp_path / "c", default_settings(), keep_going=True))
+        run_experiment(Experiment(ours, tmp_path / "c", default_settings(), keep_going=True, strict=True))
 
 
 def test_unwritable_output(folder: Path, tmp_path: Path) -> None:

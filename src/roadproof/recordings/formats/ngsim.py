@@ -29,7 +29,7 @@ from roadproof.recordings.formats.straight import StraightRoad, of_road, record
 from roadproof.recordings.formats.table import Kind, Table, kinds_of, read_table
 from roadproof.recordings.formats.tracks import Rule, without_bad
 from roadproof.world.models import load_recorded_road
-from roadproof.world.signals import SignalName, SizeName
+from roadproof.world.signals import RECORDED, SIZES, SignalName, SizeName
 
 RATE = 10
 STEP = 100
@@ -45,17 +45,12 @@ _WANTED = kinds_of(
 )
 _PLACES = kinds_of(number="Global_X Global_Y")
 _LOCATION = "Location"
-_SIGNALS: Mapping[SignalName | SizeName, str] = {
-    "s": "Local_Y",
-    "d": "Local_X",
-    "v_lon": "v_Vel",
-    "v_lat": "Local_X",
-    "a_lon": "v_Acc",
-    "a_lat": "Local_X",
-    "length": "v_Length",
-    "width": "v_Width",
-}
+_MEASURED = ("Local_Y", "Local_X", "v_Vel", "Local_X", "v_Acc", "Local_X")
 _SIZES = ("v_Length", "v_Width")
+_SIGNALS: Mapping[SignalName | SizeName, str] = dict(
+    zip((*RECORDED, *SIZES), (*_MEASURED, *_SIZES), strict=True)
+)
+"""The column from which each signal is."""
 _MOST = {
     "Local_X": 30_000.0,
     "Local_Y": 30_000.0,

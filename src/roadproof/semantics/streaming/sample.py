@@ -6,7 +6,7 @@ A relation is what a formula says of lanes (``atLane(SV, L)``): whoever calls th
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import TypeAlias, assert_never
 
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
@@ -21,16 +21,7 @@ from roadproof.world.units import unit_text
 Lane: TypeAlias = f.Occupies | f.Some | f.Every
 Source: TypeAlias = t.Signal | t.Size | t.Own | Lane
 """What a field of a sample says."""
-_MEANINGS: Mapping[SignalName, tuple[str, str]] = {
-    "s": ("front end", "along the road"),
-    "d": ("left side", "across the road, growing to the left"),
-    "v_lon": ("velocity", "along the road"),
-    "v_lat": ("velocity", "across the road, to the left"),
-    "a_lon": ("acceleration", "along the road"),
-    "a_lat": ("acceleration", "across the road, to the left"),
-    "j_lon": ("jerk", "along the road"),
-}
-"""What a signal is of a vehicle, and in which direction."""
+_ALONG, _ACROSS = "along the road", "across the road, to the left"
 _RELATIONS = (f.Occupies, f.Some, f.Every, f.Not, f.And, f.Or, f.Application, f.Truth)
 
 
@@ -71,12 +62,33 @@ def _add(found: dict[Source, Field], source: Source, name: str, flag: bool, abou
     found[source] = Field(name, flag, about)
 
 
+def _meaning(name: SignalName) -> tuple[str, str]:
+    """What a signal is of a vehicle, and in which direction."""
+    match name:
+        case "s":
+            return "front end", _ALONG
+        case "d":
+            return "left side", "across the road, growing to the left"
+        case "v_lon":
+            return "velocity", _ALONG
+        case "v_lat":
+            return "velocity", _ACROSS
+        case "a_lon":
+            return "acceleration", _ALONG
+        case "a_lat":
+            return "acceleration", _ACROSS
+        case "j_lon":
+            return "jerk", _ALONG
+        case _:
+            assert_never(name)
+
+
 def _about(leaf: t.Signal | t.Size) -> str:
     if isinstance(leaf, t.Size):
         if leaf.name == "kind":
             return ", ".join(f"{k} {kind}" for k, kind in enumerate(KINDS, 1))
         return f"{SIZES[leaf.name]}: {leaf.name} of {leaf.vehicle}, greater than 0"
-    what, where = _MEANINGS.get(leaf.name, (leaf.name, ""))
+    what, where = _meaning(leaf.name)
     return f"{SIGNALS[leaf.name].unit}: {what} of {leaf.vehicle} {where}".rstrip()
 
 

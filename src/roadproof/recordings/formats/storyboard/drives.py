@@ -24,7 +24,7 @@ from roadproof.recordings.formats.storyboard.run import Play
 from roadproof.recordings.formats.storyboard.stage import open_stage, played
 from roadproof.world.drive import Across, Along, Drive, Motion, motion_of
 from roadproof.world.road import Road
-from roadproof.world.signals import Kind
+from roadproof.world.signals import STARTING, Kind
 
 DIGITS = 9
 CLOSE = 1e-4
@@ -108,7 +108,7 @@ def _motion(play: Play, name: str, box: Box, error: _Error, where: str) -> Motio
     knots = [*_knots(play, name)]
     first = play.state_at(name, 0.0)
     ahead, left = box.centre[0] + box.length / 2, box.centre[1] + box.width / 2
-    begin = {x: _rounded(getattr(first, x)) for x in ("s", "d", "v_lon", "v_lat")}
+    begin = {x: _rounded(getattr(first, x)) for x in STARTING}
     along: list[Along] = []
     across: list[Across] = []
     now_s, now_d = (begin["s"], begin["v_lon"]), (begin["d"], begin["v_lat"])

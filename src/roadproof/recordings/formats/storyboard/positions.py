@@ -17,11 +17,9 @@ from roadproof.world.maps.carriageway import DRIVEN, RAMPS
 from roadproof.world.maps.opendrive import MapRoad, MapSection, outer_edge, read_map, value_at
 from roadproof.world.maps.selection import is_map, read_selection
 from roadproof.world.road import Road
+from roadproof.world.signals import RECORDED
 
 _LANE = "LanePosition"
-
-
-_SIGNED = ("s", "d", "v_lon", "v_lat", "a_lon", "a_lat")
 
 
 @dataclass(frozen=True)
@@ -38,7 +36,7 @@ class State:
 
     def turned(self) -> "State":
         """The same in the coordinates of those who drive against the road."""
-        s, d, v_lon, v_lat, a_lon, a_lat = (-getattr(self, x) for x in _SIGNED)
+        s, d, v_lon, v_lat, a_lon, a_lat = (-getattr(self, x) for x in RECORDED)
         return State(s, d, v_lon, v_lat, a_lon, a_lat, not self.forward)
 
 
