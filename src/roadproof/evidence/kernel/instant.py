@@ -18,7 +18,7 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.terms import Term
 from roadproof.world.polynomial import Polynomial, constant, variable
 
-MOST_CASES = 400
+MOST_CASES = 4000
 MOST_WORK = 100_000  # products that are looked at
 MOST_SUMS = 20  # cases in which sums of squares are looked for
 MOST_PARTS = 400  # of a polynomial
