@@ -29,7 +29,8 @@ class About:
     each sample; of ``piece`` its value on each piece of the motion; ``nothing`` where it follows from
     the others. ``rate_of``: what it is the rate of change of, at all times: accelerations may jump, so that
     jerk is the rate of none. ``recorded``: whether recordings and CSV
-    files of samples have it. ``limited``: whether models of vehicles bound it.
+    files of samples have it. ``limited``: whether models of vehicles bound it. ``what``: what it is of a
+    vehicle, ``where``: in which direction, in words.
     """
 
     unit: str
@@ -37,16 +38,19 @@ class About:
     rate_of: SignalName | None = None
     recorded: bool = True
     limited: bool = False
+    what: str = ""
+    where: str = ""
 
 
+_ALONG, _ACROSS = "along the road", "across the road, to the left"
 SIGNALS: Mapping[SignalName, About] = {
-    "s": About("m", "start"),
-    "d": About("m", "start"),
-    "v_lon": About("m/s", "start", rate_of="s", limited=True),
-    "v_lat": About("m/s", "start", rate_of="d", limited=True),
-    "a_lon": About("m/s^2", "piece", rate_of="v_lon", limited=True),
-    "a_lat": About("m/s^2", "piece", rate_of="v_lat", limited=True),
-    "j_lon": About("m/s^3", "piece", recorded=False),
+    "s": About("m", "start", what="front end", where=_ALONG),
+    "d": About("m", "start", what="left side", where="across the road, growing to the left"),
+    "v_lon": About("m/s", "start", rate_of="s", limited=True, what="velocity", where=_ALONG),
+    "v_lat": About("m/s", "start", rate_of="d", limited=True, what="velocity", where=_ACROSS),
+    "a_lon": About("m/s^2", "piece", rate_of="v_lon", limited=True, what="acceleration", where=_ALONG),
+    "a_lat": About("m/s^2", "piece", rate_of="v_lat", limited=True, what="acceleration", where=_ACROSS),
+    "j_lon": About("m/s^3", "piece", recorded=False, what="jerk", where=_ALONG),
 }
 SIZES: Mapping[SizeName, str] = {"length": "m", "width": "m"}
 """The box of a vehicle, which never changes, and its unit."""

@@ -6,7 +6,7 @@ A relation is what a formula says of lanes (``atLane(SV, L)``): whoever calls th
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TypeAlias, assert_never
+from typing import TypeAlias
 
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
@@ -15,13 +15,12 @@ from roadproof.logic.custom_names import own_of, told_range
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import leaves_of, without_names
 from roadproof.logic.show import as_syntax, text
-from roadproof.world.signals import KINDS, SIGNALS, SIZES, SignalName
+from roadproof.world.signals import KINDS, SIGNALS, SIZES
 from roadproof.world.units import unit_text
 
 Lane: TypeAlias = f.Occupies | f.Some | f.Every
 Source: TypeAlias = t.Signal | t.Size | t.Own | Lane
 """What a field of a sample says."""
-_ALONG, _ACROSS = "along the road", "across the road, to the left"
 _RELATIONS = (f.Occupies, f.Some, f.Every, f.Not, f.And, f.Or, f.Application, f.Truth)
 
 
@@ -62,34 +61,14 @@ def _add(found: dict[Source, Field], source: Source, name: str, flag: bool, abou
     found[source] = Field(name, flag, about)
 
 
-def _meaning(name: SignalName) -> tuple[str, str]:
-    """What a signal is of a vehicle, and in which direction."""
-    match name:
-        case "s":
-            return "front end", _ALONG
-        case "d":
-            return "left side", "across the road, growing to the left"
-        case "v_lon":
-            return "velocity", _ALONG
-        case "v_lat":
-            return "velocity", _ACROSS
-        case "a_lon":
-            return "acceleration", _ALONG
-        case "a_lat":
-            return "acceleration", _ACROSS
-        case "j_lon":
-            return "jerk", _ALONG
-        case _:
-            assert_never(name)
-
-
 def _about(leaf: t.Signal | t.Size) -> str:
     if isinstance(leaf, t.Size):
         if leaf.name == "kind":
             return ", ".join(f"{k} {kind}" for k, kind in enumerate(KINDS, 1))
         return f"{SIZES[leaf.name]}: {leaf.name} of {leaf.vehicle}, greater than 0"
-    what, where = _meaning(leaf.name)
-    return f"{SIGNALS[leaf.name].unit}: {what} of {leaf.vehicle} {where}".rstrip()
+    about = SIGNALS[leaf.name]
+    what = about.what or leaf.name
+    return f"{about.unit}: {what} of {leaf.vehicle} {about.where}".rstrip()
 
 
 def _about_own(own: t.Own) -> str:
