@@ -107,8 +107,8 @@ def _of_entry(said: Mapping[str, Json]) -> Found:
         yield WITHIN, f"{verdict}: {why}"
     if "stepped" in said and isinstance(fixed := said.get("fixed"), dict):
         yield PLATES, f"{said.get('model')}: {_told(fixed) or 'nothing'} fixed"
-        if said["stepped"]:
-            yield PLATES, f"{said.get('model')}: nothing is claimed between places: {said['stepped']}"
+        if stepped := said.get("stepped"):
+            yield PLATES, f"{said.get('model')}: nothing is claimed between places: {stepped}"
 
 
 def _of_findings(findings: Iterable[Finding]) -> Found:

@@ -50,13 +50,14 @@ def read_strictdoc(path: Path) -> Requirements:
     for node in _nodes(lines, path):
         if not node.is_requirement:
             continue
-        if not node.fields.get("UID"):
+        fields = node.fields
+        uid = fields.get("UID")
+        if not uid:
             notes.append(f"{told(node.place)}: the requirement has no UID and is left out")
             continue
-        fields = node.fields
         found.append(
             Requirement(
-                fields["UID"],
+                uid,
                 fields.get("STATEMENT", ""),
                 node.place,
                 fields.get("TITLE", ""),
@@ -107,7 +108,7 @@ def _read_line(node: _Node, inside: str, line: str, place: Position) -> tuple[st
     inner = _INNER.fullmatch(line)
     if inside in _RELATIONS and inner is not None:
         if inner[1] == "TYPE":
-            node.fields["-type"] = inner[2].strip()
+            node.fields |= {"-type": inner[2].strip()}
         elif inner[1] == "VALUE" and node.fields.get("-type") == "Parent":
             node.parents.append(inner[2].strip())
         return inside, False

@@ -338,7 +338,7 @@ def modelling() -> Any:
         gc.freeze()  # thousands of objects that stay, which each collection would walk through for 0.1 s
     import cvxpy
 
-    version = vars(cvxpy)["__version__"]
+    version = str(vars(cvxpy).get("__version__"))
     if tuple(map(int, re.findall(r"\d+", version)[:3])) < OLDEST_CVXPY:
         oldest = ".".join(map(str, OLDEST_CVXPY))
         raise MissingSolverError(

@@ -90,7 +90,8 @@ def bundle(*results: str | Path, out: str | Path, **options: Unpack[BundleKeywor
     pinned = _packages(files, asked.wheel, asked.wheels)
     files[REQUIREMENTS] = "".join(f"{x.line}\n" for x in pinned).encode()
     checkable = [x.as_posix() for x in read_results(evidence).checkable]
-    files["check.sh"] = _script(checkable, [x.as_posix() for x in specs], checked.exit_code, asked.wheels)
+    script = _script(checkable, [x.as_posix() for x in specs], checked.exit_code, asked.wheels)
+    files |= {"check.sh": script}
     manifest = _manifest(checkable, specs, checked, pinned, files)
     files[MANIFEST] = (json.dumps(write(manifest), indent=1) + "\n").encode()
     files[SUMS] = "".join(f"{_digest(x)}  {name}\n" for name, x in sorted(files.items())).encode()
