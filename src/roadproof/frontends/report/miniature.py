@@ -62,7 +62,7 @@ class _Drawing:
                 inner = low + 1 < edge < high - 1
                 line = _shape("line", "lane" if inner else "edge", x1=x, x2=x + width, y1=edge, y2=edge)
                 if inner:
-                    line.attrib["stroke-dasharray"] = " ".join(_n(x * scene.scale[0]) for x in DASH)
+                    line.set("stroke-dasharray", " ".join(_n(x * scene.scale[0]) for x in DASH))
                 pieces.append(line)
         moved = [f"translate({_n(-x * scene.scale[0])}px)" for x in scene.travel]
         return self._moving(pieces, moved, [(-x * scene.scale[0],) for x in scene.travel], "road")
@@ -122,8 +122,8 @@ class _Drawing:
 
     def _played(self, shape: Element, frames: Sequence[str], part: str) -> Element:
         self.keyframes.append(f"@keyframes {self.name}{part}{{{''.join(dict.fromkeys(frames))}}}")
-        shape.attrib["class"] = f"{shape.attrib.get('class', '')} plays".strip()
-        shape.attrib["style"] = f"--a:{self.name}{part}"
+        shape.set("class", f"{shape.attrib.get('class', '')} plays".strip())
+        shape.set("style", f"--a:{self.name}{part}")
         return shape
 
     def _percent(self, k: int) -> str:
@@ -185,7 +185,7 @@ class _BentDrawing(_Drawing):
 def _way(kind: str, lines: Sequence[Points], end: str) -> Element:
     look = {} if end else {"fill": "none"}
     made = element("path", d=" ".join(_line(x) + end for x in lines), **look)
-    made.attrib["class"] = kind
+    made.set("class", kind)
     return made
 
 
@@ -214,7 +214,7 @@ def _distance(places: Sequence[Sequence[float]], begin: int, k: int, end: int) -
 
 def _shape(tag: str, kind: str, **numbers: float) -> Element:
     made = element(tag, **{name: _n(value) for name, value in numbers.items()})
-    made.attrib["class"] = kind
+    made.set("class", kind)
     return made
 
 
