@@ -21,7 +21,7 @@ from roadproof.recordings.export import commonroad, openscenario
 from roadproof.recordings.export.points import centre
 from roadproof.recordings.export.subject import subject_of
 from roadproof.recordings.formats.commonroad import read_commonroad
-from roadproof.recordings.formats.openscenario import read_columns
+from roadproof.recordings.formats.openscenario import read_scenario
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.replay import first_breach
 from roadproof.world.bends import on_bends
@@ -159,7 +159,8 @@ def test_a_scenario_is_read_back_where_it_was(tmp_path: Path) -> None:
     for name, content in openscenario.files(subject).items():
         (tmp_path / name).write_bytes(content)
     assert (tmp_path / "motorway.xodr").read_bytes() == MAP.read_bytes()
-    table, road, _ = read_columns(tmp_path / "one.xosc")
+    found = read_scenario(tmp_path / "one.xosc")
+    table, road = found.table, found.road
     assert road.lanelets == ROAD.lanelets
     motion = drive.vehicles["SV"]
     for k, time in enumerate(table.columns["time"]):

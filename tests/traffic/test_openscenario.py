@@ -20,7 +20,7 @@ from roadproof.recordings.evaluate.one_trace import read_pair, read_samples
 from roadproof.recordings.export.openscenario import files
 from roadproof.recordings.export.subject import Subject
 from roadproof.recordings.formats import openscenario
-from roadproof.recordings.formats.openscenario import RATE, read_columns, read_recording
+from roadproof.recordings.formats.openscenario import RATE, read_recording, read_scenario
 from roadproof.recordings.formats.sources import find_source
 from roadproof.recordings.formats.storyboard import curves, stage
 from roadproof.world.motion import state_at
@@ -41,7 +41,8 @@ def put(folder: Path, file: DriveFile) -> Path:
 
 @pytest.mark.parametrize("file", SOME, ids=lambda x: f"{x.scenario}-{x.set_name}")
 def test_a_drive_comes_back(file: DriveFile, tmp_path: Path) -> None:
-    table, road, _ = read_columns(put(tmp_path, file))
+    found = read_scenario(put(tmp_path, file))
+    table, road = found.table, found.road
     assert {*table["vehicle"]} == {*file.drive.vehicles}
     right = min(lanelet.d[0] for lanelet in road.lanelets) - min(x.d[0] for x in file.road.lanelets)
     begin = None
@@ -91,9 +92,9 @@ def turned(path: Path, by: float, at: tuple[float, float]) -> None:
 
 def test_a_road_may_lie_anywhere(tmp_path: Path) -> None:
     path = put(tmp_path, SOME[1])
-    before = read_columns(path)[0]
+    before = read_scenario(path).table
     turned(path, 2.0, (1000.0, -300.0))
-    after = read_columns(path)[0]
+    after = read_scenario(path).table
     for signal in RECORDED:
         assert np.allclose(before[signal], after[signal], atol=1e-3), signal
 
@@ -213,9 +214,9 @@ def test_a_planted_fault_is_noticed(
 
 def test_a_planted_reference_point_is_noticed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """As s begins anywhere, a box that is moved along shows in what the formulas say, and against samples."""
-    honest = read_columns(put(tmp_path, SOME[1]))[0]["s"]
+    honest = read_scenario(put(tmp_path, SOME[1])).table["s"]
     the_reference_point_is_the_centre(monkeypatch)
-    moved = read_columns(put(tmp_path, SOME[1]))[0]["s"]
+    moved = read_scenario(put(tmp_path, SOME[1])).table["s"]
     assert abs(np.median(honest - moved)) > 1
 
 
@@ -382,7 +383,7 @@ def slope(knots: list[float], places: list[float], k: int) -> float:
 
 
 def differences(path: Path) -> list[str]:
-    table = read_columns(path)[0]
+    table = read_scenario(path).table
     expected, wrong = told(path), []
     if {*table["vehicle"].tolist()} != {*expected}:
         return ["vehicles"]
@@ -513,4 +514,4 @@ def test_what_begins_late_is_refused(old: str, new: str, reads: bool, tmp_path: 
             with pytest.raises(
                 InputError, match=r"StartTrigger of the (Event|Act): a SimulationTimeCondition"
             ):
-                read_columns(path)
+                read_scenario(path)

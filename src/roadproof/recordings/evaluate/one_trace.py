@@ -228,17 +228,17 @@ def read_samples(path: Path, road: Road | None = None) -> OneTrace:
     rule, also where it contradicts itself too much.
     """
     if path.suffix == ".xosc":
-        table, named, _ = openscenario.read_columns(path)
-        road = road or named
+        scenario = openscenario.read_scenario(path)
+        table, road, notes = scenario.table, road or scenario.road, scenario.otherwise
     else:
-        table = samples.read_columns(path)
+        table, notes = samples.read_columns(path), ()
     if road is None:
         known = beside(path, samples.ROAD_ENDING)
         road = load_recorded_road(known[0])[0] if known else load_road("main-2")
     lists = {name: values.tolist() for name, values in table.columns.items()}
     made = of_columns(lists, road, str(path))
     doubts = samples.doubts_in(table, of_road(road, samples.DIRECTION, path))
-    return replace(made, notes=(*doubts, *_overlaps(made)))
+    return replace(made, notes=(*notes, *doubts, *_overlaps(made)))
 
 
 def of_columns(columns: Mapping[str, Sequence[object]], road: Road, source: str = "columns") -> OneTrace:

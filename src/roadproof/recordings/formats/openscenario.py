@@ -59,12 +59,16 @@ class Samples(Table):
 
 @dataclass(frozen=True)
 class Scenario:
-    """Samples of all vehicles, RATE a second, the road with its file, and notes on them."""
+    """Samples of all vehicles, RATE a second, the road with its file, and notes on them.
+
+    ``otherwise``: those of the notes that say what was left out, or taken otherwise than it is written.
+    """
 
     table: Table
     road: Road
     road_path: Path
     notes: tuple[str, ...]
+    otherwise: tuple[str, ...] = ()
 
 
 def read_scenario(path: Path) -> Scenario:
@@ -78,23 +82,16 @@ def read_scenario(path: Path) -> Scenario:
     if _follows_polylines(root, boxes):
         ways = {name: _in_road(x, boxes[name], road) for name, x in _vertices(path, root, boxes)}
         note = f"speeds and accelerations are those of curves through the vertices, {RATE} samples a second"
-        return Scenario(_sampled(path, boxes, ways), road, road_path, (note, *follows, *varied))
+        otherwise = (*follows, *varied)
+        return Scenario(_sampled(path, boxes, ways), road, road_path, (note, *otherwise), otherwise)
     stage, play = played(stage)
     if len(play.states) < 2 * TICKS // RATE:
         raise InputError(f"{path}: the storyboard ends at {len(play.states) / TICKS:g} s: {play.ending}")
     told = f"the storyboard ends at {(len(play.states) - 1) / TICKS:g} s: {play.ending}"
     note = f"the storyboard was run with conditions evaluated {TICKS} times a second, {RATE} samples a second"
     table, left_out = _of_play(path, boxes, play)
-    return Scenario(table, stage.road, road_path, (note, told, *follows, *varied, *left_out))
-
-
-def read_columns(path: Path) -> tuple[Table, Road, Path]:
-    """Samples of all vehicles, RATE a second, and the road with its file.
-
-    Raises ``InputError`` that names element and rule.
-    """
-    found = read_scenario(path)
-    return found.table, found.road, found.road_path
+    otherwise = (*follows, *varied, *left_out)
+    return Scenario(table, stage.road, road_path, (note, told, *otherwise), otherwise)
 
 
 def read_recording(path: Path, strict: bool = True) -> Recording:
