@@ -78,11 +78,13 @@ def build() -> Path:
 
 
 def interpreters() -> Iterator[tuple[str, Path]]:
-    """Each Python that is found, on the path or among those of pyenv, by version."""
+    """Each Python that is found, on the path or among those of pyenv, and this one, by version."""
     for version in PYTHONS:
         others = sorted(Path.home().glob(f".pyenv/versions/{version}.*/bin/python"))
         on_path = shutil.which(f"python{version}")
-        for candidate in [*others, *([Path(on_path)] if on_path else [])]:
+        own = version == "{}.{}".format(*sys.version_info)
+        named = [Path(x) for x in (on_path, sys.executable if own else None) if x]
+        for candidate in [*others, *named]:
             asked = subprocess.run(
                 [candidate, "-c", "import venv, ensurepip"], capture_output=True, check=False
             )
