@@ -15,7 +15,6 @@ from typing import TypeAlias, cast, get_args
 from roadproof.errors import InputError
 from roadproof.runtime.package_data import shipped
 from roadproof.world.lanelet_rules import check_lanelets, shared_boundaries
-from roadproof.world.maps.selection import is_map, read_selection, select
 from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
 from roadproof.world.signals import KINDS, LIMITED, Kind
 from roadproof.world.vehicle import Range, Vehicle
@@ -34,12 +33,21 @@ def load_road(name_or_path: str | Path) -> Road:
 
     Raises ``InputError``; ``UsageError`` for a stretch that is not well said (``maps.selection``).
     """
-    if is_map(name_or_path):
-        path, selection = read_selection(str(name_or_path))
-        found = select(path, selection)
-        beside = shared_boundaries(found.lanelets)
-        return Road(path.stem, found.lanelets, beside, found.line, str(name_or_path))
+    if "." in str(name_or_path):  # no name of a bundled road
+        from roadproof.world.maps.selection import is_map
+
+        if is_map(name_or_path):
+            return _of_map(str(name_or_path))
     return load_recorded_road(name_or_path)[0]
+
+
+def _of_map(text: str) -> Road:
+    """A stretch of a map. Raises ``InputError``, ``UsageError``."""
+    from roadproof.world.maps.selection import read_selection, select
+
+    path, selection = read_selection(text)
+    found = select(path, selection)
+    return Road(path.stem, found.lanelets, shared_boundaries(found.lanelets), found.line, text)
 
 
 def load_recorded_road(name_or_path: str | Path, directions: tuple[int, ...] = ()) -> tuple[Road, int]:

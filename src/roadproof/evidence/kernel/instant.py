@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from roadproof.errors import InputError
-from roadproof.evidence.kernel import cone, squares
+from roadproof.evidence.kernel import cone
 from roadproof.evidence.kernel.plain import atoms_of, binary, comparisons, extrema, plain
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
@@ -139,6 +139,8 @@ class _Search:
         if state.cuts or self.sums <= 0:
             return None
         self.sums -= 1
+        from roadproof.evidence.kernel import squares  # with numpy and a solver
+
         found = squares.contradiction(state.constraints)
         return None if found is None else f"(Absurd {found})"
 

@@ -5,17 +5,18 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import ClassVar, Literal, TypeAlias, Unpack
+from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias, Unpack
 
 from roadproof.analysis.study import pool
 from roadproof.engines.prove.properties import find_label
 from roadproof.engines.solve.smt import Satisfiability as SolverAnswer
 from roadproof.engines.solve.smt import ask
 from roadproof.evidence.answers import check as kept
+from roadproof.evidence.answers.catalogue_index import SCHEMA as CATALOGUE
 from roadproof.evidence.checking import Checker
 from roadproof.evidence.codec import write
 from roadproof.evidence.finding import Acceptance, Finding, OtherVerdict, exit_code, summary
-from roadproof.evidence.folder import conclude, survey
+from roadproof.evidence.folder import FolderStatements, conclude, survey
 from roadproof.evidence.heading import heading
 from roadproof.evidence.kernel import coq
 from roadproof.evidence.strict import JsonObject
@@ -34,6 +35,9 @@ from roadproof.library.words import called_by, legend
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.executors import Jobs
 from roadproof.verdict import ExitCode
+
+if TYPE_CHECKING:
+    from roadproof.frontends.api.judging_again import Comparison
 
 Solver: TypeAlias = Literal["z3", "cvc5"]
 Kernel: TypeAlias = Literal["coq"]
@@ -144,18 +148,25 @@ def check(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
     answers = pool.in_order(pool.work(judge, work, asked.jobs, _doubt, asked.progress, "files"))
     found = {path: finding for (path, _), finding in zip(given, answers, strict=True)}
     beside = tuple(path for told in surveyed.told for path in told.specs)
-    from roadproof.frontends.api.judging_again import compare  # what reads tests takes long to import
-
     findings = [*conclude(surveyed, found)]
     left: dict[str, tuple[str, ...]] = {}
     for told in surveyed.told:
-        again = compare(told, asked.jobs, asked.progress)
+        again = _judged_again(told, asked)
         findings += () if again is None else again.findings
         compared = () if again is None else again.compared
         if unchecked := tuple(x for x in told.not_checked if x not in compared):
             left[str(told.folder)] = unchecked
     solver = asked.kernel or asked.solver
     return CheckReport(tuple(findings), solver, library, beside, answered, left, asked.strict)
+
+
+def _judged_again(told: FolderStatements, asked: Check) -> "Comparison | None":
+    """What judging the tests of a catalogue again shows; None of other folders."""
+    if told.index is None or told.index.text("schema") != CATALOGUE:
+        return None
+    from roadproof.frontends.api.judging_again import compare  # what reads tests takes long to import
+
+    return compare(told, asked.jobs, asked.progress)
 
 
 def write_sources(
