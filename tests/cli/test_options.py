@@ -458,3 +458,22 @@ def test_completed_names_are_accepted(tmp_path: Path) -> None:
 def test_every_list_of_values_belongs_to_an_option_or_argument() -> None:
     actions = [x for name in COMMANDS for x in command_parser(name)._actions]
     assert {*_VALUES} <= {word for x in actions for word in (*x.option_strings, x.metavar)}
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["prove", "true", "--junit", "{}"],
+        ["check", "nothing", "--sarif", "{}"],
+        ["report", "nothing", "--out", "{}"],
+        ["bundle", "nothing", "-o", "{}"],
+        ["assurance", "nothing", "--svg", "{}"],
+        ["trace", "nothing", "--reqif", "{}"],
+        ["road", "nothing", "--out", "{}"],
+        ["monitor", "true", "nothing", "--picture", "{}"],
+    ],
+)
+def test_every_file_is_tried_before_the_work(arguments, tmp_path, capsys):
+    file = tmp_path / "none" / "x.html"
+    assert main([x.format(file) for x in arguments]) == 3
+    assert capsys.readouterr().err.startswith(f"roadproof: cannot write {file}: No such file or directory")

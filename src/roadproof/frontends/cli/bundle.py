@@ -5,7 +5,7 @@ from pathlib import Path
 
 from roadproof.frontends.cli.options import print_answer
 from roadproof.frontends.cli.progress import Counter, clear
-from roadproof.frontends.settings.flags import read_keywords
+from roadproof.frontends.settings.flags import read_keywords, section
 from roadproof.frontends.settings.questions import Bundle
 
 SUMMARY = "pack evidence for auditors, with a script that checks it again"
@@ -31,7 +31,9 @@ OPTIONS = Bundle
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("results", metavar="DIR|FILE", nargs="+", type=Path, help="evidence, and other files")
-    parser.add_argument("-o", "--out", metavar="FILE", type=Path, required=True, help="NAME.tar.gz")
+    section(parser, "output").add_argument(
+        "-o", "--out", metavar="FILE", type=Path, required=True, help="NAME.tar.gz"
+    )
 
 
 def run(args: argparse.Namespace) -> int:

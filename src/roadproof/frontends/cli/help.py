@@ -85,6 +85,11 @@ def command_parser(name: str) -> "CommandParser":
     return parser
 
 
+def written_files(parser: argparse.ArgumentParser) -> list[str]:
+    """The arguments that name a file which a command writes."""
+    return [x.dest for x in section(parser, "output")._group_actions if x.metavar == "FILE"]
+
+
 def fill(parser: argparse.ArgumentParser, name: str) -> None:
     """Add the examples, arguments and options of a sub-command, whose module is imported."""
     command = import_module(f"{PACKAGE}.{name}")

@@ -14,7 +14,14 @@ from importlib import import_module
 from pathlib import Path
 
 from roadproof.errors import RoadproofError, UsageError
-from roadproof.frontends.cli.help import COMMANDS, PACKAGE, CommandParser, command_parser, overview
+from roadproof.frontends.cli.help import (
+    COMMANDS,
+    PACKAGE,
+    CommandParser,
+    command_parser,
+    overview,
+    written_files,
+)
 from roadproof.frontends.cli.progress import be_quiet, clear
 from roadproof.frontends.cli.streams import FULL, forget_output, make_streams_lenient
 from roadproof.frontends.cli.supervising import supervise
@@ -86,17 +93,20 @@ def _run(arguments: list[str]) -> int:
         from roadproof.library.specification import unknown
 
         raise UsageError(f"{unknown('sub-command', name, COMMANDS)}\nSee roadproof --help.")
-    parsed = command_parser(name).parse_args(arguments[at + 1 :])
+    command = command_parser(name)
+    parsed = command.parse_args(arguments[at + 1 :])
     be_quiet(getattr(parsed, "quiet", False))
-    for option in ("json", "junit", "sarif"):
-        _try_paths(getattr(parsed, option, None), getattr(parsed, "out", None))
+    files = written_files(command)
+    folder = None if "out" in files else vars(parsed).get("out")
+    for option in files:
+        _try_path(getattr(parsed, option), folder)
     if getattr(parsed, "json", None) != "-" and getattr(parsed, "format", "text") == "text":
         dress_output()
     code: int = import_module(f"{PACKAGE}.{name}").run(parsed)
     return code
 
 
-def _try_paths(target: str | Path | None, out: Path | None) -> None:
+def _try_path(target: str | Path | None, out: Path | None) -> None:
     """Fail before the work where the answer could not be written. Raises ``InputError``."""
     if target in (None, "-"):
         return

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from roadproof.frontends.cli.progress import Counter, clear
-from roadproof.frontends.settings.flags import read_keywords
+from roadproof.frontends.settings.flags import read_keywords, section
 from roadproof.frontends.settings.questions import Page
 
 SUMMARY = "make one HTML page from results, to be read without a network"
@@ -29,7 +29,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=Path,
         help="a folder of --out, a file of evidence or of --json",
     )
-    parser.add_argument("-o", "--out", metavar="FILE", type=Path, required=True, help="the page, NAME.html")
+    section(parser, "output").add_argument(
+        "-o", "--out", metavar="FILE", type=Path, required=True, help="the page, NAME.html"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
