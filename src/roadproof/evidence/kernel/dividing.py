@@ -19,9 +19,9 @@ from roadproof.logic.rewrite import rename
 _Choice: TypeAlias = tuple[int, int | tuple[b.Universal, Moment | str]]
 
 
-def next_move(means: b.Means, branch: b.Branch) -> b.Move:
-    """Raises ``NotFoundError`` where nothing is left to be done."""
-    return _instance(means, branch) or _divide(means, branch)
+def next_move(means: b.Means, branch: b.Branch) -> b.Move | b.Proof:
+    """A step, or the end of a branch. Raises ``NotFoundError`` where nothing is left to be done."""
+    return _instance(means, branch) or _meeting(means, branch) or _divide(means, branch)
 
 
 # --- instances that do not divide ----------------------------------------------------------------
@@ -71,6 +71,19 @@ def _decided(means: b.Means, branch: b.Branch, number: int, moment: Moment) -> b
             found.append(witness)
         branch.decided[key] = (found[0], found[1] if len(found) > 1 else ())
     return branch.decided[key]
+
+
+# --- what constraints close ----------------------------------------------------------------------
+
+
+def _meeting(means: b.Means, branch: b.Branch) -> b.Proof | None:
+    """Something is true and false at two moments that constraints added since have made one."""
+    for entries in branch.known.values():
+        for sign, there, true in entries:
+            for other, here, false in entries:
+                if sign and not other and (equal := means.equal(there, here)) is not None:
+                    return b.Step("Close", (true, false, *equal)), frozenset({true, false}) | b.used(*equal)
+    return None
 
 
 # --- what divides --------------------------------------------------------------------------------

@@ -60,11 +60,12 @@ class _Search:
         self.left -= 1
         if self.left < 0:
             raise b.NotFoundError("the search for a tableau came to its limit")
-        while branch.agenda:
+        found: b.Proof | b.Move | None = None
+        while branch.agenda and found is None:
             found = read(self.means, branch, branch.agenda.pop(0))
-            if found is not None:
-                return self._apply(branch, found) if isinstance(found, b.Move) else found
-        return self._apply(branch, next_move(self.means, branch))
+        if found is None:
+            found = next_move(self.means, branch)
+        return self._apply(branch, found) if isinstance(found, b.Move) else found
 
     def _apply(self, branch: b.Branch, move: b.Move) -> b.Proof:
         """A rule with its children; a child that uses nothing of what it is given stands in its place."""
