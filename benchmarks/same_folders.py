@@ -31,7 +31,7 @@ WORDS = re.compile(
     rb"|none within the limits that are printed|no drive within the printed limits"
     rb"|(?<=roadproof )(?:0\.1\.0|1\.0\.0rc1)|(?<=\"version\": \")(?:0\.1\.0|1\.0\.0rc1)"
 )
-"""Words of reports that have changed since 10af311: brackets in names, what NONE-WITHIN means, the version."""
+"""Words of reports changed since 10af311: brackets in names, what NONE-WITHIN means, the version."""
 DATA = "../shared/data/us101"
 
 
