@@ -24,7 +24,7 @@ from roadproof.runtime.cache import is_ours, private_folder
 from roadproof.runtime.package_data import shipped
 
 THEORIES = (
-    *("Meaning", "Text", "Linear", "Tableau", "Products", "Rss", "Instant", "Named"),
+    *("Meaning", "Text", "Linear", "Tableau", "Products", "Rss", "Instant", "Named", "Values"),
     *("Drive", "Signs", "Shown", "Guarantee"),
 )
 APT = "apt-get install -y coq"

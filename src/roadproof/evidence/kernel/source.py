@@ -10,14 +10,14 @@ from roadproof.evidence.kernel.names import comment, literal
 from roadproof.evidence.kernel.plain import comparisons
 from roadproof.evidence.kernel.printer import CLOSE, Printer
 from roadproof.evidence.kernel.statement import Statement
-from roadproof.evidence.kernel.tableau import WIDTH, Tableau, coq_tree
+from roadproof.evidence.kernel.tableau import WIDTH, Tableau, coq_tree, q
 from roadproof.logic.rewrite import without_names
 
 MOST_COMPARISONS = 8  # of a fact that Coq's own tactics are asked about; with more they do not end
 HEAD = """\
 From Coq Require Import QArith String List.
 From Roadproof Require Import Meaning Text Linear Tableau Products Named.
-From Roadproof Require Drive Shown.
+From Roadproof Require Drive Shown Values.
 Import ListNotations.
 Open Scope string_scope.
 Open Scope nat_scope.
@@ -90,17 +90,24 @@ def module(name: str, statement: Statement, tableau: Tableau) -> Module:
     theorem = len(out) + 1
     out += ["Definition tableau : tree := ("]
     out += [*coq_tree(tableau), ").", ""]
-    parameters = "; ".join(map(literal, statement.parameters))
     out += [
         "Theorem proved : Roadproof.Meaning.valid bounds claim.",
         "Proof.",
-        f"  refine (Roadproof.Tableau.accepted [{parameters}] bounds [{'; '.join(words)}] claim tableau",
-        f"    ({held}) _).",
+        *(f"  refine ({_theorem(statement, words)} claim tableau", f"    ({held}) _)."),
         "  vm_cast_no_check (eq_refl true).",
         "Qed.",
         f"End {name}.",
     ]
     return Module(name, "\n".join(out) + "\n", tuple(lemmas), theorem)
+
+
+def _theorem(statement: Statement, facts: Sequence[str]) -> str:
+    """The theorem by which a tableau proves the claim, up to what it is told of the claim."""
+    given = f"[{'; '.join(map(literal, statement.parameters))}] bounds [{'; '.join(facts)}]"
+    if not statement.demanded:
+        return f"Roadproof.Tableau.accepted {given}"
+    values = (f"({literal(name)}, {q(value)})" for name, value in statement.demanded.items())
+    return f"Roadproof.Values.accepted_at {given} [{'; '.join(values)}]"
 
 
 def claim_lines(printed: ClaimText, bounds: Mapping[str, bool]) -> list[str]:

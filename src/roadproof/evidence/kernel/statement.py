@@ -6,11 +6,12 @@ proved: each fact by itself, made anew of its schema, so that a reader of the pr
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 
 from roadproof.errors import InputError
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.kernel.branch import Goal, NotFoundError
+from roadproof.evidence.kernel.branch import Goal
 from roadproof.evidence.kernel.printer import Formals
 from roadproof.evidence.times import bound_parameters
 from roadproof.library.elaborate import read_claim
@@ -55,7 +56,7 @@ class Statement:
 
     ``lemmas``: facts about one instant, with the moments at which the proof uses them. ``premises``: how
     many limits and facts about motion are premises, which are not proved. ``values`` of parameters, as words,
-    are put in.
+    are put in; those that are ``demanded`` by the formula itself Coq puts in before it reads the tableau.
     """
 
     label: str
@@ -69,6 +70,7 @@ class Statement:
     formals: Formals
     premises: Premises
     values: tuple[str, ...]
+    demanded: Mapping[str, Fraction]
     goal: Goal
 
 
@@ -76,21 +78,19 @@ def state(certificate: Certificate, library: Library, query: Query | None = None
     """What is to be proved, values of parameters that are assumed put in.
 
     ``query``: the claim, where it need not be read again, since nobody rests on the statement.
-    Raises ``InputError`` where the certificate does not fit the library, and ``NotFoundError`` where the
-    search puts in what the claim has as a premise.
+    Raises ``InputError`` where the certificate does not fit the library.
     """
     specification = library.select(certificate.set_name, certificate.options)
     query = query or read_claim(specification, certificate.claim)
-    if certificate.pinned:
-        raise NotFoundError("values that its own premise demands are put in before it is proved")
     assumed = certificate.assumed
     premises = _premises(certificate, library, query)
     here = values_said(specification, certificate.assumed.said)
     formula = with_values(f.implication(f.conjunction(*premises), query.formula), here)
-    atoms = Atoms()
-    abstracted = atoms.abstract(formula)
+    demanded = values_said(specification, certificate.pinned)
+    atoms, proved = Atoms(), with_values(formula, demanded)
+    abstracted = atoms.abstract(proved)
     bounds = bounds_of(specification, parameters_of(formula))
-    parameters = tuple(sorted(bound_parameters(formula)))
+    parameters = tuple(sorted(bound_parameters(proved)))
     lemmas = tuple(
         (f.disjunction(*(_literal(atoms, *x) for x in lemma.literals)), lemma.moments)
         for lemma in certificate.lemmas
@@ -117,6 +117,7 @@ def state(certificate: Certificate, library: Library, query: Query | None = None
         formals_of(specification),
         Premises(*map(len, (assumed.limits, assumed.facts, assumed.inductions))),
         value_texts(specification, here),
+        demanded,
         goal,
     )
 

@@ -166,11 +166,11 @@ def _coq(kind: str, argument: Argument) -> str:
         return f'"{argument}"'
     if isinstance(argument, int):
         return str(argument)
-    parts = (f"by_ {x[0]} {_q(x[1])}" if isinstance(x, tuple) else _q(x) for x in argument)
+    parts = (f"by_ {x[0]} {q(x[1])}" if isinstance(x, tuple) else q(x) for x in argument)
     return f"[{'; '.join(parts)}]"
 
 
-def _q(value: Fraction) -> str:
+def q(value: Fraction) -> str:
     """A rational, in words of Tableau.v that need no scope."""
     top = str(value.numerator) if value >= 0 else f"({value.numerator})"
     return f"(q {top} {value.denominator})"
