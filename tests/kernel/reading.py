@@ -11,7 +11,14 @@ from roadproof.evidence.kernel.printer import CLOSE, Formals, Printer
 from roadproof.evidence.kernel.source import HEAD
 from roadproof.logic.formula import Formula
 
-STEPS = Path(__file__).parents[2] / "proofs" / "kernel" / "Steps.v"
+SOURCES = Path(__file__).parents[2] / "proofs" / "kernel"
+STEPS = SOURCES / "Steps.v"
+
+
+def monitor_theory() -> str:
+    """Recorded.v and Monitor.v as one text, for Coq without compiled files of them."""
+    texts = [(SOURCES / f"{name}.v").read_text("ascii") for name in ("Recorded", "Monitor")]
+    return "\n".join(texts).replace("From Roadproof Require Import Recorded.\n", "")
 
 
 def printed(number: int, formula: Formula, formals: Formals) -> str:

@@ -9,7 +9,7 @@ import pytest
 from exporting.kept import kept
 from kernel import raw
 from kernel.needs import needs_coq
-from kernel.reading import answers, compared
+from kernel.reading import SOURCES, answers, compared, monitor_theory
 from roadproof.errors import InputError, RoadproofError, TextError
 from roadproof.evidence.derivations import prepare as module
 from roadproof.evidence.derivations.parts import NoDerivationError
@@ -26,18 +26,19 @@ from roadproof.logic import terms as t
 from roadproof.logic.rewrite import without_names
 from roadproof.runtime.cache import private_folder
 
-SOURCES = Path(__file__).parents[2] / "proofs" / "kernel"
+UNUSED = ("Sane", "Steps", "Recorded", "Monitor")
+"""Theories that no printed claim needs."""
 GAPS = re.compile(
     r"\b(Admitted|admit|give_up|Axioms?|Parameters?|Conjectures?|Unset Guard|bypass_check|type_in_type)\b"
 )
 
 
-@pytest.mark.parametrize("name", [*THEORIES, "Sane", "Steps"])
+@pytest.mark.parametrize("name", [*THEORIES, *UNUSED])
 def test_each_file_says_what_it_is_for_and_whether_it_is_trusted(name):
     text = (SOURCES / f"{name}.v").read_text("ascii")
     opening = text[: text.index("*)")]
     assert text.startswith("(* ")
-    assert ("NOT TRUSTED" in opening) == (name not in ("Meaning", "Text", "Drive"))
+    assert ("NOT TRUSTED" in opening) == (name not in ("Meaning", "Text", "Drive", "Recorded"))
     assert "TRUSTED" in opening
     code = re.sub(r"\(\*.*?\*\)", "", text, flags=re.DOTALL)
     assert not GAPS.search(code)
@@ -45,24 +46,25 @@ def test_each_file_says_what_it_is_for_and_whether_it_is_trusted(name):
 
 
 def test_no_other_theory_is_there():
-    assert {x.stem for x in SOURCES.glob("*.v")} == {*THEORIES, "Sane", "Steps"}
+    assert {x.stem for x in SOURCES.glob("*.v")} == {*THEORIES, *UNUSED}
 
 
 @needs_coq
 def test_theories_compile_without_a_warning_and_are_kept(tmp_path, monkeypatch):
-    """Into a new cache; Sane and Steps too, which nothing needs. What is changed there counts no more."""
+    """Into a new cache; the unused ones too. What is changed there counts no more."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     said = []
     run = coq_module._run
     monkeypatch.setattr(coq_module, "_run", lambda *args: said.append(run(*args)) or said[-1])
     with ready() as coq:
         others = [coq.run((SOURCES / f"{name}.v").read_text("ascii")) for name in ("Sane", "Steps")]
-    assert len(said) == len(THEORIES) + 3  # the version, and the two others
-    assert [ran.code for ran in others] == [0, 0]
+        others.append(coq.run(monitor_theory()))
+    assert len(said) == len(THEORIES) + 4  # the version, and the three others
+    assert [ran.code for ran in others] == [0, 0, 0]
     assert [ran.complained for ran in said] == [""] * len(said)
     with ready() as again:
         assert again.theories == coq.theories
-    assert len(said) == len(THEORIES) + 4
+    assert len(said) == len(THEORIES) + 5
     assert coq_module._is_sound(coq.theories)
     for change in (
         lambda: (coq.theories / "Other.vo").write_bytes(b"one more"),
