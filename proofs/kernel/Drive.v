@@ -1,7 +1,7 @@
 (* A drive as a world.  TRUSTED: read this file, Meaning.v, Text.v and the printed drive and claim.
 
    A drive file (docs/schema/drive.json) has a road of rectangles and vehicles that are boxes: where they are at
-   time 0, how fast, and accelerations that are constant in pieces, the last for ever.  `world_of` says what the
+   time 0, how fast, and jerks that are constant in pieces, the last 0 for ever; and signals in steps.  `world_of` says what the
    signals, sizes, lanes and parameters of such a drive are, and `shows` when a claim is true of it.  Lengths are
    in m and times in s; s grows along the road, d to the left.  Nothing here is about proofs. *)
 From Coq Require Import Reals QArith Qreals String List Bool Arith.
@@ -11,12 +11,14 @@ Open Scope R_scope.
 
 (* --- what a file says ----------------------------------------------------------------------------------- *)
 
-(* A motion along or across the road: place and speed at time 0; a duration and the acceleration that is kept
-   for it, piece by piece; the acceleration after them. *)
-Record course := { starts_at : Q; starts_with : Q; pieces : list (Q * Q); finally : Q }.
+(* A motion along or across the road: place and speed at time 0; piece by piece a duration, the acceleration at its
+   begin and the jerk that is kept for it; the acceleration after them. *)
+Record course := { starts_at : Q; starts_with : Q; pieces : list (Q * Q * Q); finally : Q }.
 
-(* A box, of which the front left corner moves. *)
+(* A box, of which the front left corner moves, and what kind of vehicle it is. *)
+Inductive sort := car | truck | bus | motorcycle | other.
 Record body := {
+  is_a : sort;
   long : Q;
   wide : Q;
   long_above_0 : (0 < long)%Q;
@@ -34,50 +36,69 @@ Record rectangle := {
   left_d : Q }.
 
 (* `bodies`: the vehicles by name.  The road has at least one rectangle.  `beside`: which lanes are beside each
-   other, in any order.  `lanes_named`: the lane that a name in the claim stands for.  `values`: parameters. *)
+   other, in any order.  `lanes_named`: the lane that a name in the claim stands for.  `values`: parameters.
+   `signals`: those that a specification declares, by name and vehicle ("" where it is of none): values, each from a
+   time on, in the order of these times. *)
 Record drive := {
   bodies : list (vehicle * body);
   first_rectangle : rectangle;
   other_rectangles : list rectangle;
   beside : list (string * string);
   lanes_named : list (string * string);
-  values : list (string * Q) }.
+  values : list (string * Q);
+  signals : list (string * vehicle * list (Q * Q)) }.
 
 Definition look_up {A} (x : string) (l : list (string * A)) (otherwise : A) : A :=
   match find (fun entry => String.eqb x (fst entry)) l with Some entry => snd entry | None => otherwise end.
 
 (* --- how vehicles move ---------------------------------------------------------------------------------- *)
 
-Record instant := { place_ : R; speed_ : R; acceleration_ : R }.
+Record instant := { place_ : R; speed_ : R; acceleration_ : R; jerk_ : R }.
 
-(* t seconds after place x and speed v, under the acceleration a *)
-Definition moved (x v a t : R) : instant :=
-  {| place_ := x + v * t + a * t ^ 2 / 2; speed_ := v + a * t; acceleration_ := a |}.
+(* t seconds after place x, speed v and acceleration a, under the jerk j *)
+Definition moved (x v a j t : R) : instant :=
+  {| place_ := x + v * t + a * t ^ 2 / 2 + j * t ^ 3 / 6;
+     speed_ := v + a * t + j * t ^ 2 / 2;
+     acceleration_ := a + j * t;
+     jerk_ := j |}.
 
-(* t seconds after place x and speed v, under accelerations in pieces: at the instant at which a piece ends the
-   acceleration is that of the next one. *)
-Fixpoint moving (x v : R) (pieces : list (Q * Q)) (finally : Q) (t : R) : instant :=
+(* t seconds after place x and speed v, in pieces: at the instant at which a piece ends, acceleration and jerk are
+   those of the next one. *)
+Fixpoint moving (x v : R) (pieces : list (Q * Q * Q)) (finally : Q) (t : R) : instant :=
   match pieces with
-  | [] => moved x v (Q2R finally) t
-  | (duration, a) :: rest =>
-      if Rlt_dec t (Q2R duration) then moved x v (Q2R a) t
-      else let end_ := moved x v (Q2R a) (Q2R duration) in
+  | [] => moved x v (Q2R finally) 0 t
+  | (duration, a, j) :: rest =>
+      if Rlt_dec t (Q2R duration) then moved x v (Q2R a) (Q2R j) t
+      else let end_ := moved x v (Q2R a) (Q2R j) (Q2R duration) in
            moving (place_ end_) (speed_ end_) rest finally (t - Q2R duration)
   end.
 Definition at_time (c : course) (t : R) : instant :=
   moving (Q2R (starts_at c)) (Q2R (starts_with c)) (pieces c) (finally c) t.
+
+(* A signal in steps: its first value also before, its last for ever; 0 where the file has none. *)
+Fixpoint stepped (before : Q) (steps : list (Q * Q)) (t : R) : Q :=
+  match steps with
+  | [] => before
+  | (from, x) :: rest => if Rlt_dec t (Q2R from) then before else stepped x rest t
+  end.
+Definition first_step (steps : list (Q * Q)) : Q := match steps with [] => 0%Q | (_, x) :: _ => x end.
 
 (* --- the world ------------------------------------------------------------------------------------------ *)
 
 (* A vehicle that the file does not have stands still at 0. *)
 Definition still : course := {| starts_at := 0; starts_with := 0; pieces := []; finally := 0 |}.
 Definition nobody : body :=
-  {| long := 1; wide := 1; long_above_0 := eq_refl; wide_above_0 := eq_refl; along := still; across := still |}.
+  {| is_a := other; long := 1; wide := 1; long_above_0 := eq_refl; wide_above_0 := eq_refl; along := still; across := still |}.
 
 Section World.
   Variable D : drive.
 
   Definition body_of (a : vehicle) : body := look_up a (bodies D) nobody.
+  Definition steps_of (n : string) (a : vehicle) : list (Q * Q) :=
+    match find (fun e => String.eqb n (fst (fst e)) && String.eqb a (snd (fst e)))%bool (signals D) with
+    | Some e => snd e
+    | None => []
+    end.
   Definition value_of (n : signal) (a : vehicle) (t : R) : R :=
     match n with
     | Place_lon => place_ (at_time (along (body_of a)) t)
@@ -86,9 +107,17 @@ Section World.
     | Speed_lat => speed_ (at_time (across (body_of a)) t)
     | Acceleration_lon => acceleration_ (at_time (along (body_of a)) t)
     | Acceleration_lat => acceleration_ (at_time (across (body_of a)) t)
+    | Jerk_lon => jerk_ (at_time (along (body_of a)) t)
+    | Own n => Q2R (stepped (first_step (steps_of n a)) (steps_of n a) t)
     end.
+  Definition number_of_sort (k : sort) : Q :=
+    match k with car => 1 | truck => 2 | bus => 3 | motorcycle => 4 | other => 5 end.
   Definition measure_of (n : size) (a : vehicle) : R :=
-    match n with Length => Q2R (long (body_of a)) | Width => Q2R (wide (body_of a)) end.
+    match n with
+    | Length => Q2R (long (body_of a))
+    | Width => Q2R (wide (body_of a))
+    | Kind => Q2R (number_of_sort (is_a (body_of a)))
+    end.
 
   (* An element of the road is the number of a rectangle.  It stands for a lanelet, and for its lane as well. *)
   Definition rectangles : list rectangle := first_rectangle D :: other_rectangles D.
@@ -116,7 +145,8 @@ Section World.
   Lemma measure_of_positive n a : 0 < measure_of n a.
   Proof.
     replace 0 with (Q2R 0) by (unfold Q2R; simpl; apply Rmult_0_l).
-    destruct n; apply Qlt_Rlt; [apply long_above_0|apply wide_above_0].
+    destruct n; apply Qlt_Rlt; [apply long_above_0|apply wide_above_0|].
+    unfold number_of_sort. destruct (is_a (body_of a)); reflexivity.
   Qed.
   Lemma are_beside_irreflexive e : ~ are_beside e e.
   Proof. intros [H _]. apply H. reflexivity. Qed.

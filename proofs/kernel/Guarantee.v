@@ -9,12 +9,13 @@ From Roadproof Require Import Drive Rss.
 Import ListNotations.
 Open Scope R_scope.
 
-Definition lasting (ps : list (Q * Q)) : Prop := Forall (fun p => 0 < Q2R (fst p)) ps.
+Definition lasting (ps : list (Q * Q * Q)) : Prop := Forall (fun p => 0 < Q2R (fst (fst p))) ps.
+Definition without_jerk (ps : list (Q * Q * Q)) : Prop := Forall (fun p => Q2R (snd p) = 0) ps.
 
 Lemma moving_begins x v ps last : lasting ps ->
   place_ (moving x v ps last 0) = x /\ speed_ (moving x v ps last 0) = v.
 Proof.
-  intros L. destruct ps as [|[d a] ps]; cbn [moving].
+  intros L. destruct ps as [|[[d a] j] ps]; cbn [moving].
   - unfold moved. cbn [place_ speed_]. split; field.
   - inversion L as [|p l D _]. cbn [fst] in D. destruct (Rlt_dec 0 (Q2R d)) as [_|N]; [|exfalso; lra].
     unfold moved. cbn [place_ speed_]. split; field.
@@ -27,31 +28,32 @@ Section Chain.
   Hypothesis one : forall v a d, 0 <= d -> (forall t, 0 <= t < d -> said (v + a * t) a) -> gained d v (v + a * d).
   Hypothesis two : forall d e u v w, 0 <= d -> 0 <= e -> gained d u v -> gained e v w -> gained (d + e) u w.
 
-  Lemma within_a_piece x v a s u : s <= u ->
-    (forall t, s <= t < u -> said (speed_ (moved x v a t)) a) ->
-    gained (u - s) (speed_ (moved x v a s)) (speed_ (moved x v a u)).
+  Lemma within_a_piece x v a j s u : j = 0 -> s <= u ->
+    (forall t, s <= t < u -> said (speed_ (moved x v a j t)) (acceleration_ (moved x v a j t))) ->
+    gained (u - s) (speed_ (moved x v a j s)) (speed_ (moved x v a j u)).
   Proof.
-    intros S H. unfold moved in *. cbn [speed_] in *.
-    replace (v + a * u) with (v + a * s + a * (u - s)) by ring. apply one; [lra|].
-    intros t T. replace (v + a * s + a * t) with (v + a * (s + t)) by ring. apply H. lra.
+    intros -> S H. unfold moved in *. cbn [speed_ acceleration_] in *.
+    replace (v + a * u + 0 * u ^ 2 / 2) with (v + a * s + 0 * s ^ 2 / 2 + a * (u - s)) by field. apply one; [lra|].
+    intros t T. replace (v + a * s + 0 * s ^ 2 / 2 + a * t) with (v + a * (s + t) + 0 * (s + t) ^ 2 / 2) by field.
+    replace a with (a + 0 * (s + t)) at 2 by ring. apply H. lra.
   Qed.
 
-  Lemma chain last ps : lasting ps -> forall x v s u, 0 <= s <= u ->
+  Lemma chain last ps : lasting ps -> without_jerk ps -> forall x v s u, 0 <= s <= u ->
     (forall t, s <= t < u -> said (speed_ (moving x v ps last t)) (acceleration_ (moving x v ps last t))) ->
     gained (u - s) (speed_ (moving x v ps last s)) (speed_ (moving x v ps last u)).
   Proof.
-    induction ps as [|[d a] ps IH]; intros L x v s u S H; cbn [moving] in *.
-    - apply within_a_piece; [lra|exact H].
-    - inversion L as [|p l D L']; subst p l. cbn [fst] in D. specialize (IH L').
-      set (D' := Q2R d) in *. set (e := moved x v (Q2R a) D') in *.
+    induction ps as [|[[d a] j] ps IH]; intros L J x v s u S H; cbn [moving] in *.
+    - apply within_a_piece; [reflexivity|lra|exact H].
+    - inversion L as [|p l D L']; subst p l. inversion J as [|p l J0 J']; subst p l. cbn [fst snd] in D, J0.
+      specialize (IH L' J'). set (D' := Q2R d) in *. set (e := moved x v (Q2R a) (Q2R j) D') in *.
       destruct (Rlt_dec s D') as [A|A].
       + destruct (Rlt_dec u D') as [B|B].
-        * apply within_a_piece; [lra|]. intros t T. specialize (H t T).
+        * apply within_a_piece; [exact J0|lra|]. intros t T. specialize (H t T).
           destruct (Rlt_dec t D') as [_|N]; [exact H|exfalso; lra].
         * replace (u - s) with ((D' - s) + (u - D' - 0)) by ring.
           destruct (moving_begins (place_ e) (speed_ e) ps last L') as [_ E].
           apply two with (v := speed_ e); [lra|lra| |].
-          -- apply within_a_piece; [lra|]. intros t T. assert (T' : s <= t < u) by lra. specialize (H t T').
+          -- apply within_a_piece; [exact J0|lra|]. intros t T. assert (T' : s <= t < u) by lra. specialize (H t T').
              destruct (Rlt_dec t D') as [_|N]; [exact H|exfalso; lra].
           -- rewrite <- E at 1. apply IH; [lra|]. intros t T. assert (T' : s <= t + D' < u) by lra.
              specialize (H _ T'). destruct (Rlt_dec (t + D') D') as [N|_]; [exfalso; lra|].
@@ -91,21 +93,25 @@ Qed.
 Lemma moving_moves last ps : lasting ps -> forall x v t,
   derivable_pt_lim (fun t => place_ (moving x v ps last t)) t (speed_ (moving x v ps last t)).
 Proof.
-  assert (one : forall x v a t, derivable_pt_lim (fun t => x + v * t + a * t ^ 2 / 2) t (v + a * t)).
-  { intros x v a t. apply (derivable_pt_lim_ext (fun t => x + (v * t + a * t ^ 2 / 2))); [intros s; ring|].
-    replace (v + a * t) with (0 + (v + a * t)) by ring.
-    apply (derivable_pt_lim_plus (fun _ => x)); [apply derivable_pt_lim_const|apply parabola]. }
-  induction ps as [|[d a] ps IH]; intros L x v t; cbn [moving].
+  assert (one : forall x v a j t,
+    derivable_pt_lim (fun t => x + v * t + a * t ^ 2 / 2 + j * t ^ 3 / 6) t (v + a * t + j * t ^ 2 / 2)).
+  { intros x v a j t.
+    apply (derivable_pt_lim_ext (fun t => (x + (v * t + a * t ^ 2 / 2)) + j / 6 * t ^ 3)); [intros s; field|].
+    replace (v + a * t + j * t ^ 2 / 2) with ((0 + (v + a * t)) + j / 6 * (INR 3 * t ^ pred 3)) by (simpl; field).
+    apply (derivable_pt_lim_plus (fun t => x + (v * t + a * t ^ 2 / 2)) (fun t => j / 6 * t ^ 3)).
+    - apply (derivable_pt_lim_plus (fun _ => x)); [apply derivable_pt_lim_const|apply parabola].
+    - apply (derivable_pt_lim_scal (fun t => t ^ 3)), derivable_pt_lim_pow. }
+  induction ps as [|[[d a] j] ps IH]; intros L x v t; cbn [moving].
   - apply one.
   - inversion L as [|p l D L']; subst p l. cbn [fst] in D. specialize (IH L').
-    set (D' := Q2R d) in *. set (e := moved x v (Q2R a) D') in *.
+    set (D' := Q2R d) in *. set (e := moved x v (Q2R a) (Q2R j) D') in *.
     pose proof (moving_begins (place_ e) (speed_ e) ps last L') as [B1 B2].
     set (h := fun t => place_ (moving (place_ e) (speed_ e) ps last (t - D'))).
     set (h' := fun t => speed_ (moving (place_ e) (speed_ e) ps last (t - D'))).
     assert (G : derivable_pt_lim
-      (fun t => if Rlt_dec t D' then place_ (moved x v (Q2R a) t) else h t) t
-      (if Rlt_dec t D' then speed_ (moved x v (Q2R a) t) else h' t)).
-    { apply (glued (fun t => place_ (moved x v (Q2R a) t)) h (fun t => speed_ (moved x v (Q2R a) t)) h').
+      (fun t => if Rlt_dec t D' then place_ (moved x v (Q2R a) (Q2R j) t) else h t) t
+      (if Rlt_dec t D' then speed_ (moved x v (Q2R a) (Q2R j) t) else h' t)).
+    { apply (glued (fun t => place_ (moved x v (Q2R a) (Q2R j) t)) h (fun t => speed_ (moved x v (Q2R a) (Q2R j) t)) h').
       - intros u. apply one.
       - intros u. unfold h, h'.
         replace (speed_ (moving (place_ e) (speed_ e) ps last (u - D')))
@@ -116,7 +122,7 @@ Proof.
         + apply IH.
       - unfold h. replace (D' - D') with 0 by ring. rewrite B1. reflexivity.
       - unfold h'. replace (D' - D') with 0 by ring. rewrite B2. reflexivity. }
-    apply (derivable_pt_lim_ext (fun t => if Rlt_dec t D' then place_ (moved x v (Q2R a) t) else h t)).
+    apply (derivable_pt_lim_ext (fun t => if Rlt_dec t D' then place_ (moved x v (Q2R a) (Q2R j) t) else h t)).
     + intros u. destruct (Rlt_dec u D'); reflexivity.
     + destruct (Rlt_dec t D'); exact G.
 Qed.
@@ -160,7 +166,7 @@ Section Guarantee.
      The front vehicle does not reverse and brakes by at most b_max.  The rear one speeds up by at most a_max until
      rho, and brakes by at least b_min from then on, while it moves forward. *)
   Theorem drives_keep_apart (rear front : course) (long : R) :
-    lasting (pieces rear) -> lasting (pieces front) ->
+    lasting (pieces rear) -> lasting (pieces front) -> without_jerk (pieces rear) -> without_jerk (pieces front) ->
     (forall t, 0 <= t -> 0 <= speed_ (at_time front t)) ->
     (forall t, 0 <= t -> acceleration_ (at_time front t) >= - b_max) ->
     0 <= speed_ (at_time rear 0) ->
@@ -170,7 +176,7 @@ Section Guarantee.
       > dRSS a_max b_max b_min rho (speed_ (at_time rear 0)) (speed_ (at_time front 0)) ->
     forall t, 0 <= t -> place_ (at_time rear t) < place_ (at_time front t) - long.
   Proof.
-    intros Lr Lf V Bf V0 Ar Br G.
+    intros Lr Lf Jr Jf V Bf V0 Ar Br G.
     apply (motions a_max b_max b_min rho Ha Hb Hm Hr Hmb
       (fun t => place_ (at_time rear t)) (fun t => speed_ (at_time rear t))
       (fun t => place_ (at_time front t) - long) (fun t => speed_ (at_time front t))); try assumption.
@@ -297,7 +303,7 @@ Section Lateral.
      vehicle is `wide` from its left one.  Each moves towards the other by at most a more until rho, and brakes by at
      least b from then on, while it moves towards it. *)
   Theorem drives_keep_apart_across (left right : course) (wide : R) :
-    lasting (pieces left) -> lasting (pieces right) ->
+    lasting (pieces left) -> lasting (pieces right) -> without_jerk (pieces left) -> without_jerk (pieces right) ->
     (forall t, 0 <= t < rho -> - acceleration_ (at_time left t) <= a) ->
     (forall t, 0 <= t < rho -> acceleration_ (at_time right t) <= a) ->
     (forall t, rho <= t -> speed_ (at_time left t) < 0 -> acceleration_ (at_time left t) >= b) ->
@@ -306,7 +312,7 @@ Section Lateral.
       > signed (- speed_ (at_time left 0)) (- speed_ (at_time right 0)) ->
     forall t, 0 <= t -> place_ (at_time right t) < place_ (at_time left t) - wide.
   Proof.
-    intros Ll Lr A1 A2 B1 B2 G t T.
+    intros Ll Lr Jl Jr A1 A2 B1 B2 G t T.
     assert (K : - (place_ (at_time left t) - wide) < - place_ (at_time right t)); [|lra].
     apply (motions_across
       (fun t => - (place_ (at_time left t) - wide)) (fun t => - speed_ (at_time left t))

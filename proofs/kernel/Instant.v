@@ -14,7 +14,7 @@ Lemma Q2R_ratio z d : Q2R (z # d) = IZR z / IZR (Zpos d). Proof. reflexivity. Qe
 Ltac open_bounds H :=
   repeat match type of H with
          | Forall _ (_ :: _) => let B := fresh "B" in let H' := fresh "H'" in
-             inversion_clear H as [|? ? B H']; rename H' into H
+             inversion_clear H as [|? ? B H']; cbn [keeps_to] in B; rename H' into H
          | Forall _ [] => clear H
          end.
 Ltac open_fact :=

@@ -11,9 +11,13 @@ Definition vehicle := string.
 
 (* --- syntax ------------------------------------------------------------------------------------------- *)
 
-(* Signals change with time, sizes do not. *)
-Inductive signal := Place_lon | Place_lat | Speed_lon | Speed_lat | Acceleration_lon | Acceleration_lat.
-Inductive size := Length | Width.
+(* Signals change with time, sizes do not.  Own: a signal that a specification declares; of no vehicle is one of
+   the vehicle "".  It is a number; one that is true or false is true above 1/2.
+   Kind: a number that says what a vehicle is: below 3/2 a car, from there on and below 5/2 a truck, from there on
+   and below 7/2 a bus, from there on and below 9/2 a motorcycle, from there on something else. *)
+Inductive signal :=
+| Place_lon | Place_lat | Speed_lon | Speed_lat | Acceleration_lon | Acceleration_lat | Jerk_lon | Own (name : string).
+Inductive size := Length | Width | Kind.
 
 (* Par: a parameter of the specification.  Var: a number that the claim speaks of (`given v: m/s`). *)
 Inductive term :=
@@ -152,10 +156,20 @@ Section Meaning.
     end.
 End Meaning.
 
-(* The bounds that a specification declares of its parameters. *)
-Inductive bound := at_least_0 (name : string) | above_0 (name : string).
-Definition respects (W : world) (bounds : list bound) : Prop :=
-  Forall (fun b => match b with at_least_0 p => 0 <= parameter W p | above_0 p => 0 < parameter W p end) bounds.
+(* The bounds that a specification declares of its parameters, and of its signals at all times. *)
+Inductive bound :=
+| at_least_0 (name : string)
+| above_0 (name : string)
+| own_at_least (name : string) (a : vehicle) (low : Q)
+| own_at_most (name : string) (a : vehicle) (high : Q).
+Definition keeps_to (W : world) (b : bound) : Prop :=
+  match b with
+  | at_least_0 p => 0 <= parameter W p
+  | above_0 p => 0 < parameter W p
+  | own_at_least n a low => forall t, Q2R low <= value W (Own n) a t
+  | own_at_most n a high => forall t, value W (Own n) a t <= Q2R high
+  end.
+Definition respects (W : world) (bounds : list bound) : Prop := Forall (keeps_to W) bounds.
 Definition unbound (W : world) : nat -> element W := fun _ => somewhere W.
 
 (* The claim holds at time 0 in every world, for all parameters within their bounds. *)

@@ -320,15 +320,17 @@ End Sound.
 (* xs: the terms that are variables of polynomials, the first of them number 1 *)
 Fixpoint numbered (n : positive) (xs : list term) : table :=
   match xs with [] => [] | x :: xs => (x, PEX n) :: numbered (Pos.succ n) xs end.
+Definition known_of (T : table) (b : bound) : option constraint :=
+  match b with
+  | at_least_0 p => option_map at_least (polynomial T (Par p))
+  | above_0 p => option_map above (polynomial T (Par p))
+  | own_at_least n a low => option_map (fun e => at_least (PEsub e (PEc low))) (polynomial T (Sig (Own n) a))
+  | own_at_most n a high => option_map (fun e => at_least (PEsub (PEc high) e)) (polynomial T (Sig (Own n) a))
+  end.
 Fixpoint known (T : table) (bounds : list bound) : list constraint :=
   match bounds with
   | [] => []
-  | b :: bounds =>
-      let (p, strict) := match b with at_least_0 p => (p, false) | above_0 p => (p, true) end in
-      match polynomial T (Par p) with
-      | Some e => (if strict then above e else at_least e) :: known T bounds
-      | None => known T bounds
-      end
+  | b :: bounds => match known_of T b with Some c => c :: known T bounds | None => known T bounds end
   end.
 Definition settles bounds (xs : list term) f tr : bool :=
   let T := numbered 1 xs in check T [(false, f)] (known T bounds) tr.
@@ -349,8 +351,10 @@ Proof.
   - intros f' [<-|[]]. exact N.
   - clear E. unfold respects in B. induction bounds as [|b bounds IH]; cbn [known]; [intros c []|].
     inversion B as [|x l B1 B2]; subst. specialize (IH B2).
-    destruct b as [p|p]; cbv zeta beta iota;
-      (destruct (polynomial (numbered 1 xs) (Par p)) as [e|] eqn:P; [|exact IH]);
+    unfold known_of, option_map. destruct b as [p|p|n a low|n a high]; cbn [keeps_to] in B1;
+      (match goal with |- context [polynomial ?T ?x] => destruct (polynomial T x) as [e|] eqn:P end; [|exact IH]);
       apply (polynomial_means W t env _ _ A) in P; cbn [number] in P; (apply keeps_cons; [|exact IH]);
-      [apply at_least_means|apply above_means]; rewrite <- P; exact B1.
+      [apply at_least_means|apply above_means|apply at_least_means|apply at_least_means];
+      rewrite ?of_sub, <- P; try exact B1; specialize (B1 t);
+      [change (QReval_expr env (PEc low)) with (Q2R low)|change (QReval_expr env (PEc high)) with (Q2R high)]; lra.
 Qed.

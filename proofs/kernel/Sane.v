@@ -19,11 +19,11 @@ Proof.
   - intros l m H E; apply H; symmetry; exact E.
   - reflexivity.
 Defined.
-Lemma not_everything bounds : ~ valid bounds (Truth false).
+Lemma not_everything : ~ valid [] (Truth false).
 Proof.
   intros H. assert (E : false = true); [|discriminate].
   apply (H some_world (fun _ => true)).
-  unfold respects. apply Forall_forall. intros [p|p] _; simpl; lra.
+  constructor.
 Qed.
 
 (* Until, as roadproof reads it: false U[1, 2] true holds, though false does not hold before 1. *)

@@ -31,19 +31,24 @@ Inductive derivation :=
 | Break (m : moment) (p q : derivation).                  (* not U: q for its right side until its left is false *)
 
 (* --- what a drive is, as polynomials -------------------------------------------------------------------- *)
-Record shape := { of_place : list Q; of_speed : list Q; of_acceleration : list Q }.
-(* from k on, from place x and speed v, under acceleration a *)
-Definition shaped (k x v a : Q) : shape :=
-  let h := times (1 # 2) a in
-  {| of_place := padd [plus (minus x (times k v)) (times h (times k k))] (padd [0%Q; minus v (times a k)] [0%Q; 0%Q; h]);
-     of_speed := padd [minus v (times a k)] [0%Q; a];
-     of_acceleration := [a] |}.
-Fixpoint shapes (k x v : Q) (ps : list (Q * Q)) (last : Q) : list (Q * shape) :=
+Record shape := { of_place : list Q; of_speed : list Q; of_acceleration : list Q; of_jerk : list Q }.
+(* x + v t + a t^2 + j t^3, without zeros at the end, k later *)
+Definition cubic (k x v a j : Q) : list Q := pshift (Qopp k) (with_head x (with_head v (with_head a (with_head j [])))).
+(* from k on, from place x, speed v and acceleration a, under jerk j *)
+Definition shaped (k x v a j : Q) : shape :=
+  {| of_place := cubic k x v (times (1 # 2) a) (times (1 # 6) j);
+     of_speed := cubic k v a (times (1 # 2) j) 0;
+     of_acceleration := cubic k a j 0 0;
+     of_jerk := cubic k j 0 0 0 |}.
+Fixpoint shapes (k x v : Q) (ps : list (Q * Q * Q)) (last : Q) : list (Q * shape) :=
   match ps with
-  | [] => [(k, shaped k x v last)]
-  | (d, a) :: ps =>
-      (k, shaped k x v a)
-      :: shapes (plus k d) (plus (plus x (times v d)) (times (1 # 2) (times a (times d d)))) (plus v (times a d)) ps last
+  | [] => [(k, shaped k x v last 0)]
+  | (d, a, j) :: ps =>
+      let d2 := times d d in
+      (k, shaped k x v a j)
+      :: shapes (plus k d)
+           (plus (plus (plus x (times v d)) (times (1 # 2) (times a d2))) (times (1 # 6) (times j (times d d2))))
+           (plus (plus v (times a d)) (times (1 # 2) (times j d2))) ps last
   end.
 Definition shapes_of (c : course) : list (Q * shape) := shapes 0 (starts_at c) (starts_with c) (pieces c) (finally c).
 
@@ -60,9 +65,10 @@ Fixpoint shape_on (l : list (Q * shape)) (I : interval) : option shape :=
       end
   end.
 
-Record shaped_body := { shaped_along : list (Q * shape); shaped_across : list (Q * shape); long_ : Q; wide_ : Q }.
+Record shaped_body := { shaped_along : list (Q * shape); shaped_across : list (Q * shape); long_ : Q; wide_ : Q; sort_ : sort }.
 Definition body_shaped (b : body) : shaped_body :=
-  {| shaped_along := shapes_of (along b); shaped_across := shapes_of (across b); long_ := long b; wide_ := wide b |}.
+  {| shaped_along := shapes_of (along b); shaped_across := shapes_of (across b); long_ := long b; wide_ := wide b;
+     sort_ := is_a b |}.
 Definition fleet := list (vehicle * shaped_body).
 Definition fleet_of (D : drive) : fleet := map (fun e => (fst e, body_shaped (snd e))) (bodies D).
 
@@ -73,27 +79,30 @@ Proof.
 Qed.
 Lemma half_R : Q2R (1 # 2) = / 2. Proof. unfold Q2R. simpl. lra. Qed.
 Lemma constant_R a t : eval [a] t = Q2R a. Proof. cbn [eval]. ring. Qed.
-Lemma linear_R a t : eval [0%Q; a] t = Q2R a * t. Proof. cbn [eval]. rewrite zero_R. ring. Qed.
-Lemma square_R a t : eval [0%Q; 0%Q; a] t = Q2R a * t ^ 2. Proof. cbn [eval]. rewrite zero_R. ring. Qed.
+Lemma sixth_R : Q2R (1 # 6) = / 6. Proof. unfold Q2R. simpl. lra. Qed.
+Lemma cubic_R k x v a j t : let u := t - Q2R k in
+  eval (cubic k x v a j) t = Q2R x + Q2R v * u + Q2R a * u ^ 2 + Q2R j * u ^ 3.
+Proof. unfold cubic. rewrite pshift_eval, !with_head_eval, Q2R_opp. cbn [eval]. ring. Qed.
 Definition agrees (p : shape) (i : instant) (t : R) : Prop :=
-  eval (of_place p) t = place_ i /\ eval (of_speed p) t = speed_ i /\ eval (of_acceleration p) t = acceleration_ i.
-Lemma shaped_right k x v a t : agrees (shaped k x v a) (moved (Q2R x) (Q2R v) (Q2R a) (t - Q2R k)) t.
+  eval (of_place p) t = place_ i /\ eval (of_speed p) t = speed_ i /\ eval (of_acceleration p) t = acceleration_ i
+  /\ eval (of_jerk p) t = jerk_ i.
+Lemma shaped_right k x v a j t : agrees (shaped k x v a j) (moved (Q2R x) (Q2R v) (Q2R a) (Q2R j) (t - Q2R k)) t.
 Proof.
-  unfold agrees, shaped, moved. cbn [of_place of_speed of_acceleration place_ speed_ acceleration_].
-  rewrite !padd_eval, !constant_R, !linear_R, square_R, plus_R, !minus_R, !times_R, half_R.
-  repeat split; field.
+  unfold agrees, shaped, moved.
+  cbn [of_place of_speed of_acceleration of_jerk place_ speed_ acceleration_ jerk_].
+  rewrite !cubic_R, !times_R, half_R, sixth_R, zero_R. repeat split; field.
 Qed.
 Lemma shapes_right ps last : forall k x v I p t, shape_on (shapes k x v ps last) I = Some p -> inside I t ->
   agrees p (moving (Q2R x) (Q2R v) ps last (t - Q2R k)) t.
 Proof.
-  induction ps as [|[d a] ps IH]; intros k x v I p t H T.
-  - injection H as <-. apply shaped_right.
+  induction ps as [|[[d a] j] ps IH]; intros k x v I p t H T.
+  - injection H as <-. cbn [moving]. rewrite <- zero_R. apply shaped_right.
   - cbn [shapes shape_on] in H.
-    set (rest := shapes _ _ _ ps last) in H. 
+    set (rest := shapes _ _ _ ps last) in H.
     assert (E : exists q more, rest = (plus k d, q) :: more).
-    { unfold rest. destruct ps as [|[d' a'] ps]; cbn [shapes]; eexists; eexists; reflexivity. }
+    { unfold rest. destruct ps as [|[[d' a'] j'] ps]; cbn [shapes]; eexists; eexists; reflexivity. }
     destruct E as [q [more E]]. cbn [moving].
-    assert (H' : (if ends_by I (plus k d) then Some (shaped k x v a)
+    assert (H' : (if ends_by I (plus k d) then Some (shaped k x v a j)
                   else if Qle_bool (plus k d) (from_ I) then shape_on rest I else None) = Some p).
     { rewrite <- H. rewrite E. reflexivity. }
     clear H. destruct (ends_by I (plus k d)) eqn:B.
@@ -102,10 +111,28 @@ Proof.
     + destruct (Qle_bool (plus k d) (from_ I)) eqn:L; [|discriminate].
       apply le_R in L. rewrite plus_R in L. pose proof (inside_from I t T) as F.
       destruct (Rlt_dec (t - Q2R k) (Q2R d)) as [Y|_]; [exfalso; lra|].
-      specialize (IH _ _ _ I p t H' T). rewrite !plus_R, !times_R, half_R in IH.
+      specialize (IH _ _ _ I p t H' T). rewrite !plus_R, !times_R, half_R, sixth_R in IH.
       unfold moved. cbn [place_ speed_].
       replace (t - Q2R k - Q2R d) with (t - (Q2R k + Q2R d)) by ring.
-      replace (Q2R a * Q2R d ^ 2 / 2) with (/ 2 * (Q2R a * (Q2R d * Q2R d))) by field. exact IH.
+      replace (Q2R a * Q2R d ^ 2 / 2) with (/ 2 * (Q2R a * (Q2R d * Q2R d))) by field.
+      replace (Q2R j * Q2R d ^ 2 / 2) with (/ 2 * (Q2R j * (Q2R d * Q2R d))) by field.
+      replace (Q2R j * Q2R d ^ 3 / 6) with (/ 6 * (Q2R j * (Q2R d * (Q2R d * Q2R d)))) by field. exact IH.
+Qed.
+
+(* a signal in steps, where it does not change in I *)
+Fixpoint step_on (before : Q) (steps : list (Q * Q)) (I : interval) : option Q :=
+  match steps with
+  | [] => Some before
+  | (k, x) :: rest =>
+      if ends_by I k then Some before else if Qle_bool k (from_ I) then step_on x rest I else None
+  end.
+Lemma step_on_right steps I t : inside I t -> forall before x, step_on before steps I = Some x -> stepped before steps t = x.
+Proof.
+  intros T. induction steps as [|[k y] steps IH]; intros before x H; cbn [step_on stepped] in *; [congruence|].
+  destruct (ends_by I k) eqn:B.
+  - apply (ends_by_right _ _ t) in B; [|exact T]. destruct (Rlt_dec t (Q2R k)); [congruence|exfalso; lra].
+  - destruct (Qle_bool k (from_ I)) eqn:L; [|discriminate]. apply le_R in L. pose proof (inside_from I t T).
+    destruct (Rlt_dec t (Q2R k)); [exfalso; lra|]. apply IH, H.
 Qed.
 
 Lemma find_map (A B : Type) (f : A -> B) x (l : list (string * A)) :
@@ -137,9 +164,11 @@ Section Check.
     | Place_lat => as_list (shape_on (shaped_across b) I) of_place
     | Speed_lat => as_list (shape_on (shaped_across b) I) of_speed
     | Acceleration_lat => as_list (shape_on (shaped_across b) I) of_acceleration
+    | Jerk_lon => as_list (shape_on (shaped_along b) I) of_jerk
+    | Own n => match step_on (first_step (steps_of D n a)) (steps_of D n a) I with Some x => [[x]] | None => [] end
     end.
   Definition size_on (n : size) (a : vehicle) : Q :=
-    let b := shaped_of a in match n with Length => long_ b | Width => wide_ b end.
+    let b := shaped_of a in match n with Length => long_ b | Width => wide_ b | Kind => number_of_sort (sort_ b) end.
 
   (* every pair *)
   Definition pairs_with (g : list Q -> list Q -> list (list Q)) (l m : list (list Q)) : list (list Q) :=
@@ -243,8 +272,10 @@ Section Check.
     intros T. unfold signal_on. rewrite shaped_of_right. cbn [shaped_along shaped_across body_shaped].
     assert (N : forall x, is_one [] x t) by (intros x H; exfalso; apply H; reflexivity).
     destruct n; unfold as_list;
-      match goal with |- context [shape_on ?l ?i] => destruct (shape_on l i) as [p|] eqn:E; [|apply N] end;
-      apply is_this; destruct (track_right _ _ _ _ E T) as [A [B C]]; symmetry; assumption.
+      try match goal with |- context [shape_on ?l ?i] => destruct (shape_on l i) as [p|] eqn:E; [|apply N] end;
+      try (apply is_this; destruct (track_right _ _ _ _ E T) as [A [B [C J]]]; symmetry; assumption).
+    destruct (step_on _ _ I) as [x|] eqn:E; [|apply N]. apply is_this. rewrite constant_R.
+    cbn [value world_of value_of]. rewrite (step_on_right _ _ _ T _ _ E). reflexivity.
   Qed.
   Lemma size_right n a t : measure W n a = eval [size_on n a] t.
   Proof. rewrite constant_R. unfold size_on. rewrite shaped_of_right. destruct n; reflexivity. Qed.
@@ -846,7 +877,15 @@ Definition within_bound (D : drive) (b : bound) : bool :=
   match b with
   | at_least_0 p => Qle_bool 0 (look_up p (values D) 0%Q)
   | above_0 p => below 0 (look_up p (values D) 0%Q)
+  | own_at_least n a low => Qle_bool low (first_step (steps_of D n a)) && forallb (fun e => Qle_bool low (snd e)) (steps_of D n a)
+  | own_at_most n a high => Qle_bool (first_step (steps_of D n a)) high && forallb (fun e => Qle_bool (snd e) high) (steps_of D n a)
   end.
+Lemma stepped_within (ok : Q -> bool) steps t : forall before, ok before = true ->
+  forallb (fun e => ok (snd e)) steps = true -> ok (stepped before steps t) = true.
+Proof.
+  induction steps as [|[k x] steps IH]; intros before B H; cbn [stepped]; [exact B|].
+  apply andb_prop in H as [X H]. destruct (Rlt_dec t (Q2R k)); [exact B|apply IH; assumption].
+Qed.
 Definition now : interval := {| from_ := 0; after_ := false; to_ := Some (0%Q, false) |}.
 Definition accepts (D : drive) (bounds : list bound) (claim : formula) (p : derivation) : bool :=
   forallb (within_bound D) bounds && check D (fleet_of D) p claim (fun _ => 0%nat) true now.
@@ -855,8 +894,12 @@ Theorem shown D bounds claim p : accepts D bounds claim p = true -> shows D boun
 Proof.
   unfold accepts, shows. intros H. apply andb_prop in H as [R H]. split.
   - unfold respects. apply Forall_forall. intros b B. rewrite forallb_forall in R. specialize (R b B).
-    destruct b as [x|x]; simpl in *; unfold parameter_of; [apply le_R in R|apply below_R in R];
-      rewrite zero_R in R; exact R.
+    destruct b as [x|x|n a low|n a high]; cbn [within_bound keeps_to] in *.
+    + apply le_R in R. rewrite zero_R in R. exact R.
+    + apply below_R in R. rewrite zero_R in R. exact R.
+    + intros t. apply andb_prop in R as [R1 R2]. apply le_R. exact (stepped_within (Qle_bool low) _ t _ R1 R2).
+    + intros t. apply andb_prop in R as [R1 R2]. apply le_R.
+      exact (stepped_within (fun x => Qle_bool x high) _ t _ R1 R2).
   - apply (check_right D (fleet_of D) eq_refl p claim (fun _ => 0%nat) true now (unbound (world_of D)) 0 H).
     + intros k. reflexivity.
     + unfold inside, now. cbn [from_ after_ to_]. rewrite zero_R. lra.

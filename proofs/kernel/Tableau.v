@@ -12,8 +12,10 @@ Open Scope R_scope.
 (* --- formulas: equality, instances of quantifiers over the road, what time cannot change --------------- *)
 Lemma Q_dec (p q : Q) : {p = q} + {p <> q}.
 Proof. decide equality; [apply Pos.eq_dec|apply Z.eq_dec]. Defined.
+Lemma signal_dec (x y : signal) : {x = y} + {x <> y}.
+Proof. decide equality; apply string_dec. Defined.
 Lemma term_dec (x y : term) : {x = y} + {x <> y}.
-Proof. decide equality; solve [apply string_dec|apply Q_dec|apply Nat.eq_dec|decide equality]. Defined.
+Proof. decide equality; solve [apply string_dec|apply Q_dec|apply Nat.eq_dec|apply signal_dec|decide equality]. Defined.
 Lemma side_dec (x y : side) : {x = y} + {x <> y}.
 Proof. decide equality; apply term_dec. Defined.
 Lemma road_dec (x y : road) : {x = y} + {x <> y}.
@@ -730,8 +732,12 @@ Fixpoint bound_cons (ps : list string) (bounds : list bound) : list con :=
   match bounds with
   | [] => []
   | b :: bounds =>
-      let (p, strict) := match b with at_least_0 p => (p, false) | above_0 p => (p, true) end in
-      match index p ps with Some i => (strict, unit (S i)) :: bound_cons ps bounds | None => bound_cons ps bounds end
+      let named := match b with at_least_0 p => Some (p, false) | above_0 p => Some (p, true) | _ => None end in
+      match named with
+      | Some (p, strict) =>
+          match index p ps with Some i => (strict, unit (S i)) :: bound_cons ps bounds | None => bound_cons ps bounds end
+      | None => bound_cons ps bounds
+      end
   end.
 Definition accepts ps bounds facts claim tr : bool :=
   check ps facts [At false [] claim] (bound_cons ps bounds) tr.
@@ -748,7 +754,7 @@ Proof.
     + intros f [<-|[]]. exact N.
     + clear HA HL N. unfold respects in HB. induction bounds as [|b bounds IH]; simpl; [intros c []|].
       inversion HB as [|x l B1 B2]; subst. specialize (IH B2).
-      destruct b as [p|p]; intros c I; (destruct (index p ps) as [i|] eqn:E; [|apply IH; assumption]);
+      destruct b as [p|p| |]; try exact IH; intros c I; (destruct (index p ps) as [i|] eqn:E; [|apply IH; assumption]);
         (destruct I as [<-|I]; [|apply IH; assumption]); unfold chold; cbn [fst snd];
         change (0%Q :: unit i) with (unit (S i)); rewrite veval_unit; unfold r; rewrite (index_nth _ _ _ E); exact B1.
 Qed.

@@ -1,11 +1,21 @@
 """Random formulas and drives with a derivation, as terms of Coq."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from judge.cases import comparisons, drives, formulas
+from judge.cases import (
+    comparisons,
+    drives,
+    formulas,
+    halves,
+    jerk_comparisons,
+    jerk_drives,
+    numbers,
+    operators,
+)
 from kernel import raw
 from roadproof.evidence.derivations.derive import derive
 from roadproof.evidence.derivations.parts import NoDerivationError
@@ -14,8 +24,12 @@ from roadproof.evidence.kernel.derivation import coq_derivation
 from roadproof.evidence.kernel.drive import Shown, drive_lines
 from roadproof.library.bind import bind
 from roadproof.logic import formula as f
+from roadproof.logic import terms as t
+from roadproof.logic.custom_names import is_kind, own_truth
 from roadproof.semantics.exact import judge
+from roadproof.world.drive import Drive
 from roadproof.world.road import Lanelet, Road, pairs
+from roadproof.world.signals import KINDS
 
 ROAD = Road(
     "three",
@@ -60,7 +74,36 @@ of_road = st.one_of(
 asked = formulas(st.one_of(comparisons, of_road), leaves=4)
 
 
-def cases(count):
+# Signals of a specification, of vehicles and of none, and kinds, on drives with jerk.
+LOADS = {x: t.Own("load", x, (0, 0), Fraction(-2), Fraction(3)) for x in "AB"}
+RED = t.Own("red", "", truth=True)
+loads = st.sampled_from([*LOADS.values()])
+steps_of = lambda values: st.builds(  # noqa: E731
+    lambda first, more: ((Fraction(0), first), *sorted((k, x) for k, x in more.items() if k)),
+    values,
+    st.dictionaries(halves, values, max_size=2),
+)
+own_drives = st.builds(
+    lambda drive, a, b, red, kinds: Drive(
+        {name: replace(x, kind=kind) for (name, x), kind in zip(drive.vehicles.items(), kinds, strict=True)},
+        {("load", "A"): a, ("load", "B"): b, ("red", ""): red},
+    ),
+    jerk_drives,
+    *(steps_of(st.integers(-4, 6).map(lambda n: Fraction(n, 2))) for _ in LOADS),
+    steps_of(st.sampled_from([Fraction(0), Fraction(1)])),
+    st.tuples(*[st.sampled_from(KINDS)] * 2),
+)
+own_comparisons = st.one_of(
+    st.builds(f.Compare, loads, operators, st.one_of(numbers, st.just(t.Signal("v_lon", "A")))),
+    st.builds(lambda x, y, op: f.Compare(t.subtract(x, y), op, t.number(0)), loads, loads, operators),
+    st.sampled_from([own_truth(RED), f.Not(own_truth(RED))]),
+    st.builds(is_kind, st.sampled_from("AB"), st.sampled_from(KINDS), st.booleans()),
+    jerk_comparisons,
+)
+own_asked = formulas(own_comparisons, leaves=4)
+
+
+def cases(count, asked=asked, drives=drives):
     """Pairs of a formula that is true and a drive, the same in every run."""
     found = []
 

@@ -13,8 +13,9 @@ SIGNALS = {
     "v_lat": "Speed_lat",
     "a_lon": "Acceleration_lon",
     "a_lat": "Acceleration_lat",
+    "j_lon": "Jerk_lon",
 }
-SIZES = {"length": "Length", "width": "Width"}
+SIZES = {"length": "Length", "width": "Width", "kind": "Kind"}
 COMPARISONS = {"<": "LT", "<=": "LE", ">": "GT", ">=": "GE"}
 
 
@@ -50,6 +51,8 @@ def term(x):
             return f"(Var {text(name)})"
         case t.Signal(name, vehicle):
             return f"(Sig {SIGNALS[name]} {text(vehicle)})"
+        case t.Own(name, vehicle):
+            return f"(Sig (Own {text(name)}) {text(vehicle)})"
         case t.Size(name, vehicle):
             return f"(Siz {SIZES[name]} {text(vehicle)})"
         case t.Sum(parts):
@@ -157,7 +160,7 @@ def random_formula(seed):
                 return t.Power(a_term(deep - 1), r.randint(0, 3))
             case "over":
                 return t.Quotient(a_term(deep - 1), a_term(deep - 1))
-        match r.randint(0, 4):
+        match r.randint(0, 5):
             case 0:
                 return t.Number(Fraction(r.randint(-9, 9), r.choice([1, 1, 5])))
             case 1:
@@ -166,6 +169,8 @@ def random_formula(seed):
                 return t.Variable(r.choice(NAMES))
             case 3:
                 return t.Size(r.choice([*SIZES]), r.choice(NAMES))
+            case 4:
+                return t.Own(r.choice(NAMES), r.choice(["", *NAMES]), truth=r.random() < 0.5)
         return t.Signal(r.choice([*SIGNALS]), r.choice(NAMES))
 
     def a_side(deep):

@@ -71,7 +71,7 @@ def judged(
 def _trace(trace: Mapping[str, object], dt: Fraction) -> str:
     signals, sizes = trace["signals"], trace["sizes"]
     last = len(next(iter(signals.values()))) - 1
-    course = _by_name(signals, raw.SIGNALS, lambda x: f"[{'; '.join(map(_q, x))}]", "[]")
+    course = _by_name(signals, raw.SIGNALS | {"": "Own _"}, lambda x: f"[{'; '.join(map(_q, x))}]", "[]")
     sized = _by_name(sizes, raw.SIZES, _q, _q(Fraction(1)))
     return f"(Build_trace {_q(dt)} {last}%nat {course} {sized} parametric_)"
 

@@ -156,7 +156,7 @@ def test_no_reason_is_found_for_what_is_false_or_too_large(claim):
     fact = without_names(read_claim(bundled_library().select(), claim).formula)
     printer = Printer()
     printer.formula(fact)
-    assert reason(fact, {}, printer.term) is None
+    assert reason(fact, {}, (), printer.term) is None
 
 
 # --- Linear constraints against z3: what follows is found, and its multipliers add up to something absurd

@@ -39,7 +39,7 @@ from roadproof.library.bind import occupies as occupies_formula
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import leaves_of, vehicles_of, with_values, without_names
+from roadproof.logic.rewrite import leaves_of, with_values, without_names
 from roadproof.semantics.exact.algebraic import Root
 from roadproof.semantics.exact.exact import NOTHING_GIVEN, Judge, seconds
 from roadproof.semantics.exact.polynomial import Polynomial, polynomial
@@ -155,20 +155,21 @@ class _Finding:
                 assert_never(formula)
 
     def _sign(self, formula: f.Compare | f.Occupies, scope: Scope, positive: bool, part: Part) -> Step:
+        leaves: set[t.Leaf]
         if isinstance(formula, f.Occupies):
-            vehicles = {formula.vehicle}
+            leaves = {t.Signal("s", formula.vehicle)}
             lanelet = self.road.lanelets[self.number(formula.lanelet, scope)]
 
             def is_seen(part: Part, signs: Signs) -> bool:
                 return occupies(self.shapes, formula.vehicle, lanelet, positive, part, signs)
         else:
-            vehicles = {x.vehicle for x in leaves_of(formula) if isinstance(x, t.Signal)}
+            leaves = {*leaves_of(formula)}
             op = formula.op if positive else f.NEGATED[formula.op]
 
             def is_seen(part: Part, signs: Signs) -> bool:
                 return compares(self.shapes, formula.left, op, formula.right, part, signs)
 
-        knots = sorted({x for name in vehicles for x in self.shapes.knots(name) if part.has_inside(x)})
+        knots = sorted({x for leaf in leaves for x in self.shapes.knots(leaf) if part.has_inside(x)})
         cuts: list[Fraction] = []
         for place, piece in enumerate(part.cut(knots)):
             cuts += knots[place - 1 : place] if place else []
@@ -240,8 +241,8 @@ class _Finding:
         """``formula`` with what the sign of a polynomial says of its comparisons at the same instant."""
         match formula:
             case f.Compare():
-                vehicles = vehicles_of(formula)
-                if any(part.has_inside(x) for name in vehicles for x in self.shapes.knots(name)):
+                leaves = {*leaves_of(formula)}
+                if any(part.has_inside(x) for leaf in leaves for x in self.shapes.knots(leaf)):
                     return formula
                 said = said_of(self.shapes, formula, part, changing, above)
                 return formula if said is None else f.Truth(said)

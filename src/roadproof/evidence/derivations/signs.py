@@ -24,9 +24,9 @@ from roadproof.semantics.exact.polynomial import (
     polynomial,
     primitive,
 )
-from roadproof.semantics.exact.signals import course
+from roadproof.semantics.exact.signals import DriveSignals, course
 from roadproof.semantics.exact.truth import Cut
-from roadproof.world.drive import Drive
+from roadproof.world.drive import Drive, value_at
 from roadproof.world.motion import State, starts_of
 from roadproof.world.road import Lanelet
 from roadproof.world.signals import SignalName
@@ -149,8 +149,15 @@ class Shapes:
             self._starts[vehicle] = starts_of(self.drive.vehicles[vehicle])
         return self._starts[vehicle]
 
-    def knots(self, vehicle: str) -> list[Fraction]:
-        return [x.time for x in self.starts(vehicle)[1:]]
+    def knots(self, leaf: t.Leaf) -> list[Fraction]:
+        """The instants at which a leaf may change in another way than before."""
+        match leaf:
+            case t.Signal(_, vehicle):
+                return [x.time for x in self.starts(vehicle)[1:]]
+            case t.Own(name, vehicle):
+                return [start for start, _ in self.drive.own[name, vehicle][1:]]
+            case _:
+                return []
 
     def signal(self, name: SignalName, vehicle: str, part: Part) -> Polynomial:
         """On a part without a knot of the vehicle inside."""
@@ -175,8 +182,10 @@ class Shapes:
                 return [polynomial(self.values[name])]
             case t.Signal(name, vehicle):
                 return [self.signal(name, vehicle, part)]
-            case t.Size(name, vehicle):
-                return [polynomial(getattr(self.drive.vehicles[vehicle], name))]
+            case t.Own(name, vehicle):
+                return [polynomial(value_at(self.drive.own[name, vehicle], part.start))]
+            case t.Size():
+                return [polynomial(DriveSignals(self.drive).size(term))]
             case t.Sum(terms):
                 return all_of(terms, lambda p, q: [add(p, q)])
             case t.Product(factors):

@@ -3,7 +3,7 @@
 Trusted, but for the derivation: it says what is proved. Numbers are those of the file.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations
@@ -14,15 +14,17 @@ from roadproof.evidence.kernel.derivation import Step, coq_derivation, rational
 from roadproof.evidence.kernel.names import literal, quoted
 from roadproof.evidence.kernel.printer import Formals, Printer
 from roadproof.evidence.kernel.source import ClaimText, Module, claim_lines, comment_lines
+from roadproof.evidence.kernel.source import claim_text as coq_claim
 from roadproof.evidence.kernel.statement import bounds_of, formals_of
 from roadproof.library.bind import refuse_variables, values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
+from roadproof.logic.custom_names import own_of, vehicles_with_kind
 from roadproof.logic.formula import Formula, boxes_overlap
 from roadproof.logic.rewrite import parameters_of
-from roadproof.world.drive import Motion
+from roadproof.world.drive import Course, Motion
 from roadproof.world.road import Lanelet, Road
 
 
@@ -74,11 +76,14 @@ def _apart(file: DriveFile) -> Iterator[Formula]:
 
 def claim_text(shown: Shown) -> ClaimText:
     """Raises ``InputError`` for what is not printed."""
-    for name, motion in shown.file.drive.vehicles.items():
-        _refuse_jerk(name, motion)
-    printer = Printer(shown.formals)
-    claim = printer.formula(shown.formula)
-    return ClaimText(claim, printer.things, printer.definitions)
+    drive = shown.file.drive
+    for name in vehicles_with_kind(shown.formula):
+        if drive.vehicles[name].kind is None:
+            raise InputError(f"the file does not say of what kind {name} is")
+    for signal in own_of([shown.formula]):
+        if (signal.name, signal.vehicle) not in drive.own:
+            raise InputError(f"the file does not say what {signal.told} is")
+    return coq_claim(Printer(shown.formals), shown.formula)
 
 
 def module(name: str, shown: Shown, printed: ClaimText, derivation: Step) -> Module:
@@ -116,7 +121,8 @@ def drive_lines(shown: Shown) -> Iterator[str]:
     yield from _field("beside", [_pair(quoted(a), quoted(b)) for a, b in _beside(file.road)])
     yield from _field("lanes_named", [_pair(literal(a), quoted(b)) for a, b in sorted(file.lanes.items())])
     values = [_pair(literal(name), rational(x)) for name, x in sorted(shown.values.items())]
-    yield from _field("values", values, "")
+    yield from _field("values", values)
+    yield from _field("signals", [_signal(*key, x) for key, x in sorted(file.drive.own.items())], "")
     yield "|}"
 
 
@@ -147,33 +153,29 @@ def _rectangle(x: Lanelet) -> str:
     )
 
 
-def _refuse_jerk(name: str, motion: Motion) -> None:
-    """Drive.v has accelerations that are constant on every piece, and no others."""
-    if motion.has_jerk:
-        raise InputError(f"jerk: the acceleration of {name} is not constant on every piece")
+def _signal(name: str, vehicle: str, course: Course) -> str:
+    steps = "; ".join(_pair(rational(start), rational(value)) for start, value in course)
+    return f"({literal(name)}, {quoted(vehicle)}, [{steps}])"
 
 
 def _body(name: str, motion: Motion) -> str:
-    _refuse_jerk(name, motion)
-    along = _course(motion.s, motion.v_lon, motion, lambda p: p[0])
-    across = _course(motion.d, motion.v_lat, motion, lambda p: p[1])
+    along = _course(motion.s, motion.v_lon, [(p.duration, p.a_lon, p.j_lon) for p in motion.pieces])
+    across = _course(motion.d, motion.v_lat, [(p.duration, p.a_lat, Fraction(0)) for p in motion.pieces])
     return (
-        f"({literal(name)}, {{| long := {rational(motion.length)}; wide := {rational(motion.width)};\n"
+        f"({literal(name)}, {{| is_a := {motion.kind or 'other'};\n"
+        f"      long := {rational(motion.length)}; wide := {rational(motion.width)};\n"
         f"      long_above_0 := eq_refl; wide_above_0 := eq_refl;\n"
         f"      along := {along};\n      across := {across} |}})"
     )
 
 
 def _course(
-    place: Fraction, speed: Fraction, motion: Motion, rate: Callable[[tuple[Fraction, Fraction]], Fraction]
+    place: Fraction, speed: Fraction, pieces: Sequence[tuple[Fraction | None, Fraction, Fraction]]
 ) -> str:
-    *before, last = motion.pieces
-    pieces = [
-        _pair(rational(p.duration), rational(rate((p.a_lon, p.a_lat))))
-        for p in before
-        if p.duration is not None
-    ]
+    """``pieces``: duration, acceleration and jerk; the last is for ever and without jerk."""
+    *before, (_, last, _) = pieces
+    shown = [f"({', '.join(rational(x) for x in piece if x is not None)})" for piece in before]
     return (
         f"{{| starts_at := {rational(place)}; starts_with := {rational(speed)};\n"
-        f"        pieces := [{'; '.join(pieces)}]; finally := {rational(rate((last.a_lon, last.a_lat)))} |}}"
+        f"        pieces := [{'; '.join(shown)}]; finally := {rational(last)} |}}"
     )

@@ -61,13 +61,16 @@ class _State:
         return replace(self, facts=(*self.facts, *facts), waiting=(*new, *left), choices=choices)
 
 
-def reason(fact: Formula, strict: Mapping[str, bool], term: Callable[[Term], str]) -> Reason | None:
+def reason(
+    fact: Formula, strict: Mapping[str, bool], own: Sequence[t.Own], term: Callable[[Term], str]
+) -> Reason | None:
     """A reason for a fact, None where none is found.
 
-    ``strict`` says of each bounded parameter whether it is above 0; ``term`` prints terms.
+    ``strict`` says of each bounded parameter whether it is above 0; ``own``: the signals of a specification,
+    in the order of their bounds; ``term`` prints terms.
     """
     try:
-        search = _Search(binary(fact), strict, term)
+        search = _Search(binary(fact), strict, own, term)
         return Reason(search.run(), tuple(search.atoms))
     except (NoReasonError, InputError, RecursionError):
         return None
@@ -77,6 +80,7 @@ def reason(fact: Formula, strict: Mapping[str, bool], term: Callable[[Term], str
 class _Search:
     fact: Formula
     strict: Mapping[str, bool]
+    own: Sequence[t.Own]
     term: Callable[[Term], str]
     atoms: dict[Term, int] = field(default_factory=dict)
     left: int = MOST_CASES
@@ -88,13 +92,18 @@ class _Search:
             for side in (x.left, x.right):
                 for atom in atoms_of(side):
                     self.atoms.setdefault(atom, len(self.atoms) + 1)
-        table = {x: variable(number) for x, number in self.atoms.items()}
+        table: dict[Term, Polynomial[int]] = {x: variable(number) for x, number in self.atoms.items()}
         bounds = [
             cone.Constraint("above" if strict else "at least", table[p])
             for name, strict in self.strict.items()
             for p in self.atoms
             if isinstance(p, t.Parameter) and p.name == name
         ]
+        for signal in self.own:
+            for low, bound in ((True, signal.low), (False, signal.high)):
+                if signal in table and bound is not None:
+                    above = table[signal] + constant(-bound)
+                    bounds.append(cone.Constraint("at least", above if low else above.scaled(Fraction(-1))))
         return self._prove(_State(((False, self.fact),), tuple(reversed(bounds)), table, (0,)))
 
     def _prove(self, state: _State) -> str:
@@ -282,7 +291,7 @@ class _Search:
 
     def _size(self, size: t.Size) -> str:
         shown = self.term(size)
-        return "Length" + shown[len("length") :] if size.name == "length" else "Width" + shown[len("width") :]
+        return size.name.capitalize() + shown[len(size.name) :]
 
 
 def _small(polynomial: Polynomial[int]) -> Polynomial[int]:

@@ -21,14 +21,16 @@ Type by where with using
 Admitted Axiom Check Compute Definition End Eval Export Fail Fixpoint From Goal Hint Import Inductive Lemma
 Ltac Module Notation Open Parameter Print Proof Qed Record Require Scope Section Theorem Variable
 F G U and or not some every inf max min inverse true false
-s d v_lon v_lat a_lon a_lat length width occ lanes adjacentLanes lanelets zone main merge depart
-vehicle road term formula side bound at_least_0 above_0 Par Var Num Free Bound Truth Some None list nil cons
+s d v_lon v_lat a_lon a_lat j_lon length width kind occ lanes adjacentLanes lanelets zone main merge depart
+vehicle road term formula side bound at_least_0 above_0 own_at_least own_at_most
+Par Var Sig Own Num Free Bound Truth Some None list nil cons
 claim bounds tableau proved string accepted valid valid_always tree eq_refl Forall_nil Forall_cons conj I
-Absurd Untrue Opposed Both Either Plain Reads Sized Largest Smallest Over Sign Length Width add_ mul_
+Absurd Untrue Opposed Both Either Plain Reads Sized Largest Smallest Over Sign Length Width Kind add_ mul_
 given_ square_ times_ product_ sum_ number_ c_ x_
 q by_ CloseTruth Close CloseLinear CloseRoad CloseRoads CloseZones Alpha Beta Timing New Inst InstUntil
 NewRoad InstRoad Cut Fact the_drive drive reasons derivation shows shown bodies first_rectangle
-other_rectangles beside lanes_named values long wide long_above_0 wide_above_0 along across starts_at
+other_rectangles beside lanes_named values signals is_a car truck bus motorcycle other
+long wide long_above_0 wide_above_0 along across starts_at
 starts_with pieces finally lane lies_in from_s to_s right_d left_d Turn One Split Element Each Whole Moment
 Reach Break Fixed Later Drive Signs Shown Roadproof Coq Meaning Text Linear Tableau Products Rss Instant
 Named Sane Guarantee Case

@@ -53,9 +53,9 @@ def comparisons(formula: Formula) -> Iterator[f.Compare]:
 def atoms_of(term: Term) -> Iterator[Term]:
     """What is a variable of polynomials, inner quotients first."""
     match term:
-        case t.Number() | t.Own():
+        case t.Number():
             return
-        case t.Parameter() | t.Variable() | t.Signal() | t.Size():
+        case t.Parameter() | t.Variable() | t.Signal() | t.Size() | t.Own():
             yield term
         case t.Quotient(above, t.Number(value, _)) if value:
             yield from atoms_of(above)

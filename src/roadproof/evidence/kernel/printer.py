@@ -21,7 +21,7 @@ from roadproof.logic.rewrite import free_roads, rename, rename_vehicles, vehicle
 from roadproof.logic.terms import Term
 
 # Words of Text.v, which are those of the language; a new signal has none there.
-_SAID_OF_VEHICLES = frozenset(re.findall(r"\w+", "s d v_lon v_lat a_lon a_lat length width"))
+_SAID_OF_VEHICLES = frozenset(re.findall(r"\w+", "s d v_lon v_lat a_lon a_lat j_lon length width kind"))
 _ZONES = ("main", "merge", "depart")
 
 # What a definition calls its arguments, with their sorts; only names depend on it.
@@ -91,7 +91,7 @@ class Printer:
                     raise InputError(f"{name}({vehicle}): proofs/kernel/Text.v has no word for it")
                 return f"{name}{CLOSE}{self.vehicle(vehicle, scope)}"
             case t.Own():
-                raise InputError(f"{term.name}: proofs/kernel/Text.v has no word for own signals")
+                return self._own(term, scope)
             case t.Sum(terms):
                 return self._sum(terms, scope)
             case t.Product((t.Number(value=minus), other)) if minus == -1 and not isinstance(other, t.Number):
@@ -163,13 +163,21 @@ class Printer:
     def road(self, name: str, scope: Scope = _OUTSIDE) -> str:
         return scope.roads.get(name) or self._thing("lane", name, "road", "Free")
 
-    def _thing(self, kind: str, name: str, sort: str, maker: str) -> str:
+    def _thing(self, kind: str, name: str, sort: str, maker: str, end: str = "") -> str:
         """The word for a thing of the claim, which is defined where it is met first."""
         known = (kind, name) in self.names.given
-        word = self.names.of(kind, name) if sort == "term" else self.names.thing(kind, name)
+        word = self.names.of(kind, name) if sort.endswith("term") else self.names.thing(kind, name)
         if not known:
-            self.things.append(f"Definition {word} : {sort} := {maker}{' ' * bool(maker)}{literal(name)}.")
+            made = f"{maker}{' ' * bool(maker)}{literal(name)}{end}"
+            self.things.append(f"Definition {word} : {sort} := {made}.")
         return word
+
+    def _own(self, signal: t.Own, scope: Scope) -> str:
+        """A signal that a specification declares; of no vehicle is one of the vehicle ''."""
+        if not signal.vehicle:
+            return self._thing("signal of none", signal.name, "term", "Sig (Own", ') ""')
+        word = self._thing("signal", signal.name, "vehicle -> term", "Sig (Own", ")")
+        return f"{word}{CLOSE}{self.vehicle(signal.vehicle, scope)}"
 
     # --- formulas ----------------------------------------------------------------------------------
 

@@ -4,13 +4,17 @@ import textwrap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from roadproof.errors import RoadproofError
+from roadproof.errors import InputError, RoadproofError
+from roadproof.evidence.kernel.derivation import rational
 from roadproof.evidence.kernel.instant import Reason, reason
 from roadproof.evidence.kernel.names import comment, literal
 from roadproof.evidence.kernel.plain import comparisons
 from roadproof.evidence.kernel.printer import CLOSE, Printer
 from roadproof.evidence.kernel.statement import Statement
 from roadproof.evidence.kernel.tableau import WIDTH, Tableau, coq_tree, q
+from roadproof.logic import terms as t
+from roadproof.logic.custom_names import own_of
+from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
 
 MOST_COMPARISONS = 8  # of a fact that Coq's own tactics are asked about; with more they do not end
@@ -58,6 +62,15 @@ class ClaimText:
     claim: str
     things: Sequence[str]
     definitions: Sequence[str]
+    own: Sequence[t.Own]
+
+
+def claim_text(printer: Printer, formula: Formula) -> ClaimText:
+    """Raises ``InputError`` for what is not printed."""
+    claim, own = printer.formula(formula), own_of([formula])
+    if len({(x.name, x.vehicle) for x in own}) < len(own):
+        raise InputError(f"a signal is declared in two ways: {', '.join(x.told for x in own)}")
+    return ClaimText(claim, printer.things, printer.definitions, own)
 
 
 def module(name: str, statement: Statement, tableau: Tableau) -> Module:
@@ -67,11 +80,10 @@ def module(name: str, statement: Statement, tableau: Tableau) -> Module:
     """
     out: list[str] = []
     printer = Printer(statement.formals)
-    claim = printer.formula(statement.formula)
+    printed = claim_text(printer, statement.formula)
     facts = [printer.formula(without_names(lemma)) for lemma, _ in statement.lemmas]
     out += [f"Module {name}."]
     out += comment_lines(_said(statement))
-    printed = ClaimText(claim, printer.things, printer.definitions)
     out += [*claim_lines(printed, statement.bounds), ""]
     out += ["(* From here on it is proof: what is proved is said in the theorem at the end. *)"]
     lemmas: list[int] = []
@@ -80,7 +92,7 @@ def module(name: str, statement: Statement, tableau: Tableau) -> Module:
     for (lemma, _), word, proof, fact in zip(statement.lemmas, words, proofs, facts, strict=True):
         lemmas.append(len(out) + 1)
         out += wrapped(f"Definition {word} : formula := {fact}.")
-        found = reason(lemma, statement.bounds, printer.term)
+        found = reason(lemma, statement.bounds, printed.own, printer.term)
         if found is None and len(set(comparisons(lemma))) > MOST_COMPARISONS:
             raise UnreasonedError(len(lemmas))
         out += _proved(printer, found, word, proof)
@@ -112,13 +124,23 @@ def _theorem(statement: Statement, facts: Sequence[str]) -> str:
 
 def claim_lines(printed: ClaimText, bounds: Mapping[str, bool]) -> list[str]:
     """A claim with what it rests on, as it stands in a module; ``bounds``: name, and strictly above 0."""
-    kinds = (f"{'above_0' if strict else 'at_least_0'} {literal(p)}" for p, strict in bounds.items())
+    kinds = [f"{'above_0' if strict else 'at_least_0'} {literal(p)}" for p, strict in bounds.items()]
+    kinds += own_bounds(printed.own)
     return [
         *(*printed.things, ""),
         *(line for definition in printed.definitions for line in wrapped(definition)),
         *("", *wrapped(f"Definition bounds : list bound := [{'; '.join(kinds)}].")),
         *wrapped(f"Definition claim : formula := {printed.claim}."),
     ]
+
+
+def own_bounds(signals: Iterable[t.Own]) -> Iterator[str]:
+    """The bounds within which signals of a specification are declared."""
+    for x in signals:
+        for word, bound in (("own_at_least", x.low), ("own_at_most", x.high)):
+            if bound is not None:
+                vehicle = literal(x.vehicle) if x.vehicle else '""'
+                yield f"{word} {literal(x.name)} {vehicle} {rational(bound)}%Q"
 
 
 def _proved(printer: Printer, found: Reason | None, word: str, proof: str) -> Iterator[str]:
