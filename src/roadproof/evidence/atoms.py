@@ -70,6 +70,7 @@ class Atoms:
         return Application(self.names[key], (), self.named[self.names[key]])
 
 
+@once
 def is_atom(formula: Formula) -> bool:
     """Whether ``formula`` is read as one opaque state predicate."""
     match formula:
@@ -87,6 +88,7 @@ def is_atom(formula: Formula) -> bool:
             return False
 
 
+@once
 def _is_open(formula: Formula) -> bool:
     """Whether ``formula`` quantifies over lanes, or over lanelets of which it says nothing."""
     match formula:

@@ -6,6 +6,7 @@ from typing import assert_never
 from roadproof.evidence.times import moment_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
+from roadproof.logic.node import once
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
 
@@ -31,6 +32,7 @@ class Lemma:
     moments: tuple[str, ...]
 
 
+@once
 def prefix_form(formula: Formula) -> str:
     """An abstracted formula as text in which nothing is ambiguous."""
     match formula:

@@ -5,13 +5,13 @@ They are what quantifiers over time are instantiated with, so they must print an
 
 import re
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
+from roadproof.logic.node import node, once
 from roadproof.logic.rewrite import intervals_of
 from roadproof.logic.terms import Term
 
@@ -23,7 +23,7 @@ _RESERVED = re.compile(
 _PART = re.compile(r"([+-]?)\s*(?:(\d+(?:/\d+)?)\s*(?:\*\s*)?)?([A-Za-z_]\w*)?", re.ASCII)
 
 
-@dataclass(frozen=True)
+@node
 class Moment:
     """Σ coefficient · name + constant; ``parts`` is sorted by name and has no zero coefficient."""
 
@@ -36,6 +36,7 @@ class Moment:
     def __sub__(self, other: "Moment") -> "Moment":
         return _combine(self, other, Fraction(-1))
 
+    @once
     def __str__(self) -> str:
         shown = ""
         for name, factor in self.parts:
@@ -50,6 +51,7 @@ class Moment:
         """The moment in seconds where each name has a value."""
         return self.constant + sum((values[n] * k for n, k in self.parts), Fraction(0))
 
+    @once
     def smt(self) -> str:
         """As an SMT-LIB term of sort Real."""
         names = ((constant(name), k) for name, k in self.parts)

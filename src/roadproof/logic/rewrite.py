@@ -8,6 +8,7 @@ from typing import TypeAlias, assert_never
 
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
+from roadproof.logic.node import once
 from roadproof.world.signals import SIGNALS, SignalName
 
 
@@ -77,6 +78,7 @@ def leaves_of(*formulas: f.Formula) -> Iterator[t.Leaf]:
         yield from t.leaves(term)
 
 
+@once
 def parameters_of(formula: f.Formula) -> tuple[str, ...]:
     """Names of the parameters that occur, sorted."""
     return tuple(sorted({leaf.name for leaf in leaves_of(formula) if isinstance(leaf, t.Parameter)}))
@@ -130,6 +132,7 @@ def _free_name(name: str, taken: Set[str]) -> str:
     return name
 
 
+@once
 def road_names(formula: f.Formula) -> frozenset[str]:
     """Names of lanes and lanelets that ``formula`` speaks of or calls a variable by."""
     found: set[str] = set()

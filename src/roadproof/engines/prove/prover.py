@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import lru_cache
 
 from roadproof.engines.prove.countermodel import realise, with_truths
 from roadproof.engines.prove.doubt import Doubt, Stop
@@ -221,6 +222,28 @@ def _premise(query: Query, formula: Formula) -> Formula | None:
             return None
 
 
+@lru_cache(maxsize=256)
+def _is_quickly_proved(
+    goal: Formula,
+    lanes: tuple[str, ...],
+    bounds: tuple[tuple[str, str], ...],
+    defaults: tuple[tuple[str, Fraction], ...],
+) -> bool:
+    """Whether ``goal``, of atoms, has a proof whose query, derived apart, is unsat. Many claims share premises.
+
+    Nothing is learnt from other claims, so the answer depends on the arguments alone.
+    """
+    atoms, names, budget = Atoms(), dict[Site, str](), Effort(VACUITY)
+    goal = atoms.abstract(goal)
+    states = StateChecker(atoms, dict(bounds), dict(defaults))
+    proof = InstanceSearch(goal, states, lanes, names, True).run(budget.meter())
+    if not isinstance(proof, Proof):
+        return False
+    met = met_sites(goal, atoms, proof.instances, names, states.bounds, lanes)
+    query = derive_query(goal, atoms, *met, proof.lemmas, states.bounds, lanes)
+    return ask(query, meter=budget.meter()) == "unsat"
+
+
 @dataclass(frozen=True)
 class _Attempt:
     """``names``: what the elements and times are called that the proofs of all parts speak of."""
@@ -271,16 +294,12 @@ class _Attempt:
         return realise(self.query, self.states, found)
 
     def never_holds(self, premise: Formula, condition: Formula) -> bool:
-        """Whether it is proved quickly that ``condition`` is false, its query derived apart, too."""
-        names: dict[Site, str] = {}
+        """Whether it is proved quickly that ``condition`` is false under ``premise``."""
         goal = f.implication(premise, f.negation(condition))
-        proof = self._search(goal, names, True).run(self.meter.apart(VACUITY))
-        if not isinstance(proof, Proof):
-            return False
-        atoms, bounds, lanes = self.states.atoms, self.states.bounds, self.query.lanes
-        met = met_sites(goal, atoms, proof.instances, names, bounds, lanes)
-        query = derive_query(goal, atoms, *met, proof.lemmas, bounds, lanes)
-        return ask(query, meter=self.meter.apart(VACUITY)) == "unsat"
+        states = self.states
+        return _is_quickly_proved(
+            goal, tuple(self.query.lanes), tuple(states.bounds.items()), tuple(states.defaults.items())
+        )
 
     def _search(
         self, goal: Formula, names: dict[Site, str], wishful: bool, roster: Roster | None = None

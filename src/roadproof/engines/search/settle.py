@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from roadproof.engines.search.ask import Search
 
 # Units of work for a proof, before short drives are looked at, and before a solver looks for a drive.
-BRIEF, BEFORE = 0.25, 5.0
+BRIEF, BEFORE = 0.4, 5.0
 
 
 @dataclass(frozen=True)
