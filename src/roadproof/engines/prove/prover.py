@@ -229,9 +229,10 @@ def _is_quickly_proved(
     bounds: tuple[tuple[str, str], ...],
     defaults: tuple[tuple[str, Fraction], ...],
 ) -> bool:
-    """Whether ``goal``, of atoms, has a proof whose query, derived apart, is unsat. Many claims share premises.
+    """Whether ``goal``, of atoms, is proved quickly, its query derived apart, too.
 
-    Nothing is learnt from other claims, so the answer depends on the arguments alone.
+    Remembered, since many claims share a premise. It depends on the arguments alone: nothing is learnt from
+    other claims.
     """
     atoms, names, budget = Atoms(), dict[Site, str](), Effort(VACUITY)
     goal = atoms.abstract(goal)
