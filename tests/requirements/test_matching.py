@@ -12,13 +12,16 @@ from roadproof.analysis.requirements.matching import combined, read_target, show
 from roadproof.analysis.requirements.requirement import Link, Requirement
 from roadproof.errors import InputError, TextError
 from roadproof.evidence.answers.trace import LinkState, Position
-from roadproof.evidence.finding import STALE, Acceptance, Finding, Kind
+from roadproof.evidence.finding import Acceptance, Finding, Kind
 from roadproof.library.loading import bundled_library
+from roadproof.reasons import NO_REASON, Why
 
 HOME = bundled_library().select()
 GOOD = Acceptance.ACCEPTED
-PLATE = Finding("p.json", "drive", GOOD, "", "WITNESSED", "careful-Vy-1, unpreventable", "v_lon(SV) > 1 m/s")
-TEST = Finding("index.json", "test", GOOD, "", "JUDGED", "test CUT-1", "shows class_1, scenario_1")
+PLATE = Finding(
+    "p.json", "drive", GOOD, NO_REASON, "WITNESSED", "careful-Vy-1, unpreventable", "v_lon(SV) > 1 m/s"
+)
+TEST = Finding("index.json", "test", GOOD, NO_REASON, "JUDGED", "test CUT-1", "shows class_1, scenario_1")
 OURS = "F v_lon(SV) > 3 m/s"
 
 
@@ -45,7 +48,7 @@ def checked(*findings: Finding) -> list[CheckedEvidence]:
     ],
 )
 def test_each_verdict_says_what_it_shows(verdict: str, claim: str, scenario: str) -> None:
-    found = Finding("x.json", "certificate", GOOD, "", verdict, "", OURS)
+    found = Finding("x.json", "certificate", GOOD, NO_REASON, verdict, "", OURS)
     assert state(Link("claim", f" {OURS} "), found)[0] == claim
     assert state(Link("scenario", OURS), found)[0] == scenario
     other = replace(found, claim="F v_lon(SV) > 4 m/s")
@@ -68,15 +71,15 @@ def test_evidence_that_is_not_accepted_shows_nothing(outcome: Acceptance, expect
         "test": TEST,
         "plate": PLATE,
         **dict.fromkeys(
-            ("claim", "scenario"), Finding("x.json", "certificate", GOOD, "", "PROVED", "", OURS)
+            ("claim", "scenario"), Finding("x.json", "certificate", GOOD, NO_REASON, "PROVED", "", OURS)
         ),
     }
-    bad = replace(found[kind], outcome=outcome, reason="why")
+    bad = replace(found[kind], outcome=outcome, reason=Why.TOLD("why"))
     assert state(Link(kind, links[kind]), bad) == (expected, "why")  # type: ignore[arg-type]
 
 
 def test_a_refutation_counts_before_a_proof_and_a_proof_before_a_doubt() -> None:
-    proof = Finding("x.json", "certificate", GOOD, "", "PROVED", "", OURS)
+    proof = Finding("x.json", "certificate", GOOD, NO_REASON, "PROVED", "", OURS)
     doubt, no = replace(proof, verdict="UNKNOWN"), replace(proof, verdict="WITNESSED", claim=f"not ({OURS})")
     damaged = replace(proof, outcome=Acceptance.REJECTED)
     assert state(Link("claim", OURS), doubt, proof)[0] == "proved"
@@ -86,7 +89,7 @@ def test_a_refutation_counts_before_a_proof_and_a_proof_before_a_doubt() -> None
 
 def test_assumptions_are_a_part_of_a_claim() -> None:
     assumed = f"at minDanger = 0.6 s: {OURS}"
-    found = Finding("x.json", "certificate", GOOD, "", "PROVED", "", assumed)
+    found = Finding("x.json", "certificate", GOOD, NO_REASON, "PROVED", "", assumed)
     assert state(Link("claim", assumed), found)[0] == "proved"
     assert state(Link("claim", OURS), found)[0] == "missing"
     assert state(Link("claim", f"at minDanger = 0.7 s: {OURS}"), found)[0] == "missing"
@@ -101,7 +104,7 @@ def test_assumptions_are_a_part_of_a_claim() -> None:
     ],
 )
 def test_only_proofs_without_assumptions_hold_for_every_value(kind: Kind, claim: str, values: bool) -> None:
-    found = checked(Finding("x.json", kind, GOOD, "", "PROVED", "P1 base", claim))
+    found = checked(Finding("x.json", kind, GOOD, NO_REASON, "PROVED", "P1 base", claim))
     link = Link("claim", "P1 base")
     owner = Requirement("A", "text", Position(file="r.toml"), links=(link,))
     around = Surroundings(HOME, Path())
@@ -125,9 +128,9 @@ def test_only_proofs_without_assumptions_hold_for_every_value(kind: Kind, claim:
         ({"label": "CUT-1 excludes scenario_4"}, "missing", "there is no evidence for it"),
         ({"label": "test CUT-11"}, "missing", "there is no evidence for it"),
         (
-            {"label": "CUT-1", "outcome": Acceptance.REJECTED, "reason": f"the answer {STALE}"},
+            {"label": "CUT-1", "outcome": Acceptance.REJECTED, "reason": Why.TEST_GONE()},
             "stale",
-            f"the answer {STALE}",
+            Why.TEST_GONE(),
         ),
     ],
 )

@@ -107,7 +107,7 @@ class Basis:
         try:
             result = self.proof_of(query, units, label)
         except BudgetExceeded as late:
-            return ProofResult(claim, verdict=Verdict.UNKNOWN, reason=str(late), seconds=late.seconds)
+            return ProofResult(claim, verdict=Verdict.UNKNOWN, reason=late.reason, seconds=late.seconds)
         assert result.verdict is not Verdict.PROVED_BOUNDED
         return ProofResult(
             claim,

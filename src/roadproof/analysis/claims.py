@@ -32,6 +32,7 @@ from roadproof.library.dependence import digest_of
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library, Query, Specification, read_specification
 from roadproof.logic.custom_names import told_freedom
+from roadproof.reasons import Reason, Why
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.progress import about
 from roadproof.verdict import ClaimVerdict, Verdict
@@ -166,9 +167,9 @@ class Claims(Unprepared):
             return settled
         asked = query, piece.assuming, result.stop, self.effort, self.seek_drive
         doubt = doubt_of(*asked, result.reason)
-        return replace(settled, result=replace(result, reason=str(doubt), doubt=doubt))
+        return replace(settled, result=replace(result, reason=Why.TOLD(doubt), doubt=doubt))
 
-    def doubt(self, piece: Task, reason: str) -> dict[str, ClaimResult]:
+    def doubt(self, piece: Task, reason: Reason) -> dict[str, ClaimResult]:
         settled = replace(in_doubt(reason, stop=Stop.PROCESS), bounded=self.within is not None)
         doubt = Doubt(Cause.PROCESS, (), self.effort.units, reason)
         settled = replace(settled, result=replace(settled.result, doubt=doubt))

@@ -27,6 +27,7 @@ from roadproof.library.elaborate import StatedQuery, read_claim
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
+from roadproof.reasons import Reason, Why, joined
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import DriveVerdict, Verdict
@@ -179,7 +180,7 @@ class Overlap:
             begun = now()
         return found
 
-    def doubt(self, piece: Group, reason: str) -> dict[str, PairVerdict]:
+    def doubt(self, piece: Group, reason: Reason) -> dict[str, PairVerdict]:
         ordered = [self._ordered(pair) for pair in piece.pairs]
         return {name_of(a, b): PairVerdict(a, b, verdict=Verdict.UNKNOWN, reason=reason) for a, b in ordered}
 
@@ -278,7 +279,7 @@ class _DecisionJobs:
             followed = None if seed is None or first is None else self.follow(pair, seed, first)
             return followed or self.decide(pair)
         except BudgetExceeded as late:
-            return _doubt(pair, self.queries(pair), str(late))
+            return _doubt(pair, self.queries(pair), late.reason)
 
     def decide(self, pair: Pair) -> PairVerdict:
         """Proofs first, which are quick where they exist; then drives for what is left."""
@@ -289,7 +290,7 @@ class _DecisionJobs:
             cores = tuple(self._core(x, proof) for x, proof in zip(queries, proofs, strict=True))
             known = proofs[0] if len(proofs) == 1 else None
             shown = self._impossible(pair, queries, cores, known)
-            return shown or _doubt(pair, queries, "a proof was lost")
+            return shown or _doubt(pair, queries, Why.PROOF_LOST())
         for query in left:
             outcome = ask(self.basis.search(query))
             if outcome.drives:
@@ -322,20 +323,20 @@ class _DecisionJobs:
     def _explain(self, pair: Pair, queries: Sequence[Query], left: Sequence[Query]) -> PairVerdict:
         """No drive was found: say within which limits there is none, or prove it after all."""
         verdicts: list[Verdict] = []
-        reasons: list[str] = []
+        reasons: list[Reason] = []
         for query in left:
             outcome = ask(self.basis.search(query, explain=True))
             if outcome.drives:
                 return PairVerdict(*pair, query, verdict=Verdict.WITNESSED, drive=outcome.drives[0])
             verdicts.append(outcome.verdict)
-            reasons.append(outcome.told(("--horizon",)) or f"proved impossible: {query.text}")
+            reasons.append(outcome.told(("--horizon",)) or Why.IMPOSSIBLE(query.text))
         if all(verdict is Verdict.IMPOSSIBLE for verdict in verdicts):
             found = self._impossible(pair, queries, tuple(self._core(x) for x in queries))
             if found is not None:
                 return found
         sure = all(verdict in (Verdict.IMPOSSIBLE, Verdict.NONE_WITHIN) for verdict in verdicts)
         verdict: DriveVerdict = Verdict.NONE_WITHIN if sure else Verdict.UNKNOWN
-        return PairVerdict(*pair, either(*left), verdict=verdict, reason="; ".join(dict.fromkeys(reasons)))
+        return PairVerdict(*pair, either(*left), verdict=verdict, reason=joined(dict.fromkeys(reasons)))
 
     def _core(self, query: Query, proof: Result | None = None) -> Core:
         """``proof``: that ``query`` never holds, where it is known."""
@@ -351,5 +352,5 @@ class _DecisionJobs:
         return Core(query, core.parts) if wanted and wanted <= mine else self._core(query)
 
 
-def _doubt(pair: Pair, queries: Sequence[Query], reason: str) -> PairVerdict:
+def _doubt(pair: Pair, queries: Sequence[Query], reason: Reason) -> PairVerdict:
     return PairVerdict(*pair, either(*queries), verdict=Verdict.UNKNOWN, reason=reason)

@@ -31,6 +31,7 @@ from roadproof.logic.formula import Formula, is_state, subformulas
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
 from roadproof.logic.syntax import Claim
+from roadproof.reasons import Reason, Why
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict
@@ -210,7 +211,7 @@ class Redundancy(Unprepared):
         examining = _ExaminationJobs(self.basis, piece.scenario, piece.learned)
         return {name_of(piece.scenario.number): tuple(examining.run(self.whole))}
 
-    def doubt(self, piece: ScenarioTask, reason: str) -> dict[str, ChangeFindings]:
+    def doubt(self, piece: ScenarioTask, reason: Reason) -> dict[str, ChangeFindings]:
         examining = _ExaminationJobs(self.basis, piece.scenario)
         changes = changes_of(self.basis.specification, examining.query, self.whole)
         return {name_of(piece.scenario.number): tuple(examining.doubt(x, reason) for x in changes)}
@@ -304,16 +305,16 @@ class _ExaminationJobs:
         try:
             self._collect()
         except BudgetExceeded as late:
-            known = {x.changed.formula: self.doubt(x, str(late)) for x in changes}
+            known = {x.changed.formula: self.doubt(x, late.reason) for x in changes}
         for change in changes:
             if change.changed.formula not in known:
                 try:
                     known[change.changed.formula] = self._decide(change)
                 except BudgetExceeded as late:
-                    known[change.changed.formula] = self.doubt(change, str(late))
+                    known[change.changed.formula] = self.doubt(change, late.reason)
             yield replace(known[change.changed.formula], change=change)
 
-    def doubt(self, change: Change, reason: str) -> ChangeFinding:
+    def doubt(self, change: Change, reason: Reason) -> ChangeFinding:
         """What is said of a change that nothing is known of."""
         claim = equivalence(self.query, change.changed)
         return ChangeFinding(change, claim, verdict=Verdict.UNKNOWN, reason=reason, late=True)
@@ -361,13 +362,12 @@ class _ExaminationJobs:
             self.mine.append(drives[0])
             return ChangeFinding(change, apart, verdict=Verdict.REFUTED, drive=drives[0])
         units, horizon = self.basis.effort.units, self.basis.horizon
-        within = f"no drive was found with {units:g} units of work, {horizon} s ahead"
-        within += ", for the same scenario on another road" if vain else ""
+        within = (Why.NONE_AHEAD_ELSEWHERE if vain else Why.NONE_AHEAD)(units, horizon)
         if result.countermodel is not None:
             return ChangeFinding(
                 change, claim, verdict=Verdict.REFUTED, trace=result.countermodel, reason=within
             )
-        reason = f"{within}, and no proof with {self.basis.proof:g}: {result.reason}"
+        reason = Why.NO_PROOF_EITHER(within, self.basis.proof, result.reason)
         return ChangeFinding(change, claim, verdict=Verdict.UNKNOWN, reason=reason)
 
     def _redundant_in_motion(self, change: Change) -> ChangeFinding | None:

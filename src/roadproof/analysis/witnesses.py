@@ -18,6 +18,7 @@ from roadproof.library.bind import values_with
 from roadproof.library.dependence import digest_of
 from roadproof.library.elaborate import StatedQuery, read_claim
 from roadproof.logic.show import declared
+from roadproof.reasons import Reason
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 
@@ -58,7 +59,7 @@ class WitnessStudy:
             self.finish(piece, outcome)
         return {piece: outcome}
 
-    def doubt(self, piece: str, reason: str) -> dict[str, Outcome]:
+    def doubt(self, piece: str, reason: Reason) -> dict[str, Outcome]:
         return {piece: ask.undecided(self.named[piece], reason)}
 
     def is_sure(self, answer: Outcome) -> bool:

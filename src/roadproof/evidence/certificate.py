@@ -26,6 +26,7 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.initial_conditions import pins
 from roadproof.logic.rewrite import parameters_of, with_values
+from roadproof.reasons import NO_REASON, Reason, Why
 
 SCHEMA = kept.SCHEMA
 WITHOUT_TABLEAU = "roadproof/certificate/1"  # as files were written before, which are read too
@@ -128,7 +129,7 @@ def goal_of(
     return atoms.abstract(premise), claim
 
 
-def refusal(certificate: Certificate, library: Library, ask: Callable[[str], str]) -> str | None:
+def refusal(certificate: Certificate, library: Library, ask: Callable[[str], str]) -> Reason | None:
     """Why the certificate is not accepted, or None where it is.
 
     ``ask`` answers sat, unsat or unknown to an SMT-LIB script.
@@ -137,7 +138,7 @@ def refusal(certificate: Certificate, library: Library, ask: Callable[[str], str
     return None if outcome is Acceptance.ACCEPTED else reason
 
 
-def rule(certificate: Certificate, library: Library, ask: Callable[[str], str]) -> tuple[Acceptance, str]:
+def rule(certificate: Certificate, library: Library, ask: Callable[[str], str]) -> tuple[Acceptance, Reason]:
     """Whether the certificate proves its claim, and why where it does not.
 
     Unreadable where the library does not have what the claim speaks of; undecided where ``ask`` answers
@@ -147,7 +148,7 @@ def rule(certificate: Certificate, library: Library, ask: Callable[[str], str]) 
         specification = library.select(certificate.set_name, certificate.options)
         query = read_claim(specification, certificate.claim)
     except RoadproofError as error:
-        return Acceptance.UNREADABLE, str(error)
+        return Acceptance.UNREADABLE, Why.TOLD(error)
     try:
         derived = certify(
             specification,
@@ -160,37 +161,37 @@ def rule(certificate: Certificate, library: Library, ask: Callable[[str], str]) 
             certificate.pinned,
         )
     except RoadproofError as error:
-        return Acceptance.REJECTED, f"the query cannot be derived: {error}"
+        return Acceptance.REJECTED, Why.NOT_DERIVED(error)
     difference = _difference(derived, certificate)
     if difference:
         return Acceptance.REJECTED, difference
     for title, script in derived.queries:
         answer = ask(script)
         if answer == "unknown":
-            return Acceptance.UNDECIDED, f"the query '{title}' was answered unknown, not unsat"
+            return Acceptance.UNDECIDED, Why.NOT_UNSAT(title, answer)
         if answer != "unsat":
-            return Acceptance.REJECTED, f"the query '{title}' was answered {answer}, not unsat"
-    return Acceptance.ACCEPTED, ""
+            return Acceptance.REJECTED, Why.NOT_UNSAT(title, answer)
+    return Acceptance.ACCEPTED, NO_REASON
 
 
-def unreadable(certificate: Certificate, library: Library) -> str:
+def unreadable(certificate: Certificate, library: Library) -> Reason:
     """Why the claim cannot be read with this library, or nothing where it can."""
     try:
         read_claim(library.select(certificate.set_name, certificate.options), certificate.claim)
     except RoadproofError as error:
-        return str(error)
-    return ""
+        return Why.TOLD(error)
+    return NO_REASON
 
 
-def _difference(derived: Certificate, stored: Certificate) -> str:
+def _difference(derived: Certificate, stored: Certificate) -> Reason:
     """What the file says otherwise than claim and instances give, or nothing."""
     if derived.assumptions != stored.assumptions:
-        return f"the assumptions are {', '.join(derived.assumptions)}, not {', '.join(stored.assumptions)}"
+        return Why.ASSUMPTIONS(", ".join(derived.assumptions), ", ".join(stored.assumptions))
     if derived.options != stored.options:
-        return f"it does not name the options {_listed(derived.options)}, but {_listed(stored.options)}"
+        return Why.OPTIONS(_listed(derived.options), _listed(stored.options))
     if derived.queries != stored.queries:
-        return "the stored query is not the one that claim and instances give"
-    return ""
+        return Why.STORED_QUERY()
+    return NO_REASON
 
 
 def _listed(options: Mapping[str, str]) -> str:

@@ -22,6 +22,7 @@ from roadproof.library.scenarios import Scenario, applied, name_of
 from roadproof.library.specification import Library
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.rewrite import parameters_of
+from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.exact import Judgement
 from roadproof.semantics.exact.replay import first_overlap
@@ -56,12 +57,13 @@ class Checker:
         except MissingSolverError:
             raise
         except BudgetExceeded as late:
-            return Finding(str(path), "", Acceptance.UNDECIDED, str(late))
+            return Finding(str(path), "", Acceptance.UNDECIDED, late.reason)
         except RoadproofError as error:
-            return Finding(str(path), "", Acceptance.UNREADABLE, without_place(str(error), path))
+            return Finding(str(path), "", Acceptance.UNREADABLE, Why.TOLD(without_place(str(error), path)))
         except Exception as error:
             # One file must not take the others with it; the exit code says whose fault it is.
-            return Finding(str(path), "", Acceptance.FAULT, f"{type(error).__name__}: {error}"[:300])
+            fault = f"{type(error).__name__}: {error}"[:300]
+            return Finding(str(path), "", Acceptance.FAULT, Why.TOLD(fault))
 
     def _certificate(self, path: Path, file: Certificate) -> Finding:
         outcome, reason = self._rule(file)
@@ -69,7 +71,7 @@ class Checker:
         label = None if moving else self.find_label(file.claim, file.set_name)
         named_by = label_of(file)
         if outcome is Acceptance.ACCEPTED and named_by is not None and named_by != label:
-            outcome, reason = Acceptance.REJECTED, misnamed("it", named_by, label)
+            outcome, reason = Acceptance.REJECTED, Why.TOLD(misnamed("it", named_by, label))
         if outcome is Acceptance.UNREADABLE:
             reason = with_hint(reason, file.claim)
         named = shown(label, file.set_name)
@@ -80,7 +82,7 @@ class Checker:
             str(path), "certificate", outcome, reason, "PROVED", named, told, *more, kernel=ruled.word
         )
 
-    def _rule(self, file: Certificate) -> tuple[Acceptance, str]:
+    def _rule(self, file: Certificate) -> tuple[Acceptance, Reason]:
         if self.ruled is None:
             return certificate.rule(file, self.library, self.ask)
         unreadable = certificate.unreadable(file, self.library)
@@ -115,31 +117,31 @@ class Checker:
             kernel=word,
         )
 
-    def _untold(self, file: DriveFile, content: object, judgement: Judgement | None) -> str:
+    def _untold(self, file: DriveFile, content: object, judgement: Judgement | None) -> Reason:
         """What a drive file says beside its formula, and is not so; or does not say, and should."""
         specification = self.library.select(file.set_name, file.options)
         query = read_claim(specification, file.formula)
         unsaid = [x for x in specification.options if x not in file.options]
         unsaid += [x for x in parameters_of(query.formula) if x not in file.values]
         if unsaid:
-            return f"it does not say with which {unsaid[0]} it was judged"
+            return Why.UNSAID(unsaid[0])
         if file.scenario is not None:
             if name_of(file.scenario) not in specification.definitions:
-                return f"scenario={file.scenario}, but there is none of that number"
+                return Why.NO_SCENARIO(file.scenario)
             scenario = Scenario(file.scenario, file.set_name)
             whole, own = applied(specification, scenario), own_names(specification, query.claim, scenario)
             if whole.formula != query.formula and not own:
-                return f"scenario={file.scenario}, but its formula is another: {file.formula[:120]}"
+                return Why.OTHER_SCENARIO(file.scenario, file.formula)
         said = Fields(Fields(content, "it").mapping("verdict"), "its verdict", _VERDICT)
         if said.has("verdict") and said.text("verdict") != "WITNESSED":
-            return f"its verdict is {said.text('verdict')[:40]}, but a drive that holds is WITNESSED"
+            return Why.OTHER_VERDICT(said.text("verdict"))
         if said.has("view") and said.text("view") != "dense":
-            return f"its view is {said.text('view')[:40]}, but a drive is judged in dense time"
+            return Why.OTHER_VIEW(said.text("view"))
         if said.has("natural"):
             said.flag("natural")
         if said.has("times") and judgement is not None and said.get("times") != times_data(judgement):
-            return "the times at which it says that its parts are true are not those"
-        return ""
+            return Why.OTHER_TIMES()
+        return NO_REASON
 
 
 _VERDICT = ("verdict", "view", "natural", "times")
@@ -174,14 +176,13 @@ def _seconds(value: Fraction) -> str:
     return f"{float(value):g}"
 
 
-def with_hint(reason: str, claim: str) -> str:
+def with_hint(reason: Reason, claim: str) -> Reason:
     """Why a claim cannot be read, with what to do where it is well written."""
     try:
         parse_claim(claim)
     except RoadproofError:
         return reason
-    first = reason.split("\n", 1)[0]
-    return f"{first}; if it was made with specification files, name them with --spec FILE"
+    return Why.NEEDS_SPECIFICATIONS(reason.split("\n", 1)[0])
 
 
 def without_place(message: str, path: Path) -> str:

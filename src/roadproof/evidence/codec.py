@@ -1,11 +1,11 @@
 """Reads and writes frozen dataclasses as JSON: one definition of an answer gives both, and its JSON Schema.
 
 A field is declared as ``name: Annotated[type, Doc("one sentence"), …]``. Types are ``str``, ``int``,
-``float``, ``bool``, ``Fraction`` (a rational as text), ``Literal``, enumerations of texts,
-``tuple[T, ...]``, ``Mapping[str, T]``, other dataclasses, unions of these or with ``None``, and ``object``
-(plain JSON). ``tuple[A, B]`` has one item of each type; a rule for the keys of a mapping stands at their
-type. A field with a default may be missing, as in evidence of earlier versions; it is written all the same,
-but where it is marked ``LEFT_OUT``.
+``float``, ``bool``, ``Fraction`` (a rational as text), ``Reason`` (its words), ``Literal``, enumerations of
+texts, ``tuple[T, ...]``, ``Mapping[str, T]``, other dataclasses, unions of these or with ``None``, and
+``object`` (plain JSON). ``tuple[A, B]`` has one item of each type; a rule for the keys of a mapping stands at
+their type. A field with a default may be missing, as in evidence of earlier versions; it is written all the
+same, but where it is marked ``LEFT_OUT``.
 """
 
 import re
@@ -30,6 +30,7 @@ from typing import (
 
 from roadproof.errors import InputError
 from roadproof.evidence.strict import Fields, Json, JsonObject, rational, text
+from roadproof.reasons import Reason, Why
 
 T = TypeVar("T")
 Read: TypeAlias = Callable[[object, str], object]
@@ -155,7 +156,7 @@ def write(value: object) -> JsonObject:
 
 def _plain(value: object) -> Json:
     match value:
-        case StrEnum() | Fraction():
+        case StrEnum() | Fraction() | Reason():
             return str(value)
         case None | bool() | int() | float() | str():
             return value
@@ -380,6 +381,7 @@ def _shown(value: object) -> str:
 
 _SIMPLE: Mapping[object, Read] = {
     str: text,
+    Reason: lambda content, where: Why.TOLD(text(content, where)),
     int: _whole,
     float: _number,
     bool: _flag,

@@ -7,6 +7,7 @@ from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers.shared import KernelWord, Reason
 from roadproof.evidence.codec import LEFT_OUT, Doc
+from roadproof.reasons import NO_REASON, Why
 from roadproof.verdict import ExitCode
 
 
@@ -35,8 +36,8 @@ _EXIT = {
 
 
 Kind: TypeAlias = Literal["certificate", "drive", "index", "journal", "test", "none", ""]
-STALE: Final = "is stale; ask again"
-"""The end of the reason where an answer is about tests that are others now."""
+STALE: Final = (Why.TEST_GONE, Why.TEST_UNKNOWN, Why.FILE_GONE, Why.FILE_CHANGED)
+"""Why an answer is about tests that are others now."""
 NO_EVIDENCE: Final = "none"  # the kind of an answer that promises nothing, or nothing that is for all time
 
 
@@ -53,7 +54,7 @@ class Finding:
         ),
     ]
     outcome: Acceptance
-    reason: Annotated[Reason, Doc("Why it is not accepted; empty where it is.")] = ""
+    reason: Annotated[Reason, Doc("Why it is not accepted; empty where it is.")] = NO_REASON
     verdict: Annotated[
         str, Doc("As the evidence itself gives it, such as PROVED; empty where nothing can be said.")
     ] = ""
@@ -85,7 +86,7 @@ class OtherVerdict:
     """What another than solver and judge says: ``word`` in its own word."""
 
     outcome: Acceptance
-    reason: str
+    reason: Reason
     word: str
     checked: tuple[str, ...] = ()
     unchecked: tuple[str, ...] = ()

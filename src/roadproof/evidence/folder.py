@@ -23,6 +23,7 @@ from roadproof.evidence.specifications import read_beside
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, Json, JsonObject, read_json
 from roadproof.library.motion import statement
 from roadproof.library.specification import Library
+from roadproof.reasons import NO_REASON, Reason, Why
 
 INDEX = "index.json"
 OTHER_LIBRARY = "whether its words meant the same in the other library that its index names"
@@ -82,9 +83,7 @@ def survey(paths: Sequence[Path], given: tuple[Path, ...], find_label: FindLabel
             files.setdefault(path, given)
             continue
         inside, links = _walk(path)
-        problems += [
-            Finding(str(x), "", Acceptance.REJECTED, "a link is no evidence: copy the file") for x in links
-        ]
+        problems += [Finding(str(x), "", Acceptance.REJECTED, Why.LINK()) for x in links]
         homes = sorted({x.parent for x in inside if x.name in (INDEX, JOURNAL, HEAD)})
         by_home = {home: _read_told(home, given, find_label) for home in homes}
         told += by_home.values()
@@ -148,7 +147,7 @@ def _read_told(home: Path, given: tuple[Path, ...], find_label: FindLabel) -> Fo
 
 
 def _unreadable(path: Path, fault: str) -> Finding:
-    return Finding(str(path), "index", Acceptance.UNREADABLE, without_place(fault, path))
+    return Finding(str(path), "index", Acceptance.UNREADABLE, Why.TOLD(without_place(fault, path)))
 
 
 def _without_twins(told: FolderStatements, entries: Sequence[Entry]) -> Iterator[Entry]:
@@ -156,8 +155,8 @@ def _without_twins(told: FolderStatements, entries: Sequence[Entry]) -> Iterator
     for entry in entries:
         first = seen.setdefault(entry.key, entry)
         if first is not entry:
-            reason = f"it says again what {first.where} says"
-            told.problems.append(Finding(entry.where, "index", Acceptance.REJECTED, reason))
+            twin = Finding(entry.where, "index", Acceptance.REJECTED, Why.TWIN(first.where))
+            told.problems.append(twin)
         yield entry
 
 
@@ -236,7 +235,7 @@ def _as_text(content: object) -> str:
 
 
 def _rejected(path: Path, fault: str) -> Finding:
-    return Finding(str(path), "journal", Acceptance.REJECTED, without_place(fault, path))
+    return Finding(str(path), "journal", Acceptance.REJECTED, Why.TOLD(without_place(fault, path)))
 
 
 def _words_of(entry: Entry) -> tuple[object, ...]:
@@ -260,20 +259,19 @@ def conclude(surveyed: Survey, found: Mapping[Path, Finding]) -> Iterator[Findin
 def _of_entry(entry: Entry, told: FolderStatements, found: Mapping[Path, Finding]) -> Finding:
     """The entry's own words, where its evidence shows them."""
     finding = _bound(entry, told, found)
-    reason = finding.reason.removeprefix(f"{entry.where}: ").removeprefix(f"{entry.where} ")
     if finding.outcome is not Acceptance.ACCEPTED or finding.kind == NO_EVIDENCE:
-        return replace(finding, reason=reason)
+        return finding
     return replace(finding, unchecked=(*finding.unchecked, *told.unchecked))
 
 
 def _bound(entry: Entry, told: FolderStatements, found: Mapping[Path, Finding]) -> Finding:
     verdict = "WITNESSED" if entry.shows == "drive" else entry.verdict
     claim = statement(entry.assuming, entry.claim) if entry.claim else ""
-    said = Finding(entry.where, "index", Acceptance.ACCEPTED, "", verdict, entry.label, claim)
+    said = Finding(entry.where, "index", Acceptance.ACCEPTED, NO_REASON, verdict, entry.label, claim)
     rejected = replace(said, outcome=Acceptance.REJECTED)
-    reason = entry.fault or stray_evidence(entry)
-    if reason:
-        return replace(rejected, reason=reason)
+    fault = entry.fault or stray_evidence(entry)
+    if fault:
+        return replace(rejected, reason=_here(entry, fault))
     if entry.shows == "nothing":
         without = () if entry.verdict == "UNKNOWN" else ("there is no evidence for it",)
         return replace(said, kind=NO_EVIDENCE, unchecked=without)
@@ -285,19 +283,24 @@ def _bound(entry: Entry, told: FolderStatements, found: Mapping[Path, Finding]) 
         )
     path = told.folder / entry.file
     if entry.file not in told.named or path not in found:
-        return replace(rejected, reason=f"{entry.file} is not there, or another index is about it")
+        return replace(rejected, reason=Why.NOT_THERE(entry.file))
     finding = found[path]
     said = replace(said, where=str(path), kind=finding.kind, kernel=finding.kernel)
     if finding.outcome is not Acceptance.ACCEPTED:
         return replace(said, outcome=finding.outcome, reason=finding.reason)
     try:
-        reason = mismatch(entry, read_evidence(path))
+        fault = mismatch(entry, read_evidence(path))
     except RoadproofError as error:
-        reason = str(error)
-    if reason:
-        return replace(said, outcome=Acceptance.REJECTED, reason=reason)
+        fault = str(error)
+    if fault:
+        return replace(said, outcome=Acceptance.REJECTED, reason=_here(entry, fault))
     unchecked = tuple(dict.fromkeys((*finding.unchecked, *entry.unchecked)))
     return replace(said, claim=claim or finding.claim, checked=finding.checked, unchecked=unchecked)
+
+
+def _here(entry: Entry, fault: str) -> Reason:
+    """What is wrong with an entry, without its place."""
+    return Why.TOLD(fault.removeprefix(f"{entry.where}: ").removeprefix(f"{entry.where} "))
 
 
 def _strays(told: FolderStatements, found: Mapping[Path, Finding]) -> Iterator[Finding]:
@@ -307,8 +310,7 @@ def _strays(told: FolderStatements, found: Mapping[Path, Finding]) -> Iterator[F
     for name in sorted(told.named - mentioned):
         finding = found[told.folder / name]
         if readable and finding.outcome is Acceptance.ACCEPTED:
-            reason = "no entry of the index names it"
-            yield replace(finding, outcome=Acceptance.REJECTED, reason=reason)
+            yield replace(finding, outcome=Acceptance.REJECTED, reason=Why.UNNAMED())
         else:
             yield finding
 
@@ -324,6 +326,6 @@ def _of_whole(told: FolderStatements, found: Mapping[Path, Finding]) -> Iterator
     where = str(told.folder / INDEX)
     try:
         for fault in read.faults_of(told.index, told.library, formulas):
-            yield Finding(where, "index", Acceptance.REJECTED, fault)
+            yield Finding(where, "index", Acceptance.REJECTED, Why.TOLD(fault))
     except RoadproofError as error:
-        yield Finding(where, "index", Acceptance.UNREADABLE, str(error))
+        yield Finding(where, "index", Acceptance.UNREADABLE, Why.TOLD(error))

@@ -9,10 +9,17 @@ from typing import Literal, Union, get_args, get_origin
 
 from roadproof.evidence.codec import ABSENT, LACKING, Doc, Field, Rule, bare, fields_of, notes_of
 from roadproof.evidence.strict import Json, JsonObject
+from roadproof.reasons import Reason
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
 COMMON = "common.json"
-_NAMES: Mapping[object, str] = {str: "string", int: "integer", float: "number", bool: "boolean"}
+_NAMES: Mapping[object, str] = {
+    str: "string",
+    Reason: "string",
+    int: "integer",
+    float: "number",
+    bool: "boolean",
+}
 
 
 @dataclass(frozen=True)

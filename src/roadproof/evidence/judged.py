@@ -13,6 +13,7 @@ from roadproof.evidence.strict import JsonObject
 from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library, Query, Specification
+from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.semantics.exact.exact import Judgement, judge
 from roadproof.semantics.exact.replay import first_overlap
 
@@ -27,7 +28,7 @@ class Ruling:
     """
 
     judgement: Judgement | None
-    reason: str
+    reason: Reason
     readable: bool = True
 
     @property
@@ -40,7 +41,7 @@ def judge_file(file: DriveFile, library: Library) -> Ruling:
     try:
         query = _read(library.select(file.set_name, file.options), file.formula)
     except RoadproofError as error:
-        return Ruling(None, str(error), readable=False)
+        return Ruling(None, Why.TOLD(error), readable=False)
     try:
         missing = set(query.lanes) - set(file.lanes)
         if missing:
@@ -55,14 +56,14 @@ def judge_file(file: DriveFile, library: Library) -> Ruling:
         formula = bind(query.formula, file.road, file.lanes, values_with(library, file.values))
         judgement = judge(formula, file.drive)
     except RoadproofError as error:
-        return Ruling(None, str(error))
+        return Ruling(None, Why.TOLD(error))
     if not judgement.holds:
-        return Ruling(judgement, f"the formula does not hold on the drive: {file.formula}")
+        return Ruling(judgement, Why.DOES_NOT_HOLD(file.formula))
     if not file.overlaps_allowed:
         overlap = first_overlap(file.drive, file.horizon)
         if overlap is not None:
-            return Ruling(judgement, str(overlap))
-    return Ruling(judgement, "")
+            return Ruling(judgement, Why.TOLD(overlap))
+    return Ruling(judgement, NO_REASON)
 
 
 def _read(specification: Specification, formula: str) -> Query:

@@ -26,6 +26,7 @@ from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.node import once
 from roadproof.logic.rewrite import bounds_of, leaves_of, map_terms, without_names
+from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.semantics.exact import TruthSet, judge
 from roadproof.semantics.exact.signals import AbstractSignals
 from roadproof.semantics.exact.truth import from_switches
@@ -248,7 +249,7 @@ def _sorted(values: Mapping[str, Fraction]) -> dict[str, Fraction]:
 
 def judge_trace(
     content: object, specification: Specification, claim: str, where: str, said: Sequence[str] = ()
-) -> tuple[Acceptance, str]:
+) -> tuple[Acceptance, Reason]:
     """Whether a trace refutes a claim under what is ``said``, judged; and why where it does not."""
     try:
         query = under_limits(specification, read_claim(specification, claim), said)
@@ -256,12 +257,8 @@ def judge_trace(
         values_with(specification.library, trace.parameters)
         fault = fault_of(trace, query.formula, specification.library.bounds)
     except RoadproofError as error:
-        return Acceptance.UNREADABLE, str(error)
-    return (
-        (Acceptance.REJECTED, f"its trace does not refute it: {fault}")
-        if fault
-        else (Acceptance.ACCEPTED, "")
-    )
+        return Acceptance.UNREADABLE, Why.TOLD(error)
+    return (Acceptance.REJECTED, Why.NOT_REFUTED(fault)) if fault else (Acceptance.ACCEPTED, NO_REASON)
 
 
 def read_trace(content: object, where: str) -> Countermodel:

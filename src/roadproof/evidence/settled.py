@@ -5,6 +5,7 @@ from typing import Generic, TypeVar
 
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.reasons import NO_REASON, Reason
 from roadproof.verdict import Verdict
 
 Word = TypeVar("Word", bound=Verdict, covariant=True)
@@ -15,7 +16,7 @@ class Settled(Generic[Word]):
     """A verdict with the evidence that shows it, else with a reason; ``seconds`` that it took."""
 
     verdict: Word
-    reason: str = ""
+    reason: Reason = NO_REASON
     certificate: Certificate | None = None
     drive: JudgedDrive | None = None
     seconds: float = 0.0

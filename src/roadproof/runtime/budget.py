@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import Self
 
 from roadproof.errors import RoadproofError
+from roadproof.reasons import Reason, Why
 
 # Wall-clock seconds that a unit of work may take before the backstop ends it, and the least backstop: enough
 # for a unit that takes several seconds on a machine with ten times as much to do as it has cores.
@@ -24,10 +25,8 @@ class BudgetExceeded(RoadproofError):
     exit_code = 20
 
     def __init__(self, seconds: float) -> None:
-        super().__init__(
-            f"cut off by the clock after {seconds:g} s, not by the count of work, so an idle or faster "
-            "machine may answer: raise --timeout"
-        )
+        self.reason = Why.CLOCK(seconds)
+        super().__init__(self.reason)
         self.seconds = seconds
 
     def __reduce__(self) -> tuple[type[Self], tuple[float]]:
@@ -102,12 +101,12 @@ class Budget:
         self.seconds_left()
         return self.left() <= 0
 
-    def reason(self) -> str:
+    def reason(self) -> Reason:
         """Why there is no answer, where the units are used up."""
         above = self.whole
         if above is not None and above.left() <= 0:
             return above.reason()
-        return f"no answer within {self.limit:g} units of work"
+        return Why.WORK(self.limit)
 
 
 def backstop(units: float) -> float:

@@ -8,6 +8,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from roadproof.errors import InputError, MissingSolverError, UsageError
+from roadproof.reasons import Why
 from roadproof.runtime.executors import Cluster, LostJob, try_twice
 from roadproof.runtime.memory import keep_freed_memory
 from roadproof.runtime.worker import end_here
@@ -39,8 +40,7 @@ def answers_of(
     """
     client = _client(cluster)
     shared = client.submit(_same, function, pure=False)  # made again where its worker ends
-    lost = "its workers ended each time, the last time while no other job ran"
-    yield from try_twice(partial(_try_once, client, shared, jobs), len(jobs), lost)
+    yield from try_twice(partial(_try_once, client, shared, jobs), len(jobs), Why.WORKERS)
 
 
 def _try_once(

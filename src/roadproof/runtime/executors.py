@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import TypeAlias, TypeVar
 
 from roadproof.errors import UsageError
+from roadproof.reasons import Reason, Why
 
 Item = TypeVar("Item")
 
@@ -114,16 +115,16 @@ Attempt: TypeAlias = Callable[[Sequence[int], dict[int, str]], Generator[tuple[i
 class LostJob:
     """In place of an answer: the process of the job ended twice, the second time while no other ran."""
 
-    reason: str
+    reason: Reason
 
 
 def try_twice(
-    attempt: Attempt[Answer], count: int, lost: str
+    attempt: Attempt[Answer], count: int, lost: Why
 ) -> Generator[tuple[int, Answer | LostJob], None, None]:
     """The answers of ``count`` jobs, each with its place.
 
     A job whose process ended is tried again when the others are done, alone, so that no other is taken for
-    the one that kills. ``lost`` says in words that it ended again; the reason follows.
+    the one that kills. ``lost`` says that it ended again.
     """
     died: dict[int, str] = {}
     with closing(attempt(range(count), died)) as found:
@@ -132,7 +133,7 @@ def try_twice(
         again: dict[int, str] = {}
         with closing(attempt([place], again)) as found:
             yield from found
-        yield from ((place, LostJob(lost + reason)) for reason in again.values())
+        yield from ((place, LostJob(lost(reason))) for reason in again.values())
 
 
 Job = TypeVar("Job")

@@ -8,6 +8,7 @@ from multiprocessing.connection import wait
 from typing import Any, TypeVar
 
 from roadproof.errors import UsageError
+from roadproof.reasons import Why
 from roadproof.runtime.executors import LostJob, try_twice
 from roadproof.runtime.progress import Stage, is_heard, pass_on
 from roadproof.runtime.worker import GRACE, DeadWorkerError, Worker, dismiss
@@ -30,7 +31,7 @@ def answers_of(
     def attempt(places: Sequence[int], died: dict[int, str]) -> Generator[tuple[int, Answer], None, None]:
         return _try_once(start, jobs, places, min(most or os.cpu_count() or 1, len(places)), died)
 
-    yield from try_twice(attempt, len(jobs), "its process ended twice, the second time alone: ")
+    yield from try_twice(attempt, len(jobs), Why.PROCESS)
 
 
 def _try_once(

@@ -29,6 +29,7 @@ from roadproof.library.compose import both
 from roadproof.library.elaborate import read_claim, read_term
 from roadproof.library.scenarios import Scenario, applied, name_of, number_in
 from roadproof.library.specification import Query, Specification
+from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.runtime.executors import Jobs
 from roadproof.world.units import unit_text
@@ -47,7 +48,7 @@ class Completion:
     target: str
     drive: JudgedDrive | None = None
     empty: Certificate | None = None
-    reason: str = ""
+    reason: Reason = NO_REASON
     name: str = ""
     apart: float | None = None
 
@@ -100,7 +101,7 @@ class _CompletionJobs:
         if found.drive is None:
             return Completion(name, reason=found.reason)
         judged = self._as_target(found.drive.file, name)
-        return Completion(name, judged, reason="" if judged else "the judge rejects its drive")
+        return Completion(name, judged, reason=NO_REASON if judged else Why.DRIVE_REJECTED())
 
     def _as_target(self, file: DriveFile, target: str) -> JudgedDrive | None:
         """A drive as one of the formula of a target, which needs no definition of classes."""
@@ -116,7 +117,7 @@ class _CompletionJobs:
         try:
             outcome = answer(replace(self.basis.search(query, explain=True), scenario=number))
         except BudgetExceeded as late:
-            return Completion(name, reason=str(late))
+            return Completion(name, reason=late.reason)
         proof = None if outcome.impossibility is None else outcome.impossibility.certificate
         return Completion(name, next(iter(outcome.drives), None), proof, outcome.told(()))
 
@@ -126,8 +127,7 @@ class _CompletionJobs:
         for k in range(job.first, job.first + job.count):
             drive = self._far(job.target, points)
             if drive is None:
-                least = f"{float(FACTORS[-1]):g}"
-                told = f"no drive was found that begins {least} or more from all others"
+                told = Why.NONE_APART(float(FACTORS[-1]))
                 return [*found, Completion(job.target, reason=told, name=f"{job.target}-{k}")]
             begins = begins_of(drive.file)
             apart = nearest(begins, points)
@@ -213,7 +213,7 @@ def _of_gaps(basis: Basis, asked: Questions, missing: Sequence[str], known: Prio
         if basis.objective != "smooth":
             drive = _reshaped(basis, drive, name, asked) or drive
         shown.update(names_shown(drive, asked))
-        reason = "" if name in shown else "its drive is no gap when it is looked at as a test"
+        reason = NO_REASON if name in shown else Why.NO_GAP()
         found.append(Completion(name, drive if name in shown else None, reason=reason))
     return found
 
@@ -246,7 +246,7 @@ def _further(
     return jobs
 
 
-def _lost(job: _Job, reason: str) -> list[Completion]:
+def _lost(job: _Job, reason: Reason) -> list[Completion]:
     match job:
         case int():
             return [Completion(name_of(job), reason=reason)]

@@ -22,6 +22,7 @@ from roadproof.library.specification import Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import with_values
+from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.recordings.evaluate.courses import BEGINS
 from roadproof.recordings.evaluate.one_trace import OneTrace
 from roadproof.semantics.exact.algebraic import approximate
@@ -34,7 +35,7 @@ from roadproof.world.signals import SIGNALS
 DANGER = "in danger"
 _JUST_AFTER = Fraction(1, 1000)  # s after an instant that is not one of the manoeuvre itself
 _PLACES = 6  # decimals of a state
-_LEAST = (("Vy", 0.1, "moves across", "m/s"), ("Gx", 0.5, "brakes", "m/s^2"))
+_LEAST = {"Vy": (0.1, Why.SLIGHT_CROSSING), "Gx": (0.5, Why.SLIGHT_BRAKING)}
 """Below these values a manoeuvre has hardly begun."""
 
 
@@ -56,7 +57,7 @@ class Decision:
     metres: float | None = None
     seconds: float | None = None
     start: Mapping[str, float] = field(default_factory=dict)
-    reason: str = ""
+    reason: Reason = NO_REASON
 
 
 @dataclass(frozen=True)
@@ -226,11 +227,11 @@ def decide_formula(found: Sequence[Decision], missed: Collection[tuple[str, str]
         made = replace(those[0], at=None, metres=None, seconds=None, start={})
         counts = Counter(x.side for x in those)
         if {"preventable", "unpreventable"} <= counts.keys():
-            yield replace(made, side="partly", reason="drives were found on both sides")
+            yield replace(made, side="partly", reason=Why.BOTH_SIDES())
         else:
             told = ", ".join(f"{count} {side}" for side, count in counts.items())
-            other = "a search found none on another side" if key in missed else "no other was looked for"
-            yield replace(made, side="undecided", reason=f"drives found: {told}; {other}; nothing is proved")
+            why = Why.ONE_SIDE_SOUGHT if key in missed else Why.ONE_SIDE
+            yield replace(made, side="undecided", reason=why(told))
 
 
 # --- both ----------------------------------------------------------------------------------------
@@ -239,7 +240,7 @@ def decide_formula(found: Sequence[Decision], missed: Collection[tuple[str, str]
 def _not_foreseen(
     drivers: Drivers, manoeuvre: ManoeuvreName, scenario: str, vehicles: tuple[str, ...]
 ) -> Iterator[Decision]:
-    reason = f"no {manoeuvre} begins before danger does"
+    reason = Why.NOT_BEFORE_DANGER(manoeuvre)
     for model in drivers.of(manoeuvre):
         yield Decision(scenario, vehicles, model, "not foreseen", reason=reason)
 
@@ -268,12 +269,12 @@ def _decided(
         yield replace(made, driver=model, side=side, metres=found.metres, seconds=found.seconds)
 
 
-def _slight(start: Mapping[str, float]) -> str:
+def _slight(start: Mapping[str, float]) -> Reason:
     """What is to be known where a manoeuvre has hardly begun: models suppose that POV goes on so."""
-    for name, least, told, unit in _LEAST:
+    for name, (least, why) in _LEAST.items():
         if start.get(name, least) < least:
-            return f"POV {told} at {start[name]:.2g} {unit} when it begins, and is supposed to go on so"
-    return ""
+            return why(start[name])
+    return NO_REASON
 
 
 def _of_controller(
@@ -283,7 +284,7 @@ def _of_controller(
         hit = margins.controller_hits(state, manoeuvre, vehicles)
         metres = None if made.reason else margins.controller_margin(state, manoeuvre, vehicles, hit)
     except InputError as error:
-        return replace(made, reason=str(error))
+        return replace(made, reason=Why.TOLD(error))
     return replace(made, side="unpreventable" if hit else "preventable", metres=metres)
 
 

@@ -13,6 +13,7 @@ from roadproof.evidence.strict import rational
 from roadproof.library.compose import both, implication, negation
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Query, Specification
+from roadproof.reasons import NO_REASON, Reason
 from roadproof.verdict import Verdict
 
 _VERDICTS: Mapping[Relation, FactVerdict] = {
@@ -43,7 +44,7 @@ class Fact:
     relation: Relation
     premise: Query
     conclusion: Query | None = None
-    reason: str = ""
+    reason: Reason = NO_REASON
     certificate: Certificate | None = None
     drive: JudgedDrive | None = None
     also: tuple[str, ...] = ()

@@ -25,6 +25,7 @@ from roadproof.library.bind import bind
 from roadproof.library.compose import both
 from roadproof.library.scenarios import Scenario, applied, name_of
 from roadproof.library.specification import Query
+from roadproof.reasons import Why
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.exact import DriveJudge, LazyJudge
 from roadproof.verdict import Verdict
@@ -70,7 +71,7 @@ class FormulaFacts:
     def _without_drive(self, outcome: Outcome) -> Fact:
         entry = self.entry
         if outcome.impossibility is None:
-            reason = outcome.told(()) or "no drive was found"
+            reason = outcome.told(()) or Why.NO_DRIVE()
             return Fact(entry.id, "", "open", entry.query, reason=reason)
         return Fact(entry.id, "", "empty", entry.query, certificate=outcome.impossibility.certificate)
 
@@ -100,7 +101,7 @@ class FormulaFacts:
     def _looked_for(self, name: str, query: Query) -> Fact:
         entry, outcome = self.entry, self._search(both(self.entry.query, query), explain=False)
         if not outcome.drives:
-            reason = outcome.told(()) or "no drive was found"
+            reason = outcome.told(()) or Why.NO_DRIVE()
             return Fact(entry.id, name, "open", entry.query, query, reason, exhausted=outcome.exhausted)
         return self._shown_by(name, query, outcome.drives[0])
 

@@ -28,6 +28,7 @@ from roadproof.evidence.answers import catalogue_index as kept
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.scenarios import Scenario, definition_of, name_of, number_in
+from roadproof.reasons import Reason
 
 
 @dataclass(frozen=True)
@@ -201,7 +202,7 @@ class Meanings(Unprepared):
             case Reach(target, term):
                 return {_name(target, term): reached(self.basis, piece)}
 
-    def doubt(self, piece: Piece, reason: str) -> dict[str, Kept]:
+    def doubt(self, piece: Piece, reason: Reason) -> dict[str, Kept]:
         match piece:
             case GapPiece(inside):
                 assert self.survey is not None

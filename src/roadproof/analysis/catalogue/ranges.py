@@ -22,6 +22,7 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import both
 from roadproof.library.elaborate import read_term
 from roadproof.library.specification import Query, Specification
+from roadproof.reasons import NO_REASON, Why
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.world.units import unit_text
 
@@ -80,17 +81,16 @@ def _end(basis: Basis, reach: Reach, sense: Sense) -> Fact:
     effort = basis.effort.of(min(basis.effort.units, EFFORT))
     search = basis.search(reach.query, effort=effort)
     measure = read_measure(basis.specification, sense, reach.term, given=reach.query.claim.given)
-    told = f"the {sense} {reach.term}"
     still_open = Fact("", reach.target, "open", reach.query, term=reach.term, sense=sense)
     try:
         found = find_extreme(
             ExtremeQuestion(search, measure, _PRECISION[signal_of(reach.term)], seeds=reach.known)
         )
     except BudgetExceeded as late:
-        return replace(still_open, reason=f"{told}: {late}")
-    beyond = "" if found.missed is None else found.missed.reason
+        return replace(still_open, reason=Why.EXTREME(sense, reach.term, late.reason))
+    beyond = NO_REASON if found.missed is None else found.missed.reason
     if found.best is None:
-        return replace(still_open, reason=f"{told}: {beyond}")
+        return replace(still_open, reason=Why.EXTREME(sense, reach.term, beyond))
     [value] = found.best.at
     bound = both(*measure.bound(search, value))
     made = replace(still_open, relation="reaches", conclusion=bound, reason=beyond, at=value)

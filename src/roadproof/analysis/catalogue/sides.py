@@ -26,6 +26,7 @@ from roadproof.library.compose import both
 from roadproof.library.loading import load_library
 from roadproof.library.scenarios import Scenario, applied, number_in
 from roadproof.library.specification import Library, Source
+from roadproof.reasons import Reason, Why
 
 
 @dataclass(frozen=True)
@@ -92,7 +93,7 @@ def facts_on_sides(basis: Basis, asked: Questions, drivers: Drivers, piece: Side
     return tuple(facts)
 
 
-def unanswered_sides(drivers: Drivers, piece: Sides, reason: str) -> tuple[Fact, ...]:
+def unanswered_sides(drivers: Drivers, piece: Sides, reason: Reason) -> tuple[Fact, ...]:
     """The facts of a piece that nothing is known of."""
     return tuple(
         Fact(piece.entry.id, side_name(piece.scenario, side, model), "open", piece.entry.query, reason=reason)
@@ -115,7 +116,7 @@ def _fact(basis: Basis, asked: Questions, drivers: Drivers, piece: Sides, wanted
         )
         test = said_in(both(entry.query, plain), home, there)
     except InputError as error:
-        return replace(left_open, reason=str(error))
+        return replace(left_open, reason=Why.TOLD(error))
     query = both(test, applied(there, Scenario(number, home.set_name)))
     setting = Setting(entry.road, vehicles=entry.vehicles, values=drivers.values)
     outcome = answer(
@@ -132,7 +133,7 @@ def _fact(basis: Basis, asked: Questions, drivers: Drivers, piece: Sides, wanted
         ):
             also = names_shown(judged, asked)
             return Fact(entry.id, other, "shows", entry.query, plain, drive=judged, also=also)
-    reason = outcome.told(()) or "a search found none"
+    reason = outcome.told(()) or Why.SEARCH_FOUND_NONE()
     return replace(left_open, reason=reason, exhausted=outcome.exhausted)
 
 

@@ -22,6 +22,7 @@ from roadproof.evidence.strict import JsonObject
 from roadproof.library.elaborate import StatedQuery
 from roadproof.library.scenarios import Scenario, definition_of
 from roadproof.library.specification import Query
+from roadproof.reasons import NO_REASON, Reason
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.runtime.executors import Jobs
 
@@ -54,7 +55,7 @@ class CellTask:
 class Undivided:
     """Why an axis was not outlined."""
 
-    reason: str
+    reason: Reason
 
 
 @dataclass(frozen=True)
@@ -77,7 +78,7 @@ class CellAnswer:
     """A cell, with the reason of a doubt whether it has a shorter text."""
 
     cell: Cell
-    reason: str = ""
+    reason: Reason = NO_REASON
 
 
 DivisionAnswer: TypeAlias = Outline | Undivided | CellAnswer
@@ -131,14 +132,14 @@ class Dividing(Unprepared):
             try:
                 return {piece: outline(self.axes[piece], self.basis)}
             except BudgetExceeded as late:
-                return {piece: Undivided(str(late))}
+                return {piece: Undivided(late.reason)}
         axis = [*self.axes.values()][piece.axis]
         try:
             return {piece.name: CellAnswer(refine(axis, self.basis, piece.holds, piece.others))}
         except BudgetExceeded as late:
-            return self.doubt(piece, str(late))
+            return self.doubt(piece, late.reason)
 
-    def doubt(self, piece: str | CellTask, reason: str) -> dict[str, DivisionAnswer]:
+    def doubt(self, piece: str | CellTask, reason: Reason) -> dict[str, DivisionAnswer]:
         """Nothing is known of what follows from what."""
         if isinstance(piece, str):
             return {piece: Undivided(reason)}
@@ -193,7 +194,7 @@ def divide(
         return Division(Classes(plan, ((),) * len(plan.groups), ()), {}, doubts, cut_off=True)
     outlines = [x for name in study.axes if isinstance(x := found[name], Outline)]
     tasks = study.cells(found)
-    told = [(found if in_few_words else study.doubt(task, ""))[task.name] for task in tasks]
+    told = [(found if in_few_words else study.doubt(task, NO_REASON))[task.name] for task in tasks]
     return _division(plan, outlines, tasks, [x for x in told if isinstance(x, CellAnswer)])
 
 

@@ -18,6 +18,7 @@ from roadproof.evidence.settled import Settled
 from roadproof.library.compose import both
 from roadproof.library.scenarios import sector
 from roadproof.library.specification import Query
+from roadproof.reasons import Why, joined
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
@@ -58,7 +59,7 @@ class _DriveJobs:
         try:
             return self._find(one)
         except BudgetExceeded as late:
-            return Example(one, verdict=Verdict.UNKNOWN, reason=str(late))
+            return Example(one, verdict=Verdict.UNKNOWN, reason=late.reason)
 
     def _find(self, one: Class) -> Example:
         query = with_parts(one.query(self.basis.specification), self.more)
@@ -67,19 +68,17 @@ class _DriveJobs:
             if here is not None:
                 return Example(one, verdict=Verdict.WITNESSED, drive=here)
         if self.failures == MOST_FAILURES:
-            return Example(
-                one, verdict=Verdict.UNKNOWN, reason="no drive was found for the same in other places"
-            )
+            return Example(one, verdict=Verdict.UNKNOWN, reason=Why.NO_DRIVE_ELSEWHERE())
         reasons = []
         for road in self._roads(one, query):
             outcome = ask(self.basis.search(query, road))
             if outcome.drives:
                 self.found.append(outcome.drives[0])
                 return Example(one, verdict=Verdict.WITNESSED, drive=outcome.drives[0])
-            told = outcome.reason or "a proof that the class is empty was found late, and is not kept"
-            reasons.append(f"{told} (road {outcome.road}, {self.basis.effort.units:g} units of work)")
+            told = outcome.reason or Why.LATE_PROOF()
+            reasons.append(Why.ON_ROAD(told, outcome.road, self.basis.effort.units))
         self.failures += 1
-        return Example(one, verdict=Verdict.UNKNOWN, reason="; ".join(reasons))
+        return Example(one, verdict=Verdict.UNKNOWN, reason=joined(reasons))
 
     def _elsewhere(self, judged: JudgedDrive, query: Query) -> JudgedDrive | None:
         """The motions of a drive on another road, or on their own with other zones."""

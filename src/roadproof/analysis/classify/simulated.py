@@ -13,6 +13,7 @@ from roadproof.analysis.study.frame import Unprepared, conduct
 from roadproof.evidence.codec import Doc
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.scenarios import Scenario, definition_of
+from roadproof.reasons import Reason
 from roadproof.recordings.simulate.simulate import simulate
 from roadproof.recordings.simulate.traffic import Traffic
 
@@ -72,7 +73,7 @@ class SimulatedShares(Unprepared):
         home, values = self.basis.specification, self.basis.all_values()
         return {piece: count_shares(self.classes, home, values, [recording], source=self.source)}
 
-    def doubt(self, piece: str, reason: str) -> dict[str, Shares]:
+    def doubt(self, piece: str, reason: Reason) -> dict[str, Shares]:
         return {piece: Shares(source=self.source, broken=[reason])}
 
     def is_sure(self, answer: Shares) -> bool:

@@ -20,6 +20,7 @@ from roadproof.evidence.answers.classify import SCHEMA, Doubt
 from roadproof.evidence.journal import ANSWERS, HEAD, Journal, head_of, read_kept
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.strict import LARGEST_INDEX, read_json
+from roadproof.reasons import Reason
 from roadproof.verdict import Verdict
 
 CLAIMS_IN_A_PIECE = 8
@@ -101,7 +102,9 @@ class Classification(Unprepared):
                 units = CLAIM * self.basis.effort.units
                 return {x.name: self.basis.settle(x, x.query, units, x.name) for x in claims}
 
-    def doubt(self, piece: Alike | ProofClaims, reason: str) -> dict[str, Example | ProofResult[ClassClaim]]:
+    def doubt(
+        self, piece: Alike | ProofClaims, reason: Reason
+    ) -> dict[str, Example | ProofResult[ClassClaim]]:
         match piece:
             case Alike(classes):
                 return {one.name: Example(one, verdict=Verdict.UNKNOWN, reason=reason) for one in classes}

@@ -16,6 +16,7 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.settled import Settled
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Query, Specification
+from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.verdict import Verdict
 
 
@@ -207,7 +208,7 @@ def with_counts(answer: ClassAnswer, traffic: GapTraffic) -> ClassAnswer:
         return seen
     broken = answer.verdict is Verdict.IMPOSSIBLE
     verdict = Verdict.CROSSCHECK_FAILED if broken else answer.verdict
-    return replace(seen, verdict=verdict, reason=f"occurs in {where}")
+    return replace(seen, verdict=verdict, reason=Why.OCCURS(where))
 
 
 # --- all answers together --------------------------------------------------------------------------
@@ -271,7 +272,7 @@ class Component:
 
     name: str
     known: tuple[FoundGap, ...]
-    lost: tuple[str, ...] = ()
+    lost: tuple[Reason, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -279,7 +280,7 @@ class GapScan:
     """The gaps in some of the simple drives; ``lost``: why it was not looked through."""
 
     found: tuple[FoundGap, ...]
-    lost: str = ""
+    lost: Reason = NO_REASON
 
 
 Piece: TypeAlias = CoverageClaim | NeededDefinition | Chunk | Component

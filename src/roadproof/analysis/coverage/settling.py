@@ -27,6 +27,7 @@ from roadproof.library.bind import bind
 from roadproof.library.compose import both, conjuncts, either, eventually, implication, negation
 from roadproof.library.scenarios import LANE, PAIR, Scenario, applied, danger
 from roadproof.library.specification import Query
+from roadproof.reasons import NO_REASON, Reason, Why, joined
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict
@@ -62,7 +63,7 @@ class ClassGroup:
         try:
             return self._settle(part, wider)
         except BudgetExceeded as late:
-            return ClassAnswer(part, verdict=Verdict.UNKNOWN, reason=str(late))
+            return ClassAnswer(part, verdict=Verdict.UNKNOWN, reason=late.reason)
 
     def _settle(self, part: Part | None, wider: Sequence[str] = ()) -> ClassAnswer:
         """A gap for the class, or a proof; with ``wider``, a gap for each set that may be the first."""
@@ -148,7 +149,7 @@ class ClassGroup:
 
     # --- drives ----------------------------------------------------------------------------------
 
-    def _look(self, part: Part | None, first: str, roads: Sequence[Road], units: float) -> str:
+    def _look(self, part: Part | None, first: str, roads: Sequence[Road], units: float) -> Reason:
         """Look for a gap on the roads in turn, with so much work each; why none was found, or empty."""
         reasons = []
         for road in roads:
@@ -158,14 +159,14 @@ class ClassGroup:
                 try:
                     outcome = ask(self.basis.search(query, road, self.basis.effort.of(units)))
                 except UsageError as error:  # a grid that is too fine, a comparison too steep
-                    reasons.append(f"no search on {road.name}: {error}")
+                    reasons.append(Why.NO_SEARCH(road.name, error))
                     continue
                 if outcome.drives:
                     file = simplest(outcome.drives[0].file, query, self.library)
                     self.known.append(FoundGap(file, self.trials.first(file), self.classes.of(file)))
-                    return ""
-                reasons.append(f"{outcome.reason or 'none'} on {road.name}")
-        return f"{'; '.join(reasons)}; {units:g} units of work each, {self.basis.horizon} s of driving"
+                    return NO_REASON
+                reasons.append(Why.NOT_ON(outcome.reason or "none", road.name))
+        return Why.WORK_EACH(joined(reasons), units, self.basis.horizon)
 
     def _on(self, part: Part | None, numbers: Sequence[int]) -> list[Part | None]:
         """The counterparts of a part among these scenarios."""

@@ -47,6 +47,7 @@ from roadproof.evidence.answers.coverage import SCHEMA
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.scenarios import Scenario, definition_of, numbers_of
 from roadproof.library.specification import Query
+from roadproof.reasons import Reason, Why, joined
 from roadproof.verdict import Verdict
 
 CHUNKS = 7
@@ -133,7 +134,7 @@ class Coverage(Unprepared):
                 answer = tuple(_with_lost(x, lost) for x in settling.run())
         return {name_of(piece): answer}
 
-    def doubt(self, piece: Piece, reason: str) -> dict[str, Kept]:
+    def doubt(self, piece: Piece, reason: Reason) -> dict[str, Kept]:
         answer: Kept
         match piece:
             case CoverageClaim(_, query):
@@ -141,7 +142,7 @@ class Coverage(Unprepared):
             case NeededDefinition(name):
                 answer = Need(name, parent_of(self.survey.basis.specification), verdict=Verdict.UNKNOWN)
             case Chunk():
-                answer = GapScan((), f"some of the simple drives were not looked through: {reason}")
+                answer = GapScan((), Why.NOT_LOOKED_THROUGH(reason))
             case Component(name):
                 parts = self.groups[name].parts
                 answer = tuple(ClassAnswer(part, verdict=Verdict.UNKNOWN, reason=reason) for part in parts)
@@ -290,8 +291,8 @@ def _concerning(group: GapGroup, found: Sequence[FoundGap]) -> tuple[FoundGap, .
     return tuple(x for x in found if not keys or keys & {*x.classes})
 
 
-def _with_lost(answer: ClassAnswer, lost: tuple[str, ...]) -> ClassAnswer:
+def _with_lost(answer: ClassAnswer, lost: tuple[Reason, ...]) -> ClassAnswer:
     """A doubt that also says which drives were not tried."""
     if answer.verdict is not Verdict.UNKNOWN or not lost:
         return answer
-    return ClassAnswer(answer.part, verdict=answer.verdict, reason="; ".join((answer.reason, *lost)))
+    return ClassAnswer(answer.part, verdict=answer.verdict, reason=joined((answer.reason, *lost)))

@@ -54,6 +54,7 @@ from roadproof.library.specification import Query
 from roadproof.logic import formula as f
 from roadproof.logic.rewrite import is_cubic_state
 from roadproof.logic.terms import Term, number
+from roadproof.reasons import Reason, Why
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.signals import Courses, DriveSignals
 from roadproof.verdict import Verdict
@@ -102,7 +103,7 @@ def find_extreme(sought: ExtremeQuestion, say: Say = say_nothing) -> Extreme:
     return _ExtremeSearch(sought, say).run()
 
 
-def unsought(sought: ExtremeQuestion, reason: str) -> Extreme:
+def unsought(sought: ExtremeQuestion, reason: Reason) -> Extreme:
     """What is said of an extreme that nothing is known of."""
     missed = PointFinding((), sought.query(None), verdict=Verdict.UNKNOWN, reason=reason)
     return Extreme(sought.measure, sought.point, None, missed, None, 0, late=True)
@@ -208,7 +209,7 @@ class _ExtremeSearch:
             return None
         if shown is None:
             return None
-        reason = f"proved for all time; core: {' and '.join(shown.told)}"
+        reason = Why.PROVED_CORE("time", " and ".join(shown.told))
         return PointFinding(
             at, query, verdict=Verdict.IMPOSSIBLE, reason=reason, certificate=shown.certificate
         )

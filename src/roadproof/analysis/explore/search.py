@@ -27,6 +27,7 @@ from roadproof.library.specification import Library, Query
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import intervals_of, is_cubic_state, parameters_of
 from roadproof.logic.terms import Parameter, leaves
+from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.replay import first_overlap
 from roadproof.verdict import DriveVerdict, Verdict
@@ -57,7 +58,7 @@ class Reply:
     """
 
     verdict: Verdict
-    reason: str
+    reason: Reason
     drives: tuple[JudgedDrive, ...] = ()
     late: bool = False
 
@@ -67,7 +68,7 @@ def missed(at: Point, query: Query, reply: Reply) -> PointFinding:
     verdict: DriveVerdict = Verdict.UNKNOWN
     if reply.verdict is Verdict.NONE_WITHIN:
         verdict = Verdict.NONE_WITHIN
-    reason = reply.reason or "the drive that was found is rejected by the judge"
+    reason = reply.reason or Why.FOUND_REJECTED()
     return PointFinding(at, query, verdict=verdict, reason=reason)
 
 
@@ -79,10 +80,10 @@ def look(task: SearchTask) -> Reply:
     try:
         return _look(task)
     except BudgetExceeded as late:
-        return undecided(task, str(late))
+        return undecided(task, late.reason)
 
 
-def undecided(task: SearchTask, reason: str) -> Reply:
+def undecided(task: SearchTask, reason: Reason) -> Reply:
     """The reply to a search that nothing is known of."""
     return Reply(Verdict.UNKNOWN, reason, late=True)
 
@@ -95,8 +96,7 @@ def _look(task: SearchTask) -> Reply:
     for stand_in in stand_ins(task.search):
         drives += _search(SearchTask(stand_in, ("natural", "plain"))).drives
     finest = float(_finest(task.search.setting))
-    reason = f"durations have no common step of {finest:g} s or more; no drive of coarser ones does"
-    return Reply(Verdict.UNKNOWN, reason, tuple(drives))
+    return Reply(Verdict.UNKNOWN, Why.NO_COMMON_STEP(finest), tuple(drives))
 
 
 def _search(task: SearchTask) -> Reply:
@@ -110,9 +110,9 @@ def _search(task: SearchTask) -> Reply:
     def reply(question: SearchProblem, answer: Attempt) -> Reply:
         if answer.found is None:
             return Reply(answer.verdict, answer.reason)
-        return Reply(Verdict.WITNESSED, "", (judge_found(search, question, answer.found),))
+        return Reply(Verdict.WITNESSED, NO_REASON, (judge_found(search, question, answer.found),))
 
-    last = Reply(Verdict.UNKNOWN, "")
+    last = Reply(Verdict.UNKNOWN, NO_REASON)
     for stage in task.stages:
         for horizon in _horizons(search):
             asked = replace(setting, natural=stage == "natural", horizon=horizon)
@@ -124,7 +124,7 @@ def _search(task: SearchTask) -> Reply:
             overlap = first_overlap(answer.found.drive, _clear(search))
             if overlap is None or setting.collisions:
                 return last
-            last = Reply(Verdict.UNKNOWN, f"on the drive that was found, {overlap}")
+            last = Reply(Verdict.UNKNOWN, Why.FOUND_OVERLAP(overlap))
         if last.verdict is Verdict.NONE_WITHIN and horizon == setting.horizon:
             return last
     return replace(last, verdict=Verdict.UNKNOWN)
@@ -270,9 +270,6 @@ def claim_of(search: Search, query: Query) -> DriveClaim:
     return DriveClaim(query, values, _clear(there))
 
 
-NEVER = "proved for all states, with the parameters at their values here"
-
-
 def stages_for(search: Search, stages: tuple[Stage, ...]) -> tuple[Stage, ...]:
     """``stages`` without the last word of an engine, for formulas that have a proof in place of it."""
     hard = is_cubic_state(search.query.formula)
@@ -295,5 +292,7 @@ def never(search: Search, at: Point, query: Query, units: float) -> PointFinding
     return (
         None
         if proof is None
-        else PointFinding(at, query, verdict=Verdict.IMPOSSIBLE, reason=NEVER, certificate=proof)
+        else PointFinding(
+            at, query, verdict=Verdict.IMPOSSIBLE, reason=Why.PROVED_STATES(), certificate=proof
+        )
     )

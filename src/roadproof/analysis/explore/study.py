@@ -33,6 +33,7 @@ from roadproof.evidence.answers.explore import SCHEMA
 from roadproof.evidence.codec import write
 from roadproof.evidence.drive_file import road_said
 from roadproof.library.dependence import digest_of
+from roadproof.reasons import Reason
 from roadproof.runtime.executors import Jobs
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import Verdict
@@ -98,7 +99,7 @@ class Exploration:
         find = partial(find_extreme, say=self.say)
         return in_order(work(find, soughts, self.hands, unsought))
 
-    def doubt(self, piece: str, reason: str) -> dict[str, ExplorationResult]:
+    def doubt(self, piece: str, reason: Reason) -> dict[str, ExplorationResult]:
         asked = self.named[piece]
         findings = (
             PointFinding(x, asked.query(x), verdict=Verdict.UNKNOWN, reason=reason) for x in asked.points

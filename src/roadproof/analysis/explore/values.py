@@ -40,6 +40,7 @@ from roadproof.analysis.study.pool import Say
 from roadproof.engines.search.ask import Search
 from roadproof.engines.search.impossible import Impossibility, show_impossible
 from roadproof.logic.rewrite import is_cubic_state
+from roadproof.reasons import Why
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.verdict import Verdict
 
@@ -160,7 +161,7 @@ class ExplorationState:
         """
         claim = self.claim(point)
         if self.impossibility is not None:
-            core = f"proved for all values; core: {' and '.join(self.impossibility.told)}"
+            core = Why.PROVED_CORE("values", " and ".join(self.impossibility.told))
             certificate = self.impossibility.certificate
             return PointFinding(
                 point, claim.query, verdict=Verdict.IMPOSSIBLE, reason=core, certificate=certificate

@@ -25,6 +25,7 @@ from roadproof.library.scenarios import Scenario, applied, numbers_of, vehicles_
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
+from roadproof.reasons import NO_REASON, Reason, Why, joined
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict
@@ -102,16 +103,15 @@ class OrderDoubt:
     above: Scenario
     below: Scenario
     open: tuple[tuple[Query, Query], ...]
-    late: str = ""
-    known: str = ""
+    late: Reason = NO_REASON
+    known: Reason = NO_REASON
 
     @property
-    def reason(self) -> str:
+    def reason(self) -> Reason:
         if self.known:
             return self.known
         told = ", ".join(f"{a.text} -> {b.text}" for a, b in self.open) or f"{self.above} -> {self.below}"
-        readings = f"neither a proof nor a drive against {told}"
-        return f"{readings}; {self.late}" if self.late else readings
+        return joined((Why.OPEN_READINGS(told), self.late))
 
 
 @dataclass(frozen=True)
@@ -202,10 +202,10 @@ class _DecisionJobs:
                     try:
                         self._decide(kind, target)
                     except BudgetExceeded as late:
-                        self._doubt(kind, target, str(late))
+                        self._doubt(kind, target, late.reason)
         return Decisions(tuple(self.edges), tuple(self.drives), tuple(self.doubts))
 
-    def _doubt(self, kind: Kind, target: Kind, late: str = "") -> None:
+    def _doubt(self, kind: Kind, target: Kind, late: Reason = NO_REASON) -> None:
         still = [(self._query(a), self._query(b)) for a, b in self._still_open(kind, target)]
         self.doubts.append(OrderDoubt(kind.node, target.node, tuple(still), late))
 

@@ -25,6 +25,7 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.elaborate import StatedQuery
 from roadproof.library.scenarios import Scenario, definition_of
+from roadproof.reasons import Reason
 
 
 @dataclass(frozen=True)
@@ -97,7 +98,7 @@ class Ordering(Unprepared):
             case Doubtful(family, decided, drives):
                 return {name_of(family): settle_doubts(self.basis, decided, drives)}
 
-    def doubt(self, piece: Family | Doubtful, reason: str) -> dict[str, Decisions]:
+    def doubt(self, piece: Family | Doubtful, reason: Reason) -> dict[str, Decisions]:
         match piece:
             case Family(kinds):
                 pairs = [(a.node, b.node) for a in kinds for b in self.kinds if a != b]

@@ -14,6 +14,7 @@ from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.library.scenarios import LANE
 from roadproof.library.specification import Specification
+from roadproof.reasons import Reason, Why
 from roadproof.semantics.exact.algebraic import Point, bounds
 from roadproof.semantics.exact.truth import TruthSet
 
@@ -95,25 +96,25 @@ def first_drive(
     reading: DriverSettings,
     also: str = "",
     most: int = 3,
-) -> tuple[dict[str, Fraction], JudgedDrive] | str:
+) -> tuple[dict[str, Fraction], JudgedDrive] | Reason:
     """A judged drive from one of the candidates, initial values of that side; or why there is none.
 
     ``also`` as for ``judged_drive``; ``most`` candidates are tried, besides those that have no exact drive.
     A drive that is rejected, though nothing else is asked of it, contradicts the boundary: no other is tried.
     """
-    reason = f"no place of the plane is {side}"
+    reason = Why.NO_PLACE(side)
     tried = 0
     for values in islice(candidates, _LOOKED_AT):
         try:
             manoeuvre = plane.manoeuvre
             return values, judged_drive(manoeuvre, model, values, side, specification, reading, also)
         except RejectedError as error:
-            tried, reason = tried + 1, str(error)
+            tried, reason = tried + 1, Why.TOLD(error)
             if not also:
                 told = ", ".join(f"{name}={value}" for name, value in values.items())
-                return f"the drive from {told} (SI) is not {side}, as the boundary says it is: {reason}"
+                return Why.CONTRADICTS_BOUNDARY(told, side, reason)
         except InputError as error:
-            reason = str(error)
+            reason = Why.TOLD(error)
         if tried == most:
             break
     return reason

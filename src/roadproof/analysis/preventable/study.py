@@ -30,6 +30,7 @@ from roadproof.evidence.settled import Settled
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.elaborate import read_tree
 from roadproof.library.motion import Assumption, value_texts
+from roadproof.reasons import NO_REASON, Reason
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.verdict import ClaimVerdict, Verdict
 
@@ -46,7 +47,7 @@ class Shown:
     side: Side
     values: Mapping[str, Fraction] = field(default_factory=dict)
     drive: JudgedDrive | None = None
-    reason: str = ""
+    reason: Reason = NO_REASON
     scenario: str = ""
 
 
@@ -60,7 +61,7 @@ class Plate:
     along: tuple[Fraction, Fraction]
     lines: tuple[Line, ...] = ()
     shown: tuple[Shown, ...] = ()
-    reason: str = ""
+    reason: Reason = NO_REASON
 
     @property
     def stepped(self) -> str:
@@ -162,7 +163,7 @@ class Preventable(Unprepared):
             return {f"lemma-{piece.name}": self._prove(piece)}
         return {piece.name: self._plate(piece)}
 
-    def doubt(self, piece: Piece, reason: str) -> dict[str, Answer]:
+    def doubt(self, piece: Piece, reason: Reason) -> dict[str, Answer]:
         if isinstance(piece, Lemma):
             return {
                 f"lemma-{piece.name}": LemmaResult(
@@ -223,10 +224,10 @@ class Preventable(Unprepared):
             shown = first_drive(
                 plane, model, rows, side, self.basis.specification, self.reading, also, most=len(rows)
             )
-            if not isinstance(shown, str):
+            if not isinstance(shown, Reason):
                 return Shown(side, *shown, scenario=also)
         found = first_drive(plane, model, places, side, self.basis.specification, self.reading)
-        return Shown(side, reason=found) if isinstance(found, str) else Shown(side, *found)
+        return Shown(side, reason=found) if isinstance(found, Reason) else Shown(side, *found)
 
     @property
     def _parts(self) -> tuple[str, ...]:
@@ -243,7 +244,7 @@ class Preventable(Unprepared):
             query, effort = read_tree(home, lemma.tree, lemma.claim), self.basis.effort.of(20)
             result = prove(home, query, effort, assumed=Assumption(said))
         except BudgetExceeded as late:
-            return LemmaResult(lemma, said, verdict=Verdict.UNKNOWN, reason=str(late))
+            return LemmaResult(lemma, said, verdict=Verdict.UNKNOWN, reason=late.reason)
         return LemmaResult(
             lemma, said, verdict=result.verdict, certificate=result.certificate, reason=result.reason
         )

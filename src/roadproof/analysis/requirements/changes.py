@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 
 from roadproof.evidence.answers.trace import Answer, LinkState, TracedLink, TracedRequirement
 from roadproof.evidence.answers.trace_changes import Change, Way
+from roadproof.reasons import NO_REASON, Reason, Why, joined
 
 
 def changes_between(before: Answer, after: Answer) -> tuple[Change, ...]:
@@ -25,17 +26,19 @@ def _of_one(old: TracedRequirement | None, new: TracedRequirement | None) -> Ite
     if old is None or new is None:
         there = new or old
         assert there is not None
-        yield _of_requirement(there.id, "added" if old is None else "removed", (old, new), there.title)
+        yield _of_requirement(
+            there.id, "added" if old is None else "removed", (old, new), Why.TOLD(there.title)
+        )
         return
     if (old.title, old.text) != (new.title, new.text):
-        yield _of_requirement(old.id, "text", (old, new), "its text changed")
+        yield _of_requirement(old.id, "text", (old, new), Why.TEXT_CHANGED())
     if old.state is not new.state:
-        yield _of_requirement(old.id, _way(old.state, new.state), (old, new), "")
+        yield _of_requirement(old.id, _way(old.state, new.state), (old, new), NO_REASON)
     yield from _links(old.id, _by_name(old), _by_name(new))
 
 
 def _of_requirement(
-    name: str, how: Way, sides: tuple[TracedRequirement | None, TracedRequirement | None], reason: str
+    name: str, how: Way, sides: tuple[TracedRequirement | None, TracedRequirement | None], reason: Reason
 ) -> Change:
     before, after = (None if x is None else x.state for x in sides)
     return Change(requirement=name, kind=None, target="", how=how, before=before, after=after, reason=reason)
@@ -58,7 +61,7 @@ def _links(name: str, old: Mapping[str, TracedLink], new: Mapping[str, TracedLin
             how=how,
             before=None if one is None else one.state,
             after=None if other is None else other.state,
-            reason="; ".join(filter(None, (*link.changes, link.reason))),
+            reason=joined((*map(Why.TOLD, link.changes), link.reason)),
         )
 
 

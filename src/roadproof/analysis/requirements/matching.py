@@ -21,6 +21,7 @@ from roadproof.library.bind import default_values
 from roadproof.library.elaborate import apply_definition
 from roadproof.library.scenario_references import read_query
 from roadproof.library.specification import Query, Specification
+from roadproof.reasons import NO_REASON, Reason, Why
 
 _LABEL = re.compile(r"[A-Za-z][\w-]*( scenario \d+)? [A-Za-z][\w-]*")
 _SHOWN = {
@@ -34,9 +35,6 @@ _SHOWN = {
     "GAPS": LinkState.REFUTED,
 }
 """What an accepted verdict says of a file of evidence; all others are not decided."""
-NO_DRIVE = "it is proved that no drive shows it"
-ONE_DRIVE = "a drive shows it once; a claim about all traffic needs a proof"
-VACUOUS = "it holds only because its premise never does"
 
 
 @dataclass(frozen=True)
@@ -54,7 +52,7 @@ class Shown:
 
     evidence: CheckedEvidence
     state: LinkState
-    reason: str = ""
+    reason: Reason = NO_REASON
 
 
 Values: TypeAlias = Mapping[str, Fraction]
@@ -107,13 +105,13 @@ def shown_by(
     return [_with_values(x, values) for x in found]
 
 
-def combined(kind: str, found: Sequence[Shown]) -> tuple[LinkState, str]:
+def combined(kind: str, found: Sequence[Shown]) -> tuple[LinkState, Reason]:
     """The state of a link. A refutation counts before all else, then evidence that is rejected.
 
     Of plates and files all parts must be shown, of other links one is enough.
     """
     if not found:
-        return LinkState.MISSING, "there is no evidence for it"
+        return LinkState.MISSING, Why.NO_EVIDENCE()
     worst = max(found, key=lambda x: x.state.rank)
     if worst.state in (LinkState.REFUTED, LinkState.REJECTED) or kind in ("plate", "evidence"):
         return worst.state, worst.reason
@@ -128,7 +126,7 @@ def _not_accepted(x: CheckedEvidence) -> Shown | None:
         return None
     if finding.outcome is Acceptance.UNDECIDED:
         return Shown(x, LinkState.UNKNOWN, finding.reason)
-    state = LinkState.STALE if finding.reason.endswith(STALE) else LinkState.REJECTED
+    state = LinkState.STALE if finding.reason.kind in STALE else LinkState.REJECTED
     return Shown(x, state, finding.reason)
 
 
@@ -138,9 +136,9 @@ def _by_itself(x: CheckedEvidence) -> Shown:
     if wrong is not None:
         return wrong
     if x.remark:
-        return Shown(x, LinkState.REFUTED, x.remark)
+        return Shown(x, LinkState.REFUTED, Why.TOLD(x.remark))
     state = _SHOWN.get(x.finding.verdict, LinkState.UNKNOWN)
-    return Shown(x, state, "" if state.is_shown else x.finding.verdict)
+    return Shown(x, state, NO_REASON if state.is_shown else Why.TOLD(x.finding.verdict))
 
 
 def _of_formula(target: Target, evidence: Sequence[CheckedEvidence]) -> Iterator[Shown]:
@@ -160,19 +158,20 @@ def _same(kind: str, x: CheckedEvidence) -> Shown:
     verdict, reason = x.finding.verdict, x.finding.reason
     if kind == "claim":
         if verdict == "IMPOSSIBLE":
-            return Shown(x, LinkState.REFUTED, "it is proved that it never holds")
+            return Shown(x, LinkState.REFUTED, Why.NEVER_HOLDS())
         if verdict == "WITNESSED":
-            return Shown(x, LinkState.UNKNOWN, ONE_DRIVE)
+            return Shown(x, LinkState.UNKNOWN, Why.ONE_DRIVE())
         if verdict == "REFUTED":
-            return Shown(x, LinkState.REFUTED, "a judged drive or trace refutes it")
+            return Shown(x, LinkState.REFUTED, Why.TRACE_REFUTES())
     elif verdict == "IMPOSSIBLE":
-        return Shown(x, LinkState.REFUTED, NO_DRIVE)
+        return Shown(x, LinkState.REFUTED, Why.NO_DRIVE_SHOWS())
     elif verdict == "REFUTED":
-        return Shown(x, LinkState.UNKNOWN, "a drive shows the opposite; that alone excludes nothing")
+        return Shown(x, LinkState.UNKNOWN, Why.OPPOSITE_DRIVE())
     if verdict == "VACUOUS":
-        reason = VACUOUS
+        reason = Why.VACUOUS()
     state = _SHOWN.get(verdict, LinkState.UNKNOWN)
-    return Shown(x, state, "" if state.is_shown else f"{verdict}: {reason}" if reason else verdict)
+    told = Why.VERDICT(verdict, reason) if reason else Why.TOLD(verdict)
+    return Shown(x, state, NO_REASON if state.is_shown else told)
 
 
 def _opposite(kind: str, x: CheckedEvidence) -> Iterator[Shown]:
@@ -180,9 +179,11 @@ def _opposite(kind: str, x: CheckedEvidence) -> Iterator[Shown]:
     if x.finding.outcome is not Acceptance.ACCEPTED:
         return
     if x.finding.verdict == "PROVED":
-        yield Shown(x, LinkState.REFUTED, NO_DRIVE if kind == "scenario" else "the opposite is proved")
+        yield Shown(
+            x, LinkState.REFUTED, Why.NO_DRIVE_SHOWS() if kind == "scenario" else Why.OPPOSITE_PROVED()
+        )
     elif x.finding.verdict == "WITNESSED" and kind == "claim":
-        yield Shown(x, LinkState.REFUTED, "a judged drive refutes it")
+        yield Shown(x, LinkState.REFUTED, Why.DRIVE_REFUTES())
 
 
 def _of_test(name: str, evidence: Sequence[CheckedEvidence]) -> Iterator[Shown]:
@@ -195,15 +196,15 @@ def _of_test(name: str, evidence: Sequence[CheckedEvidence]) -> Iterator[Shown]:
         if wrong is not None:
             yield wrong
         elif x.remark:
-            yield Shown(x, LinkState.REFUTED, x.remark)
+            yield Shown(x, LinkState.REFUTED, Why.TOLD(x.remark))
         elif x.finding.claim.startswith("cannot be read"):
-            yield Shown(x, LinkState.REJECTED, x.finding.claim)
+            yield Shown(x, LinkState.REJECTED, Why.TOLD(x.finding.claim))
         elif x.finding.claim == "shows no scenario":
-            yield Shown(x, LinkState.UNKNOWN, "it shows no scenario")
+            yield Shown(x, LinkState.UNKNOWN, Why.SHOWS_NONE())
         elif x.finding.verdict == "READ":
-            yield Shown(x, LinkState.UNKNOWN, "no drive of its formula was found")
+            yield Shown(x, LinkState.UNKNOWN, Why.NO_DRIVE_OF_FORMULA())
         elif x.finding.verdict == "IMPOSSIBLE":
-            yield Shown(x, LinkState.REFUTED, NO_DRIVE)
+            yield Shown(x, LinkState.REFUTED, Why.NO_DRIVE_SHOWS())
         else:
             yield Shown(x, _SHOWN.get(x.finding.verdict, LinkState.UNKNOWN))
 
@@ -231,4 +232,4 @@ def _with_values(x: Shown, values: Values) -> Shown:
     other = [
         f"{n} = {v} (now {here[n]})" for n, v in sorted(x.evidence.values.items()) if here.get(n, v) != v
     ]
-    return Shown(x.evidence, LinkState.STALE, f"judged with {', '.join(other)}") if other else x
+    return Shown(x.evidence, LinkState.STALE, Why.JUDGED_WITH(", ".join(other))) if other else x

@@ -23,6 +23,7 @@ from roadproof.analysis.requirements.matching import (
 from roadproof.analysis.requirements.requirement import Requirement, Requirements, above, told
 from roadproof.evidence.answers.trace import LinkState, TracedLink, TracedRequirement
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance
+from roadproof.reasons import NO_REASON
 
 
 @dataclass(frozen=True)
@@ -98,7 +99,7 @@ def _is_evidence(x: CheckedEvidence) -> bool:
 def _link(found: _Matched, changes: tuple[str, ...]) -> TracedLink:
     state, reason = combined(found.target.link.kind, found.shown)
     if changes and (state.is_shown or state is LinkState.STALE):
-        state, reason = LinkState.STALE, ""
+        state, reason = LinkState.STALE, NO_REASON
     return TracedLink(
         kind=found.target.link.kind,
         target=found.target.link.target,

@@ -18,6 +18,7 @@ from roadproof.analysis.study.pool import Progress
 from roadproof.errors import InputError, SharedError, UsageError
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.strict import JsonObject
+from roadproof.reasons import NO_REASON, Reason
 from roadproof.runtime.executors import Jobs, Shard, hands_of
 
 Piece = TypeVar("Piece")
@@ -50,7 +51,7 @@ class Study(Protocol[Piece, Answer, Record]):
     def settle(self, piece: Piece) -> Mapping[str, Answer]:
         """The answers to a piece by name, in a process of its own; doubts where the clock cuts it off."""
 
-    def doubt(self, piece: Piece, reason: str) -> Mapping[str, Answer]:
+    def doubt(self, piece: Piece, reason: Reason) -> Mapping[str, Answer]:
         """The answers to a piece that nothing is known of."""
 
     def is_sure(self, answer: Answer) -> bool:
@@ -297,7 +298,7 @@ def _kept(
 
 def _name(study: Study[Piece, Answer, Record], piece: Piece) -> str:
     """What a piece is called: as the first of its answers."""
-    return min(study.doubt(piece, "it is not asked here"))
+    return min(study.doubt(piece, NO_REASON))
 
 
 def _told(shard: Shard | None, sure: int, unsure: int, left: int, what: str) -> str:

@@ -5,6 +5,7 @@ from collections.abc import Callable, Generator, Sequence
 from typing import TypeAlias, TypeVar
 
 from roadproof.errors import LostError
+from roadproof.reasons import Reason
 from roadproof.runtime.executors import Jobs, hands_of
 
 Job = TypeVar("Job")
@@ -20,7 +21,7 @@ def work(
     function: Callable[[Job], Answer],
     jobs: Sequence[Job],
     hands: Jobs,
-    lost: Callable[[Job, str], Answer] | None = None,
+    lost: Callable[[Job, Reason], Answer] | None = None,
     progress: Progress | None = None,
     what: str = "jobs",
     known: int = 0,

@@ -13,6 +13,7 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.restore import as_syntax, term_as_syntax
 from roadproof.logic.show import text
 from roadproof.logic.terms import Term
+from roadproof.reasons import Why
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 
@@ -70,9 +71,6 @@ def _number(term: Term) -> str:
     return text(term_as_syntax(term))
 
 
-_OPEN = "not proved where it is left open what a driver prevents, and no other proof was looked for"
-
-
 def prove_of_scenarios(
     specification: Specification, query: Query, effort: Effort, shared: SharedPremise | None = None
 ) -> Result:
@@ -86,5 +84,5 @@ def prove_of_scenarios(
     if outline is not None:
         first = prove(outline, read_claim(outline, query.text), effort)
         if not first.holds:
-            return Result(first.work, verdict=Verdict.UNKNOWN, reason=_OPEN, seconds=first.seconds)
+            return Result(first.work, verdict=Verdict.UNKNOWN, reason=Why.LEFT_OPEN(), seconds=first.seconds)
     return prove(specification, query, effort, shared=shared)

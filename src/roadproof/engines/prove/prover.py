@@ -29,6 +29,7 @@ from roadproof.logic import syntax
 from roadproof.logic.formula import Formula
 from roadproof.logic.initial_conditions import pins
 from roadproof.logic.rewrite import with_values
+from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.runtime.budget import Budget, Effort
 from roadproof.runtime.progress import begin
 from roadproof.runtime.timing import now, since
@@ -46,9 +47,6 @@ TURNS: tuple[tuple[bool, float], ...] = (
 ON_FEW_LANES = 1.0
 REPEATING = 1.0
 VACUITY = 0.5
-NO_TRACE = "the only countermodels found over points in time are no traces"
-CONTRADICTION = "what is assumed contradicts itself, so every claim follows"
-NO_PROOF = "no proof was found from what is known of motion"
 
 
 @dataclass(frozen=True)
@@ -108,7 +106,9 @@ def prove(
     premise, claim = goal_of(specification, query, assumed, states.atoms, pinned)
     attempt = _Attempt(specification, query, states, meter, motion.is_moving(assumed.said))
 
-    def result(verdict: ClaimVerdict, reason: str = "", certificate: Certificate | None = None) -> Result:
+    def result(
+        verdict: ClaimVerdict, reason: Reason = NO_REASON, certificate: Certificate | None = None
+    ) -> Result:
         spent, seconds = meter.spent, since(begun)
         return Result(spent, verdict=verdict, reason=reason, certificate=certificate, seconds=seconds)
 
@@ -124,28 +124,27 @@ def prove(
     if fewer != assumed:
         again = prove(specification, query, meter.effort(), fewer)
         if again.verdict is Verdict.PROVED and attempt.never_holds(premise, f.TRUE):
-            again = replace(again, verdict=Verdict.VACUOUS, reason=CONTRADICTION)
+            again = replace(again, verdict=Verdict.VACUOUS, reason=Why.CONTRADICTION())
         if again.holds:
             return replace(again, seconds=since(begun), work=meter.spent + again.work)
     try:
         certificate = attempt.certificate(assumed, pinned, proofs)
     except InputError as error:
-        why = f"a proof was found, but no certificate can be made of it: {error}"
-        return replace(result(Verdict.UNKNOWN, why), stop=Stop.CERTIFICATE)
+        return replace(result(Verdict.UNKNOWN, Why.NO_CERTIFICATE(error)), stop=Stop.CERTIFICATE)
     rejected = _rejection(certificate, proofs, meter)
     if rejected is not None:
         return replace(result(*rejected), stop=Stop.CERTIFICATE if rejected[0] is Verdict.UNKNOWN else None)
     if premise != f.TRUE and attempt.never_holds(premise, f.TRUE):
-        return result(Verdict.VACUOUS, CONTRADICTION, certificate)
+        return result(Verdict.VACUOUS, Why.CONTRADICTION(), certificate)
     condition = None if shared is not None else _premise(query, claim)
     if condition is not None and attempt.never_holds(premise, condition):
-        return result(Verdict.VACUOUS, "the premise never holds, whatever the conclusion", certificate)
-    return result(Verdict.PROVED, "", certificate)
+        return result(Verdict.VACUOUS, Why.PREMISE(), certificate)
+    return result(Verdict.PROVED, NO_REASON, certificate)
 
 
 def _rejection(
     certificate: Certificate, proofs: Sequence[Proof], meter: Budget
-) -> tuple[ClaimVerdict, str] | None:
+) -> tuple[ClaimVerdict, Reason] | None:
     """The verdict and the reason where z3 does not confirm a query of the certificate; None where it does.
 
     A query that the search for the ``proofs`` has put to z3 itself is not asked again.
@@ -156,7 +155,7 @@ def _rejection(
             continue
         answer = ask(script, meter=meter.apart(max(1.0, meter.left())))
         if answer != "unsat":
-            why = f"a proof was found, but z3 answers {answer} to its derived query '{title}'"
+            why = Why.UNCONFIRMED(answer, title)
             return (Verdict.UNKNOWN if answer == "unknown" else Verdict.CROSSCHECK_FAILED), why
     return None
 
@@ -287,7 +286,7 @@ class _Attempt:
             if countermodel is not None:
                 return countermodel
             if not search.widen():
-                return GaveUp(NO_PROOF, Stop.FACTS) if self.moving else GaveUp(NO_TRACE, Stop.PLACE)
+                return GaveUp(Why.FACTS(), Stop.FACTS) if self.moving else GaveUp(Why.TRACES(), Stop.PLACE)
             found = search.run(meter)
         return found
 

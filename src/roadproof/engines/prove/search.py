@@ -24,6 +24,7 @@ from roadproof.evidence.times import ZERO, Moment, at, bound_parameters, constan
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import free_lanelets, intervals_of, road_names
+from roadproof.reasons import Reason, Why
 from roadproof.runtime.budget import Budget
 
 MOST_ROUNDS = 400
@@ -69,7 +70,7 @@ class Model:
 class GaveUp:
     """Why neither was found, in words, and where the search stopped."""
 
-    reason: str
+    reason: Reason
     stop: Stop = Stop.WORK
 
 
@@ -124,19 +125,18 @@ class InstanceSearch:
                 return GaveUp(meter.reason())
             answer = self._check(meter)
             if answer == "unsat" and self.grounding.roster is not None:
-                return GaveUp("no countermodel on a road of few lanes", Stop.PLACE)
+                return GaveUp(Why.FEW_LANES(), Stop.PLACE)
             if answer == "unsat":
                 return self._shrink(meter)
             if answer == "unknown":
                 out = meter.is_out()
                 if out:
                     return GaveUp(meter.reason())
-                return GaveUp("z3 gave no answer to the ground query", Stop.SOLVER)
+                return GaveUp(Why.GROUND_QUERY(), Stop.SOLVER)
             values = self._values()
             if self._instantiate(values, meter, flat_only=self.sparing):
                 if len(self.grounding.elements) > MOST_ELEMENTS:
-                    said = f"no end after {MOST_ELEMENTS} lanes and lanelets that must exist"
-                    return GaveUp(said, Stop.LANES)
+                    return GaveUp(Why.ELEMENTS(MOST_ELEMENTS), Stop.LANES)
                 continue
             states, refused = self._refused(values, meter)
             if isinstance(refused, GaveUp):
@@ -144,7 +144,7 @@ class InstanceSearch:
             if refused is None and not (self.sparing and self._look_on(values, meter)):
                 signals = {instant: self.states.signals(state) for instant, state in states.items()}
                 return Model(values, states, signals, dict(self.grounding.elements), self._facts())
-        return GaveUp(f"no end after {MOST_ROUNDS} rounds of instantiation", Stop.ROUNDS)
+        return GaveUp(Why.ROUNDS(MOST_ROUNDS), Stop.ROUNDS)
 
     def _look_on(self, values: dict[str, Fraction], meter: Budget) -> bool:
         """Instantiate also what speaks of further moments; whether there is more to be looked at.
@@ -280,7 +280,7 @@ class InstanceSearch:
         learnt = False
         for instant, state in states.items():
             clause = self.states.refute(state, meter, case)
-            if isinstance(clause, str):
+            if isinstance(clause, Reason):
                 return GaveUp(clause, Stop.WORK if meter.is_out() else Stop.SOLVER)
             if clause is not None:
                 learnt = True

@@ -20,6 +20,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import leaves_of, map_terms
+from roadproof.reasons import Reason, Why
 from roadproof.runtime.budget import Budget
 
 Assumed: TypeAlias = Literal["typical", "near", "nothing"]
@@ -68,7 +69,7 @@ class StateChecker:
     def settled(self) -> set[str]:
         return self.learnt.settled
 
-    def refute(self, wanted: Mapping[str, bool], meter: Budget, case: float = CASE) -> Clause | str | None:
+    def refute(self, wanted: Mapping[str, bool], meter: Budget, case: float = CASE) -> Clause | Reason | None:
         """None where a state with these truth values exists; else a clause against it, or why not known.
 
         ``case``: units of work for each query in general.
@@ -103,9 +104,7 @@ class StateChecker:
             if found is not None:
                 self.learnt.known[key] = found
                 return None
-        return "z3 gave no answer about a state: " + ", ".join(
-            name if positive else f"not {name}" for name, positive in literals
-        )
+        return Why.STATE(", ".join(name if positive else f"not {name}" for name, positive in literals))
 
     def _always_holds(self, clause: Clause, meter: Budget, units: float = CASE) -> bool:
         """Whether each query of the clause, as a certificate will hold it, is answered unsat in time."""
@@ -261,9 +260,6 @@ def _on_a_motorway(signal: t.SignalName) -> tuple[int, int]:
             assert_never(signal)
 
 
-Reason: TypeAlias = dict[str, bool]
-
-
 def is_plain(formula: Formula) -> bool:
     """Whether an abstracted formula combines atoms and nothing else, at one instant."""
     match formula:
@@ -275,7 +271,7 @@ def is_plain(formula: Formula) -> bool:
             return False
 
 
-def reason(formula: Formula, value: bool, truths: Mapping[str, bool]) -> Reason | None:
+def reason(formula: Formula, value: bool, truths: Mapping[str, bool]) -> dict[str, bool] | None:
     """Atoms with their ``truths`` that make a plain ``formula`` have this ``value``; None where it has not.
 
     Of parts of which one is enough, that with the fewest atoms, the first of these.

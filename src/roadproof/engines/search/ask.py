@@ -23,6 +23,7 @@ from roadproof.library.bind import default_values
 from roadproof.library.specification import Library, Query, Specification
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import parameters_of
+from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.runtime.progress import about, begin
 from roadproof.runtime.timing import now, since
@@ -58,7 +59,7 @@ class Outcome:
     query: Query
     road: str
     verdict: DriveVerdict
-    reason: str
+    reason: Reason
     drives: tuple[JudgedDrive, ...] = ()
     natural: bool = False
     seconds: Mapping[str, float] = field(default_factory=dict)
@@ -67,9 +68,9 @@ class Outcome:
     limits: Limits | None = None
     exhausted: bool = False
 
-    def told(self, options: Sequence[str]) -> str:
+    def told(self, options: Sequence[str]) -> Reason:
         """The reason, with those ``options`` that a command has to widen the limits of a NONE-WITHIN."""
-        return self.reason if self.limits is None else self.limits.text(options)
+        return self.reason if self.limits is None else Why.TOLD(self.limits.text(options))
 
     @property
     def kept(self) -> kept.Outcome:
@@ -99,10 +100,10 @@ def answer(search: Search) -> Outcome:
     try:
         return ask(search)
     except BudgetExceeded as late:
-        return undecided(search, str(late), since(begun))
+        return undecided(search, late.reason, since(begun))
 
 
-def undecided(search: Search, reason: str, seconds: float = 0.0) -> Outcome:
+def undecided(search: Search, reason: Reason, seconds: float = 0.0) -> Outcome:
     """What is said of a search that nothing is known of."""
     road = search.setting.road or usual_road(search.query.formula)
     told = (search.scenario, search.specification.set_name, search.query, road.name)
@@ -146,7 +147,7 @@ def _ask(search: Search) -> Outcome:
         search.query,
         question.road.name,
         Verdict.IMPOSSIBLE if impossibility else first.verdict,
-        "" if impossibility else _reason(answers, search.count),
+        NO_REASON if impossibility else _reason(answers, search.count),
         judged,
         first.found is not None and first.found.assumptions.natural,
         {**first.seconds, "all": since(begun)},
@@ -169,7 +170,7 @@ def _clearly_different(question: SearchProblem, search: Search) -> Iterator[Atte
         except BudgetExceeded as late:
             if not drives:
                 raise
-            yield Attempt(Verdict.UNKNOWN, None, str(late))
+            yield Attempt(Verdict.UNKNOWN, None, late.reason)
             return
         yield answer
         if answer.found is None:
@@ -177,10 +178,10 @@ def _clearly_different(question: SearchProblem, search: Search) -> Iterator[Atte
         drives.append(answer.found.drive)
 
 
-def _reason(answers: list[Attempt], count: int) -> str:
+def _reason(answers: list[Attempt], count: int) -> Reason:
     found = sum(a.found is not None for a in answers)
     if 0 < found < count:
-        return f"{found} of {count} drives that differ clearly; no further one: {answers[-1].reason}"
+        return Why.FEWER_DRIVES(found, count, answers[-1].reason)
     return answers[0].reason
 
 

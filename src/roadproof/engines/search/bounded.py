@@ -32,6 +32,6 @@ def check_bounded(search: Search) -> BoundedResult:
     if outcome.impossibility is not None:
         return BoundedResult(verdict=Verdict.PROVED, certificate=outcome.impossibility.certificate)
     if outcome.verdict is Verdict.NONE_WITHIN and outcome.limits is not None:
-        reason = outcome.limits.text(PROVE_OPTIONS)
+        reason = outcome.told(PROVE_OPTIONS)
         return BoundedResult(verdict=Verdict.PROVED_BOUNDED, reason=reason, limits=outcome.limits)
     return BoundedResult(verdict=Verdict.UNKNOWN, reason=outcome.reason)

@@ -19,6 +19,7 @@ from roadproof.library.motion import Assumption, value_texts
 from roadproof.library.specification import Query
 from roadproof.logic.formula import is_state
 from roadproof.logic.rewrite import is_cubic_state, parameters_of
+from roadproof.reasons import NO_REASON, Reason, Why, joined
 from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.runtime.executors import LostJob
 from roadproof.runtime.process_pool import answers_of
@@ -122,7 +123,7 @@ class _Question:
     def claim(self) -> Query:
         return implication(self.one, self.other)
 
-    def doubt(self, reason: str) -> Direction:
+    def doubt(self, reason: Reason) -> Direction:
         return Direction(self.claim, verdict=Verdict.UNKNOWN, reason=reason)
 
 
@@ -147,7 +148,7 @@ def _imply(question: _Question) -> Direction:
         with about(question.name):
             return _decide(replace(question.search, query=against, count=1), question.claim)
     except BudgetExceeded as late:
-        return question.doubt(str(late))
+        return question.doubt(late.reason)
 
 
 def _constant(against: Search, claim: Query) -> JudgedDrive | None:
@@ -169,7 +170,7 @@ def _at_values(against: Search, claim: Query, effort: Effort) -> Direction | Non
     said = value_texts(specification, values)
     result = prove(specification, claim, effort, assumed=Assumption(said))
     if result.holds:
-        reason = "; ".join(x for x in (result.reason, f"with {', '.join(said)}" if said else "") if x)
+        reason = joined((result.reason, Why.WITH(", ".join(said)) if said else NO_REASON))
         return Direction(claim, verdict=Verdict.PROVED, reason=reason, certificate=result.certificate)
     if result.countermodel is None:
         return None
@@ -190,9 +191,7 @@ def _decide(against: Search, claim: Query) -> Direction:
     left = Effort(effort.units, meter.seconds_left())
     if is_state(claim.formula) and not reads_all(against):
         direction = _at_values(against, claim, left)
-        return direction or Direction(
-            claim, verdict=Verdict.UNKNOWN, reason="neither a proof nor a state against it was found"
-        )
+        return direction or Direction(claim, verdict=Verdict.UNKNOWN, reason=Why.NO_STATE())
     found = ask(replace(against, search_options=replace(against.search_options, effort=left)))
     if found.drives:
         return Direction(claim, verdict=Verdict.REFUTED, drive=found.drives[0])

@@ -20,6 +20,7 @@ from roadproof.engines.solve.exact import solve_exactly
 from roadproof.engines.solve.milp import box_of, solve_mixed
 from roadproof.errors import UsageError
 from roadproof.logic.formula import Formula
+from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.progress import begin
 from roadproof.semantics.exact.exact import judge
@@ -43,7 +44,7 @@ class Attempt:
 
     verdict: DriveVerdict
     found: FoundDrive | None
-    reason: str
+    reason: Reason
     seconds: Mapping[str, float] = field(default_factory=dict)
     sizes: Mapping[str, int] = field(default_factory=dict)
     limits: Limits | None = None
@@ -96,18 +97,11 @@ def _from_starts(
     return Attempt(Verdict.UNKNOWN, None, _untold(tried if any(parts) else None))
 
 
-def _untold(tried: int | None) -> str:
+def _untold(tried: int | None) -> Reason:
     """Why there is no answer, after so many starts; None where none is sampled."""
-    part = "no engine reads a part of the formula about time 0"
     if tried is None:
-        return (
-            f"{part}: no drive was found on which it holds whatever that part says, and others were not tried"
-        )
-    if not tried:
-        return f"{part}, and no state in which it holds was found among those that were looked at"
-    return (
-        f"{part}: from {tried} sampled states in which it holds no drive was found, and others were not tried"
-    )
+        return Why.UNREAD()
+    return Why.UNREAD_SAMPLED(tried) if tried else Why.UNREAD_NO_STATE()
 
 
 def show_none(question: SearchProblem, search_options: SearchOptions) -> Attempt:
@@ -147,8 +141,8 @@ class _Search:
         self.seconds: dict[str, float] = {}
         self.sizes: dict[str, int] = {}
         self.meter = search_options.effort.meter()
-        self.doubt = ""
-        self.doubts: list[str] = []
+        self.doubt = NO_REASON
+        self.doubts: list[Reason] = []
         self.encoded: dict[tuple[Formula, Grid, Margin, bool], Circuit[ColumnInequality]] = {}
 
     def run(self) -> Attempt:
@@ -157,17 +151,17 @@ class _Search:
                 return self._answer(Verdict.UNKNOWN, None, self.meter.reason())
             found = self._attempt(lanes, grid, assumptions)
             if found is not None:
-                return self._answer(Verdict.WITNESSED, found, "")
+                return self._answer(Verdict.WITNESSED, found, NO_REASON)
         if self.meter.is_out():
             return self._answer(Verdict.UNKNOWN, None, self.meter.reason())
-        doubt = self.doubts[-1] if self.doubts else ""
+        doubt = self.doubts[-1] if self.doubts else NO_REASON
         if not self.search_options.explain or self.question.start is not None:
-            answer = self._answer(Verdict.UNKNOWN, None, doubt or "none was found")
+            answer = self._answer(Verdict.UNKNOWN, None, doubt or Why.NONE_FOUND())
             return replace(answer, exhausted=not doubt)
         answer = self.none()
         return replace(answer, reason=doubt) if doubt and answer.verdict is Verdict.UNKNOWN else answer
 
-    def _answer(self, verdict: DriveVerdict, found: FoundDrive | None, reason: str) -> Attempt:
+    def _answer(self, verdict: DriveVerdict, found: FoundDrive | None, reason: Reason) -> Attempt:
         return Attempt(verdict, found, reason, self.seconds, self.sizes)
 
     def _attempts(self) -> Iterator[tuple[Mapping[str, str], Grid, Assumptions]]:
@@ -178,7 +172,7 @@ class _Search:
         for group in self._groups():
             for lanes, assumptions in product(self.question.lanes, group):
                 for halvings in range(self.search_options.refinements + 1):
-                    self.doubt = ""
+                    self.doubt = NO_REASON
                     yield lanes, self.question.grid.finer(2**halvings), assumptions
                     if not self.doubt:
                         break
@@ -213,7 +207,7 @@ class _Search:
         solution = self._solve(problem)
         start = self._spent("solve", start)
         if solution.status != "found":
-            self.doubt = "the solver gave up" if solution.status == "unknown" else self.doubt
+            self.doubt = Why.SOLVER_GAVE_UP() if solution.status == "unknown" else self.doubt
             return None
         begin("shape", told)
         for drive in self._drives(problem, layout, solution, formula):
@@ -267,16 +261,18 @@ class _Search:
         if self.search_options.engine == "smt":
             yield round_drive(layout, vehicles, solution.values, None)
 
-    def _complaint(self, formula: Formula, drive: Drive, grid: Grid, assumptions: Assumptions) -> str | None:
+    def _complaint(
+        self, formula: Formula, drive: Drive, grid: Grid, assumptions: Assumptions
+    ) -> Reason | None:
         """Why a drive is no witness, or None."""
         breach = first_breach(drive, self.question.vehicles, None, self.question.road.line)
         if breach is not None:
-            return f"after rounding, {breach}"
+            return Why.BREACH(breach)
         overlap = None if assumptions.collisions else first_overlap(drive, grid.horizon)
         if overlap is not None:
-            return f"between the samples, {overlap}"
+            return Why.OVERLAP(overlap)
         if not judge(formula, drive).holds:
-            return f"the drives that were found fail the formula between the samples of dt={grid.dt} s"
+            return Why.BETWEEN_SAMPLES(grid.dt)
         return None
 
     def none(self) -> Attempt:
@@ -295,15 +291,14 @@ class _Search:
                 complaint = self._complaint(formula, drive, self.question.grid, assumptions)
                 if complaint is None:
                     found = FoundDrive(drive, lanes, formula, self.question.grid, assumptions)
-                    return self._answer(Verdict.WITNESSED, found, "")
+                    return self._answer(Verdict.WITNESSED, found, NO_REASON)
                 return self._answer(Verdict.UNKNOWN, None, complaint)
             if not by:
                 shown = ", ".join(f"{k}={v}" for k, v in lanes.items()) or self.question.road.name
-                reason = f"neither a drive nor a refutation was found with the work given for {shown}"
-                return self._answer(Verdict.UNKNOWN, None, reason)
+                return self._answer(Verdict.UNKNOWN, None, Why.NEITHER(shown))
             how.add(by)
         limits = self.question.limits(how)
-        return replace(self._answer(Verdict.NONE_WITHIN, None, limits.text()), limits=limits)
+        return replace(self._answer(Verdict.NONE_WITHIN, None, Why.TOLD(limits.text())), limits=limits)
 
     def _refute(self, problem: Problem) -> tuple[str, Sequence[float | Fraction] | None]:
         """How it was shown that ``problem`` has no solution (empty where it was not), or a solution."""

@@ -20,6 +20,7 @@ from roadproof.library.motion import Assumption, is_moving, under_limits
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.initial_conditions import pins
 from roadproof.logic.rewrite import is_cubic_state
+from roadproof.reasons import NO_REASON, Reason, Why, joined
 from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import ClaimVerdict, Verdict
@@ -83,9 +84,9 @@ def settle(
     try:
         found = _proved(specification, query, effort, (label, scenario), tuple(said))
     except BudgetExceeded as late:
-        return in_doubt(str(late), begun)
+        return in_doubt(late.reason, begun)
     if is_moving(said) and not found.holds:
-        found = replace(found, reason=f"{found.reason}; no drive that refutes it was looked for")
+        found = replace(found, reason=joined((found.reason, Why.NO_REFUTATION_SOUGHT())))
     return Settlement(found)
 
 
@@ -109,7 +110,7 @@ class _Settler:
         try:
             result = self._prove(BRIEF)
         except BudgetExceeded as late:
-            return in_doubt(str(late), self.begun)
+            return in_doubt(late.reason, self.begun)
         if result.verdict not in (Verdict.REFUTED, Verdict.UNKNOWN):
             return Settlement(result)
         try:
@@ -117,7 +118,7 @@ class _Settler:
         except BudgetExceeded as late:
             if result.verdict is Verdict.REFUTED:
                 return Settlement(result)
-            return in_doubt(str(late), self.begun)
+            return in_doubt(late.reason, self.begun)
 
     def _run(self, result: Result) -> Settlement:
         """A quick drive, a longer proof, a drive that takes a search, and the longest proof."""
@@ -136,7 +137,7 @@ class _Settler:
         if result.countermodel is not None:
             drive = steady_drive(self.specification, self.against, result.countermodel)
         if result.verdict is Verdict.UNKNOWN and is_moving(self.said):
-            result = replace(result, reason=f"{result.reason}; no drive was found that refutes it")
+            result = replace(result, reason=joined((result.reason, Why.NO_REFUTATION())))
         return Settlement(replace(result, seconds=since(self.begun)), drive)
 
     def _prove(self, units: float) -> Result:
@@ -148,7 +149,7 @@ class _Settler:
         return result.verdict is Verdict.UNKNOWN and units < self.effort.units
 
     def _refuted(self, result: Result, drive: JudgedDrive) -> Settlement:
-        return Settlement(replace(result, reason="", seconds=since(self.begun)), drive)
+        return Settlement(replace(result, reason=NO_REASON, seconds=since(self.begun)), drive)
 
     def _quick(self) -> JudgedDrive | None:
         """A short or steady drive on which the claim is false, found without a solver; None as below."""
@@ -204,14 +205,14 @@ def settle_bounded(search: "Search") -> Settlement:
     try:
         found = check_bounded(search)
     except BudgetExceeded as late:
-        return replace(in_doubt(str(late), begun), bounded=True)
+        return replace(in_doubt(late.reason, begun), bounded=True)
     if found.verdict is Verdict.PROVED:
         return settle(search.specification, search.query, search.search_options.effort)
     result = Result(verdict=found.verdict, reason=found.reason, seconds=since(begun))
     return Settlement(result, found.drive, found.limits, bounded=True)
 
 
-def in_doubt(reason: str, begun: float | None = None, stop: Stop = Stop.CLOCK) -> Settlement:
+def in_doubt(reason: Reason, begun: float | None = None, stop: Stop = Stop.CLOCK) -> Settlement:
     """What is said of a claim that nothing is known of; ``begun``: since when it was asked."""
     seconds = 0.0 if begun is None else since(begun)
     return Settlement(Result(verdict=Verdict.UNKNOWN, reason=reason, seconds=seconds, stop=stop))

@@ -15,6 +15,7 @@ from roadproof.library.elaborate import apply_definition, signature
 from roadproof.library.scenarios import LANE, Scenario, applied, name_of, number_in, numbers_of, vehicles_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
+from roadproof.reasons import NO_REASON
 from roadproof.verdict import ProofVerdict, Verdict
 
 SCHEMA: Final = "roadproof/classify/1"
@@ -45,7 +46,7 @@ class KeptClass:
     description: Annotated[str, UNCHECKED, Doc("What happens, in words.")]
     formula: Annotated[shared.Formula, Doc("The definition applied to the vehicles and L.")]
     verdict: Word
-    reason: shared.Reason = ""
+    reason: shared.Reason = NO_REASON
     drive: shared.KeptDrive = None
 
     def expected(self, common: Common) -> list[Formula]:
@@ -79,7 +80,7 @@ class Claim:
     ]
     claim: shared.Formula
     verdict: ProofVerdict
-    reason: shared.Reason = ""
+    reason: shared.Reason = NO_REASON
     certificate: shared.KeptCertificate = None
     seconds: shared.Seconds = 0.0
 

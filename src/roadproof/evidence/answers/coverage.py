@@ -15,6 +15,7 @@ from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.library.scenarios import numbers_of
 from roadproof.logic.formula import Formula
+from roadproof.reasons import NO_REASON
 from roadproof.verdict import ProofVerdict, Verdict
 
 SCHEMA: Final = "roadproof/coverage/1"
@@ -36,7 +37,7 @@ class Claim:
     claim: shared.Formula
     verdict: ProofVerdict
     certificate: shared.KeptCertificate = None
-    reason: shared.Reason = ""
+    reason: shared.Reason = NO_REASON
 
     def expected(self, common: Common, numbers: Sequence[int]) -> list[Formula]:
         """All claims that together say that there is no gap of the scenarios ``numbers``."""
@@ -98,7 +99,7 @@ class GapClass:
     gaps: tuple[Gap | int, ...]
     claim: Annotated[str, Doc("Of an IMPOSSIBLE: that the class is empty.")] = ""
     certificate: shared.KeptCertificate = None
-    reason: shared.Reason = ""
+    reason: shared.Reason = NO_REASON
     none_for: Annotated[
         Names, UNCHECKED, Doc("Wider sets for which no gap was found that they catch first.")
     ] = ()

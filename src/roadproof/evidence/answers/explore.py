@@ -23,6 +23,7 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.show import declared
 from roadproof.logic.syntax import BinaryOperator
+from roadproof.reasons import NO_REASON
 from roadproof.verdict import DriveVerdict
 from roadproof.world.signals import LIMITED, SignalName
 from roadproof.world.units import UNITS, unit_text
@@ -53,7 +54,7 @@ class Finding:
     ]
     verdict: DriveVerdict
     formula: shared.Formula
-    reason: shared.Reason = ""
+    reason: shared.Reason = NO_REASON
     number: Annotated[int | None, UNCHECKED, Doc("Tells drives apart; null where there is none.")] = None
     drive: shared.KeptDrive = None
     certificate: shared.KeptCertificate = None

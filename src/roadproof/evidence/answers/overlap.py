@@ -17,6 +17,7 @@ from roadproof.library.scenarios import LANE, Scenario, applied, vehicles_of
 from roadproof.library.specification import Query
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
+from roadproof.reasons import NO_REASON
 from roadproof.verdict import DriveVerdict, Verdict
 
 SCHEMA: Final = "roadproof/overlap/1"
@@ -57,7 +58,7 @@ class Pair:
     ]
     certificate: shared.KeptCertificate
     drive: shared.KeptDrive
-    reason: shared.Reason = ""
+    reason: shared.Reason = NO_REASON
     seconds: shared.Seconds = 0.0
 
     @property

@@ -15,6 +15,7 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.scenarios import Scenario, applied, leaves_at_once, vehicles_of
 from roadproof.library.specification import Query
 from roadproof.logic.formula import Formula
+from roadproof.reasons import NO_REASON
 from roadproof.verdict import Verdict
 
 SCHEMA: Final = "roadproof/redundancy/1"
@@ -40,7 +41,7 @@ class Finding:
     certificate: shared.KeptCertificate = None
     drive: shared.KeptDrive = None
     trace: KeptTrace | None = None
-    reason: shared.Reason = ""
+    reason: shared.Reason = NO_REASON
     late: Annotated[
         bool, UNCHECKED, Doc("Whether the clock cut it off, so that the next run asks again.")
     ] = False

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Annotated, Literal, TypeAlias
 
+from roadproof import reasons
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
 from roadproof.evidence.json_schema import Other, Plain, Shared
 from roadproof.library.words import Words
@@ -97,7 +98,7 @@ KeptKernel: TypeAlias = Annotated[
     Shared("kernel"),
 ]
 Reason: TypeAlias = Annotated[
-    str,
+    reasons.Reason,
     UNCHECKED,
     Doc("Why it is in doubt, or a note on it, in words; empty where there is nothing to say."),
     Shared("reason"),

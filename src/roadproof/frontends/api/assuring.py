@@ -27,6 +27,7 @@ from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Assurance
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library
+from roadproof.reasons import Reason, Why
 from roadproof.runtime.files import write_whole
 from roadproof.verdict import ExitCode
 
@@ -68,11 +69,11 @@ class AssuranceReport:
         ]
         return (*(_with_limits(x, limited) for x in self.case.elements.values()), *derived)
 
-    def reasons(self, name: str) -> tuple[str, ...]:
+    def reasons(self, name: str) -> tuple[Reason, ...]:
         """Why a solution or an undeveloped element does not hold."""
         if name in self.solutions:
             return self.solutions[name].reasons
-        return ("this part of the argument is not developed",)
+        return (Why.UNDEVELOPED(),)
 
     def as_data(self) -> JsonObject:
         """As the plain data of ``--json``."""

@@ -32,6 +32,7 @@ from roadproof.frontends.settings.questions import Check
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library
 from roadproof.library.words import called_by, legend
+from roadproof.reasons import Reason
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.executors import Jobs
 from roadproof.verdict import ExitCode
@@ -196,7 +197,7 @@ class _Job:
     ruled: OtherVerdict | None
 
 
-def _doubt(job: _Job, reason: str) -> Finding:
+def _doubt(job: _Job, reason: Reason) -> Finding:
     """The finding on a file that nothing is known of."""
     return Finding(str(job.path), "", Acceptance.UNDECIDED, reason)
 

@@ -21,7 +21,7 @@ from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers import coverage
 from roadproof.evidence.answers.catalogue_index import SCHEMA, AbstractTest, ConcreteTest, Index, KeptFact
 from roadproof.evidence.codec import read, write
-from roadproof.evidence.finding import STALE, Acceptance, Finding
+from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.evidence.folder import INDEX, FolderStatements
 from roadproof.evidence.strict import Fields, JsonObject, read_json
 from roadproof.frontends.api.definitions import Definitions
@@ -31,6 +31,7 @@ from roadproof.frontends.report.catalogue import former_table, tables
 from roadproof.frontends.settings.studies import Catalogue
 from roadproof.library.scenarios import name_of as scenario_name
 from roadproof.library.specification import Library
+from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.runtime.executors import Jobs
 
 _DERIVED = (
@@ -74,8 +75,7 @@ def compare(told: FolderStatements, jobs: Jobs = None, progress: Progress | None
         facts = tuple(_facts(index, told.folder, made.study))
         gaps = dict(_gaps(index, made.study))
     except RoadproofError as error:
-        reason = f"its tests cannot be judged again: {error}; check where the catalogue was asked for"
-        return Comparison((Finding(where, "index", Acceptance.UNDECIDED, reason),))
+        return Comparison((Finding(where, "index", Acceptance.UNDECIDED, Why.NOT_AGAIN(error)),))
     known: dict[str, Kept] = {"facts": facts, **gaps}
     again = DerivedResult(made, known)
     now = read(Index, inside(write(again.index({}, 0.0)), told.folder), where)
@@ -84,7 +84,7 @@ def compare(told: FolderStatements, jobs: Jobs = None, progress: Progress | None
     for name, content in written.items():
         path = told.folder / name
         if path.is_file() and path.read_bytes() not in (content, former_table(name, content)):
-            findings.append(_rejected(str(path), "it is not the table of these tests"))
+            findings.append(_rejected(str(path), Why.OTHER_TABLE()))
     return Comparison(tuple(findings), ("parameters", *written))
 
 
@@ -146,31 +146,30 @@ def _tests(index: Fields, again: Index, where: str) -> Iterator[Finding]:
     said = {str(x.get("id")): x for x in index.items("tests") if isinstance(x, dict)}
     now = {x.id: x for x in again.tests}
     if len(said) < len(index.items("tests")):
-        yield _rejected(where, "two tests of it have one id, or one is no object")
+        yield _rejected(where, Why.ONE_ID())
     for name, test in now.items():
         yield _of_test(name, said.get(name), test, where)
     for name in said:
         if name not in now:
-            yield _rejected(where, f"there is no such test now: the answer {STALE}", name)
+            yield _rejected(where, Why.TEST_GONE(), name)
 
 
 def _of_test(name: str, said: JsonObject | None, now: ConcreteTest | AbstractTest, where: str) -> Finding:
     if said is None:
-        return _rejected(where, f"the answer does not know this test: it {STALE}", name)
+        return _rejected(where, Why.TEST_UNKNOWN(), name)
     if isinstance(now, ConcreteTest) and said.get("sha256") != now.sha256:
-        gone = "is not there any more" if not now.sha256 else "has changed since it was judged"
-        return _rejected(where, f"{now.file} {gone}: the answer {STALE}", name)
+        return _rejected(where, (Why.FILE_CHANGED if now.sha256 else Why.FILE_GONE)(now.file), name)
     data = write(now)
     wrong = [key for key in dict.fromkeys((*said, *data)) if said.get(key) != data.get(key)]
     if wrong:
-        return _rejected(where, f"{', '.join(wrong)}: not what judging it again gives", name)
+        return _rejected(where, Why.JUDGED_OTHERWISE(", ".join(wrong)), name)
     if isinstance(now, AbstractTest):
-        return Finding(where, "index", Acceptance.ACCEPTED, "", "READ", f"test {name}", now.formula)
+        return Finding(where, "index", Acceptance.ACCEPTED, NO_REASON, "READ", f"test {name}", now.formula)
     shown = ", ".join(dict.fromkeys(x.what for x in now.shown)) or "no scenario"
     how = "read again" if now.fault else "judged again in dense time" if now.dense else "monitored again"
     told = f"cannot be read: {now.fault}" if now.fault else f"shows {shown}"
     checked = (how, "its file is unchanged")
-    return Finding(where, "test", Acceptance.ACCEPTED, "", "JUDGED", f"test {name}", told, checked)
+    return Finding(where, "test", Acceptance.ACCEPTED, NO_REASON, "JUDGED", f"test {name}", told, checked)
 
 
 # --- what is derived -----------------------------------------------------------------------------
@@ -186,48 +185,48 @@ def _about_facts(made: Examination, facts: Sequence[Fact], where: str) -> Iterat
     ends = {(x.other, x.term) for x in facts if x.term}
     for reach in made.study.reaches:
         if (reach.target, reach.term) not in ends:
-            yield _rejected(where, f"nothing is said of how far {reach.term} can go", reach.target)
+            yield _rejected(where, Why.NO_RANGE(reach.term), reach.target)
     for name, entry in entries.items():
         those = [x for x in facts if x.test == name]
         alone = [x for x in those if not x.other]
         if len(alone) != 1:
-            yield _rejected(where, "it does not say, or says twice, whether the test can be run", name)
+            yield _rejected(where, Why.RUNS_UNSAID(), name)
         elif alone[0].relation == "runs":
             known = {x.other for x in those}
             missing = [x for x in made.study.asked.scenarios_of(entry.query.vehicles) if x not in known]
             if missing:
-                yield _rejected(where, f"nothing is said of {', '.join(missing)}", name)
+                yield _rejected(where, Why.NOTHING_SAID(", ".join(missing)), name)
 
 
-def _wrong(fact: Fact, entries: Mapping[str, Abstract], made: Examination) -> str:
+def _wrong(fact: Fact, entries: Mapping[str, Abstract], made: Examination) -> Reason:
     """Why a fact is not about its test, or its drive does not show what it says; empty where it does."""
     asked = made.study.asked
     if fact.test:
         entry = entries.get(fact.test)
         if entry is None:
-            return "there is no such test with a formula"
+            return Why.NO_ABSTRACT_TEST()
         expected = entry.query
     else:
         expected = asked.query_of(fact.other)
     if not fact.test and fact.relation in ("reaches", "open"):
         known = {(x.target, x.term) for x in made.study.reaches}
         if (fact.other, fact.term) not in known or fact.sense not in get_args(Sense):
-            return "that was not asked: which number is least or greatest"
+            return Why.RANGE_UNASKED()
     elif fact.term or fact.sense or fact.at is not None:
-        return "it names a number, though no range was asked for"
+        return Why.NUMBER_UNASKED()
     if fact.premise.formula != expected.formula:
-        return f"its premise is not the formula of {fact.test or fact.other}"
+        return Why.OTHER_PREMISE(fact.test or fact.other)
     if fact.test and fact.other not in entries:
         reason = _wrong_target(fact, made)
         if reason:
             return reason
     if fact.drive is None or fact.relation == "reaches":
-        return "it names what drives show, and has none" if fact.also else ""
+        return Why.DRIVES_LACKING() if fact.also else NO_REASON
     shown = {*names_shown(fact.drive, asked)}
-    return "" if shown == {*fact.also} else f"its drive shows {', '.join(sorted(shown)) or 'nothing'}"
+    return NO_REASON if shown == {*fact.also} else Why.DRIVE_SHOWS(", ".join(sorted(shown)) or "nothing")
 
 
-def _wrong_target(fact: Fact, made: Examination) -> str:
+def _wrong_target(fact: Fact, made: Examination) -> Reason:
     """Why a fact of a test speaks of nothing that was asked, or its drive is on the other side of a model."""
     asked, target = made.study.asked, fact.other
     scenarios = {*map(scenario_name, asked.numbers)}
@@ -235,19 +234,19 @@ def _wrong_target(fact: Fact, made: Examination) -> str:
     if side is None:
         beside = {f"{x}@{y.specification.set_name}" for x in scenarios for y in made.study.beside}
         is_asked = target in ("", *scenarios, *beside, *asked.named.values())
-        return "" if is_asked else f"{target}: that was not asked"
+        return NO_REASON if is_asked else Why.UNASKED(target)
     scenario, wanted, model = side
     drivers = made.study.drivers
     if drivers is None or model not in drivers.models or scenario not in scenarios:
-        return f"{target}: that was not asked"
+        return Why.UNASKED(target)
     if fact.conclusion is not None and fact.conclusion.formula != asked.query_of(scenario).formula:
-        return f"its conclusion is not {scenario}"
+        return Why.OTHER_CONCLUSION(scenario)
     if fact.drive is None:
-        return ""
+        return NO_REASON
     found = decisions_of([fact.drive], [scenario], asked, drivers)
     if any((x.driver, x.side) == (model, wanted) for x in found):
-        return ""
-    return f"its drive is not {wanted} for {model}"
+        return NO_REASON
+    return Why.OTHER_SIDE(wanted, model)
 
 
 def _whole(index: Fields, again: Index, where: str) -> Iterator[Finding]:
@@ -265,13 +264,15 @@ def _whole(index: Fields, again: Index, where: str) -> Iterator[Finding]:
         if key not in evidence and found.get(key) != gaps.get(key)
     ]
     for key in wrong:
-        yield _rejected(where, f"{key}: not what follows from the tests; ask again")
+        yield _rejected(where, Why.DERIVED_OTHERWISE(key))
     if not wrong:
         kinds = (x for x in again.figures if not x.sector)
         told = ", ".join(f"{x.kind} {x.tested} of {x.total} (set {x.set_name})" for x in kinds)
         checked = ("derived again from tests and facts",)
-        yield Finding(where, "test", Acceptance.ACCEPTED, "", "DERIVED", "what is tested", told, checked)
+        yield Finding(
+            where, "test", Acceptance.ACCEPTED, NO_REASON, "DERIVED", "what is tested", told, checked
+        )
 
 
-def _rejected(where: str, reason: str, label: str = "") -> Finding:
+def _rejected(where: str, reason: Reason, label: str = "") -> Finding:
     return Finding(where, "index", Acceptance.REJECTED, reason, label=label)

@@ -22,6 +22,7 @@ from roadproof.evidence.kernel.source import file
 from roadproof.evidence.strict import read_json
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library
+from roadproof.reasons import Why
 from roadproof.runtime.executors import Jobs
 from roadproof.runtime.files import make_folder, write_whole
 from roadproof.runtime.package_data import shipped
@@ -179,4 +180,4 @@ def ruled(ruling: Ruling) -> OtherVerdict:
         *(("that the inductions hold on every trace",) * bool(premises.inductions)),
     )
     unchecked = ("queries for solvers", *untold)
-    return OtherVerdict(_OUTCOMES[ruling.word], ruling.reason, str(ruling), said, unchecked)
+    return OtherVerdict(_OUTCOMES[ruling.word], Why.TOLD(ruling.reason), str(ruling), said, unchecked)

@@ -17,6 +17,7 @@ from roadproof.evidence.folder import INDEX
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
 from roadproof.frontends.api.checking import check
 from roadproof.frontends.settings.keywords import CheckKeywords
+from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.verdict import ExitCode
 
 WHOLE = ("COVERED", "GAPS")
@@ -33,7 +34,7 @@ class SolutionCheck:
     does not hold, and the exit code that ``check`` gives them."""
 
     state: State
-    reasons: tuple[str, ...]
+    reasons: tuple[Reason, ...]
     exit_code: ExitCode
     verdicts: Mapping[str, int]
     sha256: str
@@ -69,7 +70,7 @@ def _stated(path: Path) -> tuple[Finding, ...] | None:
         claim = said.text("claim" if said.has("claim") else "formula")
         accepted = verdict in BOUNDED
         outcome = Acceptance.ACCEPTED if accepted else Acceptance.UNDECIDED
-        reason = "" if accepted else "name the folder of --out, of which check reads the evidence"
+        reason = NO_REASON if accepted else Why.NAME_FOLDER()
         found.append(Finding(said.where, NO_EVIDENCE, outcome, reason, verdict, "", claim))
     return tuple(found)
 
@@ -79,15 +80,13 @@ def judge_solution(
 ) -> SolutionCheck:
     """The state of a solution by the check of its evidence."""
     if isinstance(report, RoadproofError) or not path.exists():
-        told = str(report) if isinstance(report, RoadproofError) else f"{evidence.path} does not exist"
+        told = Why.TOLD(report) if isinstance(report, RoadproofError) else Why.NO_FILE(evidence.path)
         code = report.exit_code if isinstance(report, RoadproofError) else ExitCode.BAD_INPUT
         return SolutionCheck(State.BROKEN, (told,), ExitCode(code), {}, "", ())
     digest = digest_of(path)
     faults: list[_Fault] = []
     if evidence.sha256 not in ("", digest):
-        faults.append(
-            _Fault(State.BROKEN, f"{evidence.path} has changed: sha256 {digest}", ExitCode.UNEXPECTED)
-        )
+        faults.append(_Fault(State.BROKEN, Why.DIGEST(evidence.path, digest), ExitCode.UNEXPECTED))
     limits: tuple[Limit, ...] = ()
     verdicts: Mapping[str, int] = {}
     if report is None:
@@ -111,7 +110,7 @@ class _Fault:
     """Why a solution does not hold, with the exit code of that."""
 
     state: State
-    reason: str
+    reason: Reason
     code: ExitCode
 
 
@@ -126,30 +125,30 @@ def _faults(path: Path, evidence: Evidence, counted: Sequence[Finding], strict: 
     for x in counted:
         if x.outcome is not Acceptance.ACCEPTED:
             state = State.UNDECIDED if x.outcome is Acceptance.UNDECIDED else State.BROKEN
-            yield _Fault(state, f"{x.outcome}: {_named(x)}: {x.reason}", x.outcome.exit_code)
+            yield _Fault(state, Why.NOT_ACCEPTED(x.outcome, _named(x), x.reason), x.outcome.exit_code)
     whole = [x for x in evidence.expect if x in WHOLE]
     each = [x for x in evidence.expect if x not in WHOLE]
     word, why = whole_verdict(path, evidence.select) if whole else ("", "")
     if whole and word not in whole:
         state = State.UNDECIDED if word in ("UNKNOWN", "") else State.BROKEN
         code = ExitCode.UNKNOWN if state is State.UNDECIDED else ExitCode.UNEXPECTED
-        told = f"{evidence.path} is {word or 'without a verdict'}, expected {' or '.join(whole)}"
-        yield _Fault(state, f"{told}: {why}" if why else told, code)
+        told = evidence.path, word or "without a verdict", " or ".join(whole)
+        yield _Fault(state, Why.WHOLE_BECAUSE(*told, why) if why else Why.WHOLE(*told), code)
     accepted = [x for x in counted if x.outcome is Acceptance.ACCEPTED]
     if not counted:
-        told = f"no entry of {evidence.path} matches {', '.join(evidence.select) or 'anything'}"
-        yield _Fault(State.BROKEN, told, ExitCode.UNEXPECTED)
+        none = Why.NO_ENTRY(evidence.path, ", ".join(evidence.select) or "anything")
+        yield _Fault(State.BROKEN, none, ExitCode.UNEXPECTED)
     elif evidence.entries not in (None, len(counted)):
-        told = f"{evidence.path} has {len(counted)} entries, expected {evidence.entries}"
-        yield _Fault(State.BROKEN, told, ExitCode.UNEXPECTED)
+        other = Why.ENTRIES(evidence.path, len(counted), evidence.entries)
+        yield _Fault(State.BROKEN, other, ExitCode.UNEXPECTED)
     for x in accepted if each else ():
-        told = f"{x.verdict}: {_named(x)}, expected {' or '.join(each)}"
         if x.verdict not in each:
             open_ = x.verdict in _OPEN
             code = ExitCode.UNKNOWN if open_ else ExitCode.UNEXPECTED
-            yield _Fault(State.UNDECIDED if open_ else State.BROKEN, told, code)
+            unlike = Why.EXPECTED(x.verdict, _named(x), " or ".join(each))
+            yield _Fault(State.UNDECIDED if open_ else State.BROKEN, unlike, code)
         elif strict and x.kind == NO_EVIDENCE:
-            yield _Fault(State.UNDECIDED, f"{x.verdict}: {_named(x)} has no evidence", ExitCode.UNKNOWN)
+            yield _Fault(State.UNDECIDED, Why.LACKS_EVIDENCE(x.verdict, _named(x)), ExitCode.UNKNOWN)
 
 
 def _named(finding: Finding) -> str:

@@ -88,7 +88,7 @@ def as_text(study: Preventable, plates: Sequence[Plate], lemmas: Sequence[LemmaR
                 shown += f" and {len(line.spans) - _TOLD} more"
             lines.append(f"    {across.name} = {measured(across, line.at):<14} {shown}")
         for x in plate.shown:
-            told = x.reason
+            told: str = x.reason
             if x.drive is not None:
                 values = ", ".join(
                     f"{name} = {measured(known[name], x.values[name])}" for name in (across.name, along.name)

@@ -1,0 +1,199 @@
+"""Why an answer is in doubt, or evidence is not accepted: every kind of reason with its words.
+
+>>> Why.WORK(60.0)
+'no answer within 60 units of work'
+>>> Why.WORK(60.0).kind
+<Why.WORK: 'no answer within {:g} units of work'>
+"""
+
+from collections.abc import Iterable
+from enum import StrEnum, unique
+from functools import reduce
+from typing import Final
+
+
+class Reason(str):
+    """A reason as its words, which are empty where there is none; code decides by its ``kind``.
+
+    ``values``: what the words of the kind are filled in with.
+    """
+
+    kind: "Why"
+    values: tuple[object, ...]
+
+    def __new__(cls, kind: "Why", *values: object) -> "Reason":
+        made = super().__new__(cls, kind.value.format(*values))
+        made.kind, made.values = kind, values
+        return made
+
+    def __reduce__(self) -> tuple[type["Reason"], tuple[object, ...]]:
+        return Reason, (self.kind, *self.values)
+
+
+@unique
+class Why(StrEnum):
+    """The kinds of reasons. Called with what its words leave open, a kind gives a reason."""
+
+    NONE = ""
+    TOLD = "{}"
+    """Words from where they are known: of an error, of limits, of a cause, of an answer that was kept."""
+    AND = "{}; {}"
+    # Work that ended
+    WORK = "no answer within {:g} units of work"
+    CLOCK = (
+        "cut off by the clock after {:g} s, not by the count of work, so an idle or faster machine may "
+        "answer: raise --timeout"
+    )
+    PROCESS = "its process ended twice, the second time alone: {}"
+    WORKERS = "its workers ended each time, the last time while no other job ran"
+    # Proofs
+    FEW_LANES = "no countermodel on a road of few lanes"
+    GROUND_QUERY = "z3 gave no answer to the ground query"
+    STATE = "z3 gave no answer about a state: {}"
+    ELEMENTS = "no end after {} lanes and lanelets that must exist"
+    ROUNDS = "no end after {} rounds of instantiation"
+    TRACES = "the only countermodels found over points in time are no traces"
+    FACTS = "no proof was found from what is known of motion"
+    CONTRADICTION = "what is assumed contradicts itself, so every claim follows"
+    PREMISE = "the premise never holds, whatever the conclusion"
+    NO_CERTIFICATE = "a proof was found, but no certificate can be made of it: {}"
+    UNCONFIRMED = "a proof was found, but z3 answers {} to its derived query '{}'"
+    LEFT_OPEN = "not proved where it is left open what a driver prevents, and no other proof was looked for"
+    NO_REFUTATION = "no drive was found that refutes it"
+    NO_REFUTATION_SOUGHT = "no drive that refutes it was looked for"
+    NO_STATE = "neither a proof nor a state against it was found"
+    WITH = "with {}"
+    PROOF_LOST = "a proof was lost"
+    LATE_PROOF = "a proof that the class is empty was found late, and is not kept"
+    IMPOSSIBLE = "proved impossible: {}"
+    PROVED_CORE = "proved for all {}; core: {}"
+    PROVED_STATES = "proved for all states, with the parameters at their values here"
+    OPEN_READINGS = "neither a proof nor a drive against {}"
+    # Searches for drives
+    UNREAD = (
+        "no engine reads a part of the formula about time 0: no drive was found on which it holds whatever "
+        "that part says, and others were not tried"
+    )
+    UNREAD_NO_STATE = (
+        "no engine reads a part of the formula about time 0, and no state in which it holds was found among "
+        "those that were looked at"
+    )
+    UNREAD_SAMPLED = (
+        "no engine reads a part of the formula about time 0: from {} sampled states in which it holds no "
+        "drive was found, and others were not tried"
+    )
+    SOLVER_GAVE_UP = "the solver gave up"
+    NONE_FOUND = "none was found"
+    BREACH = "after rounding, {}"
+    OVERLAP = "between the samples, {}"
+    BETWEEN_SAMPLES = "the drives that were found fail the formula between the samples of dt={} s"
+    NEITHER = "neither a drive nor a refutation was found with the work given for {}"
+    FEWER_DRIVES = "{} of {} drives that differ clearly; no further one: {}"
+    NO_DRIVE = "no drive was found"
+    NO_DRIVE_ELSEWHERE = "no drive was found for the same in other places"
+    SEARCH_FOUND_NONE = "a search found none"
+    NONE_APART = "no drive was found that begins {:g} or more from all others"
+    NONE_AHEAD = "no drive was found with {:g} units of work, {} s ahead"
+    NONE_AHEAD_ELSEWHERE = f"{NONE_AHEAD}, for the same scenario on another road"
+    NO_PROOF_EITHER = "{}, and no proof with {:g}: {}"
+    ON_ROAD = "{} (road {}, {:g} units of work)"
+    NO_SEARCH = "no search on {}: {}"
+    NOT_ON = "{} on {}"
+    WORK_EACH = "{}; {:g} units of work each, {} s of driving"
+    NOT_LOOKED_THROUGH = "some of the simple drives were not looked through: {}"
+    NO_COMMON_STEP = "durations have no common step of {:g} s or more; no drive of coarser ones does"
+    FOUND_OVERLAP = "on the drive that was found, {}"
+    FOUND_REJECTED = "the drive that was found is rejected by the judge"
+    DRIVE_REJECTED = "the judge rejects its drive"
+    NO_GAP = "its drive is no gap when it is looked at as a test"
+    EXTREME = "the {} {}: {}"
+    OCCURS = "occurs in {}"
+    # Drivers
+    BOTH_SIDES = "drives were found on both sides"
+    ONE_SIDE = "drives found: {}; no other was looked for; nothing is proved"
+    ONE_SIDE_SOUGHT = "drives found: {}; a search found none on another side; nothing is proved"
+    NOT_BEFORE_DANGER = "no {} begins before danger does"
+    SLIGHT_CROSSING = "POV moves across at {:.2g} m/s when it begins, and is supposed to go on so"
+    SLIGHT_BRAKING = "POV brakes at {:.2g} m/s^2 when it begins, and is supposed to go on so"
+    NO_PLACE = "no place of the plane is {}"
+    CONTRADICTS_BOUNDARY = "the drive from {} (SI) is not {}, as the boundary says it is: {}"
+    # Evidence that is checked
+    DOES_NOT_HOLD = "the formula does not hold on the drive: {}"
+    NOT_REFUTED = "its trace does not refute it: {}"
+    NOT_DERIVED = "the query cannot be derived: {}"
+    NOT_UNSAT = "the query '{}' was answered {}, not unsat"
+    ASSUMPTIONS = "the assumptions are {}, not {}"
+    OPTIONS = "it does not name the options {}, but {}"
+    STORED_QUERY = "the stored query is not the one that claim and instances give"
+    UNSAID = "it does not say with which {} it was judged"
+    NO_SCENARIO = "scenario={}, but there is none of that number"
+    OTHER_SCENARIO = "scenario={}, but its formula is another: {:.120}"
+    OTHER_VERDICT = "its verdict is {:.40}, but a drive that holds is WITNESSED"
+    OTHER_VIEW = "its view is {:.40}, but a drive is judged in dense time"
+    OTHER_TIMES = "the times at which it says that its parts are true are not those"
+    NEEDS_SPECIFICATIONS = "{}; if it was made with specification files, name them with --spec FILE"
+    LINK = "a link is no evidence: copy the file"
+    TWIN = "it says again what {} says"
+    NOT_THERE = "{} is not there, or another index is about it"
+    UNNAMED = "no entry of the index names it"
+    # Catalogues that are judged again
+    NOT_AGAIN = "its tests cannot be judged again: {}; check where the catalogue was asked for"
+    OTHER_TABLE = "it is not the table of these tests"
+    ONE_ID = "two tests of it have one id, or one is no object"
+    TEST_GONE = "there is no such test now: the answer is stale; ask again"
+    TEST_UNKNOWN = "the answer does not know this test: it is stale; ask again"
+    FILE_GONE = "{} is not there any more: the answer is stale; ask again"
+    FILE_CHANGED = "{} has changed since it was judged: the answer is stale; ask again"
+    JUDGED_OTHERWISE = "{}: not what judging it again gives"
+    DERIVED_OTHERWISE = "{}: not what follows from the tests; ask again"
+    NO_RANGE = "nothing is said of how far {} can go"
+    RUNS_UNSAID = "it does not say, or says twice, whether the test can be run"
+    NOTHING_SAID = "nothing is said of {}"
+    NO_ABSTRACT_TEST = "there is no such test with a formula"
+    RANGE_UNASKED = "that was not asked: which number is least or greatest"
+    NUMBER_UNASKED = "it names a number, though no range was asked for"
+    UNASKED = "{}: that was not asked"
+    OTHER_PREMISE = "its premise is not the formula of {}"
+    OTHER_CONCLUSION = "its conclusion is not {}"
+    DRIVES_LACKING = "it names what drives show, and has none"
+    DRIVE_SHOWS = "its drive shows {}"
+    OTHER_SIDE = "its drive is not {} for {}"
+    # Requirements
+    NO_EVIDENCE = "there is no evidence for it"
+    NEVER_HOLDS = "it is proved that it never holds"
+    ONE_DRIVE = "a drive shows it once; a claim about all traffic needs a proof"
+    TRACE_REFUTES = "a judged drive or trace refutes it"
+    DRIVE_REFUTES = "a judged drive refutes it"
+    NO_DRIVE_SHOWS = "it is proved that no drive shows it"
+    OPPOSITE_DRIVE = "a drive shows the opposite; that alone excludes nothing"
+    OPPOSITE_PROVED = "the opposite is proved"
+    VACUOUS = "it holds only because its premise never does"
+    VERDICT = "{}: {}"
+    SHOWS_NONE = "it shows no scenario"
+    NO_DRIVE_OF_FORMULA = "no drive of its formula was found"
+    JUDGED_WITH = "judged with {}"
+    TEXT_CHANGED = "its text changed"
+    # Assurance cases
+    NAME_FOLDER = "name the folder of --out, of which check reads the evidence"
+    NO_FILE = "{} does not exist"
+    DIGEST = "{} has changed: sha256 {}"
+    NOT_ACCEPTED = "{}: {}: {}"
+    WHOLE = "{} is {}, expected {}"
+    WHOLE_BECAUSE = f"{WHOLE}: {{}}"
+    NO_ENTRY = "no entry of {} matches {}"
+    ENTRIES = "{} has {} entries, expected {}"
+    EXPECTED = "{}: {}, expected {}"
+    LACKS_EVIDENCE = "{}: {} has no evidence"
+    UNDEVELOPED = "this part of the argument is not developed"
+
+    def __call__(self, *values: object) -> Reason:
+        return Reason(self, *values)
+
+
+NO_REASON: Final = Why.NONE()
+
+
+def joined(reasons: Iterable[Reason]) -> Reason:
+    """Several reasons as one, without those that are empty."""
+    told = [x for x in reasons if x]
+    return reduce(Why.AND, told) if told else NO_REASON
