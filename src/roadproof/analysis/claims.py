@@ -7,13 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
-from roadproof.analysis.study.evidence_store import (
-    INDEX,
-    EvidenceStore,
-    Question,
-    readings,
-    write_index,
-)
+from roadproof.analysis.study.evidence_store import INDEX, EvidenceStore, Question, readings, write_index
 from roadproof.analysis.study.frame import Unprepared
 from roadproof.engines.prove.doubt import Cause, Doubt, Stop, doubt_of
 from roadproof.engines.prove.properties import Task, find_label, name_of_claim

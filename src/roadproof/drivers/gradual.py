@@ -123,11 +123,7 @@ def _value(gain: _Coefficients, turn: Point, is_lower: bool) -> Point:
     if linear == 0:
         return constant
     # y = constant + linear·t
-    coefficients = (
-        g * constant**2 - f * linear * constant + e * linear**2,
-        f * linear - 2 * g * constant,
-        g,
-    )
+    coefficients = (g * constant**2 - f * linear * constant + e * linear**2, f * linear - 2 * g * constant, g)
     lower, upper = (x for x, _ in real_roots(polynomial(*coefficients).numerators))
     return lower if is_lower == (linear > 0) else upper
 

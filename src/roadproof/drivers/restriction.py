@@ -46,12 +46,7 @@ class Restriction:
 
     def as_data(self) -> dict[str, object]:
         """What an answer says of it, as plain data."""
-        return {
-            "side": self.side,
-            "driver": self.model,
-            "of": self.about,
-            "scenarios": list(self.scenarios),
-        }
+        return {"side": self.side, "driver": self.model, "of": self.about, "scenarios": list(self.scenarios)}
 
     def __str__(self) -> str:
         said = f"{self.side} ({models.MODELS[self.model].title})"

@@ -198,10 +198,7 @@ class _Derivation:
         return applied if positive else f"(not {applied})"
 
     def _quantifier(
-        self,
-        formula: f.Until | f.Eventually | f.Always | f.Some | f.Every,
-        positive: bool,
-        moment: Moment,
+        self, formula: f.Until | f.Eventually | f.Always | f.Some | f.Every, positive: bool, moment: Moment
     ) -> str:
         key = (formula, positive, moment)
         if key not in self.defined:
@@ -211,10 +208,7 @@ class _Derivation:
         return self.defined[key]
 
     def _expand(
-        self,
-        formula: f.Until | f.Eventually | f.Always | f.Some | f.Every,
-        positive: bool,
-        moment: Moment,
+        self, formula: f.Until | f.Eventually | f.Always | f.Some | f.Every, positive: bool, moment: Moment
     ) -> str:
         site = Site(prefix_form(formula), positive, str(moment))
         match formula:

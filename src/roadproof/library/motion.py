@@ -55,10 +55,7 @@ SCHEMAS: Mapping[str, tuple[str, ...]] = {
     "after-twice": ("left", "right", "speed", "growth", "time"),
 }
 """The schemas of motion by what makes them, and what of: terms, but for ``inside``, a formula."""
-INDUCTIONS: Mapping[str, tuple[str, ...]] = {
-    "steps": ("inside", "low", "high"),
-    "lasts": ("inside", "time"),
-}
+INDUCTIONS: Mapping[str, tuple[str, ...]] = {"steps": ("inside", "low", "high"), "lasts": ("inside", "time")}
 """Schemas that are true on every trace, be it a motion or not."""
 ALL_SCHEMAS: Mapping[str, tuple[str, ...]] = {**SCHEMAS, **INDUCTIONS}
 

@@ -52,10 +52,7 @@ def product_dimension(left: Quantity, right: Quantity, sign: int) -> Dimension |
     """The dimension of a product (``sign`` 1) or a quotient (-1); None where one has none."""
     if left.dimension is None or right.dimension is None:
         return None
-    return (
-        left.dimension[0] + sign * right.dimension[0],
-        left.dimension[1] + sign * right.dimension[1],
-    )
+    return (left.dimension[0] + sign * right.dimension[0], left.dimension[1] + sign * right.dimension[1])
 
 
 LARGEST_FORMULA = 400_000  # parts; the largest that roadproof writes itself has 150,000

@@ -10,13 +10,7 @@ from typing import cast
 
 import lark
 from lark import Lark
-from lark.exceptions import (
-    UnexpectedCharacters,
-    UnexpectedEOF,
-    UnexpectedInput,
-    UnexpectedToken,
-    VisitError,
-)
+from lark.exceptions import UnexpectedCharacters, UnexpectedEOF, UnexpectedInput, UnexpectedToken, VisitError
 
 from roadproof.errors import Position, TextError
 from roadproof.logic import syntax

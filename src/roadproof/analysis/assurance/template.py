@@ -51,7 +51,7 @@ _TESTS: Mapping[str, _Use] = {
         "Review of the test catalogue",
         ("COVERED",),
         (EVERY_SCENARIO,),
-    ),
+    )
 }
 _DRIVER: Mapping[str, _Use] = {
     "preventable": _Use(
@@ -59,7 +59,7 @@ _DRIVER: Mapping[str, _Use] = {
         "Plates and lemmas of {manoeuvre}",
         ("WITNESSED", "PROVED"),
         ("careful*", "lemma*"),
-    ),
+    )
 }
 _BRANCHES: Sequence[tuple[str, str, Mapping[str, _Use]]] = (
     (

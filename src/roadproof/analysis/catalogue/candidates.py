@@ -16,7 +16,7 @@ from roadproof.analysis.catalogue.entries import Abstract
 from roadproof.analysis.placing import judged_as, placed
 from roadproof.analysis.study.known import shipped_answers
 from roadproof.engines.search.ask import telling_values
-from roadproof.engines.search.impossible import parts
+from roadproof.engines.search.impossible import at_start
 from roadproof.errors import RoadproofError
 from roadproof.evidence.answers import classify as kept
 from roadproof.evidence.codec import read
@@ -26,8 +26,6 @@ from roadproof.library.bind import bind
 from roadproof.library.compose import both
 from roadproof.library.scenarios import PAIR, SUBJECT, name_of
 from roadproof.library.specification import Query
-from roadproof.logic import formula as f
-from roadproof.logic.formula import Formula
 from roadproof.semantics.exact.exact import LazyJudge
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_vehicle
@@ -119,11 +117,6 @@ class CandidateDrives:
     def _on_another_road(self, wanted: Query) -> JudgedDrive | None:
         """The drive of the test itself where it shows the scenario, too."""
         return None if self.entry.road else placed(self.drive.file, wanted, self.basis.library)
-
-
-def at_start(formula: Formula) -> Formula:
-    """What a formula says of time 0 alone, which is judged quickly."""
-    return f.conjunction(*(part for part in parts(formula) if f.is_state(part)))
 
 
 def _moved_towards(drive: Drive, other: Drive) -> Iterator[Drive]:

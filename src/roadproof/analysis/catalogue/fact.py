@@ -1,12 +1,11 @@
 """What is known of a test or a target, with its evidence, and the same as plain data."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
 
 from roadproof.analysis.study.evidence_store import EvidenceStore
-from roadproof.evidence.answers.catalogue_index import FactVerdict, KeptFact, Relation
+from roadproof.evidence.answers.catalogue_index import VERDICTS, FactVerdict, KeptFact, Relation
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.strict import rational
@@ -14,17 +13,6 @@ from roadproof.library.compose import both, implication, negation
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Query, Specification
 from roadproof.reasons import NO_REASON, Reason
-from roadproof.verdict import Verdict
-
-_VERDICTS: Mapping[Relation, FactVerdict] = {
-    "implies": Verdict.PROVED,
-    "excludes": Verdict.PROVED,
-    "shows": Verdict.WITNESSED,
-    "runs": Verdict.WITNESSED,
-    "empty": Verdict.IMPOSSIBLE,
-    "reaches": Verdict.WITNESSED,
-    "open": Verdict.UNKNOWN,
-}
 
 
 @dataclass(frozen=True)
@@ -55,7 +43,7 @@ class Fact:
 
     @property
     def verdict(self) -> FactVerdict:
-        return _VERDICTS[self.relation]
+        return VERDICTS[self.relation]
 
     @property
     def query(self) -> Query:

@@ -22,7 +22,7 @@ from roadproof.recordings.evaluate.one_trace import (
 )
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.samples import ROAD_ENDING
-from roadproof.recordings.formats.source import beside
+from roadproof.recordings.formats.source import beside, file_digest
 from roadproof.recordings.formats.sources import find_source
 from roadproof.recordings.formats.storyboard.distributions import read_distribution, split
 from roadproof.world.motion import state_at
@@ -170,7 +170,7 @@ def digest_of(place: str) -> str:
     Of several files, such as those of a recording or samples with their road, it is that of the digests of
     all, one after the other.
     """
-    digests = [_sha256(path) for path in files_of(place)]
+    digests = [file_digest(path) for path in files_of(place)]
     if not digests or not all(digests):
         return ""
     return digests[0] if len(digests) == 1 else hashlib.sha256("".join(digests).encode()).hexdigest()
@@ -188,11 +188,3 @@ def files_of(place: str) -> tuple[Path, ...]:
     if varied is not None:
         return varied[0], read_distribution(varied[0]).scenario
     return (path, *(beside(path, ROAD_ENDING) if path.suffix in (".csv", ".parquet") else ()))
-
-
-def _sha256(path: Path) -> str:
-    try:
-        with path.open("rb") as file:
-            return hashlib.file_digest(file, "sha256").hexdigest()
-    except OSError:
-        return ""

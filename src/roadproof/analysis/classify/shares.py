@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import TypeAlias, TypeVar
 
 from roadproof.analysis.classify.classes import Class, Classes
-from roadproof.engines.search.impossible import parts
+from roadproof.engines.search.impossible import at_start
 from roadproof.evidence.answers import classify
 from roadproof.library.elaborate import apply_definition, walk_of
 from roadproof.library.scenarios import LANE, MIN_DANGER, PAIR, TRIPLE, disturbance, name_of, number_in
@@ -131,7 +131,7 @@ def questions_of(classes: Classes, specification: Specification, settings: Setti
                 starts.append(disturbance(specification, number, group.vehicles).formula)
             for name in names:
                 triples[of_three(name, 0)] = applied(name, group.vehicles)
-    begun = {START: f.disjunction(*map(_at_start, starts))}
+    begun = {START: f.disjunction(*map(at_start, starts))}
     return replace(
         ask(settings, rate),
         pairs=(_compiled(pairs, settings),) if pairs else (),
@@ -143,11 +143,6 @@ def questions_of(classes: Classes, specification: Specification, settings: Setti
 def _compiled(formulas: Mapping[K, Formula], settings: Settings) -> Monitor[K]:
     valued = all_with_values(formulas.values(), settings.values)
     return compile(dict(zip(formulas, valued, strict=True)))
-
-
-def _at_start(formula: Formula) -> Formula:
-    """What ``formula`` asks of its first instant: its state conjuncts; true where there is none."""
-    return f.conjunction(*(part for part in parts(formula) if f.is_state(part)))
 
 
 def add_shares(shares: Shares, classes: Classes, findings: Findings) -> None:

@@ -6,14 +6,7 @@ from itertools import combinations
 from textwrap import wrap
 
 from roadproof.analysis.classify.cells import Cell, query_of
-from roadproof.analysis.classify.classes import (
-    FILE_NAME,
-    SET_NAME,
-    Classes,
-    Group,
-    what_axis,
-    where_axis,
-)
+from roadproof.analysis.classify.classes import FILE_NAME, SET_NAME, Classes, Group, what_axis, where_axis
 from roadproof.analysis.study.evidence_store import specification_names
 from roadproof.errors import InputError
 from roadproof.evidence.answers.classify import Kind

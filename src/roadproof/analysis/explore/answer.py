@@ -64,11 +64,7 @@ class Measure:
 
 
 def read_measure(
-    specification: Specification,
-    sense: Sense,
-    text: str,
-    when: str = "",
-    given: tuple[Binding, ...] = (),
+    specification: Specification, sense: Sense, text: str, when: str = "", given: tuple[Binding, ...] = ()
 ) -> Measure:
     """A measure from what the user wrote, in the names that a formula has in its ``given``.
 

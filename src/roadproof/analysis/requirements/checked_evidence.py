@@ -22,6 +22,7 @@ from roadproof.library.motion import split
 from roadproof.library.specification import Library, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import without_names
 from roadproof.runtime.files import read_limited
 
 
@@ -84,11 +85,6 @@ def meaning_of(specification: Specification, claim: str, source: str = "claim") 
     """What a claim means in a specification. Raises ``InputError``."""
     assuming, rest = split(claim, source)
     return Meaning(without_names(read_claim(specification, rest, source).formula), assuming)
-
-
-def without_names(formula: Formula) -> Formula:
-    """A formula with the body of each definition in place of its name."""
-    return f.transform(formula, lambda x: x.body if isinstance(x, f.Application) else x)
 
 
 def read_findings(

@@ -7,12 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TypeAlias
 
-from roadproof.analysis.requirements.checked_evidence import (
-    CheckedEvidence,
-    Meaning,
-    meaning_of,
-    without_names,
-)
+from roadproof.analysis.requirements.checked_evidence import CheckedEvidence, Meaning, meaning_of
 from roadproof.analysis.requirements.requirement import Link
 from roadproof.errors import InputError, TextError, UsageError
 from roadproof.evidence.answers.trace import LinkState
@@ -21,6 +16,7 @@ from roadproof.library.bind import default_values
 from roadproof.library.elaborate import apply_definition
 from roadproof.library.scenario_references import read_query
 from roadproof.library.specification import Query, Specification
+from roadproof.logic.rewrite import without_names
 from roadproof.reasons import NO_REASON, Reason, Why
 
 _LABEL = re.compile(r"[A-Za-z][\w-]*( scenario \d+)? [A-Za-z][\w-]*")

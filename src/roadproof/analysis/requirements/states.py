@@ -112,13 +112,7 @@ def _link(found: _Matched, changes: tuple[str, ...]) -> TracedLink:
 
 def _traced(x: Requirement, links: Sequence[TracedLink], state: LinkState) -> TracedRequirement:
     return TracedRequirement(
-        id=x.id,
-        title=x.title,
-        text=x.text,
-        parents=x.parents,
-        place=x.place,
-        state=state,
-        links=tuple(links),
+        id=x.id, title=x.title, text=x.text, parents=x.parents, place=x.place, state=state, links=tuple(links)
     )
 
 

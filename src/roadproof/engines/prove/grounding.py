@@ -218,11 +218,7 @@ class Grounding:
                 assert_never(formula)
 
     def _over_roster(
-        self,
-        roster: Roster,
-        formula: f.Some | f.Every,
-        positive: bool,
-        at_element: Callable[[str], str],
+        self, roster: Roster, formula: f.Some | f.Every, positive: bool, at_element: Callable[[str], str]
     ) -> str:
         """A quantifier over all elements of the roster; a lanelet has its lane there, and one zone."""
         domain, exists = formula.domain, isinstance(formula, f.Some) == positive

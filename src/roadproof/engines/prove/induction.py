@@ -22,10 +22,7 @@ UNITS = 4.0
 
 
 def prove_by_induction(
-    specification: Specification,
-    query: Query,
-    said: Sequence[str],
-    effort: Effort,
+    specification: Specification, query: Query, said: Sequence[str], effort: Effort
 ) -> Result | None:
     """A proof of ``query`` that may use inductions; None where the claim has no step or no proof is found.
 

@@ -37,10 +37,7 @@ Moving = tuple[tuple[t.Signal, Fraction], ...]
 
 
 def prove_of_motions(
-    specification: Specification,
-    query: Query,
-    said: Sequence[str],
-    effort: Effort,
+    specification: Specification, query: Query, said: Sequence[str], effort: Effort
 ) -> Result:
     """Decide whether ``query`` holds on all motions: first with few facts about them, then with more.
 

@@ -111,6 +111,11 @@ def _shortened(
     return kept, True
 
 
+def at_start(formula: Formula) -> Formula:
+    """What a formula says of time 0 alone, which is judged quickly; true where that is nothing."""
+    return f.conjunction(*(part for part in parts(formula) if f.is_state(part)))
+
+
 def parts(formula: Formula) -> Iterator[Formula]:
     """The parts of a conjunction, through the names of definitions, down to temporal operators."""
     match formula:

@@ -14,15 +14,7 @@ from itertools import pairwise, product
 from math import prod
 from typing import Literal, TypeAlias
 
-from roadproof.engines.encode.problem import (
-    All,
-    AnyOf,
-    Circuit,
-    ColumnInequality,
-    Leaf,
-    all_of,
-    any_of,
-)
+from roadproof.engines.encode.problem import All, AnyOf, Circuit, ColumnInequality, Leaf, all_of, any_of
 
 Side: TypeAlias = Literal["inner", "outer"]
 # Lower and upper bound of each column.

@@ -4,20 +4,13 @@ Concrete tests are their own evidence, and are not in the folder: ``api.judging_
 and derives all other fields.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
 from roadproof.errors import InputError
 from roadproof.evidence.answers import coverage
-from roadproof.evidence.answers.catalogue_index import (
-    FactVerdict,
-    Index,
-    KeptFact,
-    Preamble,
-    Record,
-    Relation,
-)
+from roadproof.evidence.answers.catalogue_index import VERDICTS, Index, KeptFact, Preamble, Record
 from roadproof.evidence.answers.entry import Common, Entry, file_of, shows_of, shows_of_claim
 from roadproof.evidence.answers.reader import Background, Reader
 from roadproof.evidence.strict import Fields, rational
@@ -27,18 +20,7 @@ from roadproof.library.scenarios import Scenario, applied, number_in
 from roadproof.library.specification import Query
 from roadproof.logic.formula import Compare, Formula
 from roadproof.logic.terms import constant_value
-from roadproof.verdict import Verdict
 from roadproof.world.units import unit_text
-
-_VERDICTS: Mapping[Relation, FactVerdict] = {
-    "implies": Verdict.PROVED,
-    "excludes": Verdict.PROVED,
-    "shows": Verdict.WITNESSED,
-    "runs": Verdict.WITNESSED,
-    "empty": Verdict.IMPOSSIBLE,
-    "reaches": Verdict.WITNESSED,
-    "open": Verdict.UNKNOWN,
-}
 
 
 def _facts(facts: Sequence[KeptFact], background: Background, where: str) -> Iterator[Entry]:
@@ -87,8 +69,8 @@ def _query(fact: KeptFact, common: Common) -> Query:
 
 def _fault(fact: KeptFact, where: str, common: Common) -> str:
     """Where a fact is not about its premise and conclusion, or these not about the scenario that it names."""
-    if _VERDICTS[fact.relation] != fact.verdict:
-        wanted = _VERDICTS[fact.relation]
+    if VERDICTS[fact.relation] != fact.verdict:
+        wanted = VERDICTS[fact.relation]
         return f"{where}: relation={fact.relation!r} goes with {wanted}, not with {fact.verdict}"
     if fact.relation not in ("reaches", "open") and (fact.term or fact.sense or fact.at is not None):
         return f"{where}: relation={fact.relation!r} goes with no term, no sense and no value"
@@ -157,12 +139,7 @@ def _record_faults(kept: Record, background: Background) -> Iterator[str]:
 
 READER = replace(
     Reader.of(
-        Index,
-        Preamble,
-        Record,
-        _entries,
-        file_name=lambda kept: kept.name,
-        record_faults=_record_faults,
+        Index, Preamble, Record, _entries, file_name=lambda kept: kept.name, record_faults=_record_faults
     ),
     unchecked=("seconds", "facts[].reason"),
     unchecked_kept=(

@@ -21,6 +21,15 @@ Kind: TypeAlias = Literal["scenarios", "classes", "classes of gaps"]
 Look: TypeAlias = Literal["fixed", "any"]
 Relation: TypeAlias = Literal["implies", "excludes", "shows", "runs", "empty", "reaches", "open"]
 FactVerdict: TypeAlias = Literal[Verdict.PROVED, Verdict.WITNESSED, Verdict.IMPOSSIBLE, Verdict.UNKNOWN]
+VERDICTS: Mapping[Relation, FactVerdict] = {
+    "implies": Verdict.PROVED,
+    "excludes": Verdict.PROVED,
+    "shows": Verdict.WITNESSED,
+    "runs": Verdict.WITNESSED,
+    "empty": Verdict.IMPOSSIBLE,
+    "reaches": Verdict.WITNESSED,
+    "open": Verdict.UNKNOWN,
+}
 TestedSide: TypeAlias = Literal["preventable", "unpreventable", "not foreseen", "undecided", "partly"]
 
 
@@ -185,14 +194,10 @@ class KeptDecision:
     vehicles: Vehicles
     driver: Literal["careful", "r157", "eu1426", "rss", "fsm"]
     side: TestedSide
-    at: Annotated[
-        Time | None,
-        Doc("When the manoeuvre begins, in s; null where it does not before danger."),
-    ]
+    at: Annotated[Time | None, Doc("When the manoeuvre begins, in s; null where it does not before danger.")]
     metres: Annotated[Time | None, Doc("From the gap to the nearest one with the other answer.")]
     seconds: Annotated[
-        Time | None,
-        Doc("From the response time of the model to the nearest one with the other answer."),
+        Time | None, Doc("From the response time of the model to the nearest one with the other answer.")
     ]
     start: Annotated[
         Mapping[str, float],
@@ -210,8 +215,7 @@ class Range:
     tested: Annotated[Bounds, Doc("From the least to the greatest of its concrete tests.")]
     reached: Annotated[Bounds, Doc("Least and greatest of drives that were looked for, and of tests.")]
     untested: Annotated[
-        tuple[Bounds, ...],
-        Doc("What of it no test is in or between; the facts have a drive at each end."),
+        tuple[Bounds, ...], Doc("What of it no test is in or between; the facts have a drive at each end.")
     ]
     share: Annotated[float, Rule(minimum=0), Doc("How much of it that is, from 0 to 1.")]
     beyond: Annotated[tuple[str, str], Doc("What is known of lower and of higher values.")]
@@ -270,8 +274,7 @@ class Index(Preamble, shared.Heading):
     targets: tuple[Target, ...]
     gaps: Gaps
     not_tested: Annotated[
-        Names,
-        Doc("Scenarios and classes that no test shows or implies; with --gaps classes of gaps too."),
+        Names, Doc("Scenarios and classes that no test shows or implies; with --gaps classes of gaps too.")
     ]
     figures: Annotated[tuple[Figure, ...], Doc("How much is tested.")]
     decisions: Annotated[

@@ -39,9 +39,7 @@ class KeptClass:
         Numbers, UNCHECKED, Doc("What happens: scenarios, each the first with its disturbance.")
     ]
     where: Annotated[
-        str | None,
-        UNCHECKED,
-        Doc("The road sectors, such as main; null where they make no difference."),
+        str | None, UNCHECKED, Doc("The road sectors, such as main; null where they make no difference.")
     ]
     description: Annotated[str, UNCHECKED, Doc("What happens, in words.")]
     formula: Annotated[shared.Formula, Doc("The definition applied to the vehicles and L.")]

@@ -51,14 +51,10 @@ class Gap:
     road: Road
     formula: shared.Formula
     first: Annotated[
-        str,
-        UNCHECKED,
-        Doc("The first of the wider sets that catches it; empty where none does."),
+        str, UNCHECKED, Doc("The first of the wider sets that catches it; empty where none does.")
     ]
     caught_by: Annotated[
-        tuple[Names, ...],
-        UNCHECKED,
-        Doc("The smallest choices of definitions of that set which catch it."),
+        tuple[Names, ...], UNCHECKED, Doc("The smallest choices of definitions of that set which catch it.")
     ]
     classes: Annotated[Names, UNCHECKED, Doc("The parts for which it is a near miss.")]
     drive: shared.KeptDrive = None

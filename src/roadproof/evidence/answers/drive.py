@@ -113,9 +113,7 @@ class Motion:
     """A box: s and d are those of its front-left corner, s along the road, d to the left."""
 
     kind: Annotated[
-        Kind | None,
-        LEFT_OUT,
-        Doc("What kind of vehicle it is; left out where nothing says it."),
+        Kind | None, LEFT_OUT, Doc("What kind of vehicle it is; left out where nothing says it.")
     ] = None
     length: Annotated[Fraction, Doc("In m.")]
     width: Annotated[Fraction, Doc("In m.")]
@@ -195,8 +193,7 @@ class AnyDrive:
         bool, LEFT_OUT, Doc("Whether boxes may overlap; false where it is left out.")
     ] = False
     parameters: Annotated[
-        Mapping[str, str],
-        Doc("Values of parameters (rationals, SI units) and readings of options, by name."),
+        Mapping[str, str], Doc("Values of parameters (rationals, SI units) and readings of options, by name.")
     ]
     road: KeptRoad
     vehicles: Mapping[str, Motion]

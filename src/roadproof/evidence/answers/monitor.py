@@ -24,9 +24,7 @@ class Part:
     ]
     undecided: Annotated[Spans, Doc("When that depends on what comes after the trace: as above.")]
     exact: Annotated[
-        str,
-        LEFT_OUT,
-        Doc("When it is true, with open and closed ends, in s; where the view is dense."),
+        str, LEFT_OUT, Doc("When it is true, with open and closed ends, in s; where the view is dense.")
     ] = ""
 
 
@@ -78,8 +76,7 @@ class Observation(PlainHeading):
     ]
     verdict: Annotated[Truth, Doc("At the first sample.")]
     under_the_other_end: Annotated[
-        Truth | None,
-        Doc("The verdict with the other of truncated and clip; null where the view is dense."),
+        Truth | None, Doc("The verdict with the other of truncated and clip; null where the view is dense.")
     ]
     robustness: Annotated[
         tuple[float | None, float | None],

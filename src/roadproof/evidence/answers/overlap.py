@@ -52,9 +52,7 @@ class Pair:
     ]
     core: Annotated[tuple[str, ...], UNCHECKED, Doc("Parts that clash, of all cores.")]
     cores: Annotated[
-        tuple[Clash, ...],
-        UNCHECKED,
-        Doc("For each way in which the two can meet, parts that clash."),
+        tuple[Clash, ...], UNCHECKED, Doc("For each way in which the two can meet, parts that clash.")
     ]
     certificate: shared.KeptCertificate
     drive: shared.KeptDrive

@@ -40,9 +40,7 @@ class Claim:
     verdict: ClaimVerdict
     evidence: Annotated[object, File(), Doc("Certificate or drive file beside the index.")]
     counterexample: Annotated[
-        KeptTrace | None,
-        LEFT_OUT,
-        Doc("Where there is no file: the trace that refutes the claim, or null."),
+        KeptTrace | None, LEFT_OUT, Doc("Where there is no file: the trace that refutes the claim, or null.")
     ] = ABSENT
 
     def expected(self, common: Common) -> list[Formula]:
@@ -204,8 +202,7 @@ class ClaimAnswer:
     set: shared.SetName
     claim: shared.Formula
     assuming: Annotated[
-        tuple[shared.Formula, ...],
-        Doc("What the claim is said under; empty where it is about all traces."),
+        tuple[shared.Formula, ...], Doc("What the claim is said under; empty where it is about all traces.")
     ]
     expected: Annotated[ClaimVerdict, Doc("The verdict with which the exit code is 0.")]
     verdict: ClaimVerdict

@@ -34,8 +34,7 @@ class Finding:
     redundant: Annotated[bool | None, Doc("Whether the part could be left out; null in doubt.")]
     verdict: Word
     assuming: Annotated[
-        str,
-        Doc("Of motion: that a vehicle which leaves L has a first moment outside it; else empty."),
+        str, Doc("Of motion: that a vehicle which leaves L has a first moment outside it; else empty.")
     ]
     claim: Annotated[shared.Formula, Doc("That the scenario stays what it is.")]
     certificate: shared.KeptCertificate = None

@@ -85,8 +85,7 @@ class TracedLink:
     state: LinkState
     reason: Reason
     changes: Annotated[
-        tuple[str, ...],
-        Doc("What the link rests on and is another now, such as parameter rho: 3/5 -> 1/2."),
+        tuple[str, ...], Doc("What the link rests on and is another now, such as parameter rho: 3/5 -> 1/2.")
     ]
     evidence: tuple[LinkedEvidence, ...]
 

@@ -100,8 +100,7 @@ class Prediction:
     scenario: shared.Number
     driver: Driver
     preventable: Annotated[
-        shared.Count,
-        Doc("Matches in which the model prevents a collision from where the manoeuvre begins."),
+        shared.Count, Doc("Matches in which the model prevents a collision from where the manoeuvre begins.")
     ]
     unpreventable: Annotated[shared.Count, Doc("Those in which it does not.")]
     not_foreseen: Annotated[
@@ -129,15 +128,13 @@ class Answer(shared.PlainHeading):
     undecided: Annotated[shared.Count, Doc("Those that depend on what comes after a trace.")]
     differing: Annotated[shared.Count, Doc("Those that truncated and clip answer otherwise.")]
     table: Annotated[
-        tuple[Row, ...],
-        Doc("A row for each road sector that the recordings have, min_danger and set."),
+        tuple[Row, ...], Doc("A row for each road sector that the recordings have, min_danger and set.")
     ]
     words: Annotated[tuple[shared.KeptWords, ...], Doc("What the scenarios are called.")]
     detectors: Annotated[Mapping[str, shared.Count], Doc("Pairs that each detector reports.")]
     checks: Checks
     repeats: Annotated[
-        tuple[Repeat, ...],
-        Doc("What an earlier recording shows too, which is counted there only."),
+        tuple[Repeat, ...], Doc("What an earlier recording shows too, which is counted there only.")
     ]
     notes: Annotated[Mapping[str, tuple[str, ...]], Doc("What is odd, by recording, in words.")]
     failed: Annotated[Mapping[str, str], Doc("Recordings that were left out, and why.")]

@@ -45,11 +45,7 @@ def models_of(vehicles: Vehicles) -> dict[str, Vehicle]:
 
 
 def searches_of(
-    home: Definitions,
-    what: Sequence[What],
-    place: "Setting",
-    search_options: "SearchOptions",
-    count: int = 1,
+    home: Definitions, what: Sequence[What], place: "Setting", search_options: "SearchOptions", count: int = 1
 ) -> "Iterator[Search]":
     """A search for each formula in each spec set; without any, for all scenarios of the set.
 
@@ -103,10 +99,4 @@ def basis_of(home: Definitions, given: Budget, vehicles: Vehicles = None) -> "Ba
     for name in models:
         if name and name not in known:
             raise UsageError(f"vehicle {name}: scenarios mention {', '.join(sorted(known))}")
-    return Basis(
-        home.specification,
-        home.sets,
-        home.all_values(),
-        effort=work_of(given),
-        vehicles=models,
-    )
+    return Basis(home.specification, home.sets, home.all_values(), effort=work_of(given), vehicles=models)

@@ -159,10 +159,7 @@ def _findings(given: Requirements, targets: Targets, asked: Settings) -> tuple[F
     if not there:
         return ()
     keywords = CheckKeywords(
-        solver=asked.solver,
-        specs=given.settings.evidence_specs,
-        jobs=asked.jobs,
-        progress=asked.progress,
+        solver=asked.solver, specs=given.settings.evidence_specs, jobs=asked.jobs, progress=asked.progress
     )
     return check(*there, **keywords).findings
 

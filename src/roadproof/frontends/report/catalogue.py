@@ -90,11 +90,7 @@ _INCH_A_LETTER = 0.06  # of labels at 7 points
 
 
 def as_text(
-    tests: int,
-    found: Targets,
-    notes: Sequence[str],
-    counted: Sequence[Figure],
-    drivers: Iterable[str] = (),
+    tests: int, found: Targets, notes: Sequence[str], counted: Sequence[Figure], drivers: Iterable[str] = ()
 ) -> str:
     """How much is tested, in ``counted`` figures, what is missing, and every remark.
 

@@ -194,11 +194,7 @@ def _gaps(
 
 
 def _margins(
-    file: DriveFile,
-    library: Library,
-    direction: Direction,
-    pair: tuple[str, str],
-    times: Sequence[Fraction],
+    file: DriveFile, library: Library, direction: Direction, pair: tuple[str, str], times: Sequence[Fraction]
 ) -> Sequence[float] | None:
     """RSS distance less gap at each time; None where the library's definition is of another form."""
     formula = _bound(file, library, lambda home: too_near(home, direction, *pair))

@@ -99,12 +99,7 @@ class _Drawing:
         return self._changing(element("g", *shapes), "transform", moved, places, part)
 
     def _changing(
-        self,
-        shape: Element,
-        name: str,
-        values: Sequence[str],
-        numbers: Sequence[Sequence[float]],
-        part: str,
+        self, shape: Element, name: str, values: Sequence[str], numbers: Sequence[Sequence[float]], part: str
     ) -> Element:
         """A shape with a property that has ``values`` at each instant, which are ``numbers`` in pixels."""
         kept = sorted(_kept(numbers, 0, len(numbers) - 1))

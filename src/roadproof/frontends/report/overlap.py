@@ -169,9 +169,7 @@ def _cells(verdicts: Sequence[PairVerdict], across: bool) -> Mapping[tuple[int, 
     return cells if across else cells | {(b, a): verdict for (a, b), verdict in cells.items()}
 
 
-def _captions(
-    verdicts: Sequence[PairVerdict],
-) -> tuple[list[str], dict[tuple[int, int], int]]:
+def _captions(verdicts: Sequence[PairVerdict]) -> tuple[list[str], dict[tuple[int, int], int]]:
     """The different cores, and for each pair the number of its own from 1."""
     captions: list[str] = []
     numbers: dict[tuple[int, int], int] = {}

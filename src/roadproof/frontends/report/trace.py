@@ -4,13 +4,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from roadproof.evidence.answers.trace import (
-    Answer,
-    LinkedEvidence,
-    LinkState,
-    TracedLink,
-    TracedRequirement,
-)
+from roadproof.evidence.answers.trace import Answer, LinkedEvidence, LinkState, TracedLink, TracedRequirement
 from roadproof.evidence.answers.trace_changes import Change, Changes
 from roadproof.evidence.finding import Acceptance
 from roadproof.frontends.report.sheet import Column, Sheet, aligned, excerpt

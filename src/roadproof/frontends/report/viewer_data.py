@@ -15,13 +15,7 @@ from roadproof.drivers.words import words_of_parts
 from roadproof.errors import InputError, RoadproofError, UsageError
 from roadproof.evidence.drive_file import DriveFile, drive_data
 from roadproof.frontends.report import viewer_document as document
-from roadproof.frontends.report.drive_data import (
-    GRAIN,
-    Direction,
-    dangers_of,
-    distances_of,
-    vehicles_of,
-)
+from roadproof.frontends.report.drive_data import GRAIN, Direction, dangers_of, distances_of, vehicles_of
 from roadproof.library.bind import bind, values_with
 from roadproof.library.scenario_references import read_query
 from roadproof.library.scenarios import SUBJECT, scenario_number

@@ -46,11 +46,7 @@ def _key(match: Match) -> _Key:
 
 
 def _labels(
-    recording: Recording,
-    questions: Questions,
-    course: Course,
-    keys: Sequence[_Key],
-    place: Mapping[int, int],
+    recording: Recording, questions: Questions, course: Course, keys: Sequence[_Key], place: Mapping[int, int]
 ) -> list[tuple[int | None, tuple[str, ...]]]:
     """For each trace the frame at which the course begins, and a label for each driver that is asked for."""
     who = [[place[x] for x in key[:3] if x is not None] for key in keys]

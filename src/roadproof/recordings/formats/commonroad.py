@@ -18,14 +18,7 @@ from roadproof.recordings.formats.lanelets import network_of
 from roadproof.recordings.formats.measured_roads import MeasuredTraffic, place_traffic
 from roadproof.recordings.formats.neighbours import describe_overlaps
 from roadproof.recordings.formats.plausible import SHARE, check
-from roadproof.recordings.formats.recording import (
-    Bools,
-    Floats,
-    Integers,
-    Recording,
-    offsets,
-    with_notes,
-)
+from roadproof.recordings.formats.recording import Bools, Floats, Integers, Recording, offsets, with_notes
 from roadproof.recordings.formats.reliable import contradicts_motion, named, reliable
 from roadproof.recordings.formats.repeats import moments_of
 from roadproof.recordings.formats.source import Format, find_files

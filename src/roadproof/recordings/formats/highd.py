@@ -79,18 +79,13 @@ UPPER, LOWER = 1, 2
 """Driving directions: on the upper lanes towards -x, on the lower ones towards +x."""
 
 _RECORDING_KINDS = kinds_of(
-    integer="id numVehicles numCars numTrucks",
-    number="frameRate",
-    text="upperLaneMarkings lowerLaneMarkings",
+    integer="id numVehicles numCars numTrucks", number="frameRate", text="upperLaneMarkings lowerLaneMarkings"
 )
 _VEHICLE_KINDS = kinds_of(
-    integer="id initialFrame finalFrame numFrames drivingDirection",
-    number="width height",
-    text="class",
+    integer="id initialFrame finalFrame numFrames drivingDirection", number="width height", text="class"
 )
 SAMPLE_KINDS = kinds_of(
-    integer="frame id laneId",
-    number="x y width height xVelocity yVelocity xAcceleration yAcceleration",
+    integer="frame id laneId", number="x y width height xVelocity yVelocity xAcceleration yAcceleration"
 )
 
 _NUMBERS = tuple(x for x, kind in SAMPLE_KINDS.items() if kind == "number")

@@ -40,11 +40,7 @@ from roadproof.recordings.formats.tracks import (
     usable,
 )
 
-NO_VEHICLES: Mapping[str, str] = {
-    "pedestrian": "pedestrians",
-    "bicycle": "cyclists",
-    "animal": "animals",
-}
+NO_VEHICLES: Mapping[str, str] = {"pedestrian": "pedestrians", "bicycle": "cyclists", "animal": "animals"}
 """Classes that are no vehicles in traffic."""
 
 

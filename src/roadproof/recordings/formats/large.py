@@ -17,13 +17,7 @@ from roadproof.errors import InputError
 from roadproof.recordings.formats import windows
 from roadproof.recordings.formats.content import require_unchanged, stamp_of
 from roadproof.recordings.formats.contradictions import contradictions
-from roadproof.recordings.formats.converted import (
-    HEAD,
-    SAMPLES,
-    divide_converted,
-    frame_of_samples,
-    head_of,
-)
+from roadproof.recordings.formats.converted import HEAD, SAMPLES, divide_converted, frame_of_samples, head_of
 from roadproof.recordings.formats.plausible import ContradictionChecks
 from roadproof.recordings.formats.recording import OF_SAMPLES, OF_VEHICLES, Integers, Recording, offsets
 from roadproof.recordings.formats.reliable import (

@@ -18,14 +18,9 @@ from roadproof.recordings.formats.recording import Integers, Recording
 from roadproof.recordings.formats.table import Kind, Table, kinds_of, read_named
 from roadproof.recordings.formats.tracks import cells_of, in_order, match_vehicles, rate_of, vehicles_by_id
 
-RECORDING_KINDS = kinds_of(
-    integer="recordingId locationId",
-    number="frameRate xUtmOrigin yUtmOrigin",
-)
+RECORDING_KINDS = kinds_of(integer="recordingId locationId", number="frameRate xUtmOrigin yUtmOrigin")
 VEHICLE_KINDS = kinds_of(
-    integer="recordingId trackId initialFrame finalFrame numFrames",
-    number="width length",
-    text="class",
+    integer="recordingId trackId initialFrame finalFrame numFrames", number="width length", text="class"
 )
 SAMPLE_KINDS = kinds_of(
     integer="recordingId trackId frame",

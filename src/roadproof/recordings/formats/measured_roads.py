@@ -14,12 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from roadproof.recordings.formats.lanelets import used_lanes
-from roadproof.recordings.formats.line_coordinates import (
-    BLOCK,
-    LineCoordinates,
-    motion_along,
-    project,
-)
+from roadproof.recordings.formats.line_coordinates import BLOCK, LineCoordinates, motion_along, project
 from roadproof.recordings.formats.recording import (
     ZONES,
     Bools,
@@ -219,10 +214,7 @@ def _slack(
     sides = np.maximum(np.abs(left.max(axis=1) - d), np.abs(left.min(axis=1) - (d - width)))
     beside = np.abs(np.remainder(heading - along.heading + math.pi, math.tau) - math.pi) > MOST_TURNED
     return Slack(
-        np.where(beside, np.inf, ends),
-        np.where(beside, np.inf, sides),
-        along.turn,
-        np.abs(left).max(axis=1),
+        np.where(beside, np.inf, ends), np.where(beside, np.inf, sides), along.turn, np.abs(left).max(axis=1)
     )
 
 

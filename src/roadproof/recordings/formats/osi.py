@@ -21,13 +21,7 @@ from roadproof.errors import InputError
 from roadproof.recordings.formats.contradictions import contradictions
 from roadproof.recordings.formats.measured_roads import MeasuredTraffic
 from roadproof.recordings.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED, check
-from roadproof.recordings.formats.protobuf import (
-    WireError,
-    doubles_in,
-    fields_of,
-    integer_in,
-    message_in,
-)
+from roadproof.recordings.formats.protobuf import WireError, doubles_in, fields_of, integer_in, message_in
 from roadproof.recordings.formats.recording import Floats, Integers, Recording
 from roadproof.recordings.formats.reliable import left_out_note, named, rate_of_change, reliable
 from roadproof.recordings.formats.samples import LARGEST_RATE

@@ -62,7 +62,7 @@ class RecordingSource:
 
         That of the first one is also of the road, where one was selected.
         """
-        first, *others = [_digest(path) for path in self.files]
+        first, *others = [file_digest(path) for path in self.files]
         if self.road is not None:
             first = hashlib.sha256(f"{first}{self.road}".encode()).hexdigest()
         return [first, *others]
@@ -100,7 +100,8 @@ def find_files(path: Path, suffix: str, ending: str) -> dict[str, Files]:
     return {x.stem: (*beside(x, ending), x) for x in with_suffix(path, suffix)}
 
 
-def _digest(path: Path) -> str:
+def file_digest(path: Path) -> str:
+    """The SHA-256 of a file, empty where it cannot be read."""
     try:
         with path.open("rb") as file:
             return hashlib.file_digest(file, "sha256").hexdigest()

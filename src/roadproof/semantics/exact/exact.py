@@ -63,9 +63,7 @@ class Judgement:
 
 
 def judge(
-    formula: Formula,
-    drive: Drive | Signals | None = None,
-    given: Mapping[Formula, TruthSet] = NOTHING_GIVEN,
+    formula: Formula, drive: Drive | Signals | None = None, given: Mapping[Formula, TruthSet] = NOTHING_GIVEN
 ) -> Judgement:
     """Judge a bound formula (comparisons of signals and sizes only) on ``drive``.
 

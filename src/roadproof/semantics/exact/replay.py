@@ -57,10 +57,7 @@ def first_overlap(drive: Drive, horizon: Fraction | None) -> Overlap | None:
 
 
 def first_breach(
-    drive: Drive,
-    limits: Mapping[str, Vehicle],
-    horizon: Fraction | None,
-    line: ReferenceLine | None = None,
+    drive: Drive, limits: Mapping[str, Vehicle], horizon: Fraction | None, line: ReferenceLine | None = None
 ) -> Breach | None:
     """The first instant within [0, horizon] at which a vehicle leaves its limits, or None.
 

@@ -16,13 +16,7 @@ from roadproof.semantics.sampled.arithmetic import Program, run
 from roadproof.semantics.sampled.batch import Array, Batch, inside
 from roadproof.semantics.sampled.semantics import Lattice
 
-MARGIN = Lattice(
-    join=np.maximum,
-    meet=np.minimum,
-    complement=np.negative,
-    bottom=-np.inf,
-    top=np.inf,
-)
+MARGIN = Lattice(join=np.maximum, meet=np.minimum, complement=np.negative, bottom=-np.inf, top=np.inf)
 
 
 def as_margin(truth: NDArray[np.bool_]) -> NDArray[np.float64]:

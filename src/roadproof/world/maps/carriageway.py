@@ -188,10 +188,7 @@ def _divided(
     if high - low <= _SHORTEST or all(most - least <= step for least, most in changes):
         return [begin + high]
     middle = (low + high) / 2
-    return [
-        *_divided(edges, begin, (low, middle), step),
-        *_divided(edges, begin, (middle, high), step),
-    ]
+    return [*_divided(edges, begin, (low, middle), step), *_divided(edges, begin, (middle, high), step)]
 
 
 def _constant_edges(

@@ -12,15 +12,7 @@ from xml.etree.ElementTree import Element as XmlElement
 
 from roadproof.analysis.assurance.case import Element, Kind
 from roadproof.analysis.assurance.states import State
-from roadproof.frontends.report.argument.layout import (
-    DIAMOND,
-    SLANT,
-    Labels,
-    Link,
-    Node,
-    Point,
-    lay_out,
-)
+from roadproof.frontends.report.argument.layout import DIAMOND, SLANT, Labels, Link, Node, Point, lay_out
 from roadproof.frontends.report.argument.measured_text import FONT, LEADING
 from roadproof.frontends.report.viewer_page import design
 from roadproof.recordings.export.xml import document, element

@@ -40,10 +40,7 @@ def written(case: Case, specification: Specification, expression: Expression) ->
 
 
 def claim_cases(
-    asked: Claims,
-    answers: Sequence[ClaimResult],
-    files: Mapping[str, Path],
-    places: Mapping[str, Location],
+    asked: Claims, answers: Sequence[ClaimResult], files: Mapping[str, Path], places: Mapping[str, Location]
 ) -> Iterator[Case]:
     """A case for each claim. ``files``: evidence, ``places``: where it is written, both by ``task.name``."""
     for x in answers:
@@ -66,9 +63,7 @@ def claim_cases(
         yield written(case, specification, read_claim(specification, task.claim).claim.body)
 
 
-def search_cases(
-    searches: Iterable[tuple[Outcome, Specification, Path | None]],
-) -> Iterator[Case]:
+def search_cases(searches: Iterable[tuple[Outcome, Specification, Path | None]]) -> Iterator[Case]:
     """A case for each search for a drive; the third is its evidence, where there is a file."""
     for x, specification, file in searches:
         name = x.query.text if x.scenario is None else f"scenario {x.scenario}"

@@ -21,13 +21,7 @@ from importlib import resources
 
 from roadproof.frontends.report.sheet import excerpt
 from roadproof.frontends.report.viewer_document import Document
-from roadproof.frontends.report.viewer_page import (
-    as_url,
-    design,
-    hash_of,
-    viewer_modules,
-    viewer_style,
-)
+from roadproof.frontends.report.viewer_page import as_url, design, hash_of, viewer_modules, viewer_style
 
 
 class Sign(NamedTuple):

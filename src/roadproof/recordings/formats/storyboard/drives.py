@@ -256,11 +256,7 @@ def _is_close(
 
 
 def _compare(
-    motion: Axis,
-    now: tuple[Fraction, Fraction],
-    piece: Along,
-    span: tuple[Fraction, Fraction],
-    error: _Error,
+    motion: Axis, now: tuple[Fraction, Fraction], piece: Along, span: tuple[Fraction, Fraction], error: _Error
 ) -> None:
     for place, speed in _differences(motion, now, piece, span):
         error.see(place, speed)
