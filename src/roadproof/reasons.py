@@ -173,6 +173,11 @@ class Why(StrEnum):
     NO_DRIVE_OF_FORMULA = "no drive of its formula was found"
     JUDGED_WITH = "judged with {}"
     TEXT_CHANGED = "its text changed"
+    # Recordings
+    OFF_ROAD = "on no lane at any time"
+    OF_KIND = "they are {}"
+    NOT_ALONG = "they are not on the road along it for a second"
+    STANDING = "they are parked, or stand all the time"
     # Assurance cases
     NAME_FOLDER = "name the folder of --out, of which check reads the evidence"
     NO_FILE = "{} does not exist"

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.errors import InputError
+from roadproof.reasons import Why
 from roadproof.recordings.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED
 from roadproof.recordings.formats.recording import Floats
 from roadproof.recordings.formats.reliable import MOST_LEFT_OUT, left_out_note, named, rate_of_change
@@ -106,8 +107,8 @@ def read_obstacles(path: Path, root: Element, rules: ObstacleRules) -> tuple[lis
     static = len(root.findall("staticObstacle"))
     if static:
         notes.append(f"{static} static obstacles left out: they are no traffic")
-    notes += [left_out_note(ids, len(nodes), f"they are {what}") for what, ids in absent.items()]
-    notes += [left_out_note([number], len(nodes), told) for number, told in faults.items()]
+    notes += [left_out_note(ids, len(nodes), Why.OF_KIND(what)) for what, ids in absent.items()]
+    notes += [left_out_note([number], len(nodes), Why.TOLD(told)) for number, told in faults.items()]
     return sorted(obstacles, key=lambda o: o.id), (*notes, *_say_implied(obstacles))
 
 

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.errors import InputError
+from roadproof.reasons import Why
 from roadproof.recordings.formats.exid import maps_near, names_lanelets
 from roadproof.recordings.formats.levelx import (
     check_cells,
@@ -67,7 +68,7 @@ def _vehicles(meta: Table, tracks: Table) -> tuple[Table, Table, list[str]]:
     """The tables without pedestrians and the like, which have no size, and notes on these."""
     kinds = np.array([NO_VEHICLES.get(str(x).lower(), "") for x in meta["class"]])
     notes = [
-        left_out_note(meta["trackId"][kinds == what].tolist(), meta.rows, f"they are {what}")
+        left_out_note(meta["trackId"][kinds == what].tolist(), meta.rows, Why.OF_KIND(what))
         for what in dict.fromkeys(kinds.tolist())
         if what
     ]

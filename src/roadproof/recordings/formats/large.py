@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.errors import InputError
+from roadproof.reasons import Why
 from roadproof.recordings.formats import windows
 from roadproof.recordings.formats.content import require_unchanged, stamp_of
 from roadproof.recordings.formats.contradictions import contradictions
@@ -95,7 +96,7 @@ def write_large(path: Path, folder: Path, digests: Mapping[str, str], form: str,
             made = _write_parts(read, _chosen(read, made.checks), Path(temporary))
         whole = _joined(made.heads)
         chosen = made.chosen
-        left_out = (left_out_note([x], len(survey.names), y.told) for x, y in read.faults.items())
+        left_out = (left_out_note([x], len(survey.names), Why.TOLD(y.told)) for x, y in read.faults.items())
         notes = (*left_out, *survey.notes, *survey.clock.notes, *chosen.notes, *read.doubts(made))
         table, head = folder / f"{path.stem}{SAMPLES}", folder / f"{path.stem}{HEAD}"
         head.unlink(missing_ok=True)  # it is there when the samples are

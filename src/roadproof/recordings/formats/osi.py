@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.errors import InputError
+from roadproof.reasons import Why
 from roadproof.recordings.formats.contradictions import contradictions
 from roadproof.recordings.formats.measured_roads import MeasuredTraffic
 from roadproof.recordings.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED, check
@@ -101,7 +102,7 @@ class _Samples:
             yield f"host_vehicle_id is {self.host}"
         of = len({*self.kind}.union(*self.absent.values()))
         for what, names in self.absent.items():
-            yield left_out_note([*names], of, f"they are {what}")
+            yield left_out_note([*names], of, Why.OF_KIND(what))
 
 
 def _base_of(content: bytes) -> tuple[float, ...]:

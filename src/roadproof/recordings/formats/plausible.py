@@ -47,7 +47,8 @@ SIZES = {"Car": ((2.0, 8.0), (1.0, 3.0)), "Truck": ((4.0, 30.0), (1.4, 3.5))}
 class Implausible:
     """A rule of which ``broken`` of ``asked`` places break it, first at sample ``row``.
 
-    ``signal`` is what the cell there says; ``refused`` where there are too many.
+    ``signal`` is what the cell there says; ``refused`` where there are too many; ``hint``: what may be wrong
+    in all of them.
     """
 
     rule: str
@@ -57,11 +58,12 @@ class Implausible:
     asked: int
     unit: str
     refused: bool
+    hint: str = ""
 
     @property
     def told(self) -> str:
         """The rule, and how often it is broken."""
-        return f"{self.rule} ({self.broken} of {self.asked} {self.unit})"
+        return f"{self.rule}{self.hint} ({self.broken} of {self.asked} {self.unit})"
 
 
 def check(recording: Recording) -> "ContradictionChecks":
@@ -142,10 +144,9 @@ class _Motion:
         if self.broken:
             factor = float(np.median(np.concatenate(self.factors)))
             refused = _too_many(self.broken, self.asked, SHARE)
-            text = f"{self.rule.what} contradict each other{_hint(factor) if refused else ''}"
-            yield Implausible(
-                text, self.rule.rate, self.row, self.broken, self.asked, "moving seconds", refused
-            )
+            found = f"{self.rule.what} contradict each other", self.rule.rate, self.row
+            counts = self.broken, self.asked, "moving seconds"
+            yield Implausible(*found, *counts, refused, _hint(factor) if refused else "")
 
 
 def _hint(factor: float) -> str:

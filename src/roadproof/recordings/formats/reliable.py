@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from roadproof.errors import InputError
+from roadproof.reasons import Reason, Why
 from roadproof.recordings.formats.plausible import (
     SHARE,
     SHARE_OF_JUMPS,
@@ -37,7 +38,6 @@ MOST_LEFT_OUT = 0.5
 SHOWN = 50
 LEFT_OUT = "left out"
 """How notes on that begin."""
-_OFF_ROAD = "on no lane at any time"
 _REPAIRED: Mapping[SignalName, str] = {
     "a_lon": "accelerations along the road of {} contradict their velocities; they were computed from the "
     "velocities",
@@ -51,11 +51,11 @@ _REPAIRED: Mapping[SignalName, str] = {
 class LeftOut:
     """Vehicles by id that a recording is read without, and why."""
 
-    reason: str
+    reason: Reason
     vehicles: tuple[int, ...]
 
 
-def left_out_note(vehicles: Sequence[object], of: int, reason: str) -> str:
+def left_out_note(vehicles: Sequence[object], of: int, reason: Reason) -> str:
     """A note that so many ``of`` vehicles were left out, with the first of them."""
     return f"{LEFT_OUT} {len(vehicles)} of {of} vehicles ({named(vehicles)}): {reason}"
 
@@ -150,28 +150,27 @@ def selection_of(parts: Callable[[], Iterator[Recording]]) -> Selection:
         chosen.vehicles = chosen.vehicles or count
         if checks is None or not count or stands(checks):
             return chosen
-        rules = {_rule_of(x): x for x in checks.doubts() if x.refused}
-        off = checks.off_road() is not None
-        reason = _OFF_ROAD if off else next(iter(rules))
-        broken = [int(x) for part in map(chosen.of, parts()) for x in part.vehicle_id[_broken(part, reason)]]
-        signal = None if off else _computed(rules[reason])
+        rules = {x.rule: x for x in checks.doubts() if x.refused}
+        rule = next(iter(rules)) if checks.off_road() is None else None
+        broken = [int(x) for part in map(chosen.of, parts()) for x in part.vehicle_id[_broken(part, rule)]]
+        signal = None if rule is None else _computed(rules[rule])
         if signal is not None and signal not in chosen.repaired:
             _repair(chosen, parts, signal, broken)
             continue
         if not broken:
             return chosen  # it is a fault of all together, and the recording is rejected for it
-        chosen.found.append(LeftOut(reason, tuple(broken)))
+        chosen.found.append(LeftOut(Why.OFF_ROAD() if rule is None else Why.TOLD(rule), tuple(broken)))
         chosen.lost += broken
 
 
-def _broken(part: Recording, reason: str) -> Bools:
-    """Which vehicles of a part break a rule, each looked at alone."""
+def _broken(part: Recording, rule: str | None) -> Bools:
+    """Which vehicles of a part break a rule, each looked at alone; None: that each is on the road."""
     if not part.vehicles:
         return np.zeros(0, np.bool_)
-    if reason == _OFF_ROAD:
+    if rule is None:
         nowhere: Bools = np.logical_or.reduceat(part.occupancy != 0, part.start[:-1]) == 0
         return nowhere
-    return np.array([_breaks(part, k, reason) for k in range(part.vehicles)], np.bool_)
+    return np.array([_breaks(part, k, rule) for k in range(part.vehicles)], np.bool_)
 
 
 def _computed(rule: Implausible) -> SignalName | None:
@@ -197,15 +196,10 @@ def _repair(
         chosen.repairs.append(_REPAIRED[signal].format(f"{len(ids)} of {of} vehicles ({named(ids)})"))
 
 
-def _rule_of(doubt: Implausible) -> str:
-    """The rule without what is said of all that break it."""
-    return doubt.rule.partition(", by a factor")[0]
-
-
 def _breaks(recording: Recording, vehicle: int, rule: str) -> bool:
     """Whether a vehicle alone breaks a rule, above the share that a recording may."""
     for doubt in check(one_vehicle(recording, vehicle)).doubts():
-        if _rule_of(doubt) == rule:
+        if doubt.rule == rule:
             share = {"moving seconds": SHARE, "steps": SHARE_OF_JUMPS}.get(doubt.unit, 0.0)
             return doubt.refused or doubt.broken > share * doubt.asked
     return False

@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from roadproof.errors import InputError
 from roadproof.library.roles import vehicle_order
+from roadproof.reasons import Why
 from roadproof.recordings.formats.contradictions import contradictions
 from roadproof.recordings.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED, check
 from roadproof.recordings.formats.recording import Floats, Integers, Recording, own_numbers, with_notes
@@ -221,7 +222,7 @@ def _readable_part(
                 raise next(iter(faults.values()), error) from None
             faults[str(names[error.place])] = error
             wanted &= names != names[error.place]
-    left_out = (left_out_note([vehicle], known, x.told) for vehicle, x in faults.items())
+    left_out = (left_out_note([vehicle], known, Why.TOLD(x.told)) for vehicle, x in faults.items())
     return table, recording, (*left_out, *numbered, *clock.notes)
 
 

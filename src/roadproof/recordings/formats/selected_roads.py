@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.errors import InputError
+from roadproof.reasons import Why
 from roadproof.recordings.formats.line_coordinates import project
 from roadproof.recordings.formats.measured_roads import (
     MOST_TURNED,
@@ -115,7 +116,7 @@ def place_on(traffic: MeasuredTraffic, network: Network) -> tuple[Recording, Int
         raise InputError(f"{traffic.name}: no vehicle is on {called} for a second; do map and positions fit?")
     off = traffic.vehicle_id[wanted & (counts == 0)].tolist()
     shown = traffic.vehicle_id[(counts > 0) & (counts < np.diff(traffic.start))].tolist()
-    notes += [left_out_note(off, len(wanted), "they are not on the road along it for a second")] * bool(off)
+    notes += [left_out_note(off, len(wanted), Why.NOT_ALONG())] * bool(off)
     if shown:
         notes.append(f"{len(shown)} vehicles ({named(shown)}) count while they are on the road, along it")
     on_road = replace(_cut(traffic, kept, counts), notes=(*traffic.notes, *notes))
@@ -145,8 +146,7 @@ def _moving(traffic: MeasuredTraffic) -> tuple[Bools, list[str]]:
     away = np.hypot(*(traffic.centre - first).T)
     moving = np.maximum.reduceat(away, traffic.start[:-1]) > _STANDS
     standing = traffic.vehicle_id[~moving].tolist()
-    told = "they are parked, or stand all the time"
-    return moving, [left_out_note(standing, len(moving), told)] if standing else []
+    return moving, [left_out_note(standing, len(moving), Why.STANDING())] if standing else []
 
 
 def _longest_runs(there: Bools, start: Integers, least: int) -> Bools:

@@ -7,6 +7,7 @@ from typing import TypeAlias
 import numpy as np
 
 from roadproof.errors import InputError
+from roadproof.reasons import Why
 from roadproof.recordings.formats.recording import Bools, Integers, Recording
 from roadproof.recordings.formats.reliable import MOST_LEFT_OUT, left_out_note
 from roadproof.recordings.formats.source import TRACK_FILES, Files, first_line, with_suffix
@@ -109,7 +110,7 @@ def usable(
             table = known if error.path == meta.path else samples
             row = error.place if table.places is None else int(np.argmax(table.places == error.place))
             faults[int(table[column][row])] = error
-    notes = (left_out_note([vehicle], meta.rows, x.told) for vehicle, x in faults.items())
+    notes = (left_out_note([vehicle], meta.rows, Why.TOLD(x.told)) for vehicle, x in faults.items())
     return known, samples, start, tuple(notes)
 
 
@@ -133,7 +134,7 @@ def without_bad(
     vehicles = len(np.unique(ids))
     if faults and (strict or len(faults) > MOST_LEFT_OUT * vehicles):
         raise next(iter(faults.values()))
-    notes = [left_out_note([vehicle], vehicles, x.told) for vehicle, x in faults.items()]
+    notes = [left_out_note([vehicle], vehicles, Why.TOLD(x.told)) for vehicle, x in faults.items()]
     return ~np.isin(ids, [*faults]), notes
 
 
