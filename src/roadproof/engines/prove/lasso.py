@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import islice, product
-from typing import TypeAlias, TypeGuard
+from typing import TypeAlias
 
 from roadproof.engines.prove.countermodel import Trace, Values, realise
 from roadproof.engines.prove.roads import open_quantifiers
@@ -63,7 +63,8 @@ def find_lasso(query: Query, goal: Formula, checker: StateChecker, meter: Budget
     ``goal``: a part of the claim, abstracted. None where it has more than three predicates, speaks of one
     instant only, or quantifies over lanes. Raises ``BudgetExceeded``.
     """
-    names = list(dict.fromkeys(x.name for x in f.subformulas(goal) if _is_atom(x, checker)))
+    met = (x.name for x in f.subformulas(goal) if isinstance(x, f.Application))
+    names = [name for name in dict.fromkeys(met) if name in checker.atoms.named]
     if f.is_state(goal) or open_quantifiers(goal) or not 0 < len(names) <= MOST_ATOMS:
         return None
     possible = [
@@ -90,10 +91,6 @@ def find_lasso(query: Query, goal: Formula, checker: StateChecker, meter: Budget
         if isinstance(error, BudgetExceeded):
             raise
     return None
-
-
-def _is_atom(part: Formula, checker: StateChecker) -> TypeGuard[f.Application]:
-    return isinstance(part, f.Application) and part.name in checker.atoms.named
 
 
 def _steps(asked: Formula) -> list[Fraction]:

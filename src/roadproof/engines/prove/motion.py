@@ -71,7 +71,7 @@ def stages(specification: Specification, query: Query) -> list[tuple[Axiom, ...]
     stays, what is left has a first instant outside; then these together; last rates of which the claim says
     nothing, and what predicates compare.
     """
-    atoms = list(_atoms(query.formula))
+    atoms = list(_first_met(query.formula, is_atom))
     simple = [x for x in atoms if _comparison(x) is not None]
     sides = list(dict.fromkeys(_compared(simple)))
     hidden = [x for x in dict.fromkeys(_compared(atoms)) if x not in sides]
@@ -91,11 +91,6 @@ def stages(specification: Specification, query: Query) -> list[tuple[Axiom, ...]
 def _met(sides: Sequence[Sides]) -> Iterator[Axiom]:
     for pair in sides:
         yield Axiom("meets", _texts(*pair))
-
-
-def _atoms(formula: Formula) -> Iterator[Formula]:
-    """The predicates that a proof does not look into, as they are called; of alike ones the first."""
-    return _first_met(formula, is_atom)
 
 
 def _states(formula: Formula) -> Iterator[Formula]:

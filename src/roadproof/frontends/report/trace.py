@@ -83,7 +83,8 @@ def as_lines(answer: Answer) -> list[str]:
     lines = aligned(rows)
     if answer.unlinked:
         lines.append("evidence without a requirement:")
-        lines += [f"  {unlinked_line(x)}" for x in _worst_first(answer.unlinked)[:MOST_LINES]]
+        worst_first = sorted(answer.unlinked, key=lambda x: x.outcome is Acceptance.ACCEPTED)
+        lines += [f"  {unlinked_line(x)}" for x in worst_first[:MOST_LINES]]
         more = len(answer.unlinked) - MOST_LINES
         lines += [f"  and {more} more"] if more > 0 else []
     return [*lines, *answer.notes, counted(answer)]
@@ -94,10 +95,6 @@ def unlinked_line(x: LinkedEvidence) -> str:
     if x.outcome is not Acceptance.ACCEPTED:
         return f"{x.outcome}  {x.label or x.where}: {x.reason}"
     return f"{x.verdict}  {x.label or excerpt(x.claim, 80)}  {x.where}"
-
-
-def _worst_first(found: Sequence[LinkedEvidence]) -> list[LinkedEvidence]:
-    return sorted(found, key=lambda x: x.outcome is Acceptance.ACCEPTED)
 
 
 def as_markdown(answer: Answer) -> str:

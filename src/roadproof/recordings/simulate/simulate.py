@@ -45,11 +45,6 @@ class Movement:
     change_to: Integers
 
 
-def move_traffic(traffic: t.Traffic, random: t.Random) -> Movement:
-    """Simulate ``traffic``; the same seed gives the same movement, to the last bit."""
-    return _Road(traffic, random).run()
-
-
 STEP_SECONDS = 0.2
 """Time between two decisions."""
 
@@ -250,7 +245,7 @@ def simulate(traffic: t.Traffic, seed: int, number: int = 1) -> Recording:
     to the hundredth, so that writing and reading the recording gives the same one.
     """
     random = np.random.default_rng([seed, number])
-    movement = move_traffic(traffic, random)
+    movement = _Road(traffic, random).run()
     upper, lower = markings_of(traffic)
     road = of_bands(lanes_of_markings(upper, lower))
     row, tick = _sample_rows(traffic, movement)

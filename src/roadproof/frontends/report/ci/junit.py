@@ -17,7 +17,8 @@ def as_junit(title: str, cases: Sequence[Case], in_force: Sequence[str] = ()) ->
     ``in_force``: what was asked otherwise than by default, a property of each suite.
     """
     suites = xml.Element("testsuites", {"name": title} | _counts(cases))
-    for name, those in groupby(sorted(cases, key=lambda x: _order(cases, x)), lambda x: x.suite):
+    order = list(dict.fromkeys(x.suite for x in cases))
+    for name, those in groupby(sorted(cases, key=lambda x: order.index(x.suite)), lambda x: x.suite):
         _add_suite(suites, name, list(those), in_force)
     return as_text(suites)
 
@@ -41,10 +42,6 @@ def as_text(suites: xml.Element) -> str:
     """The document with its declaration."""
     xml.indent(suites)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + xml.tostring(suites, "unicode") + "\n"
-
-
-def _order(cases: Sequence[Case], case: Case) -> int:
-    return next(k for k, x in enumerate(cases) if x.suite == case.suite)
 
 
 def _counts(cases: Iterable[Case]) -> dict[str, str]:
