@@ -44,7 +44,7 @@ class Why(StrEnum):
         "cut off by the clock after {:g} s, not by the count of work, so an idle or faster machine may "
         "answer: raise --timeout"
     )
-    PROCESS = "its process ended twice, the second time alone: {}"
+    PROCESS = "its process ended each time, the last time alone: {}"
     WORKERS = "its workers ended each time, the last time while no other job ran"
     # Proofs
     FEW_LANES = "no countermodel on a road of few lanes"

@@ -311,7 +311,7 @@ def late(*_: object) -> None:
 
 @pytest.mark.parametrize(
     ("fault", "said"),
-    [(die, "its process ended twice"), (late, "cut off by the clock")],
+    [(die, "its process ended each time"), (late, "cut off by the clock")],
     ids=["lost", "late"],
 )
 def test_a_cell_in_doubt_is_said_in_full_and_the_run_is_in_doubt(
@@ -346,7 +346,7 @@ def test_a_cell_in_doubt_is_said_in_full_and_the_run_is_in_doubt(
 
 @pytest.mark.parametrize(
     ("fault", "said"),
-    [(die, "its process ended twice"), (late, "cut off by the clock")],
+    [(die, "its process ended each time"), (late, "cut off by the clock")],
     ids=["lost", "late"],
 )
 def test_an_outline_in_doubt_makes_no_classes_and_leaves_the_folder_alone(
@@ -375,7 +375,7 @@ def test_lost_drives_and_proofs_are_doubts(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setattr(settling, "find_examples", die)
     found = study.classified(conduct(study, hands=2).answers)
     assert {(x.verdict, x.drive) for x in found.examples} == {(Verdict.UNKNOWN, None)}
-    assert all("its process ended twice" in x.reason for x in found.examples)
+    assert all("its process ended each time" in x.reason for x in found.examples)
     assert {x.verdict for x in found.decisions} == {Verdict.PROVED}
     claims = study.doubt(ProofClaims(study.claims), "lost")
     assert {(x.verdict, x.reason) for x in claims.values()} == {(Verdict.UNKNOWN, "lost")}

@@ -184,15 +184,15 @@ def test_what_is_lost_is_in_doubt(few: list[str]) -> None:
     while pieces := coverage.pieces(answers):
         asked_so_far += [type(piece).__name__ for piece in pieces]
         for piece in pieces:
-            answers |= coverage.doubt(piece, "its process ended twice")
+            answers |= coverage.doubt(piece, "its process ended each time")
     assert asked_so_far == [*["CoverageClaim"] * 4, *["Chunk"] * study.CHUNKS, "Component", "Component"]
     together = coverage.together(answers)
     assert together.verdict is Verdict.UNKNOWN
     assert {(x.verdict, x.reason) for x in (*together.claims, *together.classes)} == {
-        (Verdict.UNKNOWN, "its process ended twice")
+        (Verdict.UNKNOWN, "its process ended each time")
     }
     assert not any(coverage.is_sure(answer) for answer in answers.values())
-    [need] = coverage.doubt(study.NeededDefinition("cutIn"), "its process ended twice").values()
+    [need] = coverage.doubt(study.NeededDefinition("cutIn"), "its process ended each time").values()
     assert isinstance(need, study.Need)
     assert need.verdict is Verdict.UNKNOWN
 
@@ -203,10 +203,10 @@ def test_a_doubt_says_what_was_not_tried(few: list[str]) -> None:
     for piece in coverage.pieces(answers):
         answers |= coverage.doubt(piece, "")
     for piece in coverage.pieces(answers):
-        answers |= coverage.doubt(piece, "its process ended twice")
+        answers |= coverage.doubt(piece, "its process ended each time")
     [piece, _] = coverage.pieces(answers)
     assert isinstance(piece, study.Component)
-    assert piece.lost[0] == "some of the simple drives were not looked through: its process ended twice"
+    assert piece.lost[0] == "some of the simple drives were not looked through: its process ended each time"
     doubtful = study.ClassAnswer(None, verdict=Verdict.UNKNOWN, reason="none on main-2")
     assert study._with_lost(doubtful, piece.lost[:1]).reason == f"none on main-2; {piece.lost[0]}"
     sure = study.ClassAnswer(None, verdict=Verdict.IMPOSSIBLE)

@@ -83,7 +83,7 @@ class Sums(Unprepared):
         raise AssertionError(piece)
 
     def doubt(self, piece: tuple[str, Any], reason: str) -> dict[str, int | None]:
-        assert "ended twice" in reason
+        assert "ended each time" in reason
         return {f"square-{piece[1]}": None}
 
     def is_sure(self, answer: int | None) -> bool:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from roadproof.errors import InputError, MissingSolverError, UsageError
 from roadproof.reasons import Why
-from roadproof.runtime.executors import Cluster, LostJob, try_twice
+from roadproof.runtime.executors import Cluster, LostJob, try_again
 from roadproof.runtime.memory import keep_freed_memory
 from roadproof.runtime.worker import end_here
 
@@ -40,7 +40,7 @@ def answers_of(
     """
     client = _client(cluster)
     shared = client.submit(_same, function, pure=False)  # made again where its worker ends
-    yield from try_twice(partial(_try_once, client, shared, jobs), len(jobs), Why.WORKERS)
+    yield from try_again(partial(_try_once, client, shared, jobs), len(jobs), Why.WORKERS)
 
 
 def _try_once(

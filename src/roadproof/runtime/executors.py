@@ -113,23 +113,28 @@ Attempt: TypeAlias = Callable[[Sequence[int], dict[int, str]], Generator[tuple[i
 
 @dataclass(frozen=True)
 class LostJob:
-    """In place of an answer: the process of the job ended twice, the second time while no other ran."""
+    """In place of an answer: the process of the job ended each time, the last time while no other ran."""
 
     reason: Reason
 
 
-def try_twice(
+def try_again(
     attempt: Attempt[Answer], count: int, lost: Why
 ) -> Generator[tuple[int, Answer | LostJob], None, None]:
     """The answers of ``count`` jobs, each with its place.
 
-    A job whose process ended is tried again when the others are done, alone, so that no other is taken for
-    the one that kills. ``lost`` says that it ended again.
+    Jobs whose process ended are tried once more when the others are done. What ends again is tried alone, so
+    that no other is taken for the one that kills. ``lost`` says that it ended.
     """
-    died: dict[int, str] = {}
-    with closing(attempt(range(count), died)) as found:
-        yield from found
-    for place in sorted(died):
+    waiting: Sequence[int] = range(count)
+    for _ in range(2):
+        died: dict[int, str] = {}
+        with closing(attempt(waiting, died)) as found:
+            yield from found
+        waiting = sorted(died)
+        if len(waiting) < 2:
+            break
+    for place in waiting:
         again: dict[int, str] = {}
         with closing(attempt([place], again)) as found:
             yield from found

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 from roadproof.errors import UsageError
 from roadproof.reasons import Why
-from roadproof.runtime.executors import LostJob, try_twice
+from roadproof.runtime.executors import LostJob, try_again
 from roadproof.runtime.progress import Stage, is_heard, pass_on
 from roadproof.runtime.worker import GRACE, DeadWorkerError, Worker, dismiss
 
@@ -22,7 +22,7 @@ def answers_of(
 ) -> Generator[tuple[int, Answer | LostJob], None, None]:
     """``function`` of every job, each with its place in ``jobs``, in the order in which they are done.
 
-    A job whose process dies is tried again when the others are done, alone. ``fresh``: as for ``Worker``. The
+    A job whose process dies is tried again when the others are done. ``fresh``: as for ``Worker``. The
     iterator is to be used up or closed. An error that a job raises is raised here, and ends the others.
     ``most``: processes at once, None for one a core.
     """
@@ -31,7 +31,7 @@ def answers_of(
     def attempt(places: Sequence[int], died: dict[int, str]) -> Generator[tuple[int, Answer], None, None]:
         return _try_once(start, jobs, places, min(most or os.cpu_count() or 1, len(places)), died)
 
-    yield from try_twice(attempt, len(jobs), Why.PROCESS)
+    yield from try_again(attempt, len(jobs), Why.PROCESS)
 
 
 def _try_once(

@@ -30,7 +30,7 @@ def work(
     """``function`` of every job with its place, in the order in which they are done.
 
     ``hands``: who does them; ``known``: how many jobs more needed no work. ``lost`` makes the
-    answer, a doubt, of a job whose process ended twice (see ``workers``) out of the reason; without it
+    answer, a doubt, of a job whose process ended each time (see ``workers``) out of the reason; without it
     ``LostError`` is raised when all others are done. The iterator is to be used up or closed. An error
     in a job, or an interruption, ends the others.
     """

@@ -1,7 +1,7 @@
 """The highD experiment over many recordings: resumable, and in memory one recording a process."""
 
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from dataclasses import dataclass, field
@@ -45,7 +45,7 @@ class Experiment:
 class ExperimentOutcome:
     """The totals, the recordings that could not be used, and why, and what marks the results of each.
 
-    ``lost`` are those among them whose process ended twice, which may be the machine's fault.
+    ``lost`` are those among them whose process ended each time, which may be the machine's fault.
     """
 
     totals: Totals
@@ -68,13 +68,15 @@ def run_experiment(
     if shard is not None:
         sources = tuple(shard.among(sources))
     question = results.question_mark(experiment.settings)
-    with ThreadPoolExecutor(experiment.hands.processes or os.cpu_count() or 1) as threads:
-        found = threads.map(RecordingSource.digests, sources)
-        digests = {source.name: each for source, each in zip(sources, found, strict=True)}
+    digests = _digests(sources, experiment.hands)
     more = ["strict"] * experiment.strict
     marks = {name: results.fingerprint(question, [*each, *more]) for name, each in digests.items()}
     failed = copies_among(sources, digests)
-    waiting = [s for s in sources if s.name not in failed and _known(experiment, s, marks[s.name]) is None]
+    waiting = [
+        x
+        for x in sources
+        if x.name not in failed and not results.is_saved(_path(experiment.out, x), marks[x.name])
+    ]
     kept = len(sources) - len(failed) - len(waiting)
     if kept:
         tell(f"{kept} of {len(sources)} recordings are already evaluated")
@@ -131,6 +133,18 @@ def _path(out: Path, source: RecordingSource) -> Path:
 
 def _known(experiment: Experiment, source: RecordingSource, mark: str) -> Findings | None:
     return results.load_findings(_path(experiment.out, source), mark)
+
+
+def _digests(sources: Sequence[RecordingSource], hands: Executor) -> dict[str, list[str]]:
+    """The digests of the files of each recording by its name: the workers of a cluster read them, or we."""
+    if hands.cluster is None:
+        with ThreadPoolExecutor(hands.processes or os.cpu_count() or 1) as threads:
+            found = list(threads.map(RecordingSource.digests, sources))
+    else:
+        told = dict(answers_of(RecordingSource.digests, sources, hands))
+        answers = (told[place] for place in range(len(sources)))
+        found = [s.digests() if isinstance(x, LostJob) else x for s, x in zip(sources, answers, strict=True)]
+    return {source.name: each for source, each in zip(sources, found, strict=True)}
 
 
 def _evaluate_all(

@@ -95,20 +95,35 @@ def seal(mark: str, found: Mapping[str, object]) -> str:
     return _digest([mark, found])
 
 
+def is_saved(path: Path, mark: str) -> bool:
+    """Whether findings were saved under the same fingerprint and not changed since."""
+    return _kept(path, mark) is not None
+
+
 def load_findings(path: Path, mark: str) -> Findings | None:
     """Findings that were saved under the same fingerprint and not changed since, else None."""
+    found = _kept(path, mark)
+    try:
+        return None if found is None else Findings(**{name: _value(name, x) for name, x in found.items()})
+    except (KeyError, TypeError):
+        return None
+
+
+def _kept(path: Path, mark: str) -> dict[str, object] | None:
     try:
         match json.loads(path.read_text()):
-            case {"schema": schema, "fingerprint": of, "seal": sealed, "findings": found}:
-                if (schema, of, sealed) != (RECORDING_SCHEMA, mark, seal(mark, found)):
-                    return None
-                made = {
-                    name: tuple(kind(*map(_frozen, x)) for x in found[name]) for name, kind in _ROWS.items()
-                }
-                return Findings(**{**{name: _frozen(x) for name, x in found.items()}, **made})
-    except (OSError, ValueError, KeyError, TypeError):
+            case {"schema": schema, "fingerprint": of, "seal": sealed, "findings": dict() as found}:
+                same = (schema, of, sealed) == (RECORDING_SCHEMA, mark, seal(mark, found))
+                return found if same else None
+    except (OSError, ValueError, TypeError):
         pass
     return None
+
+
+def _value(name: str, value: Any) -> Any:
+    """A field of findings from JSON."""
+    kind = _ROWS.get(name)
+    return _frozen(value) if kind is None else tuple(kind(*map(_frozen, x)) for x in value)
 
 
 def _frozen(value: object) -> Any:
