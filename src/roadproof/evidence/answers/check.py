@@ -27,7 +27,7 @@ class Answer(PlainHeading):
         Fingerprint,
         Doc("Of the library at hand with the files of --spec, without those beside the evidence."),
     ]
-    solver: Annotated[Literal["z3", "cvc5", "coq"], Doc("Who was asked about certificates.")]
+    solver: Annotated[Literal["z3", "cvc5", "coq", "extracted"], Doc("Who was asked about certificates.")]
     kernel: Annotated[KeptKernel | None, LEFT_OUT] = None
     findings: tuple[ClaimFinding, ...]
     not_checked: Annotated[

@@ -84,9 +84,12 @@ KeptBinding: TypeAlias = Annotated[Binding, Shared("binding")]
 
 @dataclass(frozen=True, kw_only=True)
 class Kernel:
-    """What Coq needed, and the axioms that all that it accepted stands on."""
+    """What Coq needed, and the axioms that all that it accepted stands on; or the extracted program."""
 
-    coqc: Annotated[str, Doc("Its version.")]
+    coqc: Annotated[str, Doc("Its version; empty with --kernel extracted.")]
+    ocaml: Annotated[
+        str, LEFT_OUT, Doc("With --kernel extracted, the version of the OCaml that compiled the program.")
+    ] = ""
     seconds: Seconds
     megabytes: Annotated[int, Rule(minimum=0)]
     axioms: tuple[str, ...]
@@ -94,7 +97,7 @@ class Kernel:
 
 KeptKernel: TypeAlias = Annotated[
     Kernel,
-    Doc("With --kernel: what Coq needed, and the axioms that all that it accepted stands on."),
+    Doc("With --kernel: what it needed, and the axioms of Coq that all that it accepted stands on."),
     Shared("kernel"),
 ]
 Reason: TypeAlias = Annotated[

@@ -5,7 +5,7 @@ without it; what is accepted has been in a file that Coq accepted whole, and tha
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -87,8 +87,13 @@ def find_tableau(certificate: Certificate, library: Library) -> tuple[str, ...] 
         return None
 
 
-def prepare(name: str, certificate: Certificate, library: Library) -> CoqModule:
-    """The certificate for Coq: with its own tableau, or with one that is searched where it has none."""
+def prepare(
+    name: str,
+    certificate: Certificate,
+    library: Library,
+    written: Callable[[str, Statement, Tableau], Module] = module,
+) -> CoqModule:
+    """The certificate as ``written`` for Coq: with its own tableau, or with one that is searched."""
     try:
         statement = state(certificate, library)
         tableau = _tableau(certificate, statement)
@@ -97,7 +102,7 @@ def prepare(name: str, certificate: Certificate, library: Library) -> CoqModule:
     except RoadproofError as error:
         return CoqModule(None, refusal=Ruling(Word.REFUSED, f"it cannot be put to Coq: {error}"))
     try:
-        return CoqModule(module(name, statement, tableau), statement.premises)
+        return CoqModule(written(name, statement, tableau), statement.premises)
     except UnreasonedError as error:
         return CoqModule(None, refusal=Ruling(Word.UNKNOWN, str(error), error.number))
     except RoadproofError as error:

@@ -24,7 +24,7 @@ from roadproof.runtime.cache import is_ours, private_folder
 from roadproof.runtime.package_data import shipped
 
 THEORIES = (
-    *("Meaning", "Text", "Linear", "Tableau", "Products", "Rss", "Instant", "Named", "Values"),
+    *("Meaning", "Text", "Linear", "Tableau", "Products", "Rss", "Instant", "Named", "Values", "Known"),
     *("Drive", "Signs", "Shown", "Guarantee"),
 )
 APT = "apt-get install -y coq"
@@ -57,7 +57,7 @@ class Coq:
         with tempfile.TemporaryDirectory(prefix="roadproof-coq-") as folder:
             file = Path(folder) / "evidence.v"
             file.write_text(source, encoding="ascii")
-            return _run([self.coqc, *_options(self.theories), file.name], Path(folder))
+            return run_program([self.coqc, *_options(self.theories), file.name], Path(folder))
 
 
 def find() -> tuple[str, str]:
@@ -65,7 +65,7 @@ def find() -> tuple[str, str]:
     coqc = shutil.which("coqc")
     if coqc is None:
         raise MissingSolverError(f"coqc is not on the path: install Coq 8.16 or later, such as by {APT}")
-    ran = _run([coqc, "--print-version"], Path.cwd())
+    ran = run_program([coqc, "--print-version"], Path.cwd())
     found = re.match(r"(\d+)\.(\d+)\S*", ran.said)
     if ran.code or found is None:
         raise MissingSolverError(f"{coqc} does not say its version: install Coq again, such as by {APT}")
@@ -114,7 +114,7 @@ def _compile(coqc: str, texts: Mapping[str, bytes], folder: Path) -> None:
     for name, text in texts.items():
         (folder / f"{name}.v").write_bytes(text)
     for name in texts:
-        ran = _run([coqc, *_options(folder), f"{name}.v"], folder)
+        ran = run_program([coqc, *_options(folder), f"{name}.v"], folder)
         if ran.code:
             raise RoadproofError(f"proofs/kernel/{name}.v is not accepted by coqc: {ran.complained[:400]}")
     sums = {f"{name}.vo": _sum((folder / f"{name}.vo").read_bytes()) for name in texts}
@@ -125,8 +125,8 @@ def _options(theories: Path) -> list[str]:
     return ["-q", "-noglob", "-Q", str(theories), "Roadproof"]
 
 
-def _run(command: list[str], folder: Path) -> CoqRun:
-    """Run in ``folder`` without what the environment says to Coq."""
+def run_program(command: list[str], folder: Path, given: bytes = b"") -> CoqRun:
+    """Run in ``folder`` without what the environment says to Coq; ``given`` stands on standard input."""
     begun = _processor_seconds()
     environment = {name: os.environ[name] for name in _KEPT if name in os.environ} | {"LC_ALL": "C"}
     try:
@@ -134,7 +134,7 @@ def _run(command: list[str], folder: Path) -> CoqRun:
             command,
             cwd=folder,
             env=environment,
-            stdin=subprocess.DEVNULL,
+            input=given,
             capture_output=True,
             timeout=PATIENCE,
             check=False,

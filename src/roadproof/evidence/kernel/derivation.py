@@ -52,7 +52,7 @@ def case(polynomial: tuple[Fraction, ...], above: Step, not_above: Step) -> Step
 
 
 def element(number: int, step: Step) -> Step:
-    return Step("Element", (f"{number}%nat",), (step,))
+    return Step("Element", (str(number),), (step,))
 
 
 def timed(rule: str, moment: Moment, *steps: Step) -> Step:

@@ -118,7 +118,7 @@ def drive_lines(shown: Shown) -> Iterator[str]:
     first, *others = map(_rectangle, file.road.lanelets)
     yield f"  first_rectangle := {first};"
     yield from _field("other_rectangles", others)
-    yield from _field("beside", [_pair(quoted(a), quoted(b)) for a, b in _beside(file.road)])
+    yield from _field("beside", [_pair(quoted(a), quoted(b)) for a, b in beside(file.road)])
     yield from _field("lanes_named", [_pair(literal(a), quoted(b)) for a, b in sorted(file.lanes.items())])
     values = [_pair(literal(name), rational(x)) for name, x in sorted(shown.values.items())]
     yield from _field("values", values)
@@ -140,7 +140,7 @@ def _pair(one: str, other: str) -> str:
     return f"({one}, {other})"
 
 
-def _beside(road: Road) -> list[tuple[str, str]]:
+def beside(road: Road) -> list[tuple[str, str]]:
     found = sorted(tuple(sorted(pair)) for pair in road.adjacent)
     return [(a, b) for a, b in found]
 

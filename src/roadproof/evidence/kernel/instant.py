@@ -5,12 +5,13 @@ then a contradiction of polynomial constraints is looked for (``cone.py``, then 
 quotients taken to be at least 0, or below.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from roadproof.errors import InputError
 from roadproof.evidence.kernel import cone
+from roadproof.evidence.kernel.constructors import size, term
 from roadproof.evidence.kernel.plain import atoms_of, binary, comparisons, extrema, plain
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
@@ -61,16 +62,14 @@ class _State:
         return replace(self, facts=(*self.facts, *facts), waiting=(*new, *left), choices=choices)
 
 
-def reason(
-    fact: Formula, strict: Mapping[str, bool], own: Sequence[t.Own], term: Callable[[Term], str]
-) -> Reason | None:
+def reason(fact: Formula, strict: Mapping[str, bool], own: Sequence[t.Own]) -> Reason | None:
     """A reason for a fact, None where none is found.
 
     ``strict`` says of each bounded parameter whether it is above 0; ``own``: the signals of a specification,
-    in the order of their bounds; ``term`` prints terms.
+    in the order of their bounds.
     """
     try:
-        search = _Search(binary(fact), strict, own, term)
+        search = _Search(binary(fact), strict, own)
         return Reason(search.run(), tuple(search.atoms))
     except (NoReasonError, InputError, RecursionError):
         return None
@@ -81,7 +80,6 @@ class _Search:
     fact: Formula
     strict: Mapping[str, bool]
     own: Sequence[t.Own]
-    term: Callable[[Term], str]
     atoms: dict[Term, int] = field(default_factory=dict)
     left: int = MOST_CASES
     work: int = MOST_WORK
@@ -114,7 +112,7 @@ class _Search:
             if isinstance(x, t.Size) and x not in state.divided:
                 new = cone.Constraint("above", state.table[x])
                 sized = replace(state, divided=state.divided | {x}).constrained(new)
-                return f"(Sized {self._size(x)} {self._prove(sized)})"
+                return f"(Sized {size(x)} {self._prove(sized)})"
         for place in state.waiting:
             found = self._read(state, place)
             if found is not None:
@@ -246,7 +244,7 @@ class _Search:
                 if shown is not None:
                     new = cone.Constraint("zero", state.table[x] * below - above)
                     inside = self._prove(replace(state, divided=state.divided | {x}).constrained(new))
-                    words = f"{self._term(x.numerator)} {self._term(x.denominator)} {str(up).lower()}"
+                    words = f"{term(x.numerator)} {term(x.denominator)} {str(up).lower()}"
                     return f"(Over {words} {shown.written()} {inside})"
         return None
 
@@ -268,7 +266,7 @@ class _Search:
                     cone.Constraint("above", p - q)
                 )
                 word = "Smallest" if isinstance(x, t.Minimum) else "Largest"
-                words = f"{word} {self._term(one)} {self._term(two)}"
+                words = f"{word} {term(one)} {term(two)}"
                 return f"({words} {self._prove(first)} {self._prove(other)})"
         return None
 
@@ -285,13 +283,6 @@ class _Search:
                 other = self._prove(cut.constrained(cone.Constraint("above", below)))
                 return f"(Sign {cone.coq(polynomial)} {first} {other})"
         raise NoReasonError
-
-    def _term(self, term: Term) -> str:
-        return f"({self.term(term)})%term"
-
-    def _size(self, size: t.Size) -> str:
-        shown = self.term(size)
-        return size.name.capitalize() + shown[len(size.name) :]
 
 
 def _small(polynomial: Polynomial[int]) -> Polynomial[int]:

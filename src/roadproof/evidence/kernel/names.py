@@ -25,6 +25,7 @@ s d v_lon v_lat a_lon a_lat j_lon length width kind occ lanes adjacentLanes lane
 vehicle road term formula side bound at_least_0 above_0 own_at_least own_at_most
 Par Var Sig Own Num Free Bound Truth Some None list nil cons
 claim bounds tableau proved string accepted valid valid_always tree eq_refl Forall_nil Forall_cons conj I
+Siz Add Mul Pow Div Max Min Place_lon Place_lat Speed_lon Speed_lat Acceleration_lon Acceleration_lat Jerk_lon
 Absurd Untrue Opposed Both Either Plain Reads Sized Largest Smallest Over Sign Length Width Kind add_ mul_
 given_ square_ times_ product_ sum_ number_ c_ x_
 q by_ CloseTruth Close CloseLinear CloseRoad CloseRoads CloseZones Alpha Beta Timing New Inst InstUntil

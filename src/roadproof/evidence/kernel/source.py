@@ -1,10 +1,12 @@
 """Files of Coq: claims with their tableaux, one module each. The text of claims is the printer's."""
 
 import textwrap
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 
 from roadproof.errors import InputError, RoadproofError
+from roadproof.evidence.kernel.constructors import term
 from roadproof.evidence.kernel.derivation import rational
 from roadproof.evidence.kernel.instant import Reason, reason
 from roadproof.evidence.kernel.names import comment, literal
@@ -67,10 +69,16 @@ class ClaimText:
 
 def claim_text(printer: Printer, formula: Formula) -> ClaimText:
     """Raises ``InputError`` for what is not printed."""
-    claim, own = printer.formula(formula), own_of([formula])
+    claim = printer.formula(formula)
+    return ClaimText(claim, printer.things, printer.definitions, own_signals(formula))
+
+
+def own_signals(formula: Formula) -> Sequence[t.Own]:
+    """The signals of a specification. Raises ``InputError`` where one is declared in two ways."""
+    own = own_of([formula])
     if len({(x.name, x.vehicle) for x in own}) < len(own):
         raise InputError(f"a signal is declared in two ways: {', '.join(x.told for x in own)}")
-    return ClaimText(claim, printer.things, printer.definitions, own)
+    return own
 
 
 def module(name: str, statement: Statement, tableau: Tableau) -> Module:
@@ -92,10 +100,10 @@ def module(name: str, statement: Statement, tableau: Tableau) -> Module:
     for (lemma, _), word, proof, fact in zip(statement.lemmas, words, proofs, facts, strict=True):
         lemmas.append(len(out) + 1)
         out += wrapped(f"Definition {word} : formula := {fact}.")
-        found = reason(lemma, statement.bounds, printed.own, printer.term)
+        found = reason(lemma, statement.bounds, printed.own)
         if found is None and len(set(comparisons(lemma))) > MOST_COMPARISONS:
             raise UnreasonedError(len(lemmas))
-        out += _proved(printer, found, word, proof)
+        out += _proved(found, word, proof)
     held = "Forall_nil _"
     for proof in reversed(proofs):
         held = f"Forall_cons _ {proof} ({held})"
@@ -125,7 +133,7 @@ def _theorem(statement: Statement, facts: Sequence[str]) -> str:
 def claim_lines(printed: ClaimText, bounds: Mapping[str, bool]) -> list[str]:
     """A claim with what it rests on, as it stands in a module; ``bounds``: name, and strictly above 0."""
     kinds = [f"{'above_0' if strict else 'at_least_0'} {literal(p)}" for p, strict in bounds.items()]
-    kinds += own_bounds(printed.own)
+    kinds += own_bounds(printed.own, lambda x: f"{rational(x)}%Q")
     return [
         *(*printed.things, ""),
         *(line for definition in printed.definitions for line in wrapped(definition)),
@@ -134,23 +142,23 @@ def claim_lines(printed: ClaimText, bounds: Mapping[str, bool]) -> list[str]:
     ]
 
 
-def own_bounds(signals: Iterable[t.Own]) -> Iterator[str]:
-    """The bounds within which signals of a specification are declared."""
+def own_bounds(signals: Iterable[t.Own], number: Callable[[Fraction], str]) -> Iterator[str]:
+    """The bounds within which signals of a specification are declared; ``number`` prints them."""
     for x in signals:
         for word, bound in (("own_at_least", x.low), ("own_at_most", x.high)):
             if bound is not None:
                 vehicle = literal(x.vehicle) if x.vehicle else '""'
-                yield f"{word} {literal(x.name)} {vehicle} {rational(bound)}%Q"
+                yield f"{word} {literal(x.name)} {vehicle} {number(bound)}"
 
 
-def _proved(printer: Printer, found: Reason | None, word: str, proof: str) -> Iterator[str]:
+def _proved(found: Reason | None, word: str, proof: str) -> Iterator[str]:
     """A fact about one instant with its proof: by its reason, else by what Coq's tactics find."""
     yield f"Lemma {proof} : Roadproof.Meaning.valid_always bounds {word}."
     if found is None:
         yield "Proof. some_instant. Qed."
         return
     yield "Proof."
-    atoms = "; ".join(f"({printer.term(x)})%term" for x in found.atoms)
+    atoms = "; ".join(map(term, found.atoms))
     yield from wrapped(f"  refine (Roadproof.Products.settled bounds [{atoms}] {word} {found.written} _).")
     yield "  vm_cast_no_check (eq_refl true)."
     yield "Qed."

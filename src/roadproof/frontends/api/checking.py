@@ -18,7 +18,6 @@ from roadproof.evidence.codec import write
 from roadproof.evidence.finding import Acceptance, Finding, OtherVerdict, exit_code, summary
 from roadproof.evidence.folder import FolderStatements, conclude, survey
 from roadproof.evidence.heading import heading
-from roadproof.evidence.kernel import coq
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api import kernel as kernels
 from roadproof.frontends.api.ci import BuildResult
@@ -41,7 +40,7 @@ if TYPE_CHECKING:
     from roadproof.frontends.api.judging_again import Comparison
 
 Solver: TypeAlias = Literal["z3", "cvc5"]
-Kernel: TypeAlias = Literal["coq"]
+Kernel: TypeAlias = kernels.KernelName
 
 
 @dataclass(frozen=True, repr=False)
@@ -116,7 +115,8 @@ class CheckReport(Table, BuildResult):
         lines += [f"  {line}" for line in legend(words)]
         kernel = [] if self.kernel is None else [str(self.kernel)]
         lines += [f"not checked in {folder}: {', '.join(x)}" for folder, x in self.not_checked.items()]
-        return "\n".join([*lines, summary(self.findings, self.solver), *kernel])
+        asked = "the extracted program" if self.solver == "extracted" else self.solver
+        return "\n".join([*lines, summary(self.findings, asked), *kernel])
 
 
 @takes(Check)
@@ -124,7 +124,8 @@ def check(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
     """Check certificates, drive files and folders of them, as ``roadproof check`` does.
 
     ``solver``: z3 or cvc5; ``specs``: specification files that the claims were made with. ``kernel`` "coq":
-    certificates are put to Coq instead, drives too, and both accepted by its word alone. ``strict``: the exit
+    certificates are put to Coq instead, drives too, and both accepted by its word alone; "extracted": to the
+    program that Coq made of its checkers. ``strict``: the exit
     code is 20 where an answer has no evidence, such as UNKNOWN or NONE-WITHIN. Raises
     ``InputError`` for a path that holds nothing, ``MissingSolverError``.
     """
@@ -133,12 +134,12 @@ def check(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
         # A solver that is missing is said once, before any work.
         ask("(set-logic QF_UF)(check-sat)", asked.solver)
     else:
-        coq.find()
+        kernels.find(asked.kernel)
     named = tuple(Path(x) for x in asked.specs)
     library = load_library(named)
     surveyed = survey([Path(x) for x in paths], named, find_label)
     given = list(surveyed.files.items())
-    answered = None if asked.kernel is None else kernels.put(_asked(given), asked.jobs, asked.progress)
+    answered = asked.kernel and kernels.put(_asked(given), asked.jobs, asked.progress, asked.kernel)
     names = kernels.names_of(path for path, _ in given)
     said = {} if answered is None else answered.rulings
     work = [
@@ -171,14 +172,18 @@ def _judged_again(told: FolderStatements, asked: Check) -> "Comparison | None":
 
 
 def write_sources(
-    *paths: str | Path, folder: str | Path, specs: Iterable[str | Path] = (), jobs: Jobs = None
+    *paths: str | Path,
+    folder: str | Path,
+    specs: Iterable[str | Path] = (),
+    jobs: Jobs = None,
+    kernel: Kernel = "coq",
 ) -> dict[Path, str]:
-    """Write what would be put to Coq for each certificate; why there is no file for those without one.
+    """Write what would be put to a kernel for each certificate; why there is no file for those without one.
 
     Raises ``InputError`` for a path that holds nothing, and where it cannot be written.
     """
     given = list(survey([Path(x) for x in paths], tuple(Path(x) for x in specs), find_label).files.items())
-    reasons = kernels.write(_asked(given), Path(folder), jobs)
+    reasons = kernels.write(_asked(given), Path(folder), jobs, kernel)
     by_name = {name: path for path, name in kernels.names_of(path for path, _ in given).items()}
     return {by_name[name]: reason for name, reason in reasons.items()}
 

@@ -1,10 +1,12 @@
-"""Certificates and drives put to Coq, many at once: each process has one file for its share."""
+"""Certificates and drives put to Coq or to the extracted program, many at once, a file a process."""
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
+from typing import Literal, TypeAlias
 
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.pool import Progress
@@ -15,10 +17,11 @@ from roadproof.evidence.certificate import SCHEMAS_READ, Certificate, read_certi
 from roadproof.evidence.derivations.prepare import prepare as prepare_drive
 from roadproof.evidence.drive_file import DriveFile, read_drive
 from roadproof.evidence.finding import Acceptance, OtherVerdict
-from roadproof.evidence.kernel import accept
+from roadproof.evidence.kernel import accept, coq, extracted, ocaml
 from roadproof.evidence.kernel.accept import CoqModule, KernelRulings, Ruling, Word
-from roadproof.evidence.kernel.coq import THEORIES, ready
+from roadproof.evidence.kernel.drive import module as source_drive
 from roadproof.evidence.kernel.source import file
+from roadproof.evidence.kernel.source import module as source_proof
 from roadproof.evidence.strict import read_json
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library
@@ -28,6 +31,7 @@ from roadproof.runtime.files import make_folder, write_whole
 from roadproof.runtime.package_data import shipped
 from roadproof.verdict import ExitCode
 
+KernelName: TypeAlias = Literal["coq", "extracted"]
 _OUTCOMES = {
     Word.ACCEPTED: Acceptance.ACCEPTED,
     Word.REFUSED: Acceptance.REJECTED,
@@ -51,12 +55,16 @@ class KernelQuestion:
 
 @dataclass(frozen=True)
 class KernelAnswer:
-    """Rulings by name; seconds of the processor for all Coqs, megabytes of the largest, axioms used."""
+    """Rulings by name; seconds of the processor for all files, megabytes of the largest, axioms used.
+
+    ``version``: of Coq, or of the OCaml that compiled the extracted program.
+    """
 
     version: str
     rulings: Mapping[str, Ruling] = field(default_factory=dict)
     seconds: float = 0.0
     megabytes: float = 0.0
+    kernel: KernelName = "coq"
 
     @property
     def exit_code(self) -> ExitCode:
@@ -71,7 +79,8 @@ class KernelAnswer:
     def kept(self) -> Kernel:
         """As answers have it."""
         return Kernel(
-            coqc=self.version,
+            coqc=self.version if self.kernel == "coq" else "",
+            ocaml=self.version if self.kernel == "extracted" else "",
             seconds=round(self.seconds, 1),
             megabytes=round(self.megabytes),
             axioms=self.axioms,
@@ -79,44 +88,82 @@ class KernelAnswer:
 
     def __str__(self) -> str:
         held = f"at most {self.megabytes:.0f} MB" if self.megabytes else "nothing asked"
+        if self.kernel == "extracted":
+            return f"extracted program, OCaml {self.version}: {self.seconds:.1f} s of processor time, {held}"
         axioms = ", ".join(self.axioms) or "none"
         return f"coqc {self.version}: {self.seconds:.1f} s of processor time, {held}; axioms: {axioms}"
 
 
-def put(asked: Sequence[KernelQuestion], jobs: Jobs, progress: Progress | None = None) -> KernelAnswer:
-    """What Coq says of each certificate and drive; nothing of others. Raises ``MissingSolverError``."""
-    with ready() as coq:
-        prepared = prepare_all(asked, jobs, progress)
+def find(kernel: KernelName) -> None:
+    """Raises ``MissingSolverError`` where what a kernel needs is not installed."""
+    if kernel == "coq":
+        coq.find()
+    else:
+        ocaml.find()
+
+
+@contextmanager
+def _judging(kernel: KernelName) -> Iterator[tuple[str, Callable[[Mapping[str, CoqModule]], KernelRulings]]]:
+    """The version of a kernel, and its judge of prepared files."""
+    if kernel == "coq":
+        with coq.ready() as found:
+            yield found.version, partial(accept.judge, found)
+    else:
+        with ocaml.ready() as program:
+            yield program.version, partial(extracted.judge, program)
+
+
+def put(
+    asked: Sequence[KernelQuestion],
+    jobs: Jobs,
+    progress: Progress | None = None,
+    kernel: KernelName = "coq",
+) -> KernelAnswer:
+    """What a kernel says of each certificate and drive; nothing of others. Raises ``MissingSolverError``."""
+    with _judging(kernel) as (version, judge):
+        prepared = prepare_all(asked, jobs, progress, kernel)
         count = pool.count_workers(list(prepared), jobs) if prepared else 0
         parts = list(accept.batches(prepared, count))
         rulings: dict[str, Ruling] = {}
         seconds = megabytes = 0.0
-        for judged in pool.in_order(
-            pool.work(partial(accept.judge, coq), parts, jobs, _lost, progress, "files of Coq")
-        ):
+        for judged in pool.in_order(pool.work(judge, parts, jobs, _lost, progress, "files for the kernel")):
             rulings |= judged.rulings
             seconds += judged.seconds
             megabytes = max(megabytes, judged.megabytes)
-        return KernelAnswer(coq.version, rulings, seconds, megabytes)
+        return KernelAnswer(version, rulings, seconds, megabytes, kernel)
 
 
-def write(asked: Sequence[KernelQuestion], folder: Path, jobs: Jobs) -> dict[str, str]:
-    """A file for each certificate and drive, with the theories below; Coq is not asked.
+def write(
+    asked: Sequence[KernelQuestion], folder: Path, jobs: Jobs, kernel: KernelName = "coq"
+) -> dict[str, str]:
+    """A file for each certificate and drive, with the sources of the kernel below; it is not asked.
 
     Comes back with why there is no file, by name, where there is none.
     """
-    make_folder(folder / "Roadproof")
-    for name in THEORIES:
-        source = shipped("proofs") / "kernel" / f"{name}.v"
-        write_whole(folder / "Roadproof" / source.name, source.read_bytes())
+    home = shipped("proofs") / "kernel"
+    for source in _sources(kernel):
+        make_folder(folder / _FOLDER[kernel])
+        write_whole(folder / _FOLDER[kernel] / source.name, (home / source).read_bytes())
     reasons: dict[str, str] = {}
-    for name, x in prepare_all(asked, jobs).items():
+    for name, x in prepare_all(asked, jobs, None, kernel).items():
         if x.module is None:
             reasons[name] = x.refusal.reason if x.refusal else ""
-        else:
+        elif kernel == "coq":
             content = file([x.module]) + accept.closing([x.module])
             write_whole(folder / f"{name}.v", content.encode("ascii"))
+        else:
+            write_whole(folder / f"{name}.txt", x.module.text.encode("ascii"))
     return reasons
+
+
+_FOLDER: Mapping[KernelName, str] = {"coq": "Roadproof", "extracted": "ocaml"}
+
+
+def _sources(kernel: KernelName) -> list[Path]:
+    """What a kernel is made of, below proofs/kernel."""
+    if kernel == "coq":
+        return [Path(f"{name}.v") for name in coq.THEORIES]
+    return [Path("ocaml") / f"{name}.ml" for name in ocaml.SOURCES]
 
 
 def names_of(paths: Iterable[Path]) -> dict[Path, str]:
@@ -134,13 +181,17 @@ def names_of(paths: Iterable[Path]) -> dict[Path, str]:
 
 
 def prepare_all(
-    asked: Sequence[KernelQuestion], jobs: Jobs, progress: Progress | None = None
+    asked: Sequence[KernelQuestion],
+    jobs: Jobs,
+    progress: Progress | None = None,
+    kernel: KernelName = "coq",
 ) -> dict[str, CoqModule]:
-    made = pool.in_order(pool.work(_prepare, asked, jobs, _unprepared, progress, "claims to be printed"))
+    prepare = partial(_prepare, kernel)
+    made = pool.in_order(pool.work(prepare, asked, jobs, _unprepared, progress, "claims to be printed"))
     return {x.name: y for x, y in zip(asked, made, strict=True) if y is not None}
 
 
-def _prepare(asked: KernelQuestion) -> CoqModule | None:
+def _prepare(kernel: KernelName, asked: KernelQuestion) -> CoqModule | None:
     content: object = asked.certificate
     if isinstance(content, Path):
         try:
@@ -148,9 +199,10 @@ def _prepare(asked: KernelQuestion) -> CoqModule | None:
         except RoadproofError:
             return None
     home = asked.home if isinstance(asked.home, Library) else load_library(asked.home)
+    drive, proof = (source_drive, source_proof) if kernel == "coq" else (extracted.drive, extracted.proof)
     if isinstance(content, DriveFile):
-        return prepare_drive(asked.name, content, home)
-    return accept.prepare(asked.name, content, home) if isinstance(content, Certificate) else None
+        return prepare_drive(asked.name, content, home, drive)
+    return accept.prepare(asked.name, content, home, proof) if isinstance(content, Certificate) else None
 
 
 def _read(path: Path) -> Certificate | DriveFile | None:

@@ -15,7 +15,6 @@ from roadproof.engines.search.question import Engine
 from roadproof.errors import UsageError
 from roadproof.evidence.answers.proofs import ANSWER_SCHEMA, Answer, Index, KernelSays, Record
 from roadproof.evidence.heading import heading
-from roadproof.evidence.kernel import coq
 from roadproof.evidence.kernel.accept import Ruling
 from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
@@ -111,8 +110,10 @@ class Proofs(StudyAnswers[Claims, ClaimResult, Record], BuildResult):
         }
         return claim_cases(self.study, self.answers, files, self.places)
 
-    def put_to_kernel(self, jobs: Jobs = None, progress: Progress | None = None) -> Self:
-        """The same, with what Coq says of each proof. Raises ``MissingSolverError`` without a coqc."""
+    def put_to_kernel(
+        self, kernel: kernels.KernelName, jobs: Jobs = None, progress: Progress | None = None
+    ) -> Self:
+        """The same, with what a kernel says of each proof. Raises ``MissingSolverError``."""
         proved = [(x, x.settled.result.certificate) for x in self.answers]
         library = self.study.library
         asked = {name_of(x.task): y for x, y in proved if y is not None}
@@ -121,6 +122,7 @@ class Proofs(StudyAnswers[Claims, ClaimResult, Record], BuildResult):
             [kernels.KernelQuestion(x, asked[y], library) for x, y in names.items()],
             hands_of(jobs).processes,
             progress,
+            kernel,
         )
         rulings = {names[x]: ruling for x, ruling in found.rulings.items()}
         return replace(self, kernel=replace(found, rulings=rulings))
@@ -200,8 +202,8 @@ def prove(
     ``expect``: the verdict that is expected of your own claims; ``drive``: whether one is looked for that
     refutes. ``effort``: units of work for a claim, each about a second of a solver; ``timeout``: seconds
     after which the clock ends it. ``out``: a folder in which answers are kept as they come. ``using``: one
-    spec set. ``kernel`` "coq": each proof is put to Coq, too. ``stage`` is told of each stage that begins
-    (``stages.Stage``), and ends all by raising.
+    spec set. ``kernel`` "coq" or "extracted": each proof is put to it, too. ``stage`` is told of each stage
+    that begins (``stages.Stage``), and ends all by raising.
     Raises ``TextError``, ``UsageError``, ``InputError``.
 
     >>> prove("danger(SV,POV) -> danger(SV,POV)", jobs=1).verdict
@@ -211,7 +213,7 @@ def prove(
     asked = claims_asked(using or load(), what, using.alone.set_name if using else None, given)
     with listening(stage):
         found = Proofs.asked(asked, given)
-    return found if given.kernel is None else found.put_to_kernel(given.jobs, given.progress)
+    return found if given.kernel is None else found.put_to_kernel(given.kernel, given.jobs, given.progress)
 
 
 def claims_asked(
@@ -234,7 +236,7 @@ def claims_asked(
             raise UsageError(f"engine={given.engine!r} makes no certificates for Coq: omit kernel")
         return _within_limits(asked, home, given.engine, given)
     if given.kernel is not None:
-        coq.find()
+        kernels.find(given.kernel)
     return asked
 
 

@@ -19,6 +19,7 @@ examples:
   roadproof check drives/scenario-04-base.json     judge a drive again, exactly
   roadproof check proofs/ --kernel coq             certificates and drives are put to Coq, and to no solver
   roadproof check proofs/ --kernel coq --write v/  what would be put to Coq, to be read
+  roadproof check proofs/ --kernel extracted       by a program that Coq made of its checkers
   roadproof check proofs/ --strict                 for a pipeline: no answer may be without evidence
   roadproof check mine/ --spec mine.spec           claims that were made with definitions of yours
   roadproof check case.toml                        all evidence of an assurance case, as roadproof assurance
@@ -36,6 +37,10 @@ or no evidence was accepted at all, 3 where a file is damaged or speaks of defin
 For pipelines: with --strict also 20 where an answer has no evidence, such as UNKNOWN or NONE-WITHIN.
 """
 OPTIONS = Check
+_THERE = {
+    "coq": "coqc -Q Roadproof Roadproof FILE.v, after the theories in Roadproof",
+    "extracted": "ocamlopt -I ocaml -o check ocaml/{checker,reader,certificates,main}.ml; ./check <FILE.txt",
+}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -73,11 +78,11 @@ def _write(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.checking import write_sources
 
     if args.kernel is None or args.json:
-        raise UsageError("--write DIR only writes files for Coq: add --kernel, and omit --json")
-    reasons = write_sources(*args.paths, folder=args.write, specs=args.specs or (), jobs=args.jobs)
+        raise UsageError("--write DIR only writes files for a kernel: add --kernel, and omit --json")
+    reasons = write_sources(
+        *args.paths, folder=args.write, specs=args.specs or (), jobs=args.jobs, kernel=args.kernel
+    )
     for path, reason in reasons.items():
         print(f"no file for {path}: {reason}")
-    print(
-        f"written to {args.write}; there: coqc -Q Roadproof Roadproof FILE.v, after the theories in Roadproof"
-    )
+    print(f"written to {args.write}; there: {_THERE[args.kernel]}")
     return ExitCode.UNKNOWN if reasons else ExitCode.AS_EXPECTED

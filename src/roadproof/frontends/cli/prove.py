@@ -72,7 +72,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json != "-" and not asked.are_own:
         print(found)
     if given.kernel is not None:
-        found = found.put_to_kernel(given.jobs, Counter())
+        found = found.put_to_kernel(given.kernel, given.jobs, Counter())
         if args.json != "-":
             print(found.kernel_text())
     write_build_results(args, replace(found, places=_places(args, asked)))

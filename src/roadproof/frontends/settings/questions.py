@@ -124,7 +124,10 @@ class Prove(groups.Definitions, groups.Models, groups.Budget, groups.Run, groups
     )
     drive: bool = search(True, "--no-drive", "search no drive that refutes a claim", rare=True)
     kernel: Kernel | None = option(
-        None, "--kernel", "also check each proof with the kernel of Coq, by coqc", choices=("coq",)
+        None,
+        "--kernel",
+        "also check each proof with Coq, or with the program extracted from it",
+        choices=("coq", "extracted"),
     )
     effort: float = groups.effort_for("a claim", 60.0)
     out: str | Path | None = groups.folder_for("certificates and an index")
@@ -142,15 +145,15 @@ class Check(groups.Answered, groups.Budget, groups.Workers, groups.Reported):
     kernel: Kernel | None = option(
         None,
         "--kernel",
-        "check certificates and drives with the kernel of Coq (coqc) instead of a solver",
-        choices=("coq",),
+        "check certificates and drives with Coq, or the program extracted from it, instead of a solver",
+        choices=("coq", "extracted"),
     )
     strict: bool = option(
         False, "--strict", "exit with 20 if an answer has no evidence (UNKNOWN, NONE-WITHIN)"
     )
     effort: float = groups.effort_for("a query", 60.0)
     write: Path | None = output(
-        None, "--write DIR", "only write the files for Coq, with --kernel", read=Path, keyword=False
+        None, "--write DIR", "only write the files for the kernel, with --kernel", read=Path, keyword=False
     )
     progress: Progress | None = option(None)
 

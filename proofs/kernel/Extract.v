@@ -1,0 +1,18 @@
+(* The checkers as a program of OCaml.  TRUSTED, by those who use that program: read this file.
+
+   Compiled in a folder, it writes ocaml/checker.ml there, which is that of proofs/kernel/ocaml (a test compares
+   them).  Only truth values, lists, pairs, options and characters become those of OCaml; numbers stay Coq's own.
+   `accepted_at`, `settled`, `known` and `shown` say that `accepts_proof`, `settles_fact`, `is_known_fact` and
+   `accepts_drive` are right. *)
+From Coq Require Import Extraction ExtrOcamlBasic ExtrOcamlString ZArith QArith.
+From Roadproof Require Values Products Known Shown.
+
+Definition accepts_proof := Values.accepts_at.
+Definition settles_fact := Products.settles.
+Definition is_known_fact := Known.is_known.
+Definition accepts_drive := Shown.accepts.
+
+Extraction Language OCaml.
+Extraction "checker.ml" accepts_proof settles_fact is_known_fact accepts_drive
+  Z.add Z.mul Z.opp
+  Products.c_ Products.x_ Products.given_ Products.number_ Products.square_ Products.times_.

@@ -1,0 +1,58 @@
+(* Reads forms (reader.ml) from standard input and says of each, in a line: NAME accepted, NAME refused,
+   NAME lemma K (the K-th fact about one instant is not proved) or NAME unread.  TRUSTED. *)
+open Checker
+open Reader
+open Certificates
+
+type verdict = Accepted | Refused | Lemma of int
+
+let holds bounds f = function
+  | [ Word "known" ] -> is_known_fact bounds f
+  | [ terms; r ] -> settles_fact bounds (list term terms) f (reason r)
+  | _ -> unread "a lemma"
+
+(* The first lemma that its reason does not show; the formulas of all where there is none. *)
+let rec settle bounds known k shown = function
+  | [] -> Ok (List.rev shown)
+  | Node (f :: why) :: rest ->
+      let f = formula known f in
+      if holds bounds f why then settle bounds known (k + 1) (f :: shown) rest else Error k
+  | _ -> unread "a lemma"
+
+let ruled accepted = if accepted then Accepted else Refused
+
+let judge = function
+  | [ Word "proof"; _; _; bounds; given; claim; List lemmas; parameters; values; tableau ] -> (
+      let bounds = list bound bounds and known = definitions given in
+      let claim = formula known claim in
+      match settle bounds known 1 [] lemmas with
+      | Error k -> Lemma k
+      | Ok facts ->
+          let values = list (pair name q) values in
+          ruled (accepts_proof (list name parameters) bounds facts values claim (tree tableau)))
+  | [ Word "drive"; _; _; bounds; given; claim; what; why ] ->
+      let claim = formula (definitions given) claim in
+      ruled (accepts_drive (drive what) (list bound bounds) claim (derivation why))
+  | _ -> unread "a form"
+
+let said form =
+  match judge form with
+  | Accepted -> "accepted"
+  | Refused -> "refused"
+  | Lemma k -> "lemma " ^ string_of_int k
+  | exception Unread what -> "unread: this is not " ^ what
+
+let standard_input () =
+  let found = Buffer.create 65536 in
+  let rec more () = Buffer.add_channel found stdin 1; more () in
+  try more () with End_of_file -> Buffer.contents found
+
+let () =
+  match forms (standard_input ()) with
+  | exception Unread what -> prerr_endline ("this is not " ^ what); exit 2
+  | found ->
+      List.iter
+        (function
+          | Node (_ :: Word x :: _ as form) -> print_endline (x ^ " " ^ said form)
+          | _ -> prerr_endline "this is not a form"; exit 2)
+        found

@@ -1,0 +1,156 @@
+"""Claims with their certificates as text for the extracted program (``proofs/kernel/ocaml/reader.ml``).
+
+Trusted for ``--kernel extracted``, as ``printer.py`` is for Coq: BOUNDS, DEFINITIONS and CLAIM say what is
+proved. The rest is a certificate, which the program checks.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
+
+from roadproof.errors import InputError
+from roadproof.evidence.kernel.accept import CoqModule, KernelRulings, Ruling, Word
+from roadproof.evidence.kernel.constructors import Writer, rational, term
+from roadproof.evidence.kernel.derivation import Step, coq_derivation
+from roadproof.evidence.kernel.drive import Shown, beside
+from roadproof.evidence.kernel.instant import Reason, reason
+from roadproof.evidence.kernel.names import comment, literal, quoted
+from roadproof.evidence.kernel.ocaml import Program
+from roadproof.evidence.kernel.source import ClaimText, Module, own_bounds, own_signals
+from roadproof.evidence.kernel.statement import Premises, Statement
+from roadproof.evidence.kernel.tableau import Tableau, coq_tree
+from roadproof.logic.rewrite import without_names
+from roadproof.logic.terms import Own
+from roadproof.world.drive import Course, Motion
+from roadproof.world.road import Lanelet
+
+
+def proof(name: str, statement: Statement, tableau: Tableau) -> Module:
+    """A claim with its proof as a form. Raises ``InputError`` for what is not written."""
+    writer = Writer()
+    claim = writer.formula(statement.formula)
+    own = own_signals(statement.formula)
+    lemmas = [
+        f"({Writer().formula(without_names(x))} {_why(reason(x, statement.bounds, own))})"
+        for x, _ in statement.lemmas
+    ]
+    values = (f"{literal(name)} {rational(x)}" for name, x in statement.demanded.items())
+    parts = [
+        *_claimed("proof", name, statement.claim, _bounds(statement.bounds, own), writer),
+        f" {claim}",
+        f" {_list(lemmas)}",
+        f" {_list(map(literal, statement.parameters))}",
+        f" {_list(values)}",
+        *coq_tree(tableau),
+    ]
+    return Module(name, "\n".join(parts) + ")\n", (), 0)
+
+
+def drive(name: str, shown: Shown, printed: ClaimText, derivation: Step) -> Module:
+    """A drive file as a form; its claim is ``printed`` for Coq. Raises ``InputError``."""
+    writer = Writer()
+    claim = writer.formula(shown.formula)
+    parts = [
+        *_claimed("drive", name, shown.file.formula, _bounds(shown.bounds, printed.own), writer),
+        f" {claim}",
+        *_drive(shown),
+        *coq_derivation(derivation),
+    ]
+    return Module(name, "\n".join(parts) + ")\n", (), 0)
+
+
+def _drive(shown: Shown) -> Iterator[str]:
+    """The fields of ``drive`` in Drive.v."""
+    file = shown.file
+    if not file.road.lanelets:
+        raise InputError("a road without lanelets is not written")
+    yield f" ({_list(_body(name, motion) for name, motion in file.drive.vehicles.items())}"
+    yield f"  {_list(map(_rectangle, file.road.lanelets))}"
+    yield f"  {_list(f'{quoted(a)} {quoted(b)}' for a, b in beside(file.road))}"
+    yield f"  {_list(f'{literal(a)} {quoted(b)}' for a, b in sorted(file.lanes.items()))}"
+    yield f"  {_list(f'{literal(a)} {rational(x)}' for a, x in sorted(shown.values.items()))}"
+    yield f"  {_list(_signal(*key, x) for key, x in sorted(file.drive.own.items()))})"
+
+
+def _signal(name: str, vehicle: str, course: Course) -> str:
+    steps = _list(f"{rational(start)} {rational(value)}" for start, value in course)
+    return f"{literal(name)} {quoted(vehicle)} {steps}"
+
+
+def _rectangle(x: Lanelet) -> str:
+    low, high = ("None" if y is None else rational(y) for y in x.s)
+    return f"{quoted(x.lane)} {x.zone} {low} {high} {rational(x.d[0])} {rational(x.d[1])}"
+
+
+def _body(name: str, motion: Motion) -> str:
+    along = _course(motion.s, motion.v_lon, [(p.duration, p.a_lon, p.j_lon) for p in motion.pieces])
+    across = _course(motion.d, motion.v_lat, [(p.duration, p.a_lat, Fraction(0)) for p in motion.pieces])
+    sizes = f"{rational(motion.length)} {rational(motion.width)}"
+    return f"{literal(name)} {motion.kind or 'other'} {sizes} {along} {across}"
+
+
+def _course(
+    place: Fraction, speed: Fraction, pieces: Sequence[tuple[Fraction | None, Fraction, Fraction]]
+) -> str:
+    """``pieces``: duration, acceleration and jerk; the last is for ever and without jerk."""
+    *before, (_, last, _) = pieces
+    shown = (" ".join(rational(x) for x in piece if x is not None) for piece in before)
+    return f"({rational(place)} {rational(speed)} {_list(shown)} {rational(last)})"
+
+
+# --- verdicts ------------------------------------------------------------------------------------
+
+
+def judge(program: Program, prepared: Mapping[str, CoqModule]) -> KernelRulings:
+    """What the program says of each, by name."""
+    judged = KernelRulings({name: x.refusal for name, x in prepared.items() if x.refusal is not None})
+    asked = {name: x.module for name, x in prepared.items() if x.module is not None}
+    if not asked:
+        return judged
+    ran = program.run("".join(x.text for x in asked.values()))
+    judged.seconds, judged.megabytes = ran.seconds, ran.megabytes
+    said = dict(line.split(" ", 1) for line in ran.said.splitlines()) if ran.code == 0 else {}
+    for name in asked:
+        if name in said:
+            judged.rulings[name] = _ruling(said[name], prepared[name].premises)
+        else:
+            why = " ".join(ran.complained.split())[:200] or f"exit code {ran.code}"
+            judged.rulings[name] = Ruling(Word.UNKNOWN, f"the program ended without an answer: {why}")
+    return judged
+
+
+def _ruling(said: str, premises: Premises) -> Ruling:
+    match said.split(" "):
+        case ["accepted"]:
+            return Ruling(Word.ACCEPTED, "", None, premises)
+        case ["refused"]:
+            return Ruling(Word.REFUSED, "the checker does not accept its certificate")
+        case ["lemma", number]:
+            why = f"lemma {number}, a fact about one instant, is not proved: --kernel coq tries tactics, too"
+            return Ruling(Word.UNKNOWN, why, int(number))
+        case _:
+            return Ruling(Word.UNKNOWN, f"the program does not read it: {said[:200]}")
+
+
+def _why(found: Reason | None) -> str:
+    """Why a fact about one instant holds; one without a reason may be known by name."""
+    return "known" if found is None else f"{_list(map(term, found.atoms))} {found.written}"
+
+
+def _bounds(bounds: Mapping[str, bool], own: Iterable[Own]) -> Iterator[str]:
+    yield from (f"{_BOUND[strict]} {literal(p)}" for p, strict in bounds.items())
+    yield from own_bounds(own, rational)
+
+
+def _claimed(word: str, name: str, claim: str, bounds: Iterable[str], writer: Writer) -> Iterator[str]:
+    """The begin of a form, up to its definitions."""
+    yield f'({word} {name} "{comment(claim)}"'
+    yield f" {_list(bounds)}"
+    between = ";\n  "
+    yield f" [{between.join(writer.definitions)}]"
+
+
+_BOUND = {True: "above_0", False: "at_least_0"}
+
+
+def _list(items: Iterable[str]) -> str:
+    return f"[{'; '.join(items)}]"
