@@ -109,7 +109,7 @@ def module_of(name):
 def asked(text):
     """A module with the question whether its first reason is accepted, and that reason."""
     before, _, rest = text.partition("Lemma fact_1_holds")
-    call = re.search(r"settled (bounds \[.*?\] fact_1) (\(.*?\))\s+_\)\.\n\s+vm_cast", rest, re.DOTALL)
+    call = re.search(r"settled (bounds\s+\[.*?\]\s+fact_1)\s+(\(.*?\))\s+_\)\.\n\s+vm_cast", rest, re.DOTALL)
     return before, " ".join(call[1].split()), " ".join(call[2].split())
 
 
