@@ -1,6 +1,7 @@
 """Which initial values of a manoeuvre a driver can prevent a collision from."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from typing import Unpack
@@ -9,10 +10,13 @@ from roadproof.analysis.preventable.study import Answer as Found
 from roadproof.analysis.preventable.study import LemmaResult, Plate, Preventable
 from roadproof.drivers.driving import require
 from roadproof.drivers.gradual import RATE, check_gradual
-from roadproof.drivers.manoeuvres import MANOEUVRES, Manoeuvre
-from roadproof.drivers.models import DRIVERS, manoeuvre_of, models_for
+from roadproof.drivers.manoeuvres import MANOEUVRES, Course, Manoeuvre
+from roadproof.drivers.models import DRIVERS, GRADUAL, manoeuvre_of, models_for, unpreventable
 from roadproof.errors import UsageError
 from roadproof.evidence.answers import plates as kept
+from roadproof.evidence.kernel.accept import Word
+from roadproof.evidence.kernel.boundary import Boundary, BoundaryRuling, settle
+from roadproof.evidence.kernel.coq import ready
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.ci import BuildResult
@@ -29,17 +33,22 @@ from roadproof.frontends.settings.keywords import PreventableKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.library.bind import Number, exact
 from roadproof.library.specification import unknown
-from roadproof.verdict import Verdict
+from roadproof.verdict import ExitCode, Verdict
 
 _MOST_LINES = 2000
 _MOST_PLATES = 200
 
 
+@dataclass(frozen=True, repr=False)
 class Plates(StudyAnswers[Preventable, Found, kept.Record], BuildResult):
-    """Where a collision is unpreventable, exactly, with judged drives on both sides and proved lemmas."""
+    """Where a collision is unpreventable, exactly, with judged drives on both sides and proved lemmas.
+
+    ``boundaries``: what Coq says of each formula and the motion of its model, where it was asked.
+    """
 
     pieces = "plates and lemmas"
     command = "preventable"
+    boundaries: Sequence[BoundaryRuling] = ()
 
     def cases(self) -> Iterator[Case]:
         index = self._index(self.found.records)
@@ -68,6 +77,15 @@ class Plates(StudyAnswers[Preventable, Found, kept.Record], BuildResult):
         }
 
     @property
+    def exit_code(self) -> ExitCode:
+        said = (
+            ExitCode.UNKNOWN if x.word is Word.UNKNOWN else ExitCode.CROSSCHECK_FAILED
+            for x in self.boundaries
+            if x.word is not Word.ACCEPTED
+        )
+        return max(super().exit_code, *said, ExitCode.AS_EXPECTED)
+
+    @property
     def evidence(self) -> tuple[Evidence, ...]:
         drives = [y.drive for x in self.plates for y in x.shown if y.drive is not None]
         return (*drives, *(x.certificate for x in self.lemmas if x.certificate is not None))
@@ -93,12 +111,14 @@ class Plates(StudyAnswers[Preventable, Found, kept.Record], BuildResult):
 
     def files(self, pictures: bool) -> dict[str, bytes]:
         table = {"plates.csv": as_csv(self._sheet).encode()}
+        table |= {f"boundary-{x.model}.v": x.source.encode() for x in self.boundaries if x.source}
         sheet = {"plates": picture(report.draw_sheet(self.study, self.plates))} if pictures else {}
         return table | drawn(sheet)
 
     def __str__(self) -> str:
         count = f"{len(self.plates)} plates, {len(self.lemmas)} lemmas in {self.seconds:.1f} s"
-        return f"{report.as_text(self.study, self.plates, self.lemmas)}\n{count}"
+        proved = "".join(f"{x}\n" for x in self.boundaries)
+        return f"{report.as_text(self.study, self.plates, self.lemmas)}\n{proved}{count}"
 
 
 @takes(settings.Preventable)
@@ -148,7 +168,19 @@ def preventable(
         values = kind.values(piece.fixed)
         if RATE in values:
             check_gradual(piece.model.name, values, study.reading)
-    return Plates.asked(study, given)
+    more = {} if given.kernel is None else {"boundaries": _boundaries(study)}
+    return Plates.asked(study, given, more=lambda: more)
+
+
+def _boundaries(study: Preventable) -> tuple[BoundaryRuling, ...]:
+    """What Coq says of the boundary of each model. Raises ``MissingSolverError``."""
+    course: Course = GRADUAL if RATE in study.fixed else study.manoeuvre.name
+    vehicles = study.manoeuvre.vehicles
+    asked = [
+        Boundary(course, x.name, unpreventable(course, x.name, vehicles), vehicles) for x in study.models
+    ]
+    with ready() as coq:
+        return tuple(settle(coq, study.basis.specification, x) for x in asked)
 
 
 def _values(kind: Manoeuvre, name: str, given: Number | Sequence[Number]) -> tuple[Fraction, ...]:

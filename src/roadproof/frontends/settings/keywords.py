@@ -213,6 +213,7 @@ class PreventableKeywords(BudgetKeywords, SharingKeywords, RunKeywords, total=Fa
     across: tuple[Number, Number] | None
     lines: int
     lemmas: bool
+    kernel: Kernel | None
 
 
 class CatalogueKeywords(ModelsKeywords, BudgetKeywords, RunKeywords, PreventionKeywords, total=False):

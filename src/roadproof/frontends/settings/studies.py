@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from roadproof.engines.search.question import Objective
     from roadproof.evidence.answers.catalogue_index import Look
+    from roadproof.frontends.api.checking import Kernel
     from roadproof.frontends.api.definitions import Among
     from roadproof.frontends.settings.value_types import RoadLike, Same
     from roadproof.library.bind import Number
@@ -144,6 +145,12 @@ class Preventable(groups.Definitions, groups.Budget, groups.Sharing, groups.Run,
     )
     lines: int = option(100, "--lines K", "lines of a plate (default: 100)", read=whole(2))
     lemmas: bool = option(True, "--no-lemmas", "prove no lemmas")
+    kernel: Kernel | None = option(
+        None,
+        "--kernel",
+        "also prove each formula against the motion, with the kernel of Coq (coqc)",
+        choices=("coq",),
+    )
     effort: float = groups.effort_for("a lemma", 60.0)
     out: str | Path | None = groups.folder_for("drives, certificates, CSV, pictures")
     pictures: bool = groups.pictures_of(command_line_only=True)

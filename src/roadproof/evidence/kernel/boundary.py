@@ -1,0 +1,183 @@
+"""Boundaries of driver models put to Coq: the formula is true of a state if and only if the motion collides.
+
+The formula is printed as that of any claim. The motion is that of proofs/kernel/Prescribed.v, and the theorem
+about numbers that a proof rests on is one of proofs/kernel/Boundary.v.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from roadproof.evidence.kernel.accept import AXIOMS, Word, axioms_of
+from roadproof.evidence.kernel.coq import Coq
+from roadproof.evidence.kernel.printer import Printer
+from roadproof.evidence.kernel.source import claim_lines, claim_text, comment_lines, wrapped
+from roadproof.evidence.kernel.statement import bounds_of, formals_of
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import Specification
+from roadproof.logic.rewrite import parameters_of
+
+_HEAD = """\
+From Coq Require Import Reals QArith String List.
+From Roadproof Require Import Meaning Text.
+From Roadproof Require Prescribed Boundary.
+Import ListNotations.
+Open Scope string_scope.
+Open Scope nat_scope.
+Open Scope term_scope.
+Open Scope formula_scope.
+"""
+# The motion in a cut-in.
+_IN = "{p}cut_in W now ({p}DRIVER) {a} {b}"
+
+
+@dataclass(frozen=True)
+class _Entry:
+    """A theorem of Boundary.v, and the motion of Prescribed.v that it is about.
+
+    In ``motion`` {p} stands before what Prescribed.v defines; {a}, {b} and {c} are vehicles.
+    """
+
+    theorem: str
+    motion: str
+
+    def of(self, vehicles: Sequence[str], prefix: str = "") -> str:
+        """The motion of these vehicles."""
+        return self.motion.format(p=prefix, a=vehicles[0], b=vehicles[1], c=vehicles[-1])
+
+
+@dataclass(frozen=True)
+class Boundary:
+    """A ``formula`` about ``vehicles``, SV first: from there on a ``course`` collides, SV driven by a model.
+
+    ``course`` and ``model`` are called as on the command line: ``cut-in``, ``careful``.
+    """
+
+    course: str
+    model: str
+    formula: str
+    vehicles: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class BoundaryTheorem:
+    """``formula`` holds in a state if and only if ``motion`` collides, where none of ``forward`` goes back.
+
+    ``source``: the file for Coq, with the printed formula and the proof.
+    """
+
+    formula: str
+    motion: str
+    forward: tuple[str, ...]
+    source: str
+
+    def __str__(self) -> str:
+        supposed = " and ".join(f"v_lon({x}) >= 0" for x in self.forward)
+        return f"{supposed} -> ({self.formula} <-> {self.motion})"
+
+
+@dataclass(frozen=True)
+class BoundaryRuling:
+    """What Coq says of the boundary of a model; ``theorem`` is None where the kernel has none."""
+
+    model: str
+    word: Word
+    theorem: BoundaryTheorem | None = None
+    reason: str = ""
+    axioms: tuple[str, ...] = ()
+    seconds: float = 0.0
+
+    @property
+    def source(self) -> str:
+        """The file for Coq; empty where there is none."""
+        return "" if self.theorem is None else self.theorem.source
+
+    def __str__(self) -> str:
+        if self.theorem is None or self.word is not Word.ACCEPTED:
+            return f"kernel: {self.word}  boundary of {self.model}: {self.reason}"
+        axioms = ", ".join(self.axioms) or "none"
+        return (
+            f"kernel: {self.word}  boundary of {self.model}, for all states and parameters:\n"
+            f"  {self.theorem}\n  axioms: {axioms}"
+        )
+
+
+def theorem_for(specification: Specification, boundary: Boundary) -> BoundaryTheorem | None:
+    """The theorem about a boundary; None where the kernel has none.
+
+    Raises ``InputError`` for a formula that is not printed.
+    """
+    entry = _entry(boundary.course, boundary.model, specification.options)
+    if entry is None:
+        return None
+    vehicles = boundary.vehicles
+    query = read_claim(specification, boundary.formula)
+    printer = Printer(formals_of(specification))
+    printed = claim_text(printer, query.formula)
+    words = tuple(printer.vehicle(x) for x in vehicles)
+    bounds = bounds_of(specification, parameters_of(query.formula))
+    # The vehicle in the middle of a cut-out says by its place alone when the other is seen.
+    places = (0, len(vehicles) - 1)
+    source = [
+        *comment_lines([f"{boundary.model}, {boundary.course}:", _said(specification.options)]),
+        *claim_lines(printed, bounds),
+        "",
+        *_theorem(printer, entry, words, [words[x] for x in places]),
+    ]
+    return BoundaryTheorem(
+        boundary.formula,
+        entry.of(vehicles).replace(" W now", ""),
+        tuple(vehicles[x] for x in places),
+        _HEAD + "\n".join(source) + "\n",
+    )
+
+
+def settle(coq: Coq, specification: Specification, boundary: Boundary) -> BoundaryRuling:
+    """What Coq says of a boundary."""
+    model = boundary.model
+    theorem = theorem_for(specification, boundary)
+    if theorem is None:
+        return BoundaryRuling(model, Word.UNKNOWN, reason=f"no theorem ({_said(specification.options)})")
+    ran = coq.run(theorem.source)
+    if ran.code:
+        reason = f"coqc says: {' '.join(ran.complained.split())[:200]}"
+        return BoundaryRuling(model, Word.REFUSED, theorem, reason, seconds=ran.seconds)
+    axioms = axioms_of(ran.said)
+    if axioms is None or set(axioms) - AXIOMS:
+        reason = f"it stands on {', '.join(axioms or ('unknown axioms',))}"
+        return BoundaryRuling(model, Word.REFUSED, theorem, reason, seconds=ran.seconds)
+    return BoundaryRuling(model, Word.ACCEPTED, theorem, "", axioms, ran.seconds)
+
+
+def _entry(course: str, model: str, options: Mapping[str, str]) -> _Entry | None:
+    match course, model:
+        case "cut-in", "r157" | "eu1426":
+            return _Entry(f"{model}_boundary", _IN.replace("DRIVER", f"{model} W now {{a}}"))
+        case "cut-in", "careful" if options["cc_aeb"] == "none":
+            gate = "no_gate" if options["cc_gate"] == "none" else options["cc_gate"]
+            driver = f"careful W now {{p}}by_{options['cc_perception']} {{p}}{gate} {{a}} {{b}}"
+            return _Entry("unaided_boundary", _IN.replace("DRIVER", driver))
+        case "cut-out", "careful":
+            motion = "{p}cut_out W now ({p}careful_behind W now {a}) {a} {b} {c}"
+            return _Entry("cut_out_boundary", motion)
+        case _:
+            return None
+
+
+def _theorem(printer: Printer, entry: _Entry, words: Sequence[str], forward: Sequence[str]) -> Iterator[str]:
+    yield "Theorem proved : forall (W : world) (named : string -> element W) (now : R), respects W bounds ->"
+    for word in forward:
+        yield f"  (0 <= Prescribed.speed W now {word})%R ->"
+    yield f"  (holds W named (unbound W) now claim <-> {entry.of(words, 'Prescribed.')})."
+    yield "Proof."
+    yield "  intros W named now B. unfold respects, bounds in B. Roadproof.Boundary.bounds_in B. intros."
+    yield f"  eapply iff_trans; [|apply Roadproof.Boundary.{entry.theorem}; repeat split; assumption]."
+    printed = [x.split()[1] for x in (*printer.things, *printer.definitions)]
+    unfolded = " ".join(x for x in printed if x not in words)
+    yield from wrapped(f"  cbv beta iota zeta delta [claim {unfolded}].")
+    yield "  Roadproof.Boundary.reads."
+    yield "Qed."
+    yield "Print Assumptions proved."
+
+
+def _said(options: Mapping[str, str]) -> str:
+    return ", ".join(f"{x}={y}" for x, y in sorted(options.items()) if x.startswith("cc_"))
