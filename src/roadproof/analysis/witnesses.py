@@ -9,7 +9,6 @@ from typing import ClassVar
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question, readings
 from roadproof.engines.search import ask
 from roadproof.engines.search.ask import Outcome, Search
-from roadproof.engines.search.impossible import Impossibility
 from roadproof.engines.solve.milp import prepare
 from roadproof.errors import InputError
 from roadproof.evidence.answers import drives as kept
@@ -112,6 +111,8 @@ class WitnessStudy:
         certificate = shelf.read_certificate(said.certificate)
         shown = None
         if certificate is not None:
+            from roadproof.engines.search.impossible import Impossibility
+
             parts = (read_claim(home, declared(query.claim.given) + part) for part in said.core)
             shown = Impossibility(tuple(part.formula for part in parts), said.minimal, certificate)
         return name, Outcome(

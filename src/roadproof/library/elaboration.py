@@ -17,8 +17,8 @@ from roadproof.library.specification import BUILT_IN, Specification, source_of, 
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic import terms as t
+from roadproof.logic.foreign_syntax import instead_of
 from roadproof.logic.formula import Formula
-from roadproof.logic.parse import instead_of
 from roadproof.logic.syntax import Bounds, Definition, Expression, SignalDeclaration
 from roadproof.world.signals import KINDS
 from roadproof.world.units import UNITS

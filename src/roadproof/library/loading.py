@@ -21,7 +21,7 @@ from roadproof.library.specification import (
     unknown,
 )
 from roadproof.logic import syntax
-from roadproof.logic.build_syntax import instances
+from roadproof.logic.instances import instances
 from roadproof.logic.parse import parse_bundled, parse_library
 from roadproof.logic.recover import ParseResult, parse_pieces
 

@@ -10,9 +10,16 @@ from itertools import groupby
 from typing import assert_never
 
 from roadproof.logic import syntax
-from roadproof.logic.build_syntax import LONGEST_EXPONENT, LONGEST_NUMBER
 from roadproof.logic.restore import as_syntax as as_syntax
-from roadproof.logic.syntax import Binding, Bounds, Claim, Definition, Expression
+from roadproof.logic.syntax import (
+    LONGEST_EXPONENT,
+    LONGEST_NUMBER,
+    Binding,
+    Bounds,
+    Claim,
+    Definition,
+    Expression,
+)
 
 # How tightly the parts of the grammar bind, loosest first. A quantifier reaches as far right as it can.
 QUANTIFIED, IFF, IMPLIES, OR, AND, UNTIL, UNARY, COMPARISON, SUM, PRODUCT, SIGNED, POWER, ATOM = range(13)

@@ -14,6 +14,10 @@ BinaryOperator: TypeAlias = Literal["+", "-", "*", "/", "^", "<", "<=", ">", ">=
 TemporalOperator: TypeAlias = Literal["F", "G", "U"]
 ParameterBound: TypeAlias = Literal["", ">", ">="]
 
+LONGEST_NUMBER = 200
+"""So many digits a number may have."""
+LONGEST_EXPONENT = 30
+
 
 def _nowhere() -> Position:
     return Position(0, 0)

@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
-from roadproof.engines.search.impossible import Impossibility, show_impossible
 from roadproof.engines.search.initial_candidates import is_read
 from roadproof.engines.search.limits import Limits
 from roadproof.engines.search.question import (
@@ -29,6 +29,9 @@ from roadproof.runtime.progress import about, begin
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import DriveVerdict, Verdict
 from roadproof.world.drive import Drive
+
+if TYPE_CHECKING:
+    from roadproof.engines.search.impossible import Impossibility
 
 # Units of work for a proof that there is none; and where no engine reads all, which is hard to prove, too.
 NEVER, NEVER_UNREAD = 10.0, 2.0
@@ -64,7 +67,7 @@ class Outcome:
     natural: bool = False
     seconds: Mapping[str, float] = field(default_factory=dict)
     sizes: Mapping[str, int] = field(default_factory=dict)
-    impossibility: Impossibility | None = None
+    impossibility: "Impossibility | None" = None
     limits: Limits | None = None
     exhausted: bool = False
 
@@ -140,6 +143,8 @@ def _ask(search: Search) -> Outcome:
         effort = search.search_options.effort
         most = effort.of(max(1.0, min(NEVER if is_read(question) else NEVER_UNREAD, effort.units)))
         begin("explain", "is there a proof that there is none")
+        from roadproof.engines.search.impossible import show_impossible
+
         impossibility = show_impossible(search.specification, search.query, most)
     return Outcome(
         search.scenario,

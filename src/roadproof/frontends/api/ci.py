@@ -2,12 +2,12 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
-from roadproof.frontends.report.ci.cases import Case
-from roadproof.frontends.report.ci.junit import as_junit
-from roadproof.frontends.report.ci.sarif import as_sarif
 from roadproof.verdict import ExitCode
+
+if TYPE_CHECKING:
+    from roadproof.frontends.report.ci.cases import Case
 
 
 class BuildResult(ABC):
@@ -16,7 +16,7 @@ class BuildResult(ABC):
     command: ClassVar[str]
 
     @abstractmethod
-    def cases(self) -> Iterable[Case]:
+    def cases(self) -> "Iterable[Case]":
         """What was asked, part by part, with places and evidence."""
 
     @property
@@ -26,8 +26,12 @@ class BuildResult(ABC):
 
     def to_junit(self) -> str:
         """The cases as JUnit XML: failures where the exit code is 10, errors where it is 20."""
+        from roadproof.frontends.report.ci.junit import as_junit
+
         return as_junit(f"roadproof {self.command}", tuple(self.cases()))
 
     def to_sarif(self) -> str:
         """The cases that did not pass as SARIF 2.1.0, with file, line and column."""
+        from roadproof.frontends.report.ci.sarif import as_sarif
+
         return as_sarif(self.command, tuple(self.cases()), self.exit_code)

@@ -17,7 +17,7 @@ from roadproof.library.diagnose import Lost, Proofreader, as_diagnostic, claim_e
 from roadproof.library.loading import load_library
 from roadproof.library.scenario_references import read_query
 from roadproof.library.specification import Library, Source, Specification
-from roadproof.logic.build_syntax import instances
+from roadproof.logic.instances import instances
 from roadproof.logic.parse import parse_library
 from roadproof.logic.syntax import EachBlock, WhenBlock
 

@@ -23,14 +23,12 @@ from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.definitions import Definitions, What, load
-from roadproof.frontends.api.exporting import formats_in
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import searches_of, setting, work_of
 from roadproof.frontends.api.studied import StudyAnswers, drive_pictures
 from roadproof.frontends.report.animation import ENDINGS
 from roadproof.frontends.report.ci.cases import Case
 from roadproof.frontends.report.ci.questions import search_cases
-from roadproof.frontends.report.film import need
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.report.witness import EVERY_VIEW, SearchedFor, Views, as_line, sheet_of
 from roadproof.frontends.settings.keywords import WitnessKeywords
@@ -226,8 +224,13 @@ def _finish(beside: DriveFolder, of: tuple[str, Outcome]) -> None:
 
 def views_of(given: Witness) -> Views:
     """The files that are wanted beside each drive. Raises ``UsageError``, ``MissingSolverError``."""
-    wanted = formats_in(given.animate, ENDINGS) if given.animate else []
-    if wanted and given.out is None:
+    if not given.animate:
+        return Views(given.pictures, ())
+    from roadproof.frontends.api.exporting import formats_in
+    from roadproof.frontends.report.film import need
+
+    wanted = formats_in(given.animate, ENDINGS)
+    if given.out is None:
         raise UsageError(f"animate={','.join(wanted)}: name a folder for the animations with --out DIR")
     need(wanted)
     return Views(given.pictures, tuple(wanted))

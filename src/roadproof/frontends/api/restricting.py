@@ -2,10 +2,8 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import get_args
+from typing import TYPE_CHECKING, get_args
 
-from roadproof.analysis.catalogue.decisions import Drivers
-from roadproof.drivers.driving import require
 from roadproof.drivers.models import DRIVERS, check_courses, check_driver
 from roadproof.drivers.restriction import About, Restriction, Side, check_library, files_for
 from roadproof.errors import UsageError
@@ -18,6 +16,9 @@ from roadproof.library.scenarios import number_in, numbers_of
 from roadproof.library.specification import Query, on_request
 from roadproof.logic import formula as f
 from roadproof.logic.formula import subformulas
+
+if TYPE_CHECKING:
+    from roadproof.analysis.catalogue.decisions import Drivers
 
 
 def restricted(
@@ -52,13 +53,16 @@ def restricted(
     return found
 
 
-def drivers_of(home: Definitions, names: tuple[str, ...]) -> Drivers | None:
+def drivers_of(home: Definitions, names: tuple[str, ...]) -> "Drivers | None":
     """Driver models to be asked, in definitions on top of which ``driver.spec`` is read; None for no names.
 
     Raises ``InputError``, ``UsageError``.
     """
     if not names:
         return None
+    from roadproof.analysis.catalogue.decisions import Drivers
+    from roadproof.drivers.driving import require
+
     library = home.library
     path = on_request()[DRIVERS]
     if all(x.name != str(path) for x in library.files):

@@ -3,9 +3,6 @@
 from collections.abc import Mapping
 
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.frontends.report.film import as_gif, as_mp4
-from roadproof.frontends.report.frames import draw_film
-from roadproof.frontends.report.moving import draw_moving
 from roadproof.library.specification import Library
 
 ENDINGS: Mapping[str, str] = {"svg": "-moving.svg", "gif": ".gif", "mp4": ".mp4"}
@@ -17,6 +14,11 @@ def draw_animation(file: DriveFile, library: Library, format: str) -> bytes:
     Raises ``MissingSolverError`` where matplotlib, Pillow or ffmpeg is needed and missing.
     """
     if format == "svg":
+        from roadproof.frontends.report.moving import draw_moving
+
         return draw_moving(file, library)
+    from roadproof.frontends.report.film import as_gif, as_mp4
+    from roadproof.frontends.report.frames import draw_film
+
     film = draw_film(file, library)
     return as_gif(film) if format == "gif" else as_mp4(film)

@@ -7,14 +7,11 @@ from typing import TypeAlias
 from roadproof.engines.search.ask import Outcome
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.report.animation import ENDINGS, draw_animation
-from roadproof.frontends.report.drive import draw_drive
-from roadproof.frontends.report.figures import as_bytes
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.scenarios import LANE
 from roadproof.library.specification import Library, Specification
 from roadproof.library.words import words_of
 from roadproof.logic.custom_names import told_freedom
-from roadproof.recordings.export.csv_table import csv_of
 
 SearchedFor: TypeAlias = tuple[Outcome, Specification]
 """What a search found, and the definitions that it was about."""
@@ -86,8 +83,13 @@ class Views:
 
     def of(self, judged: JudgedDrive, library: Library) -> Iterator[tuple[str, bytes]]:
         """The same, with their contents; the samples come first."""
+        from roadproof.recordings.export.csv_table import csv_of
+
         yield ".csv", csv_of(judged.file).encode()
         if self.pictures:
+            from roadproof.frontends.report.drive import draw_drive
+            from roadproof.frontends.report.figures import as_bytes
+
             for kind, content in as_bytes(draw_drive(judged.file, library)).items():
                 yield f".{kind}", content
         for name in self.animations:
