@@ -2,7 +2,7 @@
 
 import sys
 
-from roadproof.frontends.cli.main import main
+from roadproof.frontends.cli.entry import main
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -27,9 +27,10 @@ from roadproof.frontends.api.checking import Kernel, Solver
 from roadproof.frontends.cli import options, prove
 from roadproof.frontends.cli.basis import read_definitions
 from roadproof.frontends.cli.completion import _VALUES
-from roadproof.frontends.cli.help import COMMANDS, command_parser, jobs
-from roadproof.frontends.cli.main import COMMANDS as SUB_COMMANDS
+from roadproof.frontends.cli.help import command_parser
 from roadproof.frontends.cli.main import main
+from roadproof.frontends.cli.overview import COMMANDS, jobs
+from roadproof.frontends.cli.overview import COMMANDS as SUB_COMMANDS
 from roadproof.frontends.settings import keywords_file
 from roadproof.frontends.settings.flags import add_flags, is_rare, read_keywords
 from roadproof.frontends.settings.groups import Definitions

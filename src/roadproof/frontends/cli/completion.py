@@ -6,7 +6,8 @@ import re
 from collections.abc import Callable, Mapping
 from typing import TypeAlias
 
-from roadproof.frontends.cli.help import COMMANDS, CommandParser, fill
+from roadproof.frontends.cli.help import CommandParser, fill
+from roadproof.frontends.cli.overview import COMMANDS
 from roadproof.verdict import ExitCode
 
 SUMMARY = "print the script with which a shell completes roadproof on Tab"

@@ -1,79 +1,15 @@
-"""Help texts: the program's, with commands by job, and a command's, without its rare options."""
+"""The parser of a command, and its help, without rare options."""
 
 import argparse
-import ast
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable
 from importlib import import_module
-from itertools import chain
-from pathlib import Path
 from typing import Any, NoReturn
 
 from roadproof.errors import UsageError
+from roadproof.frontends.cli.overview import COMMANDS
 from roadproof.frontends.settings.flags import add_flags, is_rare, section
 
 PACKAGE = "roadproof.frontends.cli"
-_JOBS: Mapping[str, Sequence[str]] = {
-    "read the library": ("list", "show"),
-    "ask about scenarios and formulas": ("prove", "witness", "compare", "explore", "check"),
-    "analyse a set of scenarios": (
-        *("overlap", "order", "redundancy", "coverage", "classify", "preventable", "catalogue"),
-    ),
-    "work with recordings and maps": ("monitor", "compile", "evaluate", "simulate", "convert", "road"),
-    "show and share results": ("report", "trace", "assurance", "bundle", "atlas", "export", "studio"),
-    "set up": ("completion", "cache"),
-}
-_OTHERS = "other commands"
-_HEAD = "Compiles driving scenarios to proofs, witnesses and monitors."
-_FOOT = """\
-options:
-  -h, --help   print this text and exit; COMMAND --help explains a command
-  --version    print the version and exit
-
-examples:
-  roadproof show 4            scenario 4, deceleration ahead, and the definitions that it uses
-  roadproof witness 4         a drive on which it holds, judged exactly
-  roadproof prove P4          a property of the scenarios, proved for all time
-
-exit codes: 0 as expected, 10 refuted or unexpected, 20 unknown, 30 cross-check failed,
-            2 usage, 3 bad input, 4 missing solver, 70 our fault, 130 interrupted, 143 ended
-"""
-
-
-def _find_commands(folder: Path) -> dict[str, str]:
-    """The sub-commands with their summaries, by job: the modules in a folder that have a summary."""
-    found = {x.stem: text for x in folder.glob("[a-z]*.py") if (text := _summary(x)) is not None}
-    known = [name for name in chain(*_JOBS.values()) if name in found]
-    return {name: found[name] for name in [*known, *sorted({*found} - {*known})]}
-
-
-def _summary(file: Path) -> str | None:
-    """The literal ``SUMMARY`` of a module, one line, None where it has none.
-
-    It is read without importing the module: --help has to be quick.
-    """
-    for line in file.read_text("utf-8").splitlines():
-        if line.startswith("SUMMARY = "):
-            text: str = ast.literal_eval(line.partition("=")[2].strip())
-            return text
-    return None
-
-
-COMMANDS = _find_commands(Path(__file__).parent)
-
-
-def jobs() -> dict[str, list[str]]:
-    """The sub-commands by job."""
-    found = {job: [name for name in names if name in COMMANDS] for job, names in _JOBS.items()}
-    others = [name for name in COMMANDS if name not in chain(*found.values())]
-    return found | ({_OTHERS: others} if others else {})
-
-
-def overview() -> str:
-    """The help of the program."""
-    blocks = ["usage: roadproof COMMAND [OPTION ...] [ARGUMENT ...]", _HEAD]
-    for job, names in jobs().items():
-        blocks.append("\n".join([f"{job}:", *(f"  {name:<12} {COMMANDS[name]}" for name in names)]))
-    return "\n\n".join([*blocks, _FOOT])
 
 
 def command_parser(name: str) -> "CommandParser":

@@ -14,14 +14,8 @@ from importlib import import_module
 from pathlib import Path
 
 from roadproof.errors import RoadproofError, UsageError
-from roadproof.frontends.cli.help import (
-    COMMANDS,
-    PACKAGE,
-    CommandParser,
-    command_parser,
-    overview,
-    written_files,
-)
+from roadproof.frontends.cli.help import PACKAGE, CommandParser, command_parser, written_files
+from roadproof.frontends.cli.overview import COMMANDS, overview
 from roadproof.frontends.cli.progress import be_quiet, clear
 from roadproof.frontends.cli.streams import FULL, forget_output, make_streams_lenient
 from roadproof.frontends.cli.supervising import supervise

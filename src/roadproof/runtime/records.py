@@ -1,0 +1,121 @@
+"""Frozen dataclasses whose methods are compiled when they are first used.
+
+``dataclasses.dataclass`` compiles six functions for each class, in about 0.3 ms. A command imports hundreds
+of classes and uses few methods of few of them. The decorator of this module puts a ``_Pending`` where a
+method will be. The first use has the standard library make it, and then the class has the method that
+``dataclasses.dataclass`` gives it.
+"""
+
+import dataclasses
+import sys
+import threading
+from collections.abc import Mapping
+from copy import copy
+from typing import TYPE_CHECKING, Any
+
+_RULES = {"frozen", "kw_only", "eq", "repr"}  # classes with other rules are made at once
+_NOTHING = {"init": False, "repr": False, "eq": False}
+_FIELDS = ("__dataclass_fields__", "__match_args__")
+_REPLACE = ("__replace__",) if sys.version_info >= (3, 13) else ()
+_LOCK = threading.RLock()  # a class may ask its bases
+
+if TYPE_CHECKING:
+    from dataclasses import dataclass as dataclass
+else:
+
+    def dataclass(cls: type | None = None, /, **rules: bool) -> object:
+        """As ``dataclasses.dataclass``; subclasses do not inherit an ``InitVar``."""
+        if cls is None:
+            return lambda decorated: dataclass(decorated, **rules)
+        if not rules.get("frozen") or not rules.keys() <= _RULES or "__eq__" in vars(cls):
+            return dataclasses.dataclass(**rules)(cls)
+        _postpone(cls, rules)
+        return cls
+
+
+class _Part:
+    """Attributes that a class is to have, and the rules by which the standard library makes them."""
+
+    def __init__(self, cls: type, given: Mapping[str, object], names: tuple[str, ...], **rules: bool) -> None:
+        self.cls, self.given, self.rules = cls, given, rules
+        self.left = [name for name in names if name not in vars(cls)]
+        for name in self.left:
+            setattr(cls, name, _Pending(self, name))
+
+    def make(self) -> None:
+        """Have the attributes made, of a class with the same fields and without bases.
+
+        Each replaces its ``_Pending`` at once, and so no other thread sees the class without it.
+        """
+        with _LOCK:
+            if self.left:
+                twin = dataclasses.dataclass(**self.rules)(_without_bases(self.cls, self.given))  # type: ignore[call-overload]
+                for name in self.left:
+                    setattr(self.cls, name, vars(twin)[name])
+                self.left = []
+
+
+class _Pending:
+    """Stands where an attribute will be; looked up, it has it made and gives it."""
+
+    def __init__(self, part: _Part, name: str) -> None:
+        self.part, self.name = part, name
+
+    def __get__(self, instance: object, owner: type | None = None) -> Any:
+        self.part.make()
+        found = vars(self.part.cls)[self.name]
+        bind = getattr(type(found), "__get__", None)
+        return found if bind is None else bind(found, instance, owner)
+
+
+def _postpone(cls: type, rules: Mapping[str, bool]) -> None:
+    given = {name: value for name, value in vars(cls).items() if isinstance(value, dataclasses.Field)}
+    for name, value in given.items():
+        if value.default is dataclasses.MISSING:
+            delattr(cls, name)
+        else:
+            setattr(cls, name, value.default)
+    only = _NOTHING | {"kw_only": rules.get("kw_only", False)}
+    _Part(cls, given, (*_FIELDS, *_REPLACE), **only)
+    _Part(cls, given, ("__dataclass_params__",), **rules)
+    _Part(cls, given, ("__init__",), **only | {"init": True, "frozen": True})
+    if rules.get("repr", True):
+        _Part(cls, given, ("__repr__",), **only | {"repr": True})
+    if rules.get("eq", True):
+        _Part(cls, given, ("__eq__", "__hash__"), **only | {"eq": True, "unsafe_hash": True})
+    _freeze(cls)
+
+
+def _without_bases(cls: type, given: Mapping[str, object]) -> type:
+    """A class of the same name with the fields of ``cls`` and its bases, in their order."""
+    types, values = dict[str, object](), dict[str, object]()
+    for base in cls.__mro__[-1:0:-1]:
+        if dataclasses.is_dataclass(base):
+            types |= {field.name: field.type for field in dataclasses.fields(base)}
+            values |= {field.name: copy(field) for field in dataclasses.fields(base)}
+    for name, kind in cls.__annotations__.items():
+        types[name], values[name] = kind, given.get(name, getattr(cls, name, dataclasses.MISSING))
+    found = {name: value for name, value in values.items() if value is not dataclasses.MISSING}
+    about = {"__module__": cls.__module__, "__qualname__": cls.__qualname__, "__doc__": cls.__doc__ or "-"}
+    if hasattr(cls, "__post_init__"):
+        found["__post_init__"] = cls.__post_init__
+    return type(cls.__name__, (), {**about, **found, "__annotations__": types})
+
+
+def _freeze(cls: type) -> None:
+    """Have instances refuse changes, as those of a frozen dataclass do."""
+
+    def refuse(self: object, name: str, does: str) -> None:
+        if type(self) is cls or name in {field.name for field in dataclasses.fields(cls)}:  # type: ignore[arg-type]
+            raise dataclasses.FrozenInstanceError(f"cannot {does} field {name!r}")
+
+    def set_attribute(self: object, name: str, value: object) -> None:
+        refuse(self, name, "assign to")
+        super(cls, self).__setattr__(name, value)
+
+    def delete_attribute(self: object, name: str) -> None:
+        refuse(self, name, "delete")
+        super(cls, self).__delattr__(name)
+
+    cls.__setattr__ = set_attribute  # type: ignore[assignment]
+    cls.__delattr__ = delete_attribute  # type: ignore[assignment]
