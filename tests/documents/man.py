@@ -8,7 +8,8 @@ from pathlib import Path
 
 import roadproof
 from documents.reference import EXIT_CODES, help_of, spellings
-from roadproof.frontends.cli.help import COMMANDS, command_parser, jobs
+from roadproof.frontends.cli.help import command_parser
+from roadproof.frontends.cli.overview import COMMANDS, jobs
 
 _HEADED = re.compile(r"(?P<title>[a-z][a-z ]*):\n(?P<body> .*)", re.DOTALL)
 

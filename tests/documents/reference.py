@@ -14,7 +14,8 @@ from roadproof.frontends.api.answer import Answer
 from roadproof.frontends.api.definitions import Definitions
 from roadproof.frontends.api.phrases import Phrase
 from roadproof.frontends.api.studied import StudyAnswers
-from roadproof.frontends.cli.help import COMMANDS, command_parser, jobs
+from roadproof.frontends.cli.help import command_parser
+from roadproof.frontends.cli.overview import COMMANDS, jobs
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import number_in
 from roadproof.library.specification import Specification

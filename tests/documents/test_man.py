@@ -9,7 +9,8 @@ import pytest
 
 from documents.man import pages, write
 from documents.reference import spellings
-from roadproof.frontends.cli.help import COMMANDS, command_parser
+from roadproof.frontends.cli.help import command_parser
+from roadproof.frontends.cli.overview import COMMANDS
 
 
 @pytest.fixture(scope="module")

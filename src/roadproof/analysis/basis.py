@@ -1,7 +1,7 @@
 """What analyses of scenarios rest on: definitions, values of parameters, and how hard is searched."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Generic, TypeVar
 
@@ -14,6 +14,7 @@ from roadproof.library.bind import values_with
 from roadproof.library.dependence import digest_of
 from roadproof.library.specification import Library, Query, Specification
 from roadproof.runtime.budget import BudgetExceeded, Effort
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ProofVerdict, Verdict
 from roadproof.world.road import Road
 from roadproof.world.vehicle import Vehicle

@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
@@ -29,6 +29,7 @@ from roadproof.logic.custom_names import told_freedom
 from roadproof.reasons import Reason, Why
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.progress import about
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ClaimVerdict, Verdict
 
 if TYPE_CHECKING:

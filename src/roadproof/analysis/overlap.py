@@ -6,7 +6,7 @@ there, and its core is looked up in the others, each of which gets a certificate
 """
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from itertools import combinations, permutations
 from typing import ClassVar, Literal
@@ -29,6 +29,7 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
 from roadproof.reasons import Reason, Why, joined
 from roadproof.runtime.budget import BudgetExceeded
+from roadproof.runtime.records import dataclass
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import DriveVerdict, Verdict
 

@@ -6,7 +6,7 @@ and those for one scenario on the scenarios that differ from it in the road sect
 """
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -33,6 +33,7 @@ from roadproof.logic.show import text
 from roadproof.logic.syntax import Claim
 from roadproof.reasons import Reason, Why
 from roadproof.runtime.budget import BudgetExceeded
+from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict
 

@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -19,6 +19,7 @@ from roadproof.library.elaborate import StatedQuery, read_claim
 from roadproof.logic.show import declared
 from roadproof.reasons import Reason
 from roadproof.runtime.budget import Effort
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
 
 

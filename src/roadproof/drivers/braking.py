@@ -4,13 +4,13 @@ It is worked out from times, apart from the formulas of ``driver.spec``.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 from math import isqrt
 from typing import Literal, TypeAlias
 
 from roadproof.errors import InputError
+from roadproof.runtime.records import dataclass
 from roadproof.world.drive import Along
 
 _NONE = Fraction(0)

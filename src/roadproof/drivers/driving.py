@@ -4,7 +4,7 @@ It is worked out from times, apart from the formulas of ``driver.spec``; the jud
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from fractions import Fraction
 from functools import cached_property, partial
 from typing import Literal
@@ -16,6 +16,7 @@ from roadproof.drivers.stepped import course_of
 from roadproof.errors import UsageError
 from roadproof.library.scenarios import SUBJECT
 from roadproof.library.specification import Specification
+from roadproof.runtime.records import dataclass
 from roadproof.world.drive import Across, Along, Drive, motion_of
 from roadproof.world.road import Lanelet, Road, pairs
 

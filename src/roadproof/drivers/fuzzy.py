@@ -9,9 +9,10 @@ time, so that the reaction time of 0.75 s is one, too. What is divided is rounde
 without which the digits of an exact drive would double at every look.
 """
 
-from dataclasses import dataclass
 from fractions import Fraction
 from math import lcm
+
+from roadproof.runtime.records import dataclass
 
 HERTZ = 10
 ROUNDING = Fraction(1, 10**6)  # m/s²

@@ -5,7 +5,7 @@ Lemmas are claims that are proved anew wherever the boundary is told.
 
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from importlib import resources
@@ -19,6 +19,7 @@ from roadproof.logic import syntax
 from roadproof.logic.formula import Formula
 from roadproof.logic.parse import parse_bundled
 from roadproof.logic.rewrite import parameters_of
+from roadproof.runtime.records import dataclass
 
 AT_ONCE = "0 s"
 # The ramp and the full braking of each model, in the words of driver.spec; then of AEB, and of both.

@@ -4,7 +4,6 @@ A drive on a side of such an end has to show a formula.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
@@ -14,6 +13,7 @@ from roadproof.drivers.driving import DriverSettings, speeds_of
 from roadproof.library.bind import bind
 from roadproof.library.elaborate import apply_definition
 from roadproof.library.specification import Specification
+from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.algebraic import Point, Root, approximate
 from roadproof.semantics.exact.truth import TruthSet
 from roadproof.world.road import Road

@@ -6,7 +6,7 @@ the set of values at which the formula is true, with algebraic ends.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from fractions import Fraction
 from functools import cached_property
 from types import MappingProxyType
@@ -17,6 +17,7 @@ from roadproof.library.scenarios import PAIR, SUBJECT, TRIPLE
 from roadproof.library.specification import unknown
 from roadproof.logic.formula import Formula
 from roadproof.logic.terms import Own, Signal, SignalName, Size, SizeName
+from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.exact import truth_within
 from roadproof.semantics.exact.polynomial import Polynomial, polynomial
 from roadproof.semantics.exact.signals import LineSignals

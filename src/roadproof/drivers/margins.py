@@ -5,7 +5,6 @@ themselves; where the formula of the boundary changes is exact but for rounding 
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 
@@ -16,6 +15,7 @@ from roadproof.logic import terms as t
 from roadproof.logic.custom_names import own_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import map_terms, with_values
+from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.exact import truth_within
 from roadproof.semantics.exact.polynomial import Polynomial, polynomial

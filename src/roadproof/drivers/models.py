@@ -1,7 +1,6 @@
 """The driver models of ``driver.spec``, and what its definitions are called, which no other file knows."""
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
@@ -9,6 +8,7 @@ from roadproof.drivers.manoeuvres import Course, ManoeuvreName
 from roadproof.errors import UsageError
 from roadproof.library.scenarios import LANE, disturbance_name, name_of, number_in
 from roadproof.library.specification import unknown
+from roadproof.runtime.records import dataclass
 
 DRIVERS = "driver"
 """What the file of the definitions is called, among those that are read on request."""

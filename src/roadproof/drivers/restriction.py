@@ -5,7 +5,7 @@ options are told with every answer: so evidence is about the question that was a
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal, TypeAlias, get_args
 
@@ -21,6 +21,7 @@ from roadproof.logic.parse import parse_library
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.rewrite import without_names
 from roadproof.logic.syntax import Claim, Definition
+from roadproof.runtime.records import dataclass
 
 Side: TypeAlias = Literal["preventable", "unpreventable"]
 About: TypeAlias = Literal["scenarios", "drives"]

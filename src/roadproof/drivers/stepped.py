@@ -5,7 +5,6 @@ the whole drive; nothing is claimed of what lies between them.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from itertools import groupby
@@ -14,6 +13,7 @@ from math import ceil
 from roadproof.drivers import manoeuvres as m
 from roadproof.drivers.fuzzy import HERTZ, TICKS, Controller, Scale, scale_of
 from roadproof.errors import InputError
+from roadproof.runtime.records import dataclass
 from roadproof.world.drive import Along
 
 PLACES = 121  # of a line

@@ -10,7 +10,7 @@ same, but where it is marked ``LEFT_OUT``.
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import MISSING, dataclass, fields, is_dataclass
+from dataclasses import MISSING, fields, is_dataclass
 from enum import Enum, StrEnum
 from fractions import Fraction
 from functools import cache
@@ -31,6 +31,7 @@ from typing import (
 from roadproof.errors import InputError
 from roadproof.evidence.strict import Fields, Json, JsonObject, rational, text
 from roadproof.reasons import Reason, Why
+from roadproof.runtime.records import dataclass
 
 T = TypeVar("T")
 Read: TypeAlias = Callable[[object, str], object]

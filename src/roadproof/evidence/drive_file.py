@@ -7,7 +7,6 @@ holds on the drive is for ``judged``.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -19,6 +18,7 @@ from roadproof.evidence.line_file import line_of, line_said
 from roadproof.evidence.strict import Fields, JsonObject, is_rational, rational, read_json
 from roadproof.library.roles import with_vehicles
 from roadproof.library.scenarios import LANE
+from roadproof.runtime.records import dataclass
 from roadproof.world.drive import Course, Drive, Motion, Piece
 from roadproof.world.road import Lanelet, Road, pairs
 from roadproof.world.signals import SIZES, STARTING

@@ -1,13 +1,13 @@
 """What comes out where evidence is checked."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers.shared import KernelWord, Reason
 from roadproof.evidence.codec import LEFT_OUT, Doc
 from roadproof.reasons import NO_REASON, Why
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 
 

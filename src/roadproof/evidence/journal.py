@@ -10,7 +10,7 @@ and ``roadproof check`` checks that evidence again.
 import hashlib
 import json
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -22,6 +22,7 @@ from roadproof.evidence.refutation import judge_trace
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, Json, JsonObject, parse_json, read_json
 from roadproof.library.specification import Library
 from roadproof.runtime.files import read_limited
+from roadproof.runtime.records import dataclass
 
 NAME = "answers.jsonl"
 HEAD, ANSWERS = "question.json", "answers"

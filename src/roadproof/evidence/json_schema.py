@@ -1,7 +1,7 @@
 """JSON Schemas of answers, derived from their definitions (``evidence.codec``)."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, is_dataclass, replace
+from dataclasses import is_dataclass, replace
 from enum import StrEnum
 from fractions import Fraction
 from types import NoneType, UnionType
@@ -10,6 +10,7 @@ from typing import Literal, Union, get_args, get_origin
 from roadproof.evidence.codec import ABSENT, LACKING, Doc, Field, Rule, bare, fields_of, notes_of
 from roadproof.evidence.strict import Json, JsonObject
 from roadproof.reasons import Reason
+from roadproof.runtime.records import dataclass
 
 DRAFT = "https://json-schema.org/draft/2020-12/schema"
 COMMON = "common.json"

@@ -3,7 +3,6 @@ exact judge asked, no solver.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers.drive import DriveSays, TrueTimes
@@ -14,6 +13,7 @@ from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library, Query, Specification
 from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.exact import Judgement, judge
 from roadproof.semantics.exact.replay import first_overlap
 

@@ -6,7 +6,6 @@ a whole round later than it is asked for, also came one round earlier.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil
 from typing import assert_never
@@ -14,6 +13,7 @@ from typing import assert_never
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
+from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact import truth as sets
 from roadproof.semantics.exact.algebraic import moved
 from roadproof.semantics.exact.exact import Judge, seconds

@@ -5,7 +5,6 @@ instant, lanes and lanelets as for drives, and time by the exact judge.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 from typing import Literal, assert_never
@@ -27,6 +26,7 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.node import once
 from roadproof.logic.rewrite import bounds_of, leaves_of, map_terms, without_names
 from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact import TruthSet, judge
 from roadproof.semantics.exact.signals import AbstractSignals
 from roadproof.semantics.exact.truth import from_switches

@@ -1,11 +1,11 @@
 """What is known of a question that was settled, or is in doubt: each analysis adds what it is about."""
 
-from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.reasons import NO_REASON, Reason
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
 
 Word = TypeVar("Word", bound=Verdict, covariant=True)

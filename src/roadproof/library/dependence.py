@@ -3,7 +3,6 @@
 import hashlib
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 
 from roadproof.library.scenarios import TEMPLATE_NAMES, name_of
@@ -11,6 +10,7 @@ from roadproof.library.specification import Specification
 from roadproof.library.uses import definitions_used, parameters_used
 from roadproof.logic import syntax
 from roadproof.logic.syntax import Call, Definition, ParameterDeclaration
+from roadproof.runtime.records import dataclass
 
 _NAME = re.compile(r"[A-Za-z_]\w*(?:@\w+)?")
 

@@ -5,7 +5,7 @@ An error in a definition that others use is told once, and nothing follows from 
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Literal, TypeAlias
@@ -24,6 +24,7 @@ from roadproof.logic import terms as t
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.recover import parse_pieces
 from roadproof.logic.syntax import Definition, ParameterDeclaration
+from roadproof.runtime.records import dataclass
 from roadproof.world.units import UNITS
 
 Severity: TypeAlias = Literal["error", "info"]

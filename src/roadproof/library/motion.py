@@ -11,7 +11,6 @@ and limits a value is one more of what is assumed. What is proved is the claim w
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 
 from roadproof.errors import InputError, Position, TextError
@@ -32,6 +31,7 @@ from roadproof.logic.restore import as_syntax, term_as_syntax
 from roadproof.logic.rewrite import leaves_of, parameters_of, vehicles_of
 from roadproof.logic.show import text
 from roadproof.logic.terms import Term
+from roadproof.runtime.records import dataclass
 from roadproof.world.signals import LIMITED
 from roadproof.world.units import UNITS
 from roadproof.world.vehicle import Vehicle

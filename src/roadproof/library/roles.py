@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from itertools import count
 
 from roadproof.errors import InputError, TextError
@@ -11,6 +11,7 @@ from roadproof.library.specification import unknown
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.show import text as printed
 from roadproof.logic.syntax import Binding
+from roadproof.runtime.records import dataclass
 
 UNDER_TEST = frozenset(
     {

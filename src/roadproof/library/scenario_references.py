@@ -6,7 +6,6 @@ left out.
 """
 
 import re
-from dataclasses import dataclass
 from difflib import get_close_matches
 
 from roadproof.errors import InputError, UsageError
@@ -15,6 +14,7 @@ from roadproof.library.elaborate import apply_definition, read_claim
 from roadproof.library.specification import Query, Specification
 from roadproof.library.words import called
 from roadproof.logic import syntax
+from roadproof.runtime.records import dataclass
 
 _RANGE = re.compile(r"\s*(\d{1,4})\s*(?:-\s*(\d{1,4})\s*)?")
 _WORDS = re.compile(r"\w[\w -]*(?:\([\w -]*\))?")

@@ -8,7 +8,6 @@ whose lane L is come from the specification.
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
@@ -21,6 +20,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic.formula import Formula, transform
 from roadproof.logic.syntax import Definition, TitleDeclaration
+from roadproof.runtime.records import dataclass
 from roadproof.world.road import Zone
 
 MIN_SAFE, MIN_DANGER = "minSafe", "minDanger"

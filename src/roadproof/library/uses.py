@@ -1,7 +1,7 @@
 """What a text speaks of: definitions, parameters that occur in them, and where a part of it is said."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from roadproof.errors import Position
 from roadproof.library.elaborate import notes_of
@@ -10,6 +10,7 @@ from roadproof.logic import syntax
 from roadproof.logic.formula import Formula, subformulas
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.syntax import Definition, Expression, ParameterDeclaration
+from roadproof.runtime.records import dataclass
 
 
 def definitions_used(specification: Specification, expression: Expression) -> tuple[Definition, ...]:

@@ -5,11 +5,11 @@ scenario that has no title is called by its description.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from itertools import groupby
 
 from roadproof.library import scenarios as s
 from roadproof.library.specification import Specification
+from roadproof.runtime.records import dataclass
 
 
 @dataclass(frozen=True)

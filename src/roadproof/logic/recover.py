@@ -6,13 +6,14 @@ names that it would have declared are known, so that nobody is told that they do
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
 
 from roadproof.errors import Position, TextError
 from roadproof.logic.parse import parse_library
 from roadproof.logic.syntax import EachBlock, SetBlock, Statement, WhenBlock
+from roadproof.runtime.records import dataclass
 
 _BLOCKS = ("each", "set", "when")
 _START = re.compile(

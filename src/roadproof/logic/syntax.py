@@ -4,11 +4,12 @@ Terms and formulas are not yet told apart, since a call may be either. ``spec.el
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
 from roadproof.errors import Position
+from roadproof.runtime.records import dataclass
 
 BinaryOperator: TypeAlias = Literal["+", "-", "*", "/", "^", "<", "<=", ">", ">=", "=", "!=", "->", "<->"]
 TemporalOperator: TypeAlias = Literal["F", "G", "U"]

@@ -7,11 +7,12 @@ that counting fails, and what it cuts off is in doubt: ``BudgetExceeded``.
 
 import math
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Self
 
 from roadproof.errors import RoadproofError
 from roadproof.reasons import Reason, Why
+from roadproof.runtime.records import dataclass
 
 # Wall-clock seconds that a unit of work may take before the backstop ends it, and the least backstop: enough
 # for a unit that takes several seconds on a machine with ten times as much to do as it has cores.

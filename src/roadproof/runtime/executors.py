@@ -7,11 +7,12 @@ import re
 import sys
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TypeAlias, TypeVar
 
 from roadproof.errors import UsageError
 from roadproof.reasons import Reason, Why
+from roadproof.runtime.records import dataclass
 
 Item = TypeVar("Item")
 

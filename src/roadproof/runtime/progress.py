@@ -8,10 +8,10 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roadproof.errors import RoadproofError
+from roadproof.runtime.records import dataclass
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ method will be. The first use has the standard library make it, and then the cla
 import dataclasses
 import sys
 import threading
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from copy import copy
 from typing import TYPE_CHECKING, Any
 
@@ -49,7 +49,8 @@ class _Part:
         """
         with _LOCK:
             if self.left:
-                twin = dataclasses.dataclass(**self.rules)(_without_bases(self.cls, self.given))  # type: ignore[call-overload]
+                make: Callable[[type], type] = dataclasses.dataclass(**self.rules)
+                twin = make(_without_bases(self.cls, self.given))
                 for name in self.left:
                     setattr(self.cls, name, vars(twin)[name])
                 self.left = []
@@ -106,16 +107,16 @@ def _freeze(cls: type) -> None:
     """Have instances refuse changes, as those of a frozen dataclass do."""
 
     def refuse(self: object, name: str, does: str) -> None:
-        if type(self) is cls or name in {field.name for field in dataclasses.fields(cls)}:  # type: ignore[arg-type]
+        if type(self) is cls or (dataclasses.is_dataclass(cls) and name in cls.__dataclass_fields__):
             raise dataclasses.FrozenInstanceError(f"cannot {does} field {name!r}")
 
     def set_attribute(self: object, name: str, value: object) -> None:
         refuse(self, name, "assign to")
-        super(cls, self).__setattr__(name, value)
+        object.__setattr__(self, name, value)
 
     def delete_attribute(self: object, name: str) -> None:
         refuse(self, name, "delete")
-        super(cls, self).__delattr__(name)
+        object.__delattr__(self, name)
 
     cls.__setattr__ = set_attribute  # type: ignore[assignment]
     cls.__delattr__ = delete_attribute  # type: ignore[assignment]

@@ -8,11 +8,12 @@ parametric cubic is longer or shorter than that, all lengths along it are scaled
 import math
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import TypeAlias
+
+from roadproof.runtime.records import dataclass
 
 Coefficients: TypeAlias = tuple[Fraction, Fraction, Fraction, Fraction]
 Range: TypeAlias = tuple[float, float]

@@ -5,11 +5,12 @@ jerk are those of the piece which begins there, so an acceleration may jump; the
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from itertools import accumulate
 from typing import TypeAlias
 
+from roadproof.runtime.records import dataclass
 from roadproof.world.signals import Kind
 
 # Values that are constant from one start to the next.

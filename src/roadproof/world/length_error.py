@@ -1,9 +1,9 @@
 """How far lengths along the lanes of a bent road are from those in s."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from fractions import Fraction
 
+from roadproof.runtime.records import dataclass
 from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.road import Lanelet, Road
 

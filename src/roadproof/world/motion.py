@@ -7,10 +7,10 @@ A piece holds from its start on: at a knot acceleration and jerk are those of th
 
 from bisect import bisect_right
 from collections.abc import Iterable
-from dataclasses import dataclass
 from fractions import Fraction
 
 from roadproof.errors import UsageError
+from roadproof.runtime.records import dataclass
 from roadproof.world.drive import Motion
 
 

@@ -5,9 +5,10 @@ The encoders and the reasons that are put to Coq share them. The judge has polyn
 """
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Generic, TypeVar
+
+from roadproof.runtime.records import dataclass
 
 V = TypeVar("V")
 W = TypeVar("W")

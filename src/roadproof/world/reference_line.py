@@ -7,10 +7,10 @@ section 8.3). Before its beginning and after its end the line goes straight on.
 import math
 from bisect import bisect_right
 from collections.abc import Iterator
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
+from roadproof.runtime.records import dataclass
 from roadproof.world.curves import Bend, Curve, Pose
 
 _SPACING = 5.0

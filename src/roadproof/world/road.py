@@ -5,10 +5,10 @@ straight road, or follow a reference line in the plane.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
+from roadproof.runtime.records import dataclass
 from roadproof.world.reference_line import ReferenceLine
 
 Zone: TypeAlias = Literal["main", "merge", "depart"]

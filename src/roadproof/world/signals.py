@@ -5,9 +5,9 @@ each of them when a signal is added here (CONTRIBUTING.md shows how).
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Literal, TypeAlias, get_args
 
+from roadproof.runtime.records import dataclass
 from roadproof.world.units import UNITS, Dimension
 
 SignalName: TypeAlias = Literal["s", "d", "v_lon", "v_lat", "a_lon", "a_lat", "j_lon"]

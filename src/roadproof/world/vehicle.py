@@ -1,10 +1,11 @@
 """What a vehicle can do: its box and the limits of its motion (semantics §2)."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from fractions import Fraction
 
 from roadproof.errors import UsageError
+from roadproof.runtime.records import dataclass
 from roadproof.world.signals import LIMITED, SIGNALS, Kind
 
 Range = tuple[Fraction, Fraction]

@@ -8,7 +8,7 @@ import hashlib
 import json
 import os
 from collections.abc import Callable, Container, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -30,6 +30,7 @@ from roadproof.evidence.judged import JudgedDrive, KnownDrive
 from roadproof.evidence.strict import LARGEST_EVIDENCE, Json, JsonObject, read_json
 from roadproof.library.specification import Library, Specification
 from roadproof.runtime.files import json_bytes, make_folder, write_json, write_whole
+from roadproof.runtime.records import dataclass
 
 INDEX = "index.json"
 

@@ -6,7 +6,6 @@ a run that was broken off goes on where it was.
 
 from collections.abc import Callable, Collection, Container, Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar, runtime_checkable
 
@@ -20,6 +19,7 @@ from roadproof.evidence.codec import read, write
 from roadproof.evidence.strict import JsonObject
 from roadproof.reasons import NO_REASON, Reason
 from roadproof.runtime.executors import Jobs, Shard, hands_of
+from roadproof.runtime.records import dataclass
 
 Piece = TypeVar("Piece")
 Answer = TypeVar("Answer")

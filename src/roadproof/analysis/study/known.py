@@ -10,7 +10,6 @@ import json
 import lzma
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Literal
@@ -20,6 +19,7 @@ from roadproof.evidence.strict import Fields, JsonObject
 from roadproof.runtime.cache import keep_bytes, kept_bytes, make_room
 from roadproof.runtime.files import write_whole
 from roadproof.runtime.package_data import shipped
+from roadproof.runtime.records import dataclass
 from roadproof.version import ANSWERS, VERSION
 
 SCHEMA = "roadproof/known/1"

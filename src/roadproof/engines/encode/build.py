@@ -1,7 +1,7 @@
 """A question to a problem: formula, road, vehicles and grid become columns, rows and a circuit."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from itertools import combinations
 from typing import TypeAlias, assert_never
@@ -23,6 +23,7 @@ from roadproof.engines.encode.problem import (
 )
 from roadproof.engines.encode.unroll import At, unroll
 from roadproof.logic.formula import Compare, Formula
+from roadproof.runtime.records import dataclass
 from roadproof.world.polynomial import Polynomial, affine, variable
 from roadproof.world.road import Road
 from roadproof.world.signals import OwnName

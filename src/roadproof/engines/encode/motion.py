@@ -6,7 +6,6 @@ positions follow the trapezoid rule exactly. After the last sample there is no a
 """
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain
 from typing import assert_never
@@ -17,6 +16,7 @@ from roadproof.logic import terms as t
 from roadproof.logic.custom_names import own_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import leaves_of
+from roadproof.runtime.records import dataclass
 from roadproof.world.polynomial import Polynomial, affine, constant, variable
 from roadproof.world.signals import STARTING, OwnName, SignalName
 from roadproof.world.vehicle import Range, Vehicle

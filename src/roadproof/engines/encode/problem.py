@@ -6,10 +6,10 @@ true and ``AnyOf(())`` is false.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Generic, Literal, TypeAlias, TypeVar, assert_never
 
+from roadproof.runtime.records import dataclass
 from roadproof.world.polynomial import Polynomial
 from roadproof.world.signals import OwnName, SignalName
 

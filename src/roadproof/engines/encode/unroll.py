@@ -8,7 +8,6 @@ ends on it (the motion goes on without acceleration, see ``encode.build``). Unti
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 from math import gcd
@@ -19,6 +18,7 @@ from roadproof.errors import UsageError
 from roadproof.logic import formula as f
 from roadproof.logic.formula import NEGATED, Compare, Formula, Interval
 from roadproof.logic.rewrite import bounds_of
+from roadproof.runtime.records import dataclass
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,6 @@ forms need a kind of reasoning that the prover does not have, so that more work 
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 
 from roadproof.evidence.answers import proofs as kept
@@ -16,6 +15,7 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import signals_of
 from roadproof.runtime.budget import Effort
+from roadproof.runtime.records import dataclass
 from roadproof.world.signals import SIGNALS
 
 # Below so many units of work nothing is concluded from the form of a claim: more work comes first.

@@ -7,7 +7,7 @@ grounding code with it.
 """
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from typing import TypeAlias, assert_never
 
@@ -19,6 +19,7 @@ from roadproof.evidence.times import ZERO, Moment, at, compared_times, constant,
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import rename
+from roadproof.runtime.records import dataclass
 
 # What speaks of other moments, or of elements of a road.
 Timed: TypeAlias = f.Temporal | f.Some | f.Every

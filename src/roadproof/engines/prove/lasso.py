@@ -5,7 +5,6 @@ the prover's models cannot be of this kind. What refutes is made into a trace of
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import islice, product
 from typing import TypeAlias
@@ -22,6 +21,7 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import bounds_of, intervals_of, with_values
 from roadproof.runtime.budget import Budget, BudgetExceeded
+from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact import TruthSet
 from roadproof.semantics.exact.truth import from_switches
 

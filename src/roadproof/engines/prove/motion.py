@@ -7,7 +7,7 @@ prover as by whoever checks a certificate.
 import math
 from collections import deque
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 
@@ -25,6 +25,7 @@ from roadproof.logic.rewrite import intervals_of, signals_of, without_names
 from roadproof.logic.show import text
 from roadproof.logic.terms import SignalName, Term
 from roadproof.runtime.budget import Effort
+from roadproof.runtime.records import dataclass
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import Verdict
 

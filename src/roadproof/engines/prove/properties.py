@@ -4,7 +4,6 @@ import hashlib
 import re
 import tomllib
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from itertools import groupby
@@ -13,6 +12,7 @@ from pathlib import Path
 from roadproof.errors import Position, UsageError
 from roadproof.library.motion import statement
 from roadproof.library.specification import read_specification, unknown
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ClaimVerdict, Verdict, claim_verdict
 
 OWN = "claim"  # the id of claims that users bring

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from fractions import Fraction
 from functools import lru_cache
 
@@ -32,6 +32,7 @@ from roadproof.logic.rewrite import with_values
 from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.runtime.budget import Budget, Effort
 from roadproof.runtime.progress import begin
+from roadproof.runtime.records import dataclass
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import ClaimVerdict, Verdict
 

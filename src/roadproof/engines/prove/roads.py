@@ -7,7 +7,7 @@ Nothing rests on this: the claim is judged on the road that comes out.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from fractions import Fraction
 from heapq import heapify, heappop, heappush
 from itertools import count, pairwise
@@ -18,6 +18,7 @@ from roadproof.evidence.derivation import free_prefix
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import free_lanelets, road_names
+from roadproof.runtime.records import dataclass
 from roadproof.world.lanelet_rules import shared_boundaries
 from roadproof.world.road import Lanelet, Road, Zone
 

@@ -8,7 +8,6 @@ instances are shrunk to those that are needed.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeAlias
 
@@ -26,6 +25,7 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import free_lanelets, intervals_of, road_names
 from roadproof.reasons import Reason, Why
 from roadproof.runtime.budget import Budget
+from roadproof.runtime.records import dataclass
 
 MOST_ROUNDS = 400
 MOST_ELEMENTS = 24

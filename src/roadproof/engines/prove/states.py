@@ -7,7 +7,7 @@ combination comes back as a clause that holds at every instant.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from typing import Literal, TypeAlias, assert_never
 
@@ -22,6 +22,7 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import leaves_of, map_terms
 from roadproof.reasons import Reason, Why
 from roadproof.runtime.budget import Budget
+from roadproof.runtime.records import dataclass
 
 Assumed: TypeAlias = Literal["typical", "near", "nothing"]
 ASSUMED: tuple[Assumed, ...] = ("typical", "near", "nothing")

@@ -1,7 +1,7 @@
 """A search for drives of values, and its typed outcome."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -26,6 +26,7 @@ from roadproof.logic.rewrite import parameters_of
 from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.runtime.progress import about, begin
+from roadproof.runtime.records import dataclass
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import DriveVerdict, Verdict
 from roadproof.world.drive import Drive

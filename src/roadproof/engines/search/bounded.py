@@ -1,11 +1,12 @@
 """Claims about drives up to a horizon: no counterexample within printed limits, or a judged one."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from roadproof.engines.search.ask import Search, ask
 from roadproof.engines.search.limits import PROVE_OPTIONS, Limits
 from roadproof.evidence.settled import Settled
 from roadproof.library.compose import negation
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ClaimVerdict, Verdict
 
 

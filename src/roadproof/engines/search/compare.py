@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from roadproof.engines.prove.prover import prove
 from roadproof.engines.search.ask import Search, ask, reads_all
@@ -24,6 +24,7 @@ from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.runtime.executors import LostJob
 from roadproof.runtime.process_pool import answers_of
 from roadproof.runtime.progress import about
+from roadproof.runtime.records import dataclass
 from roadproof.runtime.worker import is_worker
 from roadproof.verdict import ClaimVerdict, Verdict
 

@@ -4,7 +4,7 @@ The monitor looks at all of them in floating point; the judge decides. The rows 
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
@@ -24,6 +24,7 @@ from roadproof.logic.custom_names import own_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.initial_conditions import conjuncts, pins
 from roadproof.logic.rewrite import bounds_of, intervals_of, leaves_of, terms_of, with_values
+from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.semantics.sampled.compiled import compile

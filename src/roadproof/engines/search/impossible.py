@@ -1,7 +1,7 @@
 """No is explained: a proof that no trace satisfies a formula, and the parts of it that clash."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from roadproof.drivers.restriction import left_open
 from roadproof.engines.prove.induction import prove_of_scenarios
@@ -16,6 +16,7 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
 from roadproof.runtime.budget import Effort
+from roadproof.runtime.records import dataclass
 
 SHORTER = 1.5  # units of work for a proof with one part less
 

@@ -1,7 +1,6 @@
 """Conditions on a drive beside the formula: how it begins, and how it differs from drives found before."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 
 from roadproof.engines.encode.motion import Layout
@@ -10,6 +9,7 @@ from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.initial_conditions import conjuncts, narrowed
 from roadproof.logic.terms import Signal
+from roadproof.runtime.records import dataclass
 from roadproof.world.drive import Drive
 from roadproof.world.motion import state_at
 from roadproof.world.polynomial import Polynomial, constant

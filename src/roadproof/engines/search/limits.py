@@ -4,13 +4,14 @@ What is no restriction, because one drive stands for others (``encode.along``), 
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 
 from roadproof.engines.encode.unroll import Grid
 from roadproof.evidence.answers import shared
 from roadproof.evidence.codec import write
 from roadproof.evidence.strict import JsonObject
+from roadproof.runtime.records import dataclass
 from roadproof.world.vehicle import Range
 
 # Options of ``roadproof witness`` and others that search, and of ``roadproof prove``, that widen limits.

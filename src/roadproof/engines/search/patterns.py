@@ -5,7 +5,6 @@ the monitor, in floating point, and a drive for the judge, in rational numbers.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, TypeAlias
 
@@ -13,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadproof.logic.custom_names import code_of
+from roadproof.runtime.records import dataclass
 from roadproof.semantics.sampled.batch import Batch
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.signals import STARTING

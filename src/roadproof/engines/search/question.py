@@ -1,7 +1,7 @@
 """What is asked for, on which grid, with which vehicles, how to look for it, and what was found."""
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from functools import cached_property
 from itertools import product
@@ -24,6 +24,7 @@ from roadproof.logic.custom_names import code_of, told_range, vehicles_with_kind
 from roadproof.logic.formula import Formula, subformulas
 from roadproof.logic.initial_conditions import conjuncts
 from roadproof.runtime.budget import Effort
+from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.signals import AbstractSignals
 from roadproof.world.bends import on_bends

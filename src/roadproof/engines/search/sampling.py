@@ -6,7 +6,6 @@ What is handed out has been judged exactly; where nothing is, nothing is said.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, TypeAlias
 
@@ -21,6 +20,7 @@ from roadproof.logic.formula import Compare, Formula
 from roadproof.logic.initial_conditions import conjuncts
 from roadproof.logic.rewrite import leaves_of
 from roadproof.logic.terms import Own, Signal, Size
+from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.signals import AbstractSignals
 from roadproof.semantics.sampled.batch import Batch

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from fractions import Fraction
 from itertools import combinations, product, zip_longest
 
@@ -23,6 +23,7 @@ from roadproof.logic.formula import Formula
 from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.progress import begin
+from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.verdict import DriveVerdict, Verdict

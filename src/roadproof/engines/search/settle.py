@@ -4,7 +4,7 @@ What searches for drives is imported when one is looked for: most claims are pro
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
@@ -22,6 +22,7 @@ from roadproof.logic.initial_conditions import pins
 from roadproof.logic.rewrite import is_cubic_state
 from roadproof.reasons import NO_REASON, Reason, Why, joined
 from roadproof.runtime.budget import BudgetExceeded, Effort
+from roadproof.runtime.records import dataclass
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import ClaimVerdict, Verdict
 

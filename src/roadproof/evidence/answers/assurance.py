@@ -1,11 +1,11 @@
 """The answer of ``roadproof assurance``: an argument in GSN, and which of its parts hold."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers import shared
 from roadproof.evidence.codec import LEFT_OUT, Doc, Rule
+from roadproof.runtime.records import dataclass
 
 SCHEMA: Final = "roadproof/assurance/1"
 Id: TypeAlias = Annotated[str, Rule(least=1)]

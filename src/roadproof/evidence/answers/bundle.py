@@ -1,11 +1,11 @@
 """The manifest of an auditor's bundle: what is in it, and what checks it."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Annotated, Final, Literal
 
 from roadproof.evidence.answers import shared
 from roadproof.evidence.codec import Doc
+from roadproof.runtime.records import dataclass
 
 SCHEMA: Final = "roadproof/bundle/1"
 

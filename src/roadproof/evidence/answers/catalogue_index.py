@@ -1,11 +1,12 @@
 """The answer of ``roadproof catalogue``: what tests show and mean, and which situations no test shows."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers import coverage, shared
 from roadproof.evidence.codec import Doc, Rule
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
 
 SCHEMA: Final = "roadproof/catalogue/1"

@@ -1,7 +1,7 @@
 """The files of certificates, as they stand in JSON."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, make_dataclass
+from dataclasses import make_dataclass
 from functools import reduce
 from itertools import groupby
 from operator import or_
@@ -12,6 +12,7 @@ from roadproof.evidence.codec import LEFT_OUT, Doc, Remedy, Rule
 from roadproof.evidence.json_schema import Plain
 from roadproof.evidence.kernel.tableau import RULES
 from roadproof.library.motion import ALL_SCHEMAS
+from roadproof.runtime.records import dataclass
 
 SCHEMA: Final = "roadproof/certificate/2"
 Term: TypeAlias = Annotated[str, Rule(least=1)]

@@ -1,12 +1,12 @@
 """The answer of ``roadproof check``: what evidence shows."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Annotated, Final, Literal
 
 from roadproof.evidence.answers.shared import Fingerprint, KeptKernel, PlainHeading
 from roadproof.evidence.codec import LEFT_OUT, Doc
 from roadproof.evidence.finding import Finding
+from roadproof.runtime.records import dataclass
 
 SCHEMA: Final = "roadproof/check/2"
 

@@ -1,7 +1,7 @@
 """The index and the answers of ``roadproof classify``: classes with drives, and claims about them."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Annotated, Final, Literal, TypeAlias
 
@@ -16,6 +16,7 @@ from roadproof.library.scenarios import LANE, Scenario, applied, name_of, number
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.reasons import NO_REASON
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ProofVerdict, Verdict
 
 SCHEMA: Final = "roadproof/classify/1"

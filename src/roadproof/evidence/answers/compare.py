@@ -1,11 +1,11 @@
 """The answer of ``roadproof compare``: which of two formulas implies the other."""
 
-from dataclasses import dataclass
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers.shared import Formula, OnRoad, PlainHeading, Reason, SetName
 from roadproof.evidence.codec import Doc
 from roadproof.evidence.json_schema import Whole
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ClaimVerdict
 
 SCHEMA: Final = "roadproof/compare/2"

@@ -1,7 +1,7 @@
 """The index and the journal of ``roadproof coverage``: classes of gaps, and claims that there are none."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Annotated, ClassVar, Final, Literal, TypeAlias
 
@@ -16,6 +16,7 @@ from roadproof.evidence.drive_file import DriveFile
 from roadproof.library.scenarios import numbers_of
 from roadproof.logic.formula import Formula
 from roadproof.reasons import NO_REASON
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ProofVerdict, Verdict
 
 SCHEMA: Final = "roadproof/coverage/1"

@@ -1,13 +1,13 @@
 """The files of judged drives, and traces that refute a claim, with their roads, as they stand in JSON."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Annotated, Literal, TypeAlias
 
 from roadproof.evidence.answers.shared import Dense, Formula, OneScenario, SetName
 from roadproof.evidence.codec import LACKING, LEFT_OUT, Doc, Key, Remedy, Rule
 from roadproof.evidence.json_schema import Plain, Shared, Whole
+from roadproof.runtime.records import dataclass
 from roadproof.world.road import Attribute, Zone
 from roadproof.world.signals import Kind
 

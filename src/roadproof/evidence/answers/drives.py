@@ -1,7 +1,7 @@
 """The answer of ``roadproof witness``, and its kept answers: drives, or proofs that there is none."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import partial
 from typing import Annotated, Final, Literal, TypeAlias
 
@@ -14,6 +14,7 @@ from roadproof.evidence.json_schema import File, Whole
 from roadproof.evidence.strict import rational
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import DriveVerdict, Verdict
 
 SCHEMA: Final = "roadproof/witness/1"

@@ -6,7 +6,7 @@ is compared with the claim, on trees; ``fault`` says where that fails.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
@@ -24,6 +24,7 @@ from roadproof.library.scenarios import Scenario, applied, name_of
 from roadproof.library.specification import Library, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
+from roadproof.runtime.records import dataclass
 
 # What the evidence of an entry is to show of its claim: a proof of it, a proof that it never holds, a drive
 # on which it holds, a drive (or a trace) on which it does not; nothing, where the verdict promises nothing.

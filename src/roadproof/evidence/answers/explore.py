@@ -1,7 +1,6 @@
 """The index and the kept answers of ``roadproof explore``: for which values a formula has a drive."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Annotated, Final, Literal, TypeAlias
 
@@ -24,6 +23,7 @@ from roadproof.logic.parse import parse_claim
 from roadproof.logic.show import declared
 from roadproof.logic.syntax import BinaryOperator
 from roadproof.reasons import NO_REASON
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import DriveVerdict
 from roadproof.world.signals import LIMITED, SignalName
 from roadproof.world.units import UNITS, unit_text

@@ -1,11 +1,11 @@
 """The answer of ``roadproof list``: what the library holds."""
 
-from dataclasses import dataclass
 from typing import Annotated, Final, Literal
 
 from roadproof.evidence.answers import shared
 from roadproof.evidence.codec import Doc, Rule
 from roadproof.logic.syntax import ParameterBound
+from roadproof.runtime.records import dataclass
 
 SCHEMA: Final = "roadproof/list/1"
 

@@ -1,11 +1,12 @@
 """The answer of ``roadproof monitor``: where a formula holds on one trace."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers.shared import Formula, OnRoad, PlainHeading, Rational, SetName
 from roadproof.evidence.codec import LEFT_OUT, Doc, Key, Rule
+from roadproof.runtime.records import dataclass
 
 SCHEMA: Final = "roadproof/monitor/2"
 Truth: TypeAlias = Literal["true", "false", "undecided"]

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from itertools import permutations
 from typing import Annotated, Final, Literal, TypeAlias
@@ -20,6 +20,7 @@ from roadproof.logic import syntax
 from roadproof.logic.formula import Formula
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.rewrite import without_names
+from roadproof.runtime.records import dataclass
 
 SCHEMA: Final = "roadproof/order/1"
 _NODE = re.compile(r"([0-9]{1,6})@(\w+)", re.ASCII)

@@ -1,7 +1,6 @@
 """The index and the journal of ``roadproof overlap``: which pairs of scenarios hold together."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import partial
 from itertools import combinations, permutations
 from typing import Annotated, Final, Literal, TypeAlias
@@ -18,6 +17,7 @@ from roadproof.library.specification import Query
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.reasons import NO_REASON
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import DriveVerdict, Verdict
 
 SCHEMA: Final = "roadproof/overlap/1"

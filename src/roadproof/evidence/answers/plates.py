@@ -1,7 +1,6 @@
 """The answer of ``roadproof preventable``: plates with drives on both sides, and lemmas."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Annotated, ClassVar, Final, Literal, TypeAlias
 
@@ -10,6 +9,7 @@ from roadproof.drivers.lines import Side
 from roadproof.drivers.manoeuvres import ManoeuvreName
 from roadproof.evidence.answers import shared
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ClaimVerdict, Verdict
 
 SCHEMA: Final = "roadproof/preventable/1"

@@ -1,7 +1,7 @@
 """How ``check`` reads the index and the kept answers of ``roadproof preventable``."""
 
 from collections.abc import Iterator, Mapping, Set
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property, partial
 
@@ -20,6 +20,7 @@ from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.strict import rational
 from roadproof.library.bind import values_with
 from roadproof.logic.formula import Formula as FormulaTree
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
 from roadproof.world.signals import STARTING
 

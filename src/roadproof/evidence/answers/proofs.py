@@ -1,7 +1,7 @@
 """The index that ``roadproof prove`` writes, and its answer: claims with their verdicts."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import StrEnum
 from functools import partial
 from typing import Annotated, Final, Literal, TypeAlias
@@ -16,6 +16,7 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import is_moving, under_limits
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ClaimVerdict, Verdict
 
 SCHEMA: Final = "roadproof/index/1"

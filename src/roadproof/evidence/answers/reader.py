@@ -1,7 +1,7 @@
 """What the reader of an index is: fields that there may be, and how entries are read from them."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, is_dataclass
+from dataclasses import field, is_dataclass
 from types import NoneType
 from typing import Annotated, TypeAlias, TypeVar, get_args, get_origin
 
@@ -12,6 +12,7 @@ from roadproof.evidence.codec import UNCHECKED, Doc, Rule, bare, fields_of, read
 from roadproof.evidence.heading import HEADING
 from roadproof.evidence.strict import Fields
 from roadproof.library.specification import Library
+from roadproof.runtime.records import dataclass
 
 T = TypeVar("T")
 W = TypeVar("W")

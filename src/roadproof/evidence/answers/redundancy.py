@@ -1,7 +1,6 @@
 """The index and the journal of ``roadproof redundancy``: parts of scenarios replaced by true and false."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Annotated, Final, Literal, TypeAlias
 
@@ -16,6 +15,7 @@ from roadproof.library.scenarios import Scenario, applied, leaves_at_once, vehic
 from roadproof.library.specification import Query
 from roadproof.logic.formula import Formula
 from roadproof.reasons import NO_REASON
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
 
 SCHEMA: Final = "roadproof/redundancy/1"

@@ -1,11 +1,11 @@
 """The answer of ``roadproof road``: the roads of a map."""
 
-from dataclasses import dataclass
 from typing import Annotated, Final, Literal
 
 from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.drive import KeptLanelet
 from roadproof.evidence.codec import Doc
+from roadproof.runtime.records import dataclass
 from roadproof.world.road import Zone
 
 SCHEMA: Final = "roadproof/road/1"

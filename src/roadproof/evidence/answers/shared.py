@@ -1,7 +1,6 @@
 """Types of fields that several answers share, and how every answer begins."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Annotated, Literal, TypeAlias
 
@@ -9,6 +8,7 @@ from roadproof import reasons
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
 from roadproof.evidence.json_schema import Other, Plain, Shared
 from roadproof.library.words import Words
+from roadproof.runtime.records import dataclass
 from roadproof.world.length_error import length_error_of
 from roadproof.world.road import Road
 

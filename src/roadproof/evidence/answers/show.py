@@ -1,11 +1,11 @@
 """The answer of ``roadproof show --format json``: a scenario, a definition or a formula."""
 
-from dataclasses import dataclass
 from typing import Annotated, Final, Literal
 
 from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.tree import ClaimNode, DefinitionNode
 from roadproof.evidence.codec import Doc
+from roadproof.runtime.records import dataclass
 
 SCHEMA: Final = "roadproof/show/1"
 

@@ -1,6 +1,5 @@
 """The answer of ``roadproof trace``: what shows each requirement."""
 
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated, Final, Literal, TypeAlias
 
@@ -15,6 +14,7 @@ from roadproof.evidence.answers.shared import (
 )
 from roadproof.evidence.codec import Doc, Rule
 from roadproof.evidence.finding import Acceptance
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 
 SCHEMA: Final = "roadproof/trace/1"

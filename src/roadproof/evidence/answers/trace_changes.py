@@ -1,12 +1,12 @@
 """The answer of ``roadproof trace --baseline``: what changed between two states of requirements."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers.shared import PlainHeading, Reason
 from roadproof.evidence.answers.trace import LinkKind, LinkState
 from roadproof.evidence.codec import Doc, Rule
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 
 SCHEMA: Final = "roadproof/trace-changes/1"

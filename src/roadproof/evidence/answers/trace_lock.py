@@ -1,11 +1,11 @@
 """``requirements.lock.json``: what every link of a trace rested on when it was accepted."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Annotated, Final, Literal
 
 from roadproof.evidence.answers.shared import Version
 from roadproof.evidence.codec import Doc, Rule
+from roadproof.runtime.records import dataclass
 
 SCHEMA: Final = "roadproof/trace-lock/1"
 

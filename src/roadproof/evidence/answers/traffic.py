@@ -1,11 +1,11 @@
 """The answer of ``roadproof evaluate``: dangers in recordings, and the scenarios that match them."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers import shared
 from roadproof.evidence.codec import LEFT_OUT, Doc, Rule
+from roadproof.runtime.records import dataclass
 
 SCHEMA: Final = "roadproof/traffic-results/3"
 Driver: TypeAlias = Annotated[

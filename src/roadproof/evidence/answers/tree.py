@@ -1,6 +1,5 @@
 """Syntax trees as they stand in JSON: every part is an object whose ``node`` says what it is."""
 
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Annotated, Literal, TypeAlias, assert_never
 
@@ -9,6 +8,7 @@ from roadproof.evidence.codec import Doc, Rule
 from roadproof.evidence.json_schema import Shared
 from roadproof.logic import syntax
 from roadproof.logic.syntax import BinaryOperator, Bounds, Expression
+from roadproof.runtime.records import dataclass
 
 Low: TypeAlias = Annotated["Node", Doc("Begin of its interval, in s.")]
 High: TypeAlias = Annotated["Node | None", Doc("End of its interval, in s; null is without end.")]

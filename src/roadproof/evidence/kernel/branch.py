@@ -5,7 +5,7 @@ taken back as the search goes.
 """
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from typing import TypeAlias
 
@@ -16,6 +16,7 @@ from roadproof.evidence.sites import Site
 from roadproof.evidence.times import Moment, read_moment
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
+from roadproof.runtime.records import dataclass
 
 
 class NotFoundError(Exception):

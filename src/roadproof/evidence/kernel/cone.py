@@ -7,7 +7,6 @@ there, and their multipliers are computed exactly. Not trusted: Coq adds the pro
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import reduce
 from itertools import combinations, combinations_with_replacement, islice
@@ -15,6 +14,7 @@ from math import gcd, lcm, prod
 from typing import Literal, TypeAlias
 
 from roadproof.evidence.kernel.linear import add_to
+from roadproof.runtime.records import dataclass
 from roadproof.world.polynomial import Polynomial, constant
 
 # Variables by number, in order and repeated for powers; the empty one is 1.

@@ -1,11 +1,11 @@
 """Derivations: trees of rules that proofs/kernel/Shown.v checks, as text for Coq. Not trusted."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeAlias
 
 from roadproof.evidence.kernel.tableau import WIDTH
+from roadproof.runtime.records import dataclass
 
 
 @dataclass(frozen=True)

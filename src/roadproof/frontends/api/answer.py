@@ -4,7 +4,7 @@ import html
 from abc import abstractmethod
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +15,7 @@ from roadproof.frontends.api.table import Row, Table
 from roadproof.frontends.report.figures import as_bytes
 from roadproof.frontends.report.sheet import Sheet, as_rows
 from roadproof.runtime.files import write_whole
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
 from roadproof.world.length_error import LengthError, length_error_of
 from roadproof.world.road import Road

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Unpack
@@ -29,6 +29,7 @@ from roadproof.library.loading import load_library
 from roadproof.library.specification import Library
 from roadproof.reasons import Reason, Why
 from roadproof.runtime.files import write_whole
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 
 

@@ -10,7 +10,6 @@ import sysconfig
 import tarfile
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
@@ -28,6 +27,7 @@ from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Bundle as Options
 from roadproof.runtime import pins as packages
 from roadproof.runtime.files import whole_file
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 from roadproof.version import VERSION
 

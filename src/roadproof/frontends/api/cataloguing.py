@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import ClassVar, Unpack
@@ -39,6 +39,7 @@ from roadproof.frontends.settings.keywords import CatalogueKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.library.scenarios import number_in, numbers_of
 from roadproof.runtime.executors import Jobs
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
 
 

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias, Unpack
@@ -34,6 +34,7 @@ from roadproof.library.words import called_by, legend
 from roadproof.reasons import Reason
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.executors import Jobs
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 
 if TYPE_CHECKING:

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import ClassVar, Unpack
@@ -37,6 +37,7 @@ from roadproof.library.scenarios import numbers_of
 from roadproof.library.words import Called, called
 from roadproof.recordings.formats.sources import find_sources
 from roadproof.runtime.files import make_folder, write_whole
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict, exit_code
 
 CLAIMS_FILE = "claims.txt"

@@ -1,7 +1,7 @@
 """Two formulas side by side."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Unpack
 
@@ -33,6 +33,7 @@ from roadproof.library.compose import taken_from
 from roadproof.library.specification import Library, Specification
 from roadproof.runtime.files import make_folder, write_json, write_whole
 from roadproof.runtime.progress import Listener, listening
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
 from roadproof.world.road import Road
 

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, TypeAlias, Unpack
 
@@ -20,6 +19,7 @@ from roadproof.library.specification import Query, unknown
 from roadproof.logic.formula import Application, Formula
 from roadproof.logic.rewrite import with_values
 from roadproof.runtime.files import hold_folder, write_whole
+from roadproof.runtime.records import dataclass
 from roadproof.semantics.streaming.c_files import FLAGS, CSource, compile_c
 from roadproof.semantics.streaming.functions import StreamMonitor
 

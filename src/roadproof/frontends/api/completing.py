@@ -1,7 +1,6 @@
 """Drives that complete a catalogue, written as tests into a folder: copies for other tools, and entries."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from roadproof.analysis.catalogue.asked import Questions
@@ -13,6 +12,7 @@ from roadproof.errors import InputError
 from roadproof.evidence.certificate import to_json
 from roadproof.frontends.api.exporting import ExportedDrive, can_export, export, formats_in
 from roadproof.runtime.files import hold_folder, json_bytes, write_whole
+from roadproof.runtime.records import dataclass
 from roadproof.world.models import read_toml
 
 PROOFS = "proofs"

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from contextlib import closing
-from dataclasses import dataclass
 from pathlib import Path
 
 from roadproof.analysis.study import pool
@@ -13,6 +12,7 @@ from roadproof.recordings.formats.large import is_large, write_large
 from roadproof.recordings.formats.source import RecordingSource
 from roadproof.recordings.formats.sources import CSV, PARQUET, find_sources
 from roadproof.runtime.files import hold_folder
+from roadproof.runtime.records import dataclass
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,6 @@
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import closing
-from dataclasses import dataclass
 from functools import cached_property, partial
 from pathlib import Path
 from typing import ClassVar, Unpack
@@ -34,6 +33,7 @@ from roadproof.frontends.settings.option import takes
 from roadproof.library.words import Called, called
 from roadproof.runtime.executors import Jobs, hands_of
 from roadproof.runtime.files import hold_folder
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
 
 ROADS, ELSEWHERE = ("main-2", "main-3"), ("main-3", "merge", "depart")

@@ -1,7 +1,7 @@
 """What questions are asked of: definitions, readings and values of parameters."""
 
 from collections.abc import Callable, Collection, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from pathlib import Path
 from typing import TypeAlias
@@ -17,6 +17,7 @@ from roadproof.library.scenario_references import read_numbers, read_query
 from roadproof.library.scenarios import are_numbers
 from roadproof.library.specification import Library, Query, Source, Specification, unknown
 from roadproof.library.words import Words, words_of
+from roadproof.runtime.records import dataclass
 
 # A scenario by number, a formula as text or built with operators, or one that was read before.
 What: TypeAlias = int | str | Phrase | Query

@@ -8,7 +8,7 @@ with its place in the draft.
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import lru_cache
 
 from roadproof.errors import Position, RoadproofError, TextError, UsageError, raise_all
@@ -20,6 +20,7 @@ from roadproof.library.specification import Library, Source, Specification
 from roadproof.logic.instances import instances
 from roadproof.logic.parse import parse_library
 from roadproof.logic.syntax import EachBlock, WhenBlock
+from roadproof.runtime.records import dataclass
 
 EDIT, BEFORE = "edit", "before"
 DRAFT, QUESTION, PARAMETERS = "definitions", "formula", "parameters"

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
 from functools import partial
 from itertools import product
 from pathlib import Path
@@ -37,6 +36,7 @@ from roadproof.frontends.settings.questions import Witness
 from roadproof.library.specification import Library
 from roadproof.runtime.files import make_folder, write_whole
 from roadproof.runtime.progress import Listener, listening
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict, exit_code
 from roadproof.world.road import Road
 

@@ -1,7 +1,6 @@
 """Drives for other people's tools."""
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias, Unpack
 
@@ -19,6 +18,7 @@ from roadproof.library.specification import Library, unknown
 from roadproof.recordings.export.registry import FORMATS, numbers_in
 from roadproof.recordings.export.subject import Subject, subject_of
 from roadproof.runtime.files import hold_folder, write_whole
+from roadproof.runtime.records import dataclass
 
 ANIMATIONS = {"animation": "svg", "gif": "gif", "mp4": "mp4"}
 """Animations, which show RSS distances of the library too, and so are made here."""

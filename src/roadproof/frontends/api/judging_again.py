@@ -1,7 +1,7 @@
 """The answer of a catalogue compared with its tests: each is judged again, and every figure derived again."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import get_args
 
@@ -33,6 +33,7 @@ from roadproof.library.scenarios import name_of as scenario_name
 from roadproof.library.specification import Library
 from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.runtime.executors import Jobs
+from roadproof.runtime.records import dataclass
 
 _DERIVED = (
     "targets",

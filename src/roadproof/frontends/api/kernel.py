@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import partial
 from pathlib import Path
 from typing import Literal, TypeAlias
@@ -29,6 +29,7 @@ from roadproof.reasons import Why
 from roadproof.runtime.executors import Jobs
 from roadproof.runtime.files import make_folder, write_whole
 from roadproof.runtime.package_data import shipped
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 
 KernelName: TypeAlias = Literal["coq", "extracted"]

@@ -8,7 +8,6 @@ F[0, 3 s] danger(SV, POV) and not v_lon(SV) > 30 km/h
 import inspect
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any, TypeAlias
@@ -19,6 +18,7 @@ from roadproof.library.scenarios import LANE, PAIR, TRIPLE
 from roadproof.logic import syntax
 from roadproof.logic.show import text
 from roadproof.logic.syntax import Binding, Claim, Expression
+from roadproof.runtime.records import dataclass
 from roadproof.world.signals import SIGNALS, SIZES
 from roadproof.world.units import UNITS
 

@@ -2,10 +2,10 @@
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from fractions import Fraction
 from pathlib import Path
-from typing import ClassVar, Self, Unpack
+from typing import TYPE_CHECKING, ClassVar, Self, Unpack
 
 from roadproof.analysis.claims import ClaimResult, Claims, former_claims, name_of, write_claims
 from roadproof.analysis.study.frame import StudyResult
@@ -15,10 +15,8 @@ from roadproof.engines.search.question import Engine
 from roadproof.errors import UsageError
 from roadproof.evidence.answers.proofs import ANSWER_SCHEMA, Answer, Index, KernelSays, Record
 from roadproof.evidence.heading import heading
-from roadproof.evidence.kernel.accept import Ruling
 from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
-from roadproof.frontends.api import kernel as kernels
 from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.definitions import Definitions, What, load
@@ -40,9 +38,14 @@ from roadproof.reasons import Why
 from roadproof.runtime.executors import Jobs, hands_of
 from roadproof.runtime.files import hold_folder
 from roadproof.runtime.progress import Listener, listening
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ClaimVerdict, ExitCode, Verdict, claim_verdict, exit_code
 from roadproof.world.road import Road
 from roadproof.world.vehicle import Vehicle
+
+if TYPE_CHECKING:
+    from roadproof.evidence.kernel.accept import Ruling
+    from roadproof.frontends.api.kernel import KernelAnswer, KernelName
 
 _PROPERTY = re.compile(r"[A-Z]\d+")
 
@@ -54,7 +57,7 @@ class Proofs(StudyAnswers[Claims, ClaimResult, Record], BuildResult):
     ``places``: where claims are written, by ``task.name``, if in a file.
     """
 
-    kernel: kernels.KernelAnswer | None = None
+    kernel: "KernelAnswer | None" = None
     places: Mapping[str, Location] = field(default_factory=dict)
     pieces: ClassVar[str] = "claims"
     command: ClassVar[str] = "prove"
@@ -111,9 +114,11 @@ class Proofs(StudyAnswers[Claims, ClaimResult, Record], BuildResult):
         return claim_cases(self.study, self.answers, files, self.places)
 
     def put_to_kernel(
-        self, kernel: kernels.KernelName, jobs: Jobs = None, progress: Progress | None = None
+        self, kernel: "KernelName", jobs: Jobs = None, progress: Progress | None = None
     ) -> Self:
         """The same, with what a kernel says of each proof. Raises ``MissingSolverError``."""
+        from roadproof.frontends.api import kernel as kernels
+
         proved = [(x, x.settled.result.certificate) for x in self.answers]
         library = self.study.library
         asked = {name_of(x.task): y for x, y in proved if y is not None}
@@ -236,11 +241,13 @@ def claims_asked(
             raise UsageError(f"engine={given.engine!r} makes no certificates for Coq: omit kernel")
         return _within_limits(asked, home, given.engine, given)
     if given.kernel is not None:
+        from roadproof.frontends.api import kernel as kernels
+
         kernels.find(given.kernel)
     return asked
 
 
-def _said(ruling: Ruling) -> KernelSays:
+def _said(ruling: "Ruling") -> KernelSays:
     return KernelSays(says=str(ruling), reason=Why.TOLD(ruling.reason), premises=ruling.premises.count)
 
 

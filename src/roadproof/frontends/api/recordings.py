@@ -3,7 +3,7 @@
 import re
 import tempfile
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar, Unpack
 
@@ -43,6 +43,7 @@ from roadproof.recordings.formats.sources import find_sources
 from roadproof.recordings.formats.table import Frame, frame_of
 from roadproof.runtime.executors import hands_of
 from roadproof.runtime.files import hold_folder
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
 
 MOST_FACTS = 12

@@ -1,7 +1,6 @@
 """Results of any kind as one page that needs no network."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Unpack
 
@@ -23,6 +22,7 @@ from roadproof.library.scenarios import numbers_of
 from roadproof.library.specification import Library
 from roadproof.library.words import words_of
 from roadproof.runtime.files import whole_file
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 from roadproof.version import VERSION
 

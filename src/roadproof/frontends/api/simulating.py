@@ -1,6 +1,6 @@
 """Traffic that is simulated in the shape of recordings."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Unpack
@@ -22,6 +22,7 @@ from roadproof.recordings.simulate.simulate import markings_of
 from roadproof.recordings.simulate.simulate import simulate as simulate_one
 from roadproof.recordings.simulate.traffic import Traffic, road_of
 from roadproof.runtime.files import write_whole
+from roadproof.runtime.records import dataclass
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,6 @@
 import hashlib
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from pathlib import Path
 
@@ -18,6 +17,7 @@ from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
 from roadproof.frontends.api.checking import check
 from roadproof.frontends.settings.keywords import CheckKeywords
 from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 
 WHOLE = ("COVERED", "GAPS")

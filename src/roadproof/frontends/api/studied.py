@@ -3,11 +3,9 @@
 import time
 from abc import abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar, Generic, Protocol, Self, TypeVar, Unpack
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Protocol, Self, TypeVar, Unpack
 
-from roadproof.analysis.basis import Basis
 from roadproof.analysis.study.evidence_store import write_index
 from roadproof.analysis.study.frame import Study, StudyResult, conduct, put_away
 from roadproof.drivers.restriction import restriction_of
@@ -28,7 +26,11 @@ from roadproof.frontends.settings.studies import Ask
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.specification import Library
 from roadproof.runtime.files import write_whole
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
+
+if TYPE_CHECKING:
+    from roadproof.analysis.basis import Basis
 
 S = TypeVar("S", bound=Study[Any, Any, Any])
 A = TypeVar("A")
@@ -205,7 +207,7 @@ class Answers(StudyAnswers[Listing[V, K], V, K]):
 
 @takes(Ask)
 def ask(
-    about: Callable[[Basis, tuple[int, ...]], Listing[V, K]],
+    about: Callable[["Basis", tuple[int, ...]], Listing[V, K]],
     among: Among = None,
     using: Definitions | None = None,
     **options: Unpack[AskKeywords],

@@ -1,7 +1,7 @@
 """What a formula is on one trace: a drive, samples, or vehicles of a recording."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from math import isfinite
 from pathlib import Path
@@ -43,6 +43,7 @@ from roadproof.recordings.evaluate.one_trace import (
 from roadproof.recordings.formats.sources import has_numbers
 from roadproof.recordings.formats.storyboard.drives import read_storyboard_drive
 from roadproof.recordings.formats.table import Frame, columns_of
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 from roadproof.world.length_error import LengthError, length_error_of
 from roadproof.world.road import Road

@@ -3,7 +3,6 @@
 import os
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import ClassVar, Unpack
@@ -37,6 +36,7 @@ from roadproof.library.bind import values_with
 from roadproof.library.diagnose import checked_library
 from roadproof.library.specification import Library
 from roadproof.runtime.files import make_folder, write_json, write_whole
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 from roadproof.world.models import load_vehicle
 

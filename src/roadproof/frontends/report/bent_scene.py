@@ -5,7 +5,6 @@ The view goes and turns with the subject: the road at the middle of the window i
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
@@ -28,6 +27,7 @@ from roadproof.frontends.report.scene import (
     Text,
 )
 from roadproof.library.specification import Library
+from roadproof.runtime.records import dataclass
 
 HIGHEST = 0.5
 """The height of the road in the picture, as a share of its width, at most."""

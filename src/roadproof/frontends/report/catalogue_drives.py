@@ -1,12 +1,12 @@
 """All tests of a catalogue as small pictures: who is how far ahead, and who is where across the road."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from roadproof.analysis.catalogue.traces import Courses
 from roadproof.frontends.report.drive import COLOURS
 from roadproof.frontends.report.figures import make_page, shorten
+from roadproof.runtime.records import dataclass
 
 MOST_ON_A_PAGE = 40
 _COLUMNS, _FEW = 5, 3

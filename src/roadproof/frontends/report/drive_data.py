@@ -4,7 +4,6 @@ Distances and danger are the library's own: its definitions are bound and judged
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import groupby
 from typing import Literal, TypeAlias
@@ -18,6 +17,7 @@ from roadproof.library.scenarios import danger, too_near_ahead, too_near_left
 from roadproof.library.specification import Library, Query, Specification
 from roadproof.library.words import words_of
 from roadproof.logic.formula import Compare, Formula, nesting, subformulas
+from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.exact import Judgement, judge
 from roadproof.semantics.exact.robust import robustness

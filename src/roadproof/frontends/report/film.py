@@ -6,7 +6,6 @@ import sys
 import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from fractions import Fraction
 from io import BytesIO
 from itertools import pairwise
@@ -14,6 +13,7 @@ from math import ceil
 from pathlib import Path
 
 from roadproof.errors import MissingSolverError
+from roadproof.runtime.records import dataclass
 
 COLOURS = 128  # of a GIF file
 _SAMPLES = 8  # frames whose colours are looked at

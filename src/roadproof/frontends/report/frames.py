@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil
 from typing import Any, TypeVar
@@ -28,6 +27,7 @@ from roadproof.frontends.report.scene import (
     rows,
 )
 from roadproof.library.specification import Library
+from roadproof.runtime.records import dataclass
 
 RATE, MOST_FRAMES = 12, 720  # frames a second; of a long drive in all, so that there are fewer a second
 DOTS = 100  # pixels an inch

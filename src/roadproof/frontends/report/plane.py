@@ -6,12 +6,12 @@ s from ``origin``, and d. Vehicles are rectangles in the direction of the road a
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from typing import TypeAlias
 
 from roadproof.frontends.report.drive_data import Box, Span, road_in
+from roadproof.runtime.records import dataclass
 from roadproof.world.curves import Pose
 from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.road import Road

@@ -1,7 +1,6 @@
 """Plates to look at: which initial values a driver prevents a collision from, in every form."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
 from itertools import product
@@ -20,6 +19,7 @@ from roadproof.frontends.report.figures import make_page
 from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.results import Result, Words
 from roadproof.frontends.report.sheet import Column, Sheet
+from roadproof.runtime.records import dataclass
 from roadproof.world.units import UNITS
 
 COLOURS: Mapping[str, str] = {

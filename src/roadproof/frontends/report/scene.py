@@ -6,7 +6,6 @@ each part of the formula and for danger, with a line at the instant that is show
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from typing import NamedTuple, TypeAlias
@@ -18,6 +17,7 @@ from roadproof.frontends.report.drive import COLOURS, DANGER, SHADES, TRUE
 from roadproof.frontends.report.plane import Point, Points
 from roadproof.frontends.report.sheet import excerpt
 from roadproof.library.specification import Library
+from roadproof.runtime.records import dataclass
 from roadproof.world.length_error import length_error_of
 from roadproof.world.motion import State, states_at
 

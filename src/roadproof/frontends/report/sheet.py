@@ -6,12 +6,12 @@ CSV files, data frames, tables on terminals and tables of pages are made of it.
 import csv
 import io
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import zip_longest
 from typing import Generic, Literal, NamedTuple, TypeAlias, TypeVar
 
 from roadproof.library.scenarios import Scenario
+from roadproof.runtime.records import dataclass
 
 T = TypeVar("T")
 Value: TypeAlias = str | int | float | bool | None

@@ -1,9 +1,9 @@
 """A table as text, Markdown, CSV and LaTeX: one content, four looks."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 from roadproof.frontends.report.sheet import aligned, csv_text
+from roadproof.runtime.records import dataclass
 
 _LATEX = str.maketrans(
     {

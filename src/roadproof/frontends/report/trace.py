@@ -2,12 +2,12 @@
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 from roadproof.evidence.answers.trace import Answer, LinkedEvidence, LinkState, TracedLink, TracedRequirement
 from roadproof.evidence.answers.trace_changes import Change, Changes
 from roadproof.evidence.finding import Acceptance
 from roadproof.frontends.report.sheet import Column, Sheet, aligned, excerpt
+from roadproof.runtime.records import dataclass
 
 MOST_LINES = 20
 """Pieces of evidence without a requirement that a terminal lists."""

@@ -7,7 +7,6 @@ of the cut-in and deceleration scenarios*.
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from types import MappingProxyType
 
@@ -19,6 +18,7 @@ from roadproof.recordings.evaluate.foretelling import LABELS
 from roadproof.recordings.evaluate.results import decimal, foretold_rows, words_in
 from roadproof.recordings.evaluate.sectors import ANYWHERE
 from roadproof.recordings.evaluate.totals import Row, Totals
+from roadproof.runtime.records import dataclass
 
 
 @dataclass(frozen=True)

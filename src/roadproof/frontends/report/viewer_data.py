@@ -6,7 +6,7 @@ Floats are for drawing; ``exact`` of a part tells its truth with open and closed
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from fractions import Fraction
 from math import ceil, isfinite, lcm, remainder, tau
 from typing import TypeAlias, assert_never
@@ -27,6 +27,7 @@ from roadproof.logic.formula import Formula, subformulas
 from roadproof.logic.rewrite import bounds_of, intervals_of
 from roadproof.logic.show import as_syntax, text
 from roadproof.recordings.export.subject import span_of
+from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.blame import blame
 from roadproof.semantics.exact.exact import Judgement, judge

@@ -1,11 +1,12 @@
 """The document that the viewer in a browser reads: a drive or a recorded trace, and formulas on it."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, is_dataclass
+from dataclasses import is_dataclass
 from typing import NamedTuple
 
 from roadproof.frontends.report.drive_data import Danger
 from roadproof.library.uses import Place
+from roadproof.runtime.records import dataclass
 from roadproof.world.road import Zone
 
 SCHEMA = "roadproof/viewer/1"

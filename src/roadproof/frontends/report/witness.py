@@ -1,7 +1,6 @@
 """Drives that were found: a line about each search, a sheet of all, and the files of the drives."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roadproof.engines.search.ask import Outcome
@@ -12,6 +11,7 @@ from roadproof.library.scenarios import LANE
 from roadproof.library.specification import Library, Specification
 from roadproof.library.words import words_of
 from roadproof.logic.custom_names import told_freedom
+from roadproof.runtime.records import dataclass
 
 SearchedFor: TypeAlias = tuple[Outcome, Specification]
 """What a search found, and the definitions that it was about."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from roadproof.frontends.settings.groups import (
@@ -14,6 +13,7 @@ from roadproof.frontends.settings.groups import (
     strict_reading,
 )
 from roadproof.frontends.settings.option import Settings, option, output
+from roadproof.runtime.records import dataclass
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,11 +3,11 @@
 import dataclasses
 import inspect
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal, Self, TypeAlias, TypeVar
 
 from roadproof.errors import UsageError
+from roadproof.runtime.records import dataclass
 
 F = TypeVar("F", bound=Callable[..., object])
 Group: TypeAlias = Literal["question", "definitions", "search", "effort", "work", "output"]

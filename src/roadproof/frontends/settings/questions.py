@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING
 from roadproof.frontends.settings import groups
 from roadproof.frontends.settings.option import option, output, search
 from roadproof.frontends.settings.readers import file_names, named, seconds, text_or_none, whole
+from roadproof.runtime.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,6 +19,7 @@ from roadproof.frontends.settings.readers import (
     seconds_or_zero,
     whole,
 )
+from roadproof.runtime.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

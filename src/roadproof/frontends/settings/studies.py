@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.frontends.settings import groups, readers
 from roadproof.frontends.settings.option import option, output, search
 from roadproof.frontends.settings.readers import whole
+from roadproof.runtime.records import dataclass
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

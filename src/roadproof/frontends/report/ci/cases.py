@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import Literal, TypeAlias
@@ -10,6 +9,7 @@ from typing import Literal, TypeAlias
 from roadproof.library.specification import Specification, source_of
 from roadproof.library.uses import definitions_used
 from roadproof.logic.syntax import Definition, Expression
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
 
 _LIBRARY = Path(__file__).parents[3] / "library" / "sets"

@@ -7,7 +7,7 @@ of the lane offset takes as long as a cubic one.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from roadproof.recordings.formats.storyboard.box import Box
 from roadproof.recordings.formats.storyboard.controllers import (
@@ -31,6 +31,7 @@ from roadproof.recordings.formats.storyboard.courses import (
 from roadproof.recordings.formats.storyboard.document import Document
 from roadproof.recordings.formats.storyboard.positions import Positions, State, States
 from roadproof.recordings.formats.storyboard.trajectories import TrajectoryReader
+from roadproof.runtime.records import dataclass
 from roadproof.runtime.xml_reader import Element
 
 _IGNORED = frozenset(

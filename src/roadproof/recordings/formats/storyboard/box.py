@@ -1,6 +1,6 @@
 """Vehicles and other objects of an OpenSCENARIO file."""
 
-from dataclasses import dataclass
+from roadproof.runtime.records import dataclass
 
 
 @dataclass(frozen=True)

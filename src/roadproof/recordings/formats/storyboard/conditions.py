@@ -6,12 +6,13 @@ time to collision needs vehicles that come closer. Headway and distance have no 
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from roadproof.recordings.formats.storyboard.box import Box
 from roadproof.recordings.formats.storyboard.document import Document
 from roadproof.recordings.formats.storyboard.positions import Positions, State, States
 from roadproof.recordings.formats.storyboard.rules import RULES, texts_compare
+from roadproof.runtime.records import dataclass
 from roadproof.runtime.xml_reader import Element
 
 TICKS = 100

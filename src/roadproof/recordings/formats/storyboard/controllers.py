@@ -4,12 +4,13 @@ All are courses whose ``next`` is the course from the next tick on. Acceleration
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from typing import Literal, TypeAlias
 
 from roadproof.recordings.formats.storyboard.courses import Course, Point, Steady
 from roadproof.recordings.formats.storyboard.positions import State, States
+from roadproof.runtime.records import dataclass
 
 _NEAR = 0.1
 """m: a distance that is to be reached once is reached, as in esmini."""

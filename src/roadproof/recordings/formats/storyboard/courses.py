@@ -6,13 +6,13 @@ A transition from a to b in T seconds has the value a + (b - a)·f(t/T); f is x 
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 
 from roadproof.recordings.formats.recording import Floats
 from roadproof.recordings.formats.storyboard.curves import curve
+from roadproof.runtime.records import dataclass
 
 _PI = math.pi
 

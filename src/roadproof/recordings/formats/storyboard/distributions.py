@@ -10,7 +10,6 @@ that break the constraints of the scenario's parameters are left out.
 import math
 import random
 from collections.abc import Mapping
-from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
 from functools import cached_property
 from itertools import accumulate
@@ -21,6 +20,7 @@ from typing import TypeAlias
 from roadproof.errors import InputError
 from roadproof.recordings.formats.storyboard.expressions import replaced
 from roadproof.recordings.formats.storyboard.rules import texts_compare
+from roadproof.runtime.records import dataclass
 from roadproof.runtime.xml_reader import Element, number_in, read_xml
 
 MOST = 500

@@ -5,12 +5,12 @@ World positions of files whose description begins with ``CARLA:`` have y to the 
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 from roadproof.errors import InputError
 from roadproof.recordings.formats.storyboard.distributions import Values, numbered, read_distribution, split
 from roadproof.recordings.formats.storyboard.expressions import replaced
+from roadproof.runtime.records import dataclass
 from roadproof.runtime.xml_reader import Element, number_in, read_xml
 
 _OWNERS = ("ScenarioObject", "ManeuverGroup", "TrajectoryRef", "RouteRef")

@@ -7,7 +7,6 @@ until they are within CLOSE of the motion; the largest difference is told.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
@@ -22,6 +21,7 @@ from roadproof.recordings.formats.storyboard.courses import Course, PlaceTransit
 from roadproof.recordings.formats.storyboard.positions import State
 from roadproof.recordings.formats.storyboard.run import Play
 from roadproof.recordings.formats.storyboard.stage import open_stage, played
+from roadproof.runtime.records import dataclass
 from roadproof.world.drive import Across, Along, Drive, Motion, motion_of
 from roadproof.world.road import Road
 from roadproof.world.signals import STARTING, Kind

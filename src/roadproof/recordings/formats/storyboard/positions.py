@@ -8,10 +8,11 @@ around (``sign`` -1), so that all of them mean the same as for the others.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
 from roadproof.recordings.formats.storyboard.document import Document
+from roadproof.runtime.records import dataclass
 from roadproof.runtime.xml_reader import Element
 from roadproof.world.maps.carriageway import DRIVEN, RAMPS
 from roadproof.world.maps.opendrive import MapRoad, MapSection, outer_edge, read_map, value_at

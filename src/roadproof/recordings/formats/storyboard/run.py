@@ -9,7 +9,6 @@ conditions on it do not hold.
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 from roadproof.recordings.formats.storyboard.actions import ActionReader, Actor, Scene, turned
 from roadproof.recordings.formats.storyboard.box import Box
@@ -20,6 +19,7 @@ from roadproof.recordings.formats.storyboard.document import Document
 from roadproof.recordings.formats.storyboard.elements import StoryElement, read_element, starts
 from roadproof.recordings.formats.storyboard.global_actions import act_globally, initial_values
 from roadproof.recordings.formats.storyboard.positions import State, positions_on
+from roadproof.runtime.records import dataclass
 from roadproof.runtime.xml_reader import Element
 from roadproof.world.road import Road
 

@@ -1,7 +1,7 @@
 """What a storyboard is played on and by: the road, and the vehicles and other objects with their boxes."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from roadproof.errors import InputError
@@ -9,6 +9,7 @@ from roadproof.recordings.formats.storyboard.box import Box
 from roadproof.recordings.formats.storyboard.document import Document, open_document
 from roadproof.recordings.formats.storyboard.routes import longer, stretch_of
 from roadproof.recordings.formats.storyboard.run import Play, run_storyboard
+from roadproof.runtime.records import dataclass
 from roadproof.runtime.xml_reader import Element, number_in
 from roadproof.world.models import load_road
 from roadproof.world.road import Road

@@ -7,7 +7,6 @@ is. On one without times it begins at the first point, as in esmini, and its spe
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
@@ -27,6 +26,7 @@ from roadproof.recordings.formats.storyboard.courses import (
 from roadproof.recordings.formats.storyboard.curves import curve
 from roadproof.recordings.formats.storyboard.document import Document
 from roadproof.recordings.formats.storyboard.positions import Positions, States
+from roadproof.runtime.records import dataclass
 from roadproof.runtime.xml_reader import Element
 
 SPACING = 0.25
