@@ -7,7 +7,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/.ready
 JOBS ?= 2
 
-.PHONY: test long demo docs man fresh browser evidence evidence-check findings interop release mutants fuzz lint unit format clean
+.PHONY: test long demo docs man fresh browser evidence evidence-check extract findings interop release mutants fuzz lint unit format clean
 
 test: lint unit
 
@@ -50,6 +50,10 @@ evidence: $(READY)
 # All of them computed again and compared with those that are there.
 evidence-check: $(READY)
 	PYTHONPATH=tests $(BIN)/python -m shipping --check $(ARGS)
+
+# proofs/kernel/ocaml/checker.ml again, after a change of the checkers in proofs/kernel: needs coqc.
+extract: $(READY)
+	PYTHONPATH=tests $(BIN)/python -m kernel.extract
 
 # Every command of the README, typed into the login shell of a user who has nothing but a fresh clone.
 fresh: $(READY)

@@ -91,7 +91,7 @@ class Kernel:
         str, LEFT_OUT, Doc("With --kernel extracted, the version of the OCaml that compiled the program.")
     ] = ""
     seconds: Seconds
-    megabytes: Annotated[int, Rule(minimum=0)]
+    megabytes: Annotated[int, Rule(minimum=0), Doc("Of Coq; 0 with --kernel extracted.")]
     axioms: tuple[str, ...]
 
 

@@ -58,7 +58,11 @@ class Coq:
         with tempfile.TemporaryDirectory(prefix="roadproof-coq-") as folder:
             file = Path(folder) / "evidence.v"
             file.write_text(source, encoding="ascii")
-            return run_program([self.coqc, *_options(self.theories), file.name], Path(folder))
+            return self.in_folder(file.name, Path(folder))
+
+    def in_folder(self, name: str, folder: Path) -> CoqRun:
+        """Put a file of a folder to Coq, which writes there."""
+        return run_program([self.coqc, *_options(self.theories), name], folder)
 
 
 def find() -> tuple[str, str]:

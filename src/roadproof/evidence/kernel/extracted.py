@@ -107,7 +107,7 @@ def judge(program: Program, prepared: Mapping[str, CoqModule]) -> KernelRulings:
     if not asked:
         return judged
     ran = program.run("".join(x.text for x in asked.values()))
-    judged.seconds, judged.megabytes = ran.seconds, ran.megabytes
+    judged.seconds = ran.seconds
     said = dict(line.split(" ", 1) for line in ran.said.splitlines()) if ran.code == 0 else {}
     for name in asked:
         if name in said:

@@ -88,9 +88,9 @@ class KernelAnswer:
         )
 
     def __str__(self) -> str:
-        held = f"at most {self.megabytes:.0f} MB" if self.megabytes else "nothing asked"
         if self.kernel == "extracted":
-            return f"extracted program, OCaml {self.version}: {self.seconds:.1f} s of processor time, {held}"
+            return f"extracted program, OCaml {self.version}: {self.seconds:.2f} s of processor time"
+        held = f"at most {self.megabytes:.0f} MB" if self.megabytes else "nothing asked"
         axioms = ", ".join(self.axioms) or "none"
         return f"coqc {self.version}: {self.seconds:.1f} s of processor time, {held}; axioms: {axioms}"
 
