@@ -1,4 +1,4 @@
-"""The checkers as Coq extracts them; ``python -m kernel.extract`` writes checker.ml of proofs/kernel/ocaml."""
+"""The checkers as Coq extracts them; ``python -m kernel.extract`` writes proofs/kernel/ocaml/checker.ml."""
 
 import tempfile
 from pathlib import Path

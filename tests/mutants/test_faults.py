@@ -143,5 +143,6 @@ def test_faults_by_hand_fit_the_code_and_name_their_tests() -> None:
     for fault in faults:
         text = (PACKAGE / fault.file).read_text("utf-8")
         assert text.count(fault.before) == 1, fault
-        ast.parse(text.replace(fault.before, fault.after))
+        if fault.file.endswith(".py"):
+            ast.parse(text.replace(fault.before, fault.after))
         assert [x for x in fault.tests if (ROOT / x).exists()], fault
