@@ -53,19 +53,6 @@ def test_a_certificate_of_the_version_before_is_searched_for_its_tableau(tmp_pat
 
 
 @needs_coq
-def test_what_is_assumed_of_motion_is_a_premise_that_is_said():
-    claim = "G v_lon(SV) <= v_lon(POV) and s(SV) < s(POV) -> G s(SV) < s(POV)"
-    proved = rp.prove(claim, assume="motion", kernel="coq", jobs=1)
-    assert not [*validator("verdicts.json").iter_errors(proved.as_data())]
-    (entry,) = proved.as_data()["verdicts"]
-    assert entry["kernel"] == {"says": "accepted", "reason": "", "premises": 1}
-    certificate = proved.answers[0].settled.result.certificate
-    module = prepare("one", certificate, bundled_library()).module
-    assert "Definition claim : formula := motion_1 -> " in module.text
-    assert "Under 1 fact about motion: premises of the claim, not proved here." in module.text
-
-
-@needs_coq
 def test_a_fact_that_is_not_proved_is_named():
     """The opposite of a fact about one instant that a proof uses."""
     certificate = read_certificate(PROOFS / "P3-scenario-03-extA.json")

@@ -433,6 +433,5 @@ def test_coq_names_limits_as_limits(tmp_path):
     rp.prove(f"assuming motion, {LIMIT}: a_lon(SV) > 0 or true", jobs=1, out=tmp_path / "none")
     told = {x: str(check(tmp_path / x, kernel="coq", jobs=1)) for x in ("limit", "both", "none")}
     assert "under 1 limit that is a premise; not checked: queries for solvers]" in told["limit"]
-    assert "under 1 limit and 1 fact about motion that are premises;" in told["both"]
-    assert "not checked: queries for solvers, that the facts are true of motion]" in told["both"]
+    assert "under 1 limit that is a premise; not checked: queries for solvers]" in told["both"]
     assert "premise" not in told["none"]

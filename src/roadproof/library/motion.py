@@ -319,28 +319,29 @@ def axiom_formula(specification: Specification, query: Query, axiom: Axiom) -> F
     names = ALL_SCHEMAS[axiom.schema]
     if len(names) != len(axiom.arguments):
         raise InputError(f"schema {axiom.schema} takes {', '.join(names)}")
+    maker = axiom.schema.replace("-", "_")
+    make: Callable[..., Formula] = getattr(motion, maker)
     try:
-        return _made(specification, query, axiom)
+        return make(*axiom_arguments(specification, query, axiom))
     except ValueError as error:
         said = ", ".join(f"{name}={x[:60]}" for name, x in axiom.named().items())
         raise InputError(f"schema {axiom.schema} does not take {said}: {error}") from None
 
 
-def _made(specification: Specification, query: Query, axiom: Axiom) -> Formula:
-    maker = axiom.schema.replace("-", "_")
-    make: Callable[..., Formula] = getattr(motion, maker)
+def axiom_arguments(specification: Specification, query: Query, axiom: Axiom) -> tuple[Formula | Term, ...]:
+    """What an instance of a schema is made of. Raises ``InputError``, ``ValueError``."""
     if ALL_SCHEMAS[axiom.schema][0] == "inside":
         inside = _elaborated(specification, query, axiom.arguments[0]).formula
-        return make(inside, *(_time(specification, query, x) for x in axiom.arguments[1:]))
+        return (inside, *(_time(specification, query, x) for x in axiom.arguments[1:]))
     left, right, *rates = (_term(specification, query, x) for x in axiom.arguments)
     _alike(left, right.dimension)
     if not rates:
-        return make(left.term, right.term)
+        return (left.term, right.term)
     time = _time(specification, query, axiom.arguments[-1])
     metres, seconds = left.dimension or right.dimension or (0, 0)
     for order, rate in enumerate(rates[:-1], 1):
         _alike(rate, (metres, seconds - order))
-    return make(left.term, right.term, *(x.term for x in rates[:-1]), time)
+    return (left.term, right.term, *(x.term for x in rates[:-1]), time)
 
 
 def _time(specification: Specification, query: Query, written: str) -> Term:

@@ -42,6 +42,11 @@ def all_with_values(formulas: Iterable[f.Formula], values: Mapping[str, Fraction
     return f.share(formulas, _changing_terms(_giving(values)))
 
 
+def term_with_values(term: t.Term, values: Mapping[str, Fraction]) -> t.Term:
+    """``term`` with the named parameters replaced by numbers."""
+    return _giving(values)(term)
+
+
 def _giving(values: Mapping[str, Fraction]) -> Callable[[t.Term], t.Term]:
     pool: dict[t.Term, t.Term] = {}
 

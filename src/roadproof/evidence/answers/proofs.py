@@ -190,7 +190,7 @@ class KernelSays:
 
     says: shared.KernelWord
     reason: shared.Reason
-    premises: Annotated[int, Rule(minimum=0), Doc("How many limits and facts about motion are premises.")]
+    premises: Annotated[int, Rule(minimum=0), Doc("How many limits of vehicles are premises.")]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -15,7 +15,7 @@ from roadproof.evidence.kernel.branch import NotFoundError
 from roadproof.evidence.kernel.coq import Coq, CoqRun
 from roadproof.evidence.kernel.search import find
 from roadproof.evidence.kernel.source import Module, UnreasonedError, file, module
-from roadproof.evidence.kernel.statement import NO_PREMISES, Premises, Statement, state
+from roadproof.evidence.kernel.statement import Statement, counted, state
 from roadproof.evidence.kernel.tableau import Tableau, lines, read_lines
 from roadproof.library.specification import Library
 
@@ -43,19 +43,19 @@ class Word(StrEnum):
 class Ruling:
     """What Coq says of a certificate. ``lemma``: which fact about one instant was not proved, from 1.
 
-    ``premises``: the limits and facts about motion that the theorem has as premises; Coq does not prove them.
+    ``limits``: how many limits of vehicles, which the claim assumes, the theorem has as premises.
     """
 
     word: Word
     reason: str = ""
     lemma: int | None = None
-    premises: Premises = NO_PREMISES
+    limits: int = 0
     axioms: tuple[str, ...] = ()
 
     @property
     def told(self) -> str:
         """The word, with the premises."""
-        return f"{self} under {self.premises}, as premises" if self.premises.count else str(self)
+        return f"{self} under {counted(self.limits)}, as premises" if self.limits else str(self)
 
     def __str__(self) -> str:
         return f"{self.word} (lemma {self.lemma})" if self.lemma is not None else str(self.word)
@@ -66,7 +66,7 @@ class CoqModule:
     """A certificate as a module of Coq, or why there is none."""
 
     module: Module | None
-    premises: Premises = NO_PREMISES
+    limits: int = 0
     refusal: Ruling | None = None
 
 
@@ -102,7 +102,7 @@ def prepare(
     except RoadproofError as error:
         return CoqModule(None, refusal=Ruling(Word.REFUSED, f"it cannot be put to Coq: {error}"))
     try:
-        return CoqModule(written(name, statement, tableau), statement.premises)
+        return CoqModule(written(name, statement, tableau), statement.limits)
     except UnreasonedError as error:
         return CoqModule(None, refusal=Ruling(Word.UNKNOWN, str(error), error.number))
     except RoadproofError as error:
@@ -164,13 +164,13 @@ def _conclude(
 ) -> None:
     axioms = axioms_of(ran.said)
     for x in modules:
-        premises = prepared[x.name].premises
+        limits = prepared[x.name].limits
         if axioms is None:
             ruling = Ruling(Word.UNKNOWN, "coqc did not say on which axioms it stands")
         elif set(axioms) - AXIOMS:
             ruling = Ruling(Word.REFUSED, f"it stands on {', '.join(sorted(set(axioms) - AXIOMS))}")
         else:
-            ruling = Ruling(Word.ACCEPTED, "", None, premises, axioms)
+            ruling = Ruling(Word.ACCEPTED, "", None, limits, axioms)
         judged.rulings[x.name] = ruling
 
 
@@ -199,6 +199,8 @@ def _why(module: Module, line: int, said: str) -> Ruling:
     if line >= module.theorem:
         if '"true = true"' in said:
             return Ruling(Word.REFUSED, "the checker of tableaux does not accept its tableau")
+        if 'Unable to unify "true" with "false"' in said:
+            return Ruling(Word.REFUSED, "what it supposes of motion is no instance of a schema")
         return Ruling(Word.UNKNOWN, f"coqc says: {said[:200]}")
     lemma = sum(line >= begins for begins in module.lemmas)
     if lemma:

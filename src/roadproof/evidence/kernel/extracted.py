@@ -16,7 +16,7 @@ from roadproof.evidence.kernel.instant import Reason, reason
 from roadproof.evidence.kernel.names import comment, literal, quoted
 from roadproof.evidence.kernel.ocaml import Program
 from roadproof.evidence.kernel.source import ClaimText, Module, own_bounds, own_signals
-from roadproof.evidence.kernel.statement import Premises, Statement
+from roadproof.evidence.kernel.statement import Statement
 from roadproof.evidence.kernel.tableau import Tableau, coq_tree
 from roadproof.logic.rewrite import without_names
 from roadproof.logic.terms import Own
@@ -26,6 +26,8 @@ from roadproof.world.road import Lanelet
 
 def proof(name: str, statement: Statement, tableau: Tableau) -> Module:
     """A claim with its proof as a form. Raises ``InputError`` for what is not written."""
+    if statement.instances:
+        raise InputError("--kernel coq alone proves facts about motion and inductions over time")
     writer = Writer()
     claim = writer.formula(statement.formula)
     own = own_signals(statement.formula)
@@ -111,17 +113,17 @@ def judge(program: Program, prepared: Mapping[str, CoqModule]) -> KernelRulings:
     said = dict(line.split(" ", 1) for line in ran.said.splitlines()) if ran.code == 0 else {}
     for name in asked:
         if name in said:
-            judged.rulings[name] = _ruling(said[name], prepared[name].premises)
+            judged.rulings[name] = _ruling(said[name], prepared[name].limits)
         else:
             why = " ".join(ran.complained.split())[:200] or f"exit code {ran.code}"
             judged.rulings[name] = Ruling(Word.UNKNOWN, f"the program ended without an answer: {why}")
     return judged
 
 
-def _ruling(said: str, premises: Premises) -> Ruling:
+def _ruling(said: str, limits: int) -> Ruling:
     match said.split(" "):
         case ["accepted"]:
-            return Ruling(Word.ACCEPTED, "", None, premises)
+            return Ruling(Word.ACCEPTED, "", None, limits)
         case ["refused"]:
             return Ruling(Word.REFUSED, "the checker does not accept its certificate")
         case ["lemma", number]:

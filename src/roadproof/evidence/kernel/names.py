@@ -24,7 +24,8 @@ F G U and or not some every inf max min inverse true false
 s d v_lon v_lat a_lon a_lat j_lon length width kind occ lanes adjacentLanes lanelets zone main merge depart
 vehicle road term formula side bound at_least_0 above_0 own_at_least own_at_most
 Par Var Sig Own Num Free Bound Truth Some None list nil cons
-claim bounds tableau proved string accepted valid valid_always tree eq_refl Forall_nil Forall_cons conj I
+claim bounds tableau tableau_proves proved string accepted valid valid_always tree eq_refl
+Forall_nil Forall_cons conj I
 Siz Add Mul Pow Div Max Min Place_lon Place_lat Speed_lon Speed_lat Acceleration_lon Acceleration_lat Jerk_lon
 Absurd Untrue Opposed Both Either Plain Reads Sized Largest Smallest Over Sign Length Width Kind add_ mul_
 given_ square_ times_ product_ sum_ number_ c_ x_
@@ -34,7 +35,7 @@ other_rectangles beside lanes_named values signals is_a car truck bus motorcycle
 long wide long_above_0 wide_above_0 along across starts_at
 starts_with pieces finally lane lies_in from_s to_s right_d left_d Turn One Split Element Each Whole Moment
 Reach Break Fixed Later Drive Signs Shown Roadproof Coq Meaning Text Linear Tableau Products Rss Instant
-Named Sane Guarantee Case
+Named Sane Guarantee Case Motion Integral Schemas Moves
 """
 WORDS = frozenset(_SAID.split())
 

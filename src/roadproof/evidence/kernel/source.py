@@ -12,18 +12,19 @@ from roadproof.evidence.kernel.instant import Reason, reason
 from roadproof.evidence.kernel.names import comment, literal
 from roadproof.evidence.kernel.plain import comparisons
 from roadproof.evidence.kernel.printer import CLOSE, Printer
-from roadproof.evidence.kernel.statement import Statement
+from roadproof.evidence.kernel.statement import Instance, Statement, counted
 from roadproof.evidence.kernel.tableau import WIDTH, Tableau, coq_tree, q
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import own_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
+from roadproof.logic.terms import Term
 
 MOST_COMPARISONS = 8  # of a fact that Coq's own tactics are asked about; with more they do not end
 HEAD = """\
 From Coq Require Import QArith String List.
 From Roadproof Require Import Meaning Text Linear Tableau Products Named.
-From Roadproof Require Drive Shown Values.
+From Roadproof Require Drive Shown Values Motion Schemas.
 Import ListNotations.
 Open Scope string_scope.
 Open Scope nat_scope.
@@ -70,7 +71,7 @@ class ClaimText:
 def claim_text(printer: Printer, formula: Formula) -> ClaimText:
     """Raises ``InputError`` for what is not printed."""
     claim = printer.formula(formula)
-    return ClaimText(claim, printer.things, printer.definitions, own_signals(formula))
+    return ClaimText(claim, (*printer.things,), (*printer.definitions,), own_signals(formula))
 
 
 def own_signals(formula: Formula) -> Sequence[t.Own]:
@@ -86,14 +87,16 @@ def module(name: str, statement: Statement, tableau: Tableau) -> Module:
 
     Raises ``InputError`` for what is not printed, and ``UnreasonedError``.
     """
-    out: list[str] = []
     printer = Printer(statement.formals)
     printed = claim_text(printer, statement.formula)
-    facts = [printer.formula(without_names(lemma)) for lemma, _ in statement.lemmas]
-    out += [f"Module {name}."]
-    out += comment_lines(_said(statement))
+    out = [f"Module {name}.", *comment_lines(_said(statement))]
     out += [*claim_lines(printed, statement.bounds), ""]
     out += ["(* From here on it is proof: what is proved is said in the theorem at the end. *)"]
+    supposed = _supposed(printer, statement)
+    facts = [printer.formula(without_names(lemma)) for lemma, _ in statement.lemmas]
+    out += printer.things[len(printed.things) :]
+    out += (line for x in printer.definitions[len(printed.definitions) :] for line in wrapped(x))
+    out += supposed.lines
     lemmas: list[int] = []
     words = [printer.names.new(f"fact_{number}") for number in range(1, len(facts) + 1)]
     proofs = [printer.names.new(f"{word}_holds") for word in words]
@@ -110,24 +113,61 @@ def module(name: str, statement: Statement, tableau: Tableau) -> Module:
     theorem = len(out) + 1
     out += ["Definition tableau : tree := ("]
     out += [*coq_tree(tableau), ").", ""]
-    out += [
-        "Theorem proved : Roadproof.Meaning.valid bounds claim.",
-        "Proof.",
-        *(f"  refine ({_theorem(statement, words)} claim tableau", f"    ({held}) _)."),
-        "  vm_cast_no_check (eq_refl true).",
-        "Qed.",
-        f"End {name}.",
-    ]
+    out += [*_theorem(statement, supposed, words, held), f"End {name}."]
     return Module(name, "\n".join(out) + "\n", tuple(lemmas), theorem)
 
 
-def _theorem(statement: Statement, facts: Sequence[str]) -> str:
-    """The theorem by which a tableau proves the claim, up to what it is told of the claim."""
+@dataclass(frozen=True)
+class _Supposed:
+    """What a tableau proves, by the word for it: the claim, or with instances of ``schemas`` as premises."""
+
+    word: str
+    schemas: str
+    lines: Sequence[str]
+
+
+def _supposed(printer: Printer, statement: Statement) -> _Supposed:
+    if not statement.instances:
+        return _Supposed("claim", "", ())
+    made = "; ".join(instance_text(printer, x) for x in statement.instances)
+    supposed, schemas = printer.names.new("supposed"), printer.names.new("schemas")
+    lines = [
+        *wrapped(f"Definition {supposed} : formula := {printer.formula(statement.supposed)}."),
+        *wrapped(f"Definition {schemas} : list Roadproof.Schemas.schema := [{made}]."),
+    ]
+    return _Supposed(supposed, schemas, lines)
+
+
+def instance_text(printer: Printer, instance: Instance) -> str:
+    """An instance as a term of Schemas.v."""
+    shown = (printer.term(x) if isinstance(x, Term) else printer.formula(x) for x in instance.arguments)
+    return " ".join([f"Roadproof.Schemas.{instance.schema}", *(f"({x})" for x in shown)])
+
+
+def _theorem(statement: Statement, supposed: _Supposed, facts: Sequence[str], held: str) -> Iterator[str]:
+    """That the claim is valid; where it is not what the tableau proves, that is a lemma before."""
     given = f"[{'; '.join(map(literal, statement.parameters))}] bounds [{'; '.join(facts)}]"
-    if not statement.demanded:
-        return f"Roadproof.Tableau.accepted {given}"
-    values = (f"({literal(name)}, {q(value)})" for name, value in statement.demanded.items())
-    return f"Roadproof.Values.accepted_at {given} [{'; '.join(values)}]"
+    checker = "Tableau.accepted"
+    if statement.demanded:
+        values = (f"({literal(name)}, {q(value)})" for name, value in statement.demanded.items())
+        checker, given = "Values.accepted_at", f"{given} [{'; '.join(values)}]"
+    word = "Lemma tableau_proves" if statement.instances else "Theorem proved"
+    yield f"{word} : Roadproof.Meaning.valid bounds {supposed.word}."
+    yield "Proof."
+    yield f"  refine (Roadproof.{checker} {given} {supposed.word} tableau"
+    yield f"    ({held}) _)."
+    yield "  vm_cast_no_check (eq_refl true)."
+    yield "Qed."
+    if statement.instances:
+        is_general = all(x.is_induction for x in statement.instances)
+        valid = "Meaning.valid" if is_general else "Motion.valid_of_motions"
+        holds = "holds_by_induction" if is_general else "holds_of_motions"
+        yield f"Theorem proved : Roadproof.{valid} bounds claim."
+        yield "Proof."
+        yield f"  refine (Roadproof.Schemas.{holds} bounds {supposed.schemas} {supposed.word} claim"
+        yield "    tableau_proves _)."
+        yield "  vm_compute. reflexivity."
+        yield "Qed."
 
 
 def claim_lines(printed: ClaimText, bounds: Mapping[str, bool]) -> list[str]:
@@ -175,8 +215,10 @@ def _said(statement: Statement) -> Iterator[str]:
     yield statement.claim
     if statement.values:
         yield f"At {', '.join(statement.values)}: numbers in place of these parameters."
-    if statement.premises.count:
-        yield f"Under {statement.premises}: premises of the claim, not proved here."
+    if any(not x.is_induction for x in statement.instances):
+        yield "It holds of every motion (Motion.v)."
+    if statement.limits:
+        yield f"Premises: {counted(statement.limits)} of vehicles, which the claim assumes."
 
 
 def comment_lines(said: Iterable[str]) -> list[str]:

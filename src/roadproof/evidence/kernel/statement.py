@@ -1,62 +1,74 @@
 """What a certificate claims, as Coq is to prove it, and the goal for a search of its tableau.
 
-The claim is read again with the library at hand. What is assumed of motion becomes a premise of what is
-proved: each fact by itself, made anew of its schema, so that a reader of the printed claim sees it.
+The claim is read again with the library at hand. Limits that it is proved under become its premises. The
+tableau also supposes facts about motion and inductions, each made anew; proofs/kernel/Schemas.v proves them.
 """
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from roadproof.errors import InputError
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.kernel.branch import Goal
 from roadproof.evidence.kernel.printer import Formals
 from roadproof.evidence.times import bound_parameters
 from roadproof.library.elaborate import read_claim
-from roadproof.library.motion import NOTHING, assumption, axiom_formula, value_texts, values_said
+from roadproof.library.motion import (
+    Axiom,
+    assumption,
+    axiom_arguments,
+    axiom_formula,
+    limit_formulas,
+    value_texts,
+    values_said,
+)
 from roadproof.library.specification import Library, Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import parameters_of, with_values
+from roadproof.logic.rewrite import parameters_of, term_with_values, with_values
+from roadproof.logic.terms import Term
+
+SCHEMAS: Mapping[str, str] = {
+    "at-most": "At_most",
+    "below": "Below",
+    "meets": "Meets",
+    "leaves": "Leaves",
+    "within": "Within",
+    "after": "After",
+    "within-twice": "Within_twice",
+    "after-twice": "After_twice",
+    "steps": "Repeats",
+    "lasts": "Lasts",
+}
+"""What proofs/kernel/Schemas.v calls the schemas of ``library.motion``."""
+
+
+def counted(limits: int) -> str:
+    """
+    >>> counted(1), counted(2)
+    ('1 limit', '2 limits')
+    """
+    return f"{limits} limit{'s' * (limits != 1)}"
 
 
 @dataclass(frozen=True)
-class Premises:
-    """How many ``limits`` of vehicles, ``facts`` about motion and ``inductions`` a claim is proved under.
+class Instance:
+    """An instance of a schema: its name in Coq, and its ``arguments``, values of parameters put in."""
 
-    >>> str(Premises(1, 2))
-    '1 limit and 2 facts about motion'
-    """
-
-    limits: int = 0
-    facts: int = 0
-    inductions: int = 0
-
-    @property
-    def count(self) -> int:
-        return self.limits + self.facts + self.inductions
-
-    def __str__(self) -> str:
-        counted = (
-            (self.limits, "limit", ""),
-            (self.facts, "fact", " about motion"),
-            (self.inductions, "induction", " over time"),
-        )
-        return " and ".join(f"{n} {word}{'s' * (n != 1)}{of}" for n, word, of in counted if n)
-
-
-NO_PREMISES = Premises()
+    schema: str
+    arguments: tuple[Formula | Term, ...]
+    is_induction: bool
 
 
 @dataclass(frozen=True)
 class Statement:
     """``formula`` is what Coq is to prove for all parameters within ``bounds`` (name: strictly above 0).
 
-    ``lemmas``: facts about one instant, with the moments at which the proof uses them. ``premises``: how
-    many limits and facts about motion are premises, which are not proved. ``values`` of parameters, as words,
-    are put in; those that are ``demanded`` by the formula itself Coq puts in before it reads the tableau.
+    ``supposed``: what the tableau proves, with ``instances`` of schemas as further premises. ``lemmas``:
+    facts about one instant, with the moments at which the proof uses them. ``limits``: how many limits of
+    vehicles are premises. ``values`` of parameters, as words, are put in; those that are ``demanded`` by the
+    formula itself Coq puts in before it reads the tableau.
     """
 
     label: str
@@ -64,11 +76,13 @@ class Statement:
     set_name: str
     options: Mapping[str, str]
     formula: Formula
+    supposed: Formula
+    instances: tuple[Instance, ...]
     bounds: Mapping[str, bool]
     lemmas: tuple[tuple[Formula, tuple[str, ...]], ...]
     parameters: tuple[str, ...]
     formals: Formals
-    premises: Premises
+    limits: int
     values: tuple[str, ...]
     demanded: Mapping[str, Fraction]
     goal: Goal
@@ -83,13 +97,16 @@ def state(certificate: Certificate, library: Library, query: Query | None = None
     specification = library.select(certificate.set_name, certificate.options)
     query = query or read_claim(specification, certificate.claim)
     assumed = certificate.assumed
-    premises = _premises(certificate, library, query)
-    here = values_said(specification, certificate.assumed.said)
-    formula = with_values(f.implication(f.conjunction(*premises), query.formula), here)
+    here = values_said(specification, assumed.said)
+    limits, axioms = _premises(certificate, specification, query)
+    formula, supposed = (
+        with_values(f.implication(f.conjunction(*premises), query.formula), here)
+        for premises in (limits, [*limits, *axioms])
+    )
     demanded = values_said(specification, certificate.pinned)
-    atoms, proved = Atoms(), with_values(formula, demanded)
+    atoms, proved = Atoms(), with_values(supposed, demanded)
     abstracted = atoms.abstract(proved)
-    bounds = bounds_of(specification, parameters_of(formula))
+    bounds = bounds_of(specification, parameters_of(supposed))
     parameters = tuple(sorted(bound_parameters(proved)))
     lemmas = tuple(
         (f.disjunction(*(_literal(atoms, *x) for x in lemma.literals)), lemma.moments)
@@ -111,11 +128,13 @@ def state(certificate: Certificate, library: Library, query: Query | None = None
         certificate.set_name,
         dict(certificate.options),
         formula,
+        supposed,
+        tuple(_instance(specification, query, x, here) for x in assumed.axioms),
         bounds,
         lemmas,
         parameters,
         formals_of(specification),
-        Premises(*map(len, (assumed.limits, assumed.facts, assumed.inductions))),
+        len(limits),
         value_texts(specification, here),
         demanded,
         goal,
@@ -136,22 +155,30 @@ def formals_of(specification: Specification) -> Formals:
     }
 
 
-def _premises(certificate: Certificate, library: Library, query: Query) -> list[Formula]:
-    """The facts about motion and the limits of vehicles that are assumed, each with a name of its own."""
-    if certificate.assumed == NOTHING:
-        return []
-    specification = library.select(certificate.set_name, certificate.options)
-    whole = assumption(specification, query, certificate.assumed)
-    axioms = [axiom_formula(specification, query, x) for x in certificate.assumed.axioms]
-    parts = list(whole.parts) if isinstance(whole, f.And) else [whole]
-    if whole == f.TRUE:
-        return []
-    limits = parts[: len(parts) - len(axioms)]
-    if parts[len(limits) :] != axioms or f.conjunction(*limits, *axioms) != whole:
-        raise InputError("what is assumed of motion cannot be told apart into facts")
-    words = ["induction" if x.is_induction else "motion" for x in certificate.assumed.axioms]
-    named = [("limit", x) for x in limits] + [*zip(words, axioms, strict=True)]
-    return [f.Application(f"{word}_{number}", (), x) for number, (word, x) in enumerate(named, 1)]
+def _premises(
+    certificate: Certificate, specification: Specification, query: Query
+) -> tuple[list[Formula], list[Formula]]:
+    """The limits that are premises, and the instances of schemas, each with a name of its own."""
+    assumed = certificate.assumed
+    assumption(specification, query, assumed)  # nothing else may be assumed
+    limits = limit_formulas(specification, query, assumed).values()
+    words = ["induction" if x.is_induction else "motion" for x in assumed.axioms]
+    axioms = (axiom_formula(specification, query, x) for x in assumed.axioms)
+    named = [*(("limit", x) for x in limits), *zip(words, axioms, strict=True)]
+    made: list[Formula] = [
+        f.Application(f"{word}_{number}", (), x) for number, (word, x) in enumerate(named, 1)
+    ]
+    return made[: len(limits)], made[len(limits) :]
+
+
+def _instance(
+    specification: Specification, query: Query, axiom: Axiom, values: Mapping[str, Fraction]
+) -> Instance:
+    arguments = tuple(
+        x if not values else term_with_values(x, values) if isinstance(x, Term) else with_values(x, values)
+        for x in axiom_arguments(specification, query, axiom)
+    )
+    return Instance(SCHEMAS[axiom.schema], arguments, axiom.is_induction)
 
 
 def _literal(atoms: Atoms, name: str, positive: bool) -> Formula:

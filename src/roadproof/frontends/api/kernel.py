@@ -22,6 +22,7 @@ from roadproof.evidence.kernel.accept import CoqModule, KernelRulings, Ruling, W
 from roadproof.evidence.kernel.drive import module as source_drive
 from roadproof.evidence.kernel.source import file
 from roadproof.evidence.kernel.source import module as source_proof
+from roadproof.evidence.kernel.statement import counted
 from roadproof.evidence.strict import read_json
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library
@@ -225,12 +226,7 @@ def _lost(part: Mapping[str, CoqModule], reason: str) -> KernelRulings:
 
 def ruled(ruling: Ruling) -> OtherVerdict:
     """What Coq says, for a finding."""
-    premises = ruling.premises
-    words = "that is a premise" if premises.count == 1 else "that are premises"
-    said = (f"under {premises} {words}",) if premises.count else ()
-    untold = (
-        *(("that the facts are true of motion",) * bool(premises.facts)),
-        *(("that the inductions hold on every trace",) * bool(premises.inductions)),
-    )
-    unchecked = ("queries for solvers", *untold)
-    return OtherVerdict(_OUTCOMES[ruling.word], Why.TOLD(ruling.reason), str(ruling), said, unchecked)
+    words = "that is a premise" if ruling.limits == 1 else "that are premises"
+    said = (f"under {counted(ruling.limits)} {words}",) if ruling.limits else ()
+    why, unchecked = Why.TOLD(ruling.reason), ("queries for solvers",)
+    return OtherVerdict(_OUTCOMES[ruling.word], why, str(ruling), said, unchecked)

@@ -248,7 +248,7 @@ def claims_asked(
 
 
 def _said(ruling: "Ruling") -> KernelSays:
-    return KernelSays(says=str(ruling), reason=Why.TOLD(ruling.reason), premises=ruling.premises.count)
+    return KernelSays(says=str(ruling), reason=Why.TOLD(ruling.reason), premises=ruling.limits)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,135 @@
+"""Facts about motion and inductions in Coq: each schema is used, and no other formula is taken."""
+
+from dataclasses import replace
+
+import pytest
+
+import roadproof as rp
+from exporting.kept import kept
+from kernel.needs import needs_coq
+from kernel.reading import answers
+from kernel.test_accept import ruling
+from roadproof.evidence.derivations.prepare import prepare as prepare_drive
+from roadproof.evidence.kernel.accept import CoqModule, Word, find_tableau, judge, prepare
+from roadproof.evidence.kernel.coq import ready
+from roadproof.evidence.kernel.printer import CLOSE, Printer
+from roadproof.evidence.kernel.source import HEAD, file, instance_text
+from roadproof.evidence.kernel.statement import SCHEMAS, Instance, bounds_of
+from roadproof.library.loading import bundled_library
+from roadproof.library.motion import ALL_SCHEMAS, INDUCTIONS, axiom_arguments, axiom_formula
+from roadproof.logic import formula as f
+from roadproof.logic.rewrite import parameters_of
+from spec.motions import ABOUT, AXIOMS, specification
+from spec.test_motion import FAULTS
+from tables import read_table
+
+PROVED = [tuple(x) for x in read_table(__file__, "proved")]
+FILE = HEAD + "From Roadproof Require Import Motion Schemas.\n"
+
+
+def test_every_schema_has_a_name_in_coq():
+    assert {*SCHEMAS} == {*ALL_SCHEMAS} == {x for schemas, _ in PROVED for x in schemas.split()}
+
+
+@needs_coq
+@pytest.mark.parametrize(("schemas", "claim"), PROVED)
+def test_a_claim_about_motions_is_accepted_and_rests_on_no_fact(schemas, claim):
+    proved = rp.prove(claim, kernel="coq", drive=False, jobs=1)
+    certificate = proved.answers[0].settled.result.certificate
+    assert " ".join(sorted({x.schema for x in certificate.assumed.axioms})) == schemas
+    (entry,) = proved.as_data()["verdicts"]
+    limits = len(certificate.assumed.limits)
+    assert entry["kernel"] == {"says": "accepted", "reason": "", "premises": limits}
+    text = prepare("one", certificate, bundled_library()).module.text
+    read, _, proof = text.partition("(* From here on it is proof")
+    assert "motion_" not in read
+    assert "induction_" not in read
+    assert ("limit_1" in read) == bool(limits)
+    theorem = "Meaning.valid " if {*schemas.split()} <= {*INDUCTIONS} else "Motion.valid_of_motions "
+    assert f"Theorem proved : Roadproof.{theorem}bounds claim." in proof
+
+
+# --- instances: each is taken, and nothing else is ------------------------------------------------
+
+
+def instances():
+    for axiom in AXIOMS:
+        made = axiom_arguments(specification, ABOUT, axiom)
+        yield Instance(SCHEMAS[axiom.schema], made, False), axiom_formula(specification, ABOUT, axiom)
+
+
+@needs_coq
+def test_instances_are_those_of_the_library_and_no_false_formula_is_one():
+    """Each made in Python, with those of other arguments and schemas, and formulas that drives refute."""
+    printer = Printer()
+    pairs = [*instances()]
+    schemas = [instance_text(printer, x) for x, _ in pairs]
+    formulas = [printer.formula(x) for x in (*(x for _, x in pairs), *FAULTS.values())]
+    bounds = bounds_of(specification, parameters_of(f.And(tuple(x for _, x in pairs))))
+    kinds = (f'{"above_0" if strict else "at_least_0"} "{p}"' for p, strict in bounds.items())
+    body = [*printer.things, *printer.definitions]
+    body += [f"Definition all : list schema := [{'; '.join(schemas)}]."]
+    body += [f"Definition said : list formula := [{'; '.join(f'({x})%formula' for x in formulas)}]."]
+    body += [f"Definition bounds := [{'; '.join(kinds)}]."]
+    body += ["Eval vm_compute in map (fun s => map (is_instance bounds [s]) said) all."]
+    found = answers(FILE + "\n".join(body).replace(CLOSE, " "))
+    expected = [x == y for _, x in pairs for y in (*(y for _, y in pairs), *FAULTS.values())]
+    assert found == [str(x).lower() for x in expected]
+    assert found.count("false") >= len(pairs) * len(FAULTS) >= 800
+
+
+@needs_coq
+@pytest.mark.parametrize(("schema", "says"), read_table(__file__, "instances"))
+def test_what_is_no_fact_is_no_instance(schema, says):
+    asked = f"Eval vm_compute in match says [] ({schema}) with Some _ => true | None => false end."
+    assert answers(f'{FILE}Definition a : vehicle := "a".\n{asked}\n') == [says]
+
+
+@needs_coq
+def test_a_module_with_another_fact_claim_or_theorem_is_not_accepted():
+    claim = "G v_lon(SV) <= v_lon(POV) and s(SV) < s(POV) -> G s(SV) < s(POV)"
+    answer = rp.prove(claim, assume="motion", drive=False, jobs=1).answers[0]
+    certificate = answer.settled.result.certificate
+    made = prepare("one", certificate, bundled_library()).module
+    changes = read_table(__file__, "changes")
+    modules = {"kept": CoqModule(made)}
+    for number, (before, after, _) in enumerate(changes):
+        assert made.text.count(before) == 1, before
+        text = made.text.replace(before, after).replace("Module one.", f"Module n{number}.")
+        changed = replace(made, name=f"n{number}", text=text.replace("End one.", f"End n{number}."))
+        modules[changed.name] = CoqModule(changed)
+    with ready() as coq:
+        rulings = judge(coq, {"one" if x == "kept" else x: y for x, y in modules.items()}).rulings
+    assert rulings["one"].word is Word.ACCEPTED
+    assert [rulings[f"n{k}"].told for k in range(len(changes))] == [word for _, _, word in changes]
+
+
+@needs_coq
+def test_a_false_claim_is_refused_with_the_tableau_of_a_true_one():
+    claim = "assuming motion: G v_lon(SV) <= v_lon(POV) and s(SV) < s(POV) -> G s(SV) < s(POV)"
+    certificate = rp.prove(claim, drive=False, jobs=1).answers[0].settled.result.certificate
+    tableau = find_tableau(certificate, bundled_library())
+    assert ruling(replace(certificate, tableau=tableau)).word is Word.ACCEPTED
+    false = replace(certificate, claim="s(SV) < s(POV) -> G s(SV) < s(POV)", tableau=tableau)
+    assert ruling(false).word is Word.REFUSED
+
+
+# --- drives -----------------------------------------------------------------------------------------
+
+
+@needs_coq
+def test_kept_drives_are_motions():
+    """Of each drive file that Coq accepts, the printed drive is proved to be one."""
+    library = bundled_library()
+    modules = [prepare_drive(f"n{k}", x, library).module for k, x in enumerate(kept().values())]
+    printed = [x for x in modules if x is not None]
+    goals = [
+        f"Lemma moves_{x.name} : Roadproof.Motion.motion (Roadproof.Drive.world_of {x.name}.the_drive).\n"
+        "Proof. apply Roadproof.Moves.drives_move. repeat constructor; unfold Q2R; simpl; lra. Qed.\n"
+        for x in printed
+    ]
+    head = "From Coq Require Import Reals Qreals Lra.\nFrom Roadproof Require Moves.\n"
+    with ready() as coq:
+        ran = coq.run(file(printed) + head + "".join(goals))
+    assert ran.code == 0, ran.complained[:500]
+    assert len(goals) >= 3
