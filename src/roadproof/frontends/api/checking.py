@@ -19,7 +19,6 @@ from roadproof.evidence.finding import Acceptance, Finding, OtherVerdict, exit_c
 from roadproof.evidence.folder import FolderStatements, conclude, survey
 from roadproof.evidence.heading import heading
 from roadproof.evidence.strict import JsonObject
-from roadproof.frontends.api import kernel as kernels
 from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.settings import work_of
 from roadproof.frontends.api.table import Row, Table
@@ -28,6 +27,7 @@ from roadproof.frontends.report.ci.questions import finding_cases
 from roadproof.frontends.settings.keywords import CheckKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Check
+from roadproof.frontends.settings.value_types import KernelName
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library
 from roadproof.library.words import called_by, legend
@@ -39,9 +39,11 @@ from roadproof.verdict import ExitCode
 
 if TYPE_CHECKING:
     from roadproof.frontends.api.judging_again import Comparison
+    from roadproof.frontends.api.kernel import KernelAnswer, KernelQuestion
 
 Solver: TypeAlias = Literal["z3", "cvc5"]
-Kernel: TypeAlias = kernels.KernelName
+Kernel: TypeAlias = KernelName
+_Given: TypeAlias = Sequence[tuple[Path, tuple[Path, ...]]]
 
 
 @dataclass(frozen=True, repr=False)
@@ -58,7 +60,7 @@ class CheckReport(Table, BuildResult):
     solver: Solver | Kernel
     library: Library
     specs: tuple[Path, ...] = ()
-    kernel: kernels.KernelAnswer | None = None
+    kernel: "KernelAnswer | None" = None
     not_checked: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     strict: bool = False
     command: ClassVar[str] = "check"
@@ -135,18 +137,15 @@ def check(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
         # A solver that is missing is said once, before any work.
         ask("(set-logic QF_UF)(check-sat)", asked.solver)
     else:
-        kernels.find(asked.kernel)
+        from roadproof.frontends.api.kernel import find
+
+        find(asked.kernel)
     named = tuple(Path(x) for x in asked.specs)
     library = load_library(named)
     surveyed = survey([Path(x) for x in paths], named, find_label)
     given = list(surveyed.files.items())
-    answered = asked.kernel and kernels.put(_asked(given), asked.jobs, asked.progress, asked.kernel)
-    names = kernels.names_of(path for path, _ in given)
-    said = {} if answered is None else answered.rulings
-    work = [
-        _Job(path, beside, kernels.ruled(said[names[path]]) if names[path] in said else None)
-        for path, beside in given
-    ]
+    answered, ruled = (None, {}) if asked.kernel is None else _put_to_kernel(asked.kernel, given, asked)
+    work = [_Job(path, beside, ruled.get(path)) for path, beside in given]
     judge = partial(_examine, asked.solver, work_of(asked))
     answers = pool.in_order(pool.work(judge, work, asked.jobs, _doubt, asked.progress, "files"))
     found = {path: finding for (path, _), finding in zip(given, answers, strict=True)}
@@ -161,6 +160,18 @@ def check(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
             left[str(told.folder)] = unchecked
     solver = asked.kernel or asked.solver
     return CheckReport(tuple(findings), solver, library, beside, answered, left, asked.strict)
+
+
+def _put_to_kernel(
+    kernel: Kernel, given: _Given, asked: Check
+) -> tuple["KernelAnswer", dict[Path, OtherVerdict]]:
+    """What a kernel says of all files, and of each by its path."""
+    from roadproof.frontends.api.kernel import names_of, put, ruled
+
+    answered = put(_asked(given), asked.jobs, asked.progress, kernel)
+    names = names_of(path for path, _ in given).items()
+    said = answered.rulings
+    return answered, {path: ruled(said[name]) for path, name in names if name in said}
 
 
 def _judged_again(told: FolderStatements, asked: Check) -> "Comparison | None":
@@ -183,15 +194,20 @@ def write_sources(
 
     Raises ``InputError`` for a path that holds nothing, and where it cannot be written.
     """
+    from roadproof.frontends.api.kernel import names_of
+    from roadproof.frontends.api.kernel import write as write_all
+
     given = list(survey([Path(x) for x in paths], tuple(Path(x) for x in specs), find_label).files.items())
-    reasons = kernels.write(_asked(given), Path(folder), jobs, kernel)
-    by_name = {name: path for path, name in kernels.names_of(path for path, _ in given).items()}
+    reasons = write_all(_asked(given), Path(folder), jobs, kernel)
+    by_name = {name: path for path, name in names_of(path for path, _ in given).items()}
     return {by_name[name]: reason for name, reason in reasons.items()}
 
 
-def _asked(given: Sequence[tuple[Path, tuple[Path, ...]]]) -> list[kernels.KernelQuestion]:
-    names = kernels.names_of(path for path, _ in given)
-    return [kernels.KernelQuestion(names[path], path, specs) for path, specs in given]
+def _asked(given: _Given) -> list["KernelQuestion"]:
+    from roadproof.frontends.api.kernel import KernelQuestion, names_of
+
+    names = names_of(path for path, _ in given)
+    return [KernelQuestion(names[path], path, specs) for path, specs in given]
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ from contextlib import contextmanager
 from dataclasses import field
 from functools import partial
 from pathlib import Path
-from typing import Literal, TypeAlias
 
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.pool import Progress
@@ -24,6 +23,7 @@ from roadproof.evidence.kernel.source import file
 from roadproof.evidence.kernel.source import module as source_proof
 from roadproof.evidence.kernel.statement import counted
 from roadproof.evidence.strict import read_json
+from roadproof.frontends.settings.value_types import KernelName
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library
 from roadproof.reasons import Why
@@ -33,7 +33,6 @@ from roadproof.runtime.package_data import shipped
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 
-KernelName: TypeAlias = Literal["coq", "extracted"]
 _OUTCOMES = {
     Word.ACCEPTED: Acceptance.ACCEPTED,
     Word.REFUSED: Acceptance.REJECTED,

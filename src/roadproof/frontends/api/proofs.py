@@ -45,7 +45,8 @@ from roadproof.world.vehicle import Vehicle
 
 if TYPE_CHECKING:
     from roadproof.evidence.kernel.accept import Ruling
-    from roadproof.frontends.api.kernel import KernelAnswer, KernelName
+    from roadproof.frontends.api.kernel import KernelAnswer
+    from roadproof.frontends.settings.value_types import KernelName
 
 _PROPERTY = re.compile(r"[A-Z]\d+")
 
