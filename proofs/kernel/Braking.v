@@ -298,6 +298,16 @@ Proof.
   unfold lost, Rmax. destruct (Rle_dec s 0), (Rle_dec 0 s); try lra. replace s with 0 by lra. ring.
 Qed.
 
+Lemma lost_slope_at_once A s : s <> 0 -> derivable_pt_lim (lost 0 A) s (ramp 0 A s).
+Proof.
+  intros N. unfold ramp. destruct (Rlt_dec s 0) as [L|L].
+  - apply (derivable_pt_lim_locally_ext (fun _ => 0) _ _ (s - 1) 0); [lra| |apply derivable_pt_lim_const].
+    intros z Z. rewrite lost_before; lra.
+  - apply (derivable_pt_lim_locally_ext (fun s => 0 + A * (s - 0) + 0 * (s - 0) ^ 2 + 0 * (s - 0) ^ 3) _ _ 0 (s + 1)); [lra| |].
+    + intros z Z. rewrite lost_full; lra.
+    + apply cubic_is. ring.
+Qed.
+
 Section Brakes.
   Variables v q T A : R.
   Hypotheses (Hv : 0 <= v) (Hq : 0 <= q) (HT : 0 <= T) (HA : 0 < A).
@@ -312,13 +322,7 @@ Section Brakes.
         apply (continuity_pt_scal (fun t => Rmax 0 (t - q)) A), max_continuous, derivable_continuous_pt.
         eexists. apply (derivable_pt_lim_minus id (fun _ => q)); [apply derivable_pt_lim_id|apply derivable_pt_lim_const].
     - intros t _ N. apply shift. destruct (Rle_lt_or_eq_dec 0 T HT) as [P|<-]; [apply lost_slope; exact P|].
-      assert (N' : t - q <> 0) by (intros E; apply N; left; lra).
-      unfold ramp. destruct (Rlt_dec (t - q) 0) as [L|L].
-      + apply (derivable_pt_lim_locally_ext (fun _ => 0) _ _ (t - q - 1) 0); [lra| |apply derivable_pt_lim_const].
-        intros z Z. rewrite lost_before; lra.
-      + apply (derivable_pt_lim_locally_ext (fun s => 0 + A * (s - 0) + 0 * (s - 0) ^ 2 + 0 * (s - 0) ^ 3) _ _ 0 (t - q + 1)); [lra| |].
-        * intros z Z. rewrite lost_full; lra.
-        * apply cubic_is. ring.
+      apply lost_slope_at_once. intros E. apply N. left. lra.
     - assert (0 <= v / A) by (apply Rmult_le_pos; [lra|left; apply Rinv_0_lt_compat; lra]). lra.
     - intros t L. assert (Ae : A * (v / A) = v) by (field; lra). set (e := v / A) in *. assert (0 <= e) by nra.
       rewrite !lost_full by lra. rewrite !Rmax_left; [reflexivity|nra|nra].

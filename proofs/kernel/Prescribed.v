@@ -92,4 +92,23 @@ Section State.
   Definition careful_behind a (w : R) (x : R -> R) : Prop :=
     exists s, first (perceived by_time 0 w) 0 s
       /\ brakes_from (speed a) (later (par "cc_evaluation" + par "cc_delay") s) (par "cc_ramp") (par "cc_braking") x.
+
+  (* --- a deceleration: b, ahead of a and in its way, brakes to a stand by what it brakes now -------------- *)
+  Definition braking b : R := - value W Acceleration_lon b now.
+  Definition decelerates (driver : (R -> R) -> Prop) a b : Prop :=
+    braking b > 0 /\ in_way a b /\ gap a b >= 0
+    /\ exists x p, driver x /\ brakes_from (speed b) (Some 0) 0 (braking b) p /\ collide x p (gap a b) (lengths a b) 0.
+  (* The careful driver perceives it at once; or only hard braking, and else goes on. *)
+  Definition noticed (only_hard : bool) b : Prop := if only_hard then braking b >= par "cc_hard" else braking b > 0.
+  Definition careful_following only_hard a b (x : R -> R) : Prop :=
+    (noticed only_hard b
+     /\ brakes_from (speed a) (Some (par "cc_evaluation" + par "cc_delay")) (par "cc_ramp") (par "cc_braking") x)
+    \/ (~ noticed only_hard b /\ brakes_from (speed a) None (par "cc_ramp") (par "cc_braking") x).
+
+  (* --- RSS at its worst: from s on a accelerates by a_max for rho, and then brakes by b_min ---------------- *)
+  Definition response (t : R) : R := if Rlt_dec t 0 then 0 else if Rlt_dec t (par "rho") then - par "a_max" else par "b_min".
+  Definition responds a s (x : R -> R) : Prop := goes (speed a) (fun t => response (t - s)) (s :: s + par "rho" :: nil) x.
+  (* in a cut-in from when the boxes are side by side; in a deceleration at once *)
+  Definition rss a (y w : R) (x : R -> R) : Prop := exists s, first (fun t => y <= w * t) 0 (Some s) /\ responds a s x.
+  Definition rss_following a : (R -> R) -> Prop := responds a 0.
 End State.

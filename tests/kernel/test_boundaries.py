@@ -23,12 +23,13 @@ CELLS = [
     ("cut-in", "eu1426", {}),
     *(("cut-in", "careful", {"cc_perception": x, "cc_gate": y}) for x in PERCEPTIONS for y in GATES),
     ("cut-out", "careful", {}),
+    ("deceleration", "careful", {"cc_threshold": "any"}),
+    ("deceleration", "careful", {"cc_threshold": "hard"}),
+    ("cut-in", "rss", {}),
+    ("deceleration", "rss", {}),
 ]
 WITHOUT = [
     ("cut-in", "careful", {"cc_aeb": "max"}),
-    ("cut-in", "rss", {}),
-    ("deceleration", "careful", {}),
-    ("deceleration", "rss", {}),
     ("cut-in", "fsm", {}),
 ]
 
@@ -97,6 +98,18 @@ WRONG = [
         "def careful_out(a, c: vehicle, w: m/s) := w > 0 and gains(v_lon(a), v_lon(c),\n"
         "  gapTo(a, c) + length(a),\n"
         "  (cc_wander + (cc_evaluation + cc_delay)*w)/(1 m/s), w/(1 m/s), cc_ramp, cc_braking)",
+    ),
+    (
+        "deceleration",
+        "careful",
+        "def gainsBraking(v, w: m/s, b: m/s^2, g: m, q, T: s, A: m/s^2)\n"
+        "  := standsLater(v, w, b, g, q, T, A) or meetsInFull(v, w, b, g, q, T, A)",
+    ),
+    (
+        "cut-in",
+        "rss",
+        "def rss_gains(v, u: m/s, g, y: m, w: m/s) := v > u\n"
+        "  and 2*b_min*(w*(g - a_max*rho^2/2) - (v - u)*(y + rho*w)) < w*(v + a_max*rho - u)^2",
     ),
     (
         "cut-out",

@@ -92,7 +92,8 @@ def test_theorems_stand_on_known_axioms_alone():
         "drives_keep_apart_across",
         *("holds_of_motions", "holds_by_induction", "drives_move", "refuted", "boxes_overlap"),
     ]
-    theorems += ["unaided_boundary", "cut_out_boundary", "says_right"]
+    theorems += ["unaided_boundary", "cut_out_boundary", "says_right", "following_boundary"]
+    theorems += ["rss_boundary", "rss_following_boundary"]
     with ready() as coq:
         whole = (
             "Definition whole := (" + ", ".join(f"@{x}" for x in theorems) + ").\nPrint Assumptions whole."

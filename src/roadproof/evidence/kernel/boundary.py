@@ -1,7 +1,7 @@
 """Boundaries of driver models put to Coq: the formula is true of a state if and only if the motion collides.
 
 The formula is printed as that of any claim. The motion is that of proofs/kernel/Prescribed.v, and the theorem
-about numbers that a proof rests on is one of proofs/kernel/Boundary.v.
+about numbers that a proof rests on is in proofs/kernel/Boundary.v, Following.v or Responding.v.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -19,20 +19,21 @@ from roadproof.logic.rewrite import parameters_of
 _HEAD = """\
 From Coq Require Import Reals QArith String List.
 From Roadproof Require Import Meaning Text.
-From Roadproof Require Prescribed Boundary.
+From Roadproof Require Prescribed Boundary Following Responding Reading.
 Import ListNotations.
 Open Scope string_scope.
 Open Scope nat_scope.
 Open Scope term_scope.
 Open Scope formula_scope.
 """
-# The motion in a cut-in.
+# The motions in a cut-in and in a deceleration.
 _IN = "{p}cut_in W now ({p}DRIVER) {a} {b}"
+_BEHIND = "{p}decelerates W now ({p}DRIVER) {a} {b}"
 
 
 @dataclass(frozen=True)
 class _Entry:
-    """A theorem of Boundary.v, and the motion of Prescribed.v that it is about.
+    """A theorem of a file in proofs/kernel, and the motion of Prescribed.v that it is about.
 
     In ``motion`` {p} stands before what Prescribed.v defines; {a}, {b} and {c} are vehicles.
     """
@@ -151,14 +152,23 @@ def settle(coq: Coq, specification: Specification, boundary: Boundary) -> Bounda
 def _entry(course: str, model: str, options: Mapping[str, str]) -> _Entry | None:
     match course, model:
         case "cut-in", "r157" | "eu1426":
-            return _Entry(f"{model}_boundary", _IN.replace("DRIVER", f"{model} W now {{a}}"))
+            return _Entry(f"Boundary.{model}_boundary", _IN.replace("DRIVER", f"{model} W now {{a}}"))
+        case "cut-in", "rss":
+            return _Entry("Responding.rss_boundary", _IN.replace("DRIVER", "rss W now {a}"))
         case "cut-in", "careful" if options["cc_aeb"] == "none":
             gate = "no_gate" if options["cc_gate"] == "none" else options["cc_gate"]
             driver = f"careful W now {{p}}by_{options['cc_perception']} {{p}}{gate} {{a}} {{b}}"
-            return _Entry("unaided_boundary", _IN.replace("DRIVER", driver))
+            return _Entry("Boundary.unaided_boundary", _IN.replace("DRIVER", driver))
         case "cut-out", "careful":
             motion = "{p}cut_out W now ({p}careful_behind W now {a}) {a} {b} {c}"
-            return _Entry("cut_out_boundary", motion)
+            return _Entry("Boundary.cut_out_boundary", motion)
+        case "deceleration", "careful":
+            only_hard = str(options["cc_threshold"] == "hard").lower()
+            driver = f"careful_following W now {only_hard} {{a}} {{b}}"
+            return _Entry("Following.following_boundary", _BEHIND.replace("DRIVER", driver))
+        case "deceleration", "rss":
+            driver = "rss_following W now {a}"
+            return _Entry("Responding.rss_following_boundary", _BEHIND.replace("DRIVER", driver))
         case _:
             return None
 
@@ -169,12 +179,12 @@ def _theorem(printer: Printer, entry: _Entry, words: Sequence[str], forward: Seq
         yield f"  (0 <= Prescribed.speed W now {word})%R ->"
     yield f"  (holds W named (unbound W) now claim <-> {entry.of(words, 'Prescribed.')})."
     yield "Proof."
-    yield "  intros W named now B. unfold respects, bounds in B. Roadproof.Boundary.bounds_in B. intros."
-    yield f"  eapply iff_trans; [|apply Roadproof.Boundary.{entry.theorem}; repeat split; assumption]."
+    yield "  intros W named now B. unfold respects, bounds in B. Roadproof.Reading.bounds_in B. intros."
+    yield f"  eapply iff_trans; [|apply Roadproof.{entry.theorem}; repeat split; assumption]."
     printed = [x.split()[1] for x in (*printer.things, *printer.definitions)]
     unfolded = " ".join(x for x in printed if x not in words)
     yield from wrapped(f"  cbv beta iota zeta delta [claim {unfolded}].")
-    yield "  Roadproof.Boundary.reads."
+    yield "  Roadproof.Reading.reads."
     yield "Qed."
     yield "Print Assumptions proved."
 
