@@ -1,19 +1,21 @@
 """Facts about motion and inductions in Coq: each schema is used, and no other formula is taken."""
 
 from dataclasses import replace
+from functools import cache
 
 import pytest
 
 import roadproof as rp
 from exporting.kept import kept
-from kernel.needs import needs_coq
+from kernel.needs import needs_coq, needs_ocaml
 from kernel.reading import answers
 from kernel.test_accept import ruling
 from roadproof.evidence.derivations.prepare import prepare as prepare_drive
+from roadproof.evidence.kernel import extracted, ocaml
 from roadproof.evidence.kernel.accept import CoqModule, Word, find_tableau, judge, prepare
 from roadproof.evidence.kernel.coq import ready
 from roadproof.evidence.kernel.printer import CLOSE, Printer
-from roadproof.evidence.kernel.source import HEAD, file, instance_text
+from roadproof.evidence.kernel.source import HEAD, Module, file, instance_text
 from roadproof.evidence.kernel.statement import SCHEMAS, Instance, bounds_of
 from roadproof.library.loading import bundled_library
 from roadproof.library.motion import ALL_SCHEMAS, INDUCTIONS, axiom_arguments, axiom_formula
@@ -102,6 +104,33 @@ def test_a_module_with_another_fact_claim_or_theorem_is_not_accepted():
         rulings = judge(coq, {"one" if x == "kept" else x: y for x, y in modules.items()}).rulings
     assert rulings["one"].word is Word.ACCEPTED
     assert [rulings[f"n{k}"].told for k in range(len(changes))] == [word for _, _, word in changes]
+
+
+@cache
+def forms():
+    """Certificates of claims under motion and of inductions, for the extracted program."""
+    found = rp.prove(*(claim for _, claim in PROVED), drive=False, jobs=1)
+    certificates = [x.settled.result.certificate for x in found.answers]
+    return [prepare(f"n{k}", x, bundled_library(), extracted.proof) for k, x in enumerate(certificates)]
+
+
+def told(texts):
+    """The words of the extracted program about each form."""
+    asked = {f"n{k}": CoqModule(Module(f"n{k}", x, (), 0)) for k, x in enumerate(texts)}
+    with ocaml.ready() as program:
+        return [str(x.word) for x in extracted.judge(program, asked).rulings.values()]
+
+
+@needs_ocaml
+def test_the_extracted_program_accepts_all_and_nothing_that_is_changed():
+    texts = [x.module.text for x in forms()]
+    assert told(texts) == ["accepted"] * len(PROVED)
+    assert [x.limits for x in forms()] == [int("motion," in claim) for _, claim in PROVED]
+    changed = []
+    for before, after in read_table(__file__, "forms"):
+        (text,) = [x for x in texts if before in x][:1]
+        changed.append(text.replace(before, after, 1).replace(text.split()[1], f"n{len(changed)}", 1))
+    assert told(changed) == ["refused"] * len(changed)
 
 
 @needs_coq

@@ -3631,19 +3631,19 @@ let same_sign s q0 =
 
 (** val says_less : bool -> bool -> bool option **)
 
-let says_less same0 above1 =
-  if same0 then Some above1 else if above1 then Some false else None
+let says_less same0 above2 =
+  if same0 then Some above2 else if above2 then Some false else None
 
 (** val says_greater : bool -> bool -> bool option **)
 
-let says_greater same0 above1 =
-  if same0 then if above1 then Some false else None else Some above1
+let says_greater same0 above2 =
+  if same0 then if above2 then Some false else None else Some above2
 
 (** val said_of :
     drive -> fleet -> interval -> q list -> bool -> side -> comparison0 ->
     side -> bool option **)
 
-let said_of d f i s above1 l o r =
+let said_of d f i s above2 l o r =
   match l with
   | Fin x ->
     (match r with
@@ -3661,10 +3661,10 @@ let said_of d f i s above1 l o r =
                    (match same_sign s (psub0 v u) with
                     | Some same0 ->
                       (match o with
-                       | LT -> says_less same0 above1
-                       | LE -> option_map negb (says_greater same0 above1)
-                       | GT -> says_greater same0 above1
-                       | GE -> option_map negb (says_less same0 above1))
+                       | LT -> says_less same0 above2
+                       | LE -> option_map negb (says_greater same0 above2)
+                       | GT -> says_greater same0 above2
+                       | GE -> option_map negb (says_less same0 above2))
                     | None -> None)
                  | _ :: _ -> None))
            | _ :: _ -> None))
@@ -3674,16 +3674,16 @@ let said_of d f i s above1 l o r =
 (** val assume :
     drive -> fleet -> interval -> q list -> bool -> formula -> formula **)
 
-let rec assume d f i s above1 f0 = match f0 with
+let rec assume d f i s above2 f0 = match f0 with
 | Compare (l, o, r) ->
-  (match said_of d f i s above1 l o r with
+  (match said_of d f i s above2 l o r with
    | Some b -> Truth b
    | None -> f0)
-| Some_ (n0, d0, f1) -> Some_ (n0, d0, (assume d f i s above1 f1))
-| Every (n0, d0, f1) -> Every (n0, d0, (assume d f i s above1 f1))
-| Not f1 -> Not (assume d f i s above1 f1)
-| And (f1, g) -> And ((assume d f i s above1 f1), (assume d f i s above1 g))
-| Or (f1, g) -> Or ((assume d f i s above1 f1), (assume d f i s above1 g))
+| Some_ (n0, d0, f1) -> Some_ (n0, d0, (assume d f i s above2 f1))
+| Every (n0, d0, f1) -> Every (n0, d0, (assume d f i s above2 f1))
+| Not f1 -> Not (assume d f i s above2 f1)
+| And (f1, g) -> And ((assume d f i s above2 f1), (assume d f i s above2 g))
+| Or (f1, g) -> Or ((assume d f i s above2 f1), (assume d f i s above2 g))
 | _ -> f0
 
 (** val somewhere_in : interval option -> (interval -> bool) -> bool **)
@@ -3833,6 +3833,443 @@ let accepts0 d bounds claim p =
   (&&) (forallb (within_bound d) bounds)
     (check1 d (fleet_of d) p claim (fun _ -> O) true now)
 
+(** val rate_of : signal -> signal option **)
+
+let rate_of = function
+| Place_lon -> Some Speed_lon
+| Place_lat -> Some Speed_lat
+| Speed_lon -> Some Acceleration_lon
+| Speed_lat -> Some Acceleration_lat
+| _ -> None
+
+(** val known0 : term -> q option **)
+
+let known0 = function
+| Num q0 -> Some q0
+| _ -> None
+
+(** val add0 : term -> term -> term **)
+
+let add0 x y =
+  match known0 x with
+  | Some p ->
+    (match known0 y with
+     | Some q0 -> Num (qred (qplus p q0))
+     | None -> if qeq_bool p { qnum = Z0; qden = XH } then y else Add (x, y))
+  | None ->
+    (match known0 y with
+     | Some q0 ->
+       if qeq_bool q0 { qnum = Z0; qden = XH } then x else Add (x, y)
+     | None -> Add (x, y))
+
+(** val mul0 : term -> term -> term **)
+
+let mul0 x y =
+  match known0 x with
+  | Some p ->
+    (match known0 y with
+     | Some q0 -> Num (qred (qmult p q0))
+     | None ->
+       if qeq_bool p { qnum = Z0; qden = XH }
+       then Num { qnum = Z0; qden = XH }
+       else Mul (x, y))
+  | None ->
+    (match known0 y with
+     | Some q0 ->
+       if qeq_bool q0 { qnum = Z0; qden = XH }
+       then Num { qnum = Z0; qden = XH }
+       else Mul (x, y)
+     | None -> Mul (x, y))
+
+(** val power : q -> nat -> q **)
+
+let rec power p = function
+| O -> { qnum = (Zpos XH); qden = XH }
+| S n1 -> qred (qmult p (power p n1))
+
+(** val pow_ : term -> nat -> term **)
+
+let pow_ x n0 =
+  match known0 x with
+  | Some p -> Num (power p n0)
+  | None -> Pow (x, n0)
+
+(** val div : term -> term -> term **)
+
+let div x y =
+  match known0 x with
+  | Some p ->
+    (match known0 y with
+     | Some q0 ->
+       if qeq_bool q0 { qnum = Z0; qden = XH }
+       then Div (x, y)
+       else Num (qred (qdiv p q0))
+     | None -> Div (x, y))
+  | None -> Div (x, y)
+
+(** val max_ : term -> term -> term **)
+
+let max_ x y =
+  match known0 x with
+  | Some p ->
+    (match known0 y with
+     | Some q0 -> if qle_bool p q0 then y else x
+     | None -> Max (x, y))
+  | None -> Max (x, y)
+
+(** val min_ : term -> term -> term **)
+
+let min_ x y =
+  match known0 x with
+  | Some p ->
+    (match known0 y with
+     | Some q0 -> if qle_bool p q0 then x else y
+     | None -> Min (x, y))
+  | None -> Min (x, y)
+
+(** val simple : term -> term **)
+
+let rec simple x = match x with
+| Num q0 -> Num (qred q0)
+| Add (x0, y) -> add0 (simple x0) (simple y)
+| Mul (x0, y) -> mul0 (simple x0) (simple y)
+| Pow (x0, n0) -> pow_ (simple x0) n0
+| Div (x0, y) -> div (simple x0) (simple y)
+| Max (x0, y) -> max_ (simple x0) (simple y)
+| Min (x0, y) -> min_ (simple x0) (simple y)
+| _ -> x
+
+(** val simple_side : side -> side **)
+
+let simple_side = function
+| Fin x -> Fin (simple x)
+| Inv x -> Inv (simple x)
+
+(** val not_ : formula -> formula **)
+
+let not_ f = match f with
+| Truth b -> Truth (negb b)
+| Not g -> g
+| _ -> Not f
+
+(** val and_ : formula -> formula -> formula **)
+
+let and_ f g =
+  match f with
+  | Truth b ->
+    if b
+    then g
+    else (match g with
+          | Truth b0 -> if b0 then f else Truth false
+          | _ -> Truth false)
+  | _ ->
+    (match g with
+     | Truth b -> if b then f else Truth false
+     | _ -> And (f, g))
+
+(** val or_ : formula -> formula -> formula **)
+
+let or_ f g =
+  match f with
+  | Truth b ->
+    if b
+    then (match g with
+          | Truth b0 -> if b0 then Truth true else f
+          | _ -> Truth true)
+    else g
+  | _ ->
+    (match g with
+     | Truth b -> if b then Truth true else f
+     | _ -> Or (f, g))
+
+(** val plain0 : formula -> formula **)
+
+let rec plain0 f = match f with
+| Compare (l, o, r) -> Compare ((simple_side l), o, (simple_side r))
+| Some_ (n0, d, f0) -> Some_ (n0, d, (plain0 f0))
+| Every (n0, d, f0) -> Every (n0, d, (plain0 f0))
+| Not f0 -> not_ (plain0 f0)
+| And (f0, g) -> and_ (plain0 f0) (plain0 g)
+| Or (f0, g) -> or_ (plain0 f0) (plain0 g)
+| Until (f0, lo, hi, g) ->
+  Until ((plain0 f0), (simple lo), (option_map simple hi), (plain0 g))
+| Eventually (lo, hi, f0) ->
+  Eventually ((simple lo), (option_map simple hi), (plain0 f0))
+| Always (lo, hi, f0) ->
+  Always ((simple lo), (option_map simple hi), (plain0 f0))
+| _ -> f
+
+(** val rate : term -> term option **)
+
+let rec rate x =
+  if term_rigid x
+  then Some (Num { qnum = Z0; qden = XH })
+  else (match x with
+        | Sig (n0, a) -> option_map (fun r -> Sig (r, a)) (rate_of n0)
+        | Add (x0, y) ->
+          (match rate x0 with
+           | Some x1 ->
+             (match rate y with
+              | Some y0 -> Some (Add (x1, y0))
+              | None -> None)
+           | None -> None)
+        | Mul (x0, y) ->
+          if term_rigid x0
+          then option_map (fun x1 -> Mul (x0, x1)) (rate y)
+          else if term_rigid y
+               then option_map (fun x1 -> Mul (x1, y)) (rate x0)
+               else None
+        | Div (x0, y) ->
+          if term_rigid y
+          then option_map (fun x1 -> Div (x1, y)) (rate x0)
+          else None
+        | _ -> None)
+
+(** val continuous : term -> bool **)
+
+let rec continuous = function
+| Sig (n0, _) -> (match rate_of n0 with
+                  | Some _ -> true
+                  | None -> false)
+| Add (x0, y) -> (&&) (continuous x0) (continuous y)
+| Mul (x0, y) -> (&&) (continuous x0) (continuous y)
+| Pow (x0, _) -> continuous x0
+| Div (x0, y) -> (&&) (continuous x0) (term_rigid y)
+| Max (x0, y) -> (&&) (continuous x0) (continuous y)
+| Min (x0, y) -> (&&) (continuous x0) (continuous y)
+| _ -> true
+
+(** val is_open : bool -> formula -> bool **)
+
+let rec is_open positive0 = function
+| Truth _ -> true
+| Compare (l, o, r) ->
+  (match l with
+   | Fin x ->
+     (match o with
+      | LT ->
+        (match r with
+         | Fin y -> (&&) ((&&) positive0 (continuous x)) (continuous y)
+         | Inv _ -> false)
+      | GT ->
+        (match r with
+         | Fin y -> (&&) ((&&) positive0 (continuous x)) (continuous y)
+         | Inv _ -> false)
+      | _ ->
+        (match r with
+         | Fin y -> (&&) ((&&) (negb positive0) (continuous x)) (continuous y)
+         | Inv _ -> false))
+   | Inv _ -> false)
+| Occupies (_, _) -> positive0
+| Some_ (_, _, f0) -> is_open positive0 f0
+| Every (_, _, f0) -> is_open positive0 f0
+| Not f0 -> is_open (negb positive0) f0
+| And (f0, g) -> (&&) (is_open positive0 f0) (is_open positive0 g)
+| Or (f0, g) -> (&&) (is_open positive0 f0) (is_open positive0 g)
+| _ -> false
+
+type schema =
+| At_most of term * term
+| Below of term * term
+| Meets of term * term
+| Leaves of formula
+| Within of term * term * term * term
+| After of term * term * term * term
+| Within_twice of term * term * term * term * term
+| After_twice of term * term * term * term * term
+| Repeats of formula * term * term
+| Lasts of formula * term
+
+(** val is_induction : schema -> bool **)
+
+let is_induction = function
+| Repeats (_, _, _) -> true
+| Lasts (_, _) -> true
+| _ -> false
+
+(** val always : formula -> formula **)
+
+let always p =
+  Always ((Num { qnum = Z0; qden = XH }), None, p)
+
+(** val until : formula -> formula -> formula **)
+
+let until p q0 =
+  Until (p, (Num { qnum = Z0; qden = XH }), None, q0)
+
+(** val implies : formula -> formula -> formula **)
+
+let implies p q0 =
+  Or ((Not p), q0)
+
+(** val le : term -> term -> formula **)
+
+let le x y =
+  Compare ((Fin x), LE, (Fin y))
+
+(** val lt : term -> term -> formula **)
+
+let lt x y =
+  Compare ((Fin x), LT, (Fin y))
+
+(** val ge : term -> term -> formula **)
+
+let ge x y =
+  Compare ((Fin x), GE, (Fin y))
+
+(** val half_square : term -> term -> term **)
+
+let half_square growth time =
+  Mul ((Mul ((Mul (growth, time)), time)), (Num { qnum = (Zpos XH); qden =
+    (XO XH) }))
+
+(** val above1 : term -> bool **)
+
+let above1 x =
+  match simple x with
+  | Num p ->
+    (&&) (qle_bool { qnum = Z0; qden = XH } p)
+      (negb (qeq_bool p { qnum = Z0; qden = XH }))
+  | _ -> false
+
+(** val never_below : bound list -> term -> bool **)
+
+let rec never_below bounds = function
+| Num p -> qle_bool { qnum = Z0; qden = XH } p
+| Par p ->
+  existsb (fun b ->
+    match b with
+    | At_least_0 q0 -> eqb0 p q0
+    | Above_0 q0 -> eqb0 p q0
+    | _ -> false) bounds
+| Siz (_, _) -> true
+| Add (x0, y) -> (&&) (never_below bounds x0) (never_below bounds y)
+| Mul (x0, y) -> (&&) (never_below bounds x0) (never_below bounds y)
+| Pow (x0, _) -> never_below bounds x0
+| Div (x0, y) -> (&&) (never_below bounds x0) (never_below bounds y)
+| Max (x0, y) -> (&&) (never_below bounds x0) (never_below bounds y)
+| Min (x0, y) -> (&&) (never_below bounds x0) (never_below bounds y)
+| _ -> false
+
+(** val where_ : bool -> formula -> formula option **)
+
+let where_ b f =
+  if b then Some f else None
+
+(** val with_rates :
+    term -> term -> (term -> term -> formula option) -> formula option **)
+
+let with_rates x y f =
+  match rate x with
+  | Some x' -> (match rate y with
+                | Some y' -> f x' y'
+                | None -> None)
+  | None -> None
+
+(** val says : bound list -> schema -> formula option **)
+
+let says bounds = function
+| At_most (x, y) ->
+  with_rates x y (fun x' y' -> Some
+    (always
+      (implies (le x y) (Not
+        (until (Or ((le x y), (le x' y'))) (Not (le x y)))))))
+| Below (x, y) ->
+  with_rates x y (fun x' y' -> Some
+    (always (implies (lt x y) (Not (until (le x' y') (Not (lt x y)))))))
+| Meets (x, y) ->
+  where_ ((&&) (continuous x) (continuous y))
+    (always
+      (implies (lt x y) (Or ((always (lt x y)),
+        (until (lt x y) (And ((le x y), (ge x y))))))))
+| Leaves p ->
+  where_ (is_open true p)
+    (always (implies p (Or ((always p), (until p (Not p))))))
+| Within (x, y, r, d) ->
+  with_rates x y (fun x' y' ->
+    where_ ((&&) (term_rigid r) (term_rigid d))
+      (always
+        (implies (le x y) (Not (Until ((le x' (Add (y', r))), (Num { qnum =
+          Z0; qden = XH }), (Some d), (Not
+          (le x (Add (y, (Mul ((Max ((Num { qnum = Z0; qden = XH }), r)),
+            d))))))))))))
+| After (x, y, r, d) ->
+  with_rates x y (fun x' y' ->
+    where_ ((&&) ((&&) (term_rigid r) (term_rigid d)) (never_below bounds d))
+      (always
+        (implies (And ((le x y), (Always ((Num { qnum = Z0; qden = XH }),
+          (Some d), (le x' (Add (y', r))))))) (Always (d, (Some d),
+          (le x (Add (y, (Mul (r, d))))))))))
+| Within_twice (x, y, v, r, d) ->
+  with_rates x y (fun x' y' ->
+    with_rates x' y' (fun x'' y'' ->
+      where_ ((&&) ((&&) (term_rigid v) (term_rigid r)) (term_rigid d))
+        (always
+          (implies (And ((le x y), (le x' (Add (y', v))))) (Not (Until
+            ((le x'' (Add (y'', r))), (Num { qnum = Z0; qden = XH }), (Some
+            d), (Not
+            (le x (Add (y, (Add ((Mul ((Max ((Num { qnum = Z0; qden = XH }),
+              v)), d)),
+              (half_square (Max ((Num { qnum = Z0; qden = XH }), r)) d))))))))))))))
+| After_twice (x, y, v, r, d) ->
+  with_rates x y (fun x' y' ->
+    with_rates x' y' (fun x'' y'' ->
+      where_
+        ((&&) ((&&) ((&&) (term_rigid v) (term_rigid r)) (term_rigid d))
+          (never_below bounds d))
+        (always
+          (implies (And ((And ((le x y), (le x' (Add (y', v))))), (Always
+            ((Num { qnum = Z0; qden = XH }), (Some d),
+            (le x'' (Add (y'', r))))))) (Always (d, (Some d),
+            (le x (Add (y, (Add ((Mul (v, d)), (half_square r d))))))))))))
+| Repeats (p, lo, hi) ->
+  where_ ((&&) (above1 lo) (term_rigid hi))
+    (always
+      (implies (And (p,
+        (always (implies p (Eventually (lo, (Some hi), p))))))
+        (always (Eventually ((Num { qnum = Z0; qden = XH }), (Some hi), p)))))
+| Lasts (p, d) ->
+  where_ (above1 d)
+    (always
+      (implies (And (p,
+        (always
+          (implies p (Always ((Num { qnum = Z0; qden = XH }), (Some d), p))))))
+        (always p)))
+
+(** val conjuncts : formula -> formula list **)
+
+let rec conjuncts f = match f with
+| And (f0, g) -> app (conjuncts f0) (conjuncts g)
+| _ -> f :: []
+
+(** val parted : formula -> formula * formula **)
+
+let parted f = match f with
+| Not p -> (p, (Truth false))
+| Or (f0, q0) -> (match f0 with
+                  | Not p -> (p, q0)
+                  | _ -> ((Truth true), f))
+| _ -> ((Truth true), f)
+
+(** val is_instance : bound list -> schema list -> formula -> bool **)
+
+let is_instance bounds schemas f =
+  existsb (fun s ->
+    match says bounds s with
+    | Some g -> same (plain0 g) (plain0 f)
+    | None -> false) schemas
+
+(** val adds : bound list -> schema list -> formula -> formula -> bool **)
+
+let adds bounds schemas supposed claim =
+  let (p, q0) = parted supposed in
+  let fact1 = is_instance bounds schemas in
+  (||) ((&&) (same q0 claim) (forallb fact1 (conjuncts p)))
+    (let (p', q') = parted claim in
+     (&&) (same q0 q')
+       (forallb (fun f -> (||) (existsb (same f) (conjuncts p')) (fact1 f))
+         (conjuncts p)))
+
 (** val accepts_proof :
     char list list -> bound list -> formula list -> values -> formula -> tree
     -> bool **)
@@ -3856,3 +4293,14 @@ let is_known_fact =
 
 let accepts_drive =
   accepts0
+
+(** val adds_instances :
+    bound list -> schema list -> formula -> formula -> bool **)
+
+let adds_instances =
+  adds
+
+(** val are_inductions : schema list -> bool **)
+
+let are_inductions =
+  forallb is_induction

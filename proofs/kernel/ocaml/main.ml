@@ -21,15 +21,28 @@ let rec settle bounds known k shown = function
 
 let ruled accepted = if accepted then Accepted else Refused
 
-let judge = function
-  | [ Word "proof"; _; _; bounds; given; claim; List lemmas; parameters; values; tableau ] -> (
-      let bounds = list bound bounds and known = definitions given in
-      let claim = formula known claim in
+(* Whether lemmas and a tableau show that a claim is valid. *)
+let proves bounds known claim = function
+  | [ List lemmas; parameters; values; tableau ] -> (
       match settle bounds known 1 [] lemmas with
       | Error k -> Lemma k
       | Ok facts ->
           let values = list (pair name q) values in
           ruled (accepts_proof (list name parameters) bounds facts values claim (tree tableau)))
+  | _ -> unread "a proof"
+
+(* proof: the claim is valid.  traces: so it is where instances of inductions are put before it, which makes the
+   formula that is supposed; motions: where instances of all schemas are, and the claim holds of motions. *)
+let judge = function
+  | Word "proof" :: _ :: _ :: bounds :: given :: claim :: why ->
+      let known = definitions given in
+      proves (list bound bounds) known (formula known claim) why
+  | Word (("traces" | "motions") as what) :: _ :: _ :: bounds :: given :: claim :: schemas :: supposed :: why ->
+      let bounds = list bound bounds and known = definitions given in
+      let schemas = list (schema known) schemas and supposed = formula known supposed in
+      if (what = "motions" || are_inductions schemas) && adds_instances bounds schemas supposed (formula known claim)
+      then proves bounds known supposed why
+      else Refused
   | [ Word "drive"; _; _; bounds; given; claim; what; why ] ->
       let claim = formula (definitions given) claim in
       ruled (accepts_drive (drive what) (list bound bounds) claim (derivation why))

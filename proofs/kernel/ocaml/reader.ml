@@ -195,6 +195,21 @@ let bound = function
   | Node [ Word "own_at_most"; n; a; high ] -> Own_at_most (name n, name a, q high)
   | _ -> unread "a bound"
 
+(* --- Schemas.v ----------------------------------------------------------------------------------------- *)
+
+let schema known = function
+  | Node [ Word "At_most"; x; y ] -> At_most (term x, term y)
+  | Node [ Word "Below"; x; y ] -> Below (term x, term y)
+  | Node [ Word "Meets"; x; y ] -> Meets (term x, term y)
+  | Node [ Word "Leaves"; p ] -> Leaves (formula known p)
+  | Node [ Word "Within"; x; y; r; d ] -> Within (term x, term y, term r, term d)
+  | Node [ Word "After"; x; y; r; d ] -> After (term x, term y, term r, term d)
+  | Node [ Word "Within_twice"; x; y; v; r; d ] -> Within_twice (term x, term y, term v, term r, term d)
+  | Node [ Word "After_twice"; x; y; v; r; d ] -> After_twice (term x, term y, term v, term r, term d)
+  | Node [ Word "Repeats"; p; lo; hi ] -> Repeats (formula known p, term lo, term hi)
+  | Node [ Word "Lasts"; p; d ] -> Lasts (formula known p, term d)
+  | _ -> unread "a schema"
+
 (* --- Drive.v ------------------------------------------------------------------------------------------- *)
 
 let pair read read' = function Node [ x; y ] -> (read x, read' y) | _ -> unread "a pair"

@@ -19,17 +19,16 @@ from roadproof.evidence.kernel.source import ClaimText, Module, own_bounds, own_
 from roadproof.evidence.kernel.statement import Statement
 from roadproof.evidence.kernel.tableau import Tableau, coq_tree
 from roadproof.logic.rewrite import without_names
-from roadproof.logic.terms import Own
+from roadproof.logic.terms import Own, Term
 from roadproof.world.drive import Course, Motion
 from roadproof.world.road import Lanelet
 
 
 def proof(name: str, statement: Statement, tableau: Tableau) -> Module:
     """A claim with its proof as a form. Raises ``InputError`` for what is not written."""
-    if statement.instances:
-        raise InputError("--kernel coq alone proves facts about motion and inductions over time")
     writer = Writer()
     claim = writer.formula(statement.formula)
+    word, supposed = _supposed(statement, writer)
     own = own_signals(statement.formula)
     lemmas = [
         f"({Writer().formula(without_names(x))} {_why(reason(x, statement.bounds, own))})"
@@ -37,14 +36,27 @@ def proof(name: str, statement: Statement, tableau: Tableau) -> Module:
     ]
     values = (f"{literal(name)} {rational(x)}" for name, x in statement.demanded.items())
     parts = [
-        *_claimed("proof", name, statement.claim, _bounds(statement.bounds, own), writer),
+        *_claimed(word, name, statement.claim, _bounds(statement.bounds, own), writer),
         f" {claim}",
+        *supposed,
         f" {_list(lemmas)}",
         f" {_list(map(literal, statement.parameters))}",
         f" {_list(values)}",
         *coq_tree(tableau),
     ]
     return Module(name, "\n".join(parts) + ")\n", (), 0)
+
+
+def _supposed(statement: Statement, writer: Writer) -> tuple[str, Sequence[str]]:
+    """The word of a form, and what its tableau proves where that is not the claim alone."""
+    if not statement.instances:
+        return "proof", ()
+    made = (
+        f"{x.schema} {' '.join(term(y) if isinstance(y, Term) else writer.formula(y) for y in x.arguments)}"
+        for x in statement.instances
+    )
+    word = "traces" if all(x.is_induction for x in statement.instances) else "motions"
+    return word, (f" {_list(made)}", f" {writer.formula(statement.supposed)}")
 
 
 def drive(name: str, shown: Shown, printed: ClaimText, derivation: Step) -> Module:
