@@ -1,7 +1,8 @@
-(* A drive as a world.  TRUSTED: read this file, Meaning.v, Text.v and the printed drive and claim.
+(* A drive, or a trace in steps, as a world.  TRUSTED: read this file, Meaning.v, Text.v and the printed drive and claim.
 
    A drive file (docs/schema/drive.json) has a road of rectangles and vehicles that are boxes: where they are at
-   time 0, how fast, and jerks that are constant in pieces, the last 0 for ever; and signals in steps.  `world_of` says what the
+   time 0, how fast, and jerks that are constant in pieces, the last 0 for ever; and signals in steps.  In a trace
+   that refutes a claim all signals are in steps.  `world_of` says what the
    signals, sizes, lanes and parameters of such a drive are, and `shows` when a claim is true of it.  Lengths are
    in m and times in s; s grows along the road, d to the left.  Nothing here is about proofs. *)
 From Coq Require Import Reals QArith Qreals String List Bool Arith.
@@ -37,8 +38,8 @@ Record rectangle := {
 
 (* `bodies`: the vehicles by name.  The road has at least one rectangle.  `beside`: which lanes are beside each
    other, in any order.  `lanes_named`: the lane that a name in the claim stands for.  `values`: parameters.
-   `signals`: those that a specification declares, by name and vehicle ("" where it is of none): values, each from a
-   time on, in the order of these times. *)
+   `signals`: those that are in steps, each of a vehicle, in the order of time: a time, the value at it, and the value
+   after it and before the next.  `numbers`: those that the claim speaks of. *)
 Record drive := {
   bodies : list (vehicle * body);
   first_rectangle : rectangle;
@@ -46,7 +47,8 @@ Record drive := {
   beside : list (string * string);
   lanes_named : list (string * string);
   values : list (string * Q);
-  signals : list (string * vehicle * list (Q * Q)) }.
+  signals : list (signal * vehicle * list (Q * Q * Q));
+  numbers : list (string * Q) }.
 
 Definition look_up {A} (x : string) (l : list (string * A)) (otherwise : A) : A :=
   match find (fun entry => String.eqb x (fst entry)) l with Some entry => snd entry | None => otherwise end.
@@ -75,13 +77,16 @@ Fixpoint moving (x v : R) (pieces : list (Q * Q * Q)) (finally : Q) (t : R) : in
 Definition at_time (c : course) (t : R) : instant :=
   moving (Q2R (starts_at c)) (Q2R (starts_with c)) (pieces c) (finally c) t.
 
-(* A signal in steps: its first value also before, its last for ever; 0 where the file has none. *)
-Fixpoint stepped (before : Q) (steps : list (Q * Q)) (t : R) : Q :=
+(* A signal in steps: its first value also before, its last for ever. *)
+Fixpoint stepped (before : Q) (steps : list (Q * Q * Q)) (t : R) : Q :=
   match steps with
   | [] => before
-  | (from, x) :: rest => if Rlt_dec t (Q2R from) then before else stepped x rest t
+  | (time, at_it, after) :: rest =>
+      if Rlt_dec t (Q2R time) then before else if Req_EM_T t (Q2R time) then at_it else stepped after rest t
   end.
-Definition first_step (steps : list (Q * Q)) : Q := match steps with [] => 0%Q | (_, x) :: _ => x end.
+Definition first_step (steps : list (Q * Q * Q)) : Q := match steps with [] => 0%Q | (_, x, _) :: _ => x end.
+Definition same_signal (m n : signal) : {m = n} + {m <> n}.
+Proof. decide equality; apply string_dec. Defined.
 
 (* --- the world ------------------------------------------------------------------------------------------ *)
 
@@ -94,12 +99,11 @@ Section World.
   Variable D : drive.
 
   Definition body_of (a : vehicle) : body := look_up a (bodies D) nobody.
-  Definition steps_of (n : string) (a : vehicle) : list (Q * Q) :=
-    match find (fun e => String.eqb n (fst (fst e)) && String.eqb a (snd (fst e)))%bool (signals D) with
-    | Some e => snd e
-    | None => []
-    end.
-  Definition value_of (n : signal) (a : vehicle) (t : R) : R :=
+  Definition steps_of (n : signal) (a : vehicle) : option (list (Q * Q * Q)) :=
+    option_map snd
+      (find (fun e => if same_signal n (fst (fst e)) then String.eqb a (snd (fst e)) else false) (signals D)).
+  (* A signal of a specification that the file does not have is 0. *)
+  Definition moved_to (n : signal) (a : vehicle) (t : R) : R :=
     match n with
     | Place_lon => place_ (at_time (along (body_of a)) t)
     | Place_lat => place_ (at_time (across (body_of a)) t)
@@ -108,7 +112,12 @@ Section World.
     | Acceleration_lon => acceleration_ (at_time (along (body_of a)) t)
     | Acceleration_lat => acceleration_ (at_time (across (body_of a)) t)
     | Jerk_lon => jerk_ (at_time (along (body_of a)) t)
-    | Own n => Q2R (stepped (first_step (steps_of n a)) (steps_of n a) t)
+    | Own n => 0
+    end.
+  Definition value_of (n : signal) (a : vehicle) (t : R) : R :=
+    match steps_of n a with
+    | Some steps => Q2R (stepped (first_step steps) steps t)
+    | None => moved_to n a t
     end.
   Definition number_of_sort (k : sort) : Q :=
     match k with car => 1 | truck => 2 | bus => 3 | motorcycle => 4 | other => 5 end.
@@ -139,8 +148,9 @@ Section World.
     lane_of e <> lane_of f
     /\ (In (lane_of e, lane_of f) (beside D) \/ In (lane_of f, lane_of e) (beside D)).
 
-  (* A parameter without a value is 0, and so is a number that the claim speaks of. *)
+  (* A parameter without a value is 0, and so is a number without one. *)
   Definition parameter_of (p : string) : R := Q2R (look_up p (values D) 0%Q).
+  Definition variable_of (x : string) : R := Q2R (look_up x (numbers D) 0%Q).
 
   Lemma measure_of_positive n a : 0 < measure_of n a.
   Proof.
@@ -157,7 +167,7 @@ Section World.
     element := element_of;
     somewhere := first_element;
     parameter := parameter_of;
-    variable := fun _ => 0;
+    variable := variable_of;
     value := value_of;
     measure := measure_of;
     measure_positive := measure_of_positive;

@@ -140,9 +140,20 @@ Proof.
   split; [revert A|revert B]; apply same_integral; intros t; unfold at_time; rewrite Rminus_0_r; reflexivity.
 Qed.
 
+(* Only signals that a specification declares are in steps: in traces that refute claims all are. *)
+Definition is_own (n : signal) : Prop := match n with Own _ => True | _ => False end.
+Definition own_in_steps (D : drive) : Prop := Forall (fun entry => is_own (fst (fst entry))) (signals D).
+
 Section Drive.
   Variable D : drive.
   Hypothesis L : all_last D.
+  Hypothesis O : own_in_steps D.
+  Lemma not_in_steps n a : ~ is_own n -> steps_of D n a = None.
+  Proof.
+    intros N. unfold steps_of. match goal with |- context [find ?p ?l] => destruct (find p l) as [entry|] eqn:E end; [|reflexivity].
+    apply find_some in E as [I E]. destruct (same_signal n (fst (fst entry))) as [->|]; [|discriminate].
+    unfold own_in_steps in O. rewrite Forall_forall in O. exfalso. exact (N (O entry I)).
+  Qed.
   Lemma body_keeps a : keeps (along (body_of D a)) /\ keeps (across (body_of D a)).
   Proof.
     unfold body_of, look_up. destruct (find (fun entry => String.eqb a (fst entry)) (bodies D)) as [entry|] eqn:E.
@@ -163,9 +174,12 @@ Section Drive.
   Proof.
     split.
     - intros n r a E. destruct (body_keeps a) as [A B]. apply course_moves in A as [A1 A2].
-      apply course_moves in B as [B1 B2]. destruct n; cbn in E; try discriminate; injection E as <-; assumption.
+      apply course_moves in B as [B1 B2].
+      destruct n; cbn in E; try discriminate; injection E as <-; cbn [value world_of]; unfold value_of;
+        rewrite !not_in_steps by exact (fun H => H); assumption.
     - intros a l. destruct (body_keeps a) as [A B]. apply course_moves in A as [A _]. apply course_moves in B as [B _].
-      cbn [occupies world_of]. unfold is_in, value_of. set (r := rectangle_of D l).
+      cbn [occupies world_of]. unfold is_in, value_of. rewrite !not_in_steps by exact (fun H => H).
+      cbn [moved_to]. set (r := rectangle_of D l).
       apply lingers_and; [|apply lingers_and; [|apply lingers_and]].
       + destruct (from_s r); [apply (below_lingers _ _ _ A)|apply lingers_always].
       + destruct (to_s r) as [b|]; [|apply lingers_always].
@@ -181,8 +195,8 @@ Section Drive.
   Qed.
 End Drive.
 
-Theorem refuted bounds claim D : all_last D -> shows D bounds (Not claim) -> ~ valid_of_motions bounds claim.
-Proof. intros L [B H] V. apply H. exact (V (world_of D) _ (drives_move D L) B). Qed.
+Theorem refuted bounds claim D : all_last D -> own_in_steps D -> shows D bounds (Not claim) -> ~ valid_of_motions bounds claim.
+Proof. intros L O [B H] V. apply H. exact (V (world_of D) _ (drives_move D L O) B). Qed.
 
 (* Where lanelets are any sets of points that stand still, and boxes move, `overlaps` of a motion follows. *)
 Theorem boxes_overlap W (points : element W -> R -> R -> Prop) :

@@ -119,20 +119,45 @@ Proof.
       replace (Q2R j * Q2R d ^ 3 / 6) with (/ 6 * (Q2R j * (Q2R d * (Q2R d * Q2R d)))) by field. exact IH.
 Qed.
 
+(* I is the instant k *)
+Definition only (I : interval) (k : Q) : bool :=
+  Qle_bool k (from_ I) && match to_ I with Some (b, _) => Qle_bool b k | None => false end.
+Lemma only_right I k t : only I k = true -> inside I t -> t = Q2R k.
+Proof.
+  unfold only. intros H T. apply andb_prop in H as [A B]. destruct (to_ I) as [[b o]|] eqn:E; [|discriminate].
+  apply le_R in A, B. pose proof (inside_from I t T). pose proof (inside_to I t b o E T). lra.
+Qed.
 (* a signal in steps, where it does not change in I *)
-Fixpoint step_on (before : Q) (steps : list (Q * Q)) (I : interval) : option Q :=
+Fixpoint step_on (before : Q) (steps : list (Q * Q * Q)) (I : interval) : option Q :=
   match steps with
   | [] => Some before
-  | (k, x) :: rest =>
-      if ends_by I k then Some before else if Qle_bool k (from_ I) then step_on x rest I else None
+  | (k, x, y) :: rest =>
+      if ends_by I k then Some before
+      else if only I k then Some x
+      else if Qle_bool k (from_ I) then
+        match step_on y rest I with
+        | Some z => if below k (from_ I) || after_ I || Qeq_bool z x then Some z else None
+        | None => None
+        end
+      else None
   end.
-Lemma step_on_right steps I t : inside I t -> forall before x, step_on before steps I = Some x -> stepped before steps t = x.
+Lemma step_on_right steps I t : inside I t -> forall before x, step_on before steps I = Some x ->
+  Q2R (stepped before steps t) = Q2R x.
 Proof.
-  intros T. induction steps as [|[k y] steps IH]; intros before x H; cbn [step_on stepped] in *; [congruence|].
+  intros T. induction steps as [|[[k y] z] steps IH]; intros before x H; cbn [step_on stepped] in *; [congruence|].
   destruct (ends_by I k) eqn:B.
-  - apply (ends_by_right _ _ t) in B; [|exact T]. destruct (Rlt_dec t (Q2R k)); [congruence|exfalso; lra].
-  - destruct (Qle_bool k (from_ I)) eqn:L; [|discriminate]. apply le_R in L. pose proof (inside_from I t T).
-    destruct (Rlt_dec t (Q2R k)); [exfalso; lra|]. apply IH, H.
+  { apply (ends_by_right _ _ t) in B; [|exact T]. destruct (Rlt_dec t (Q2R k)); [congruence|exfalso; lra]. }
+  destruct (only I k) eqn:O.
+  { apply (only_right _ _ t) in O; [|exact T]. destruct (Rlt_dec t (Q2R k)); [exfalso; lra|].
+    destruct (Req_EM_T t (Q2R k)); [congruence|exfalso; lra]. }
+  destruct (Qle_bool k (from_ I)) eqn:L; [|discriminate]. apply le_R in L. pose proof (inside_from I t T) as F.
+  destruct (step_on z steps I) as [w|] eqn:E; [|discriminate].
+  destruct (below k (from_ I) || after_ I || Qeq_bool w y)%bool eqn:G; [|discriminate]. injection H as <-.
+  destruct (Rlt_dec t (Q2R k)); [exfalso; lra|]. destruct (Req_EM_T t (Q2R k)) as [->|]; [|apply IH, E].
+  apply orb_prop in G as [G|G]; [apply orb_prop in G as [G|G]|].
+  - apply below_R in G. exfalso. lra.
+  - destruct T as [A _]. rewrite G in A. exfalso. lra.
+  - apply Qeq_bool_iff, Qeq_eqR in G. symmetry. exact G.
 Qed.
 
 Lemma find_map (A B : Type) (f : A -> B) x (l : list (string * A)) :
@@ -155,7 +180,7 @@ Section Check.
 
   Definition as_list (p : option shape) (g : shape -> list Q) : list (list Q) :=
     match p with None => [] | Some p => [g p] end.
-  Definition signal_on (n : signal) (a : vehicle) (I : interval) : list (list Q) :=
+  Definition motion_on (n : signal) (a : vehicle) (I : interval) : list (list Q) :=
     let b := shaped_of a in
     match n with
     | Place_lon => as_list (shape_on (shaped_along b) I) of_place
@@ -165,7 +190,12 @@ Section Check.
     | Speed_lat => as_list (shape_on (shaped_across b) I) of_speed
     | Acceleration_lat => as_list (shape_on (shaped_across b) I) of_acceleration
     | Jerk_lon => as_list (shape_on (shaped_along b) I) of_jerk
-    | Own n => match step_on (first_step (steps_of D n a)) (steps_of D n a) I with Some x => [[x]] | None => [] end
+    | Own n => [[]]
+    end.
+  Definition signal_on (n : signal) (a : vehicle) (I : interval) : list (list Q) :=
+    match steps_of D n a with
+    | Some steps => match step_on (first_step steps) steps I with Some x => [[x]] | None => [] end
+    | None => motion_on n a I
     end.
   Definition size_on (n : size) (a : vehicle) : Q :=
     let b := shaped_of a in match n with Length => long_ b | Width => wide_ b | Kind => number_of_sort (sort_ b) end.
@@ -192,7 +222,7 @@ Section Check.
     match x with
     | Num q => [[q]]
     | Par n => [[look_up n (values D) 0%Q]]
-    | Var _ => []
+    | Var x => [[look_up x (numbers D) 0%Q]]
     | Sig n a => signal_on n a I
     | Siz n a => [[size_on n a]]
     | Add x y => pairs_with (fun p q => [padd p q]) (term_on I x) (term_on I y)
@@ -269,13 +299,16 @@ Section Check.
   Qed.
   Lemma signal_right n a I t : inside I t -> is_one (signal_on n a I) (value W n a t) t.
   Proof.
-    intros T. unfold signal_on. rewrite shaped_of_right. cbn [shaped_along shaped_across body_shaped].
+    intros T. unfold signal_on. cbn [value world_of]. unfold value_of.
     assert (N : forall x, is_one [] x t) by (intros x H; exfalso; apply H; reflexivity).
+    destruct (steps_of D n a) as [steps|].
+    { destruct (step_on _ _ I) as [x|] eqn:E; [|apply N]. apply is_this. rewrite constant_R.
+      apply (step_on_right _ _ _ T _ _ E). }
+    unfold motion_on. rewrite shaped_of_right. cbn [shaped_along shaped_across body_shaped].
     destruct n; unfold as_list;
       try match goal with |- context [shape_on ?l ?i] => destruct (shape_on l i) as [p|] eqn:E; [|apply N] end;
       try (apply is_this; destruct (track_right _ _ _ _ E T) as [A [B [C J]]]; symmetry; assumption).
-    destruct (step_on _ _ I) as [x|] eqn:E; [|apply N]. apply is_this. rewrite constant_R.
-    cbn [value world_of value_of]. rewrite (step_on_right _ _ _ T _ _ E). reflexivity.
+    apply is_this. reflexivity.
   Qed.
   Lemma size_right n a t : measure W n a = eval [size_on n a] t.
   Proof. rewrite constant_R. unfold size_on. rewrite shaped_of_right. destruct n; reflexivity. Qed.
@@ -284,7 +317,7 @@ Section Check.
     intros T. induction x; cbn [term_on number].
     - apply is_this. symmetry. apply constant_R.
     - apply is_this. symmetry. apply constant_R.
-    - intros N. exfalso. apply N. reflexivity.
+    - apply is_this. symmetry. apply constant_R.
     - apply signal_right, T.
     - apply is_this, size_right.
     - apply (pairs_right _ _ _ _ _ _ _ IHx1 IHx2). intros p q -> ->. exists (padd p q).
@@ -436,13 +469,12 @@ Section Check.
 
   (* What has to be above 0 where a box is in a rectangle. *)
   Definition edges (a : vehicle) (e : nat) (I : interval) : option (list (list Q)) :=
-    let b := shaped_of a in
     let r := at_number e in
-    match shape_on (shaped_along b) I, shape_on (shaped_across b) I with
-    | Some p, Some q =>
-        Some (match from_s r with None => [] | Some x => [psub (of_place p) [x]] end
-              ++ match to_s r with None => [] | Some x => [psub [x] (psub (of_place p) [long_ b])] end
-              ++ [psub (of_place q) [right_d r]; psub [left_d r] (psub (of_place q) [wide_ b])])
+    match signal_on Place_lon a I, signal_on Place_lat a I with
+    | [p], [q] =>
+        Some (match from_s r with None => [] | Some x => [psub p [x]] end
+              ++ match to_s r with None => [] | Some x => [psub [x] (psub p [size_on Length a])] end
+              ++ [psub q [right_d r]; psub [left_d r] (psub q [size_on Width a])])
     | _, _ => None
     end.
   Definition occupies_on (pol : bool) (a : vehicle) (e : nat) (I : interval) : bool :=
@@ -455,12 +487,15 @@ Section Check.
   Lemma edges_right a e I ps t : edges a (number_of e) I = Some ps -> inside I t ->
     is_in D a e t <-> Forall (fun p => 0 < eval p t) ps.
   Proof.
-    unfold edges, is_in. rewrite shaped_of_right. cbn [shaped_along shaped_across long_ wide_ body_shaped].
-    intros H T. rewrite rectangle_number. set (r := at_number (number_of e)) in *.
-    destruct (shape_on (shapes_of (along _)) I) as [p|] eqn:P; [|discriminate].
-    destruct (shape_on (shapes_of (across _)) I) as [q|] eqn:Q'; [|discriminate].
-    injection H as <-. destruct (track_right _ _ _ _ P T) as [PA _]. destruct (track_right _ _ _ _ Q' T) as [QA _].
-    cbn [value_of measure_of]. rewrite <- PA, <- QA.
+    unfold edges, is_in. intros H T. rewrite rectangle_number. set (r := at_number (number_of e)) in *.
+    pose proof (signal_right Place_lon a I t T) as P. pose proof (signal_right Place_lat a I t T) as Q'.
+    destruct (signal_on Place_lon a I) as [|p [|? ?]]; try discriminate.
+    destruct (signal_on Place_lat a I) as [|q [|? ?]]; try discriminate.
+    destruct P as [? [[<-|[]] P]]; [discriminate|]. destruct Q' as [? [[<-|[]] Q']]; [discriminate|].
+    injection H as <-. change (long_ (shaped_of a)) with (size_on Length a).
+    change (wide_ (shaped_of a)) with (size_on Width a). cbn [value world_of] in P, Q'. rewrite P, Q'.
+    pose proof (size_right Length a t) as SL. pose proof (size_right Width a t) as SW. rewrite constant_R in SL, SW.
+    cbn [measure world_of] in SL, SW. rewrite SL, SW.
     rewrite !Forall_app. rewrite !Forall_cons_iff. rewrite !psub_eval, !constant_R.
     destruct (from_s r), (to_s r); rewrite ?Forall_cons_iff, ?psub_eval, ?constant_R;
       (split; [intros [A [B [C E]]]; repeat split; try lra; auto|intros [A [B [C [E _]]]]; repeat split; try tauto; lra]).
@@ -873,18 +908,31 @@ Section Check.
 End Check.
 
 (* --- the theorem ---------------------------------------------------------------------------------------- *)
+Definition all_steps (ok : Q -> bool) (steps : option (list (Q * Q * Q))) : bool :=
+  match steps with
+  | Some l => ok (first_step l) && forallb (fun e => ok (snd (fst e)) && ok (snd e)) l
+  | None => ok 0%Q
+  end.
 Definition within_bound (D : drive) (b : bound) : bool :=
   match b with
   | at_least_0 p => Qle_bool 0 (look_up p (values D) 0%Q)
   | above_0 p => below 0 (look_up p (values D) 0%Q)
-  | own_at_least n a low => Qle_bool low (first_step (steps_of D n a)) && forallb (fun e => Qle_bool low (snd e)) (steps_of D n a)
-  | own_at_most n a high => Qle_bool (first_step (steps_of D n a)) high && forallb (fun e => Qle_bool (snd e) high) (steps_of D n a)
+  | own_at_least n a low => all_steps (Qle_bool low) (steps_of D (Own n) a)
+  | own_at_most n a high => all_steps (fun x => Qle_bool x high) (steps_of D (Own n) a)
   end.
 Lemma stepped_within (ok : Q -> bool) steps t : forall before, ok before = true ->
-  forallb (fun e => ok (snd e)) steps = true -> ok (stepped before steps t) = true.
+  forallb (fun e => ok (snd (fst e)) && ok (snd e)) steps = true -> ok (stepped before steps t) = true.
 Proof.
-  induction steps as [|[k x] steps IH]; intros before B H; cbn [stepped]; [exact B|].
-  apply andb_prop in H as [X H]. destruct (Rlt_dec t (Q2R k)); [exact B|apply IH; assumption].
+  induction steps as [|[[k x] y] steps IH]; intros before B H; cbn [stepped]; [exact B|].
+  apply andb_prop in H as [X H]. apply andb_prop in X as [X Y]. cbn [fst snd] in X, Y.
+  destruct (Rlt_dec t (Q2R k)); [exact B|]. destruct (Req_EM_T t (Q2R k)); [exact X|apply IH; assumption].
+Qed.
+Lemma own_within D (ok : Q -> bool) n a t : all_steps ok (steps_of D (Own n) a) = true ->
+  exists x, value_of D (Own n) a t = Q2R x /\ ok x = true.
+Proof.
+  unfold all_steps, value_of. destruct (steps_of D (Own n) a) as [l|]; intros H.
+  - apply andb_prop in H as [H1 H2]. eexists. split; [reflexivity|]. apply stepped_within; assumption.
+  - exists 0%Q. split; [symmetry; apply zero_R|exact H].
 Qed.
 Definition now : interval := {| from_ := 0; after_ := false; to_ := Some (0%Q, false) |}.
 Definition accepts (D : drive) (bounds : list bound) (claim : formula) (p : derivation) : bool :=
@@ -897,9 +945,8 @@ Proof.
     destruct b as [x|x|n a low|n a high]; cbn [within_bound keeps_to] in *.
     + apply le_R in R. rewrite zero_R in R. exact R.
     + apply below_R in R. rewrite zero_R in R. exact R.
-    + intros t. apply andb_prop in R as [R1 R2]. apply le_R. exact (stepped_within (Qle_bool low) _ t _ R1 R2).
-    + intros t. apply andb_prop in R as [R1 R2]. apply le_R.
-      exact (stepped_within (fun x => Qle_bool x high) _ t _ R1 R2).
+    + intros t. destruct (own_within D _ n a t R) as [x [E L]]. cbn [value world_of]. rewrite E. apply le_R, L.
+    + intros t. destruct (own_within D _ n a t R) as [x [E L]]. cbn [value world_of]. rewrite E. apply le_R, L.
   - apply (check_right D (fleet_of D) eq_refl p claim (fun _ => 0%nat) true now (unbound (world_of D)) 0 H).
     + intros k. reflexivity.
     + unfold inside, now. cbn [from_ after_ to_]. rewrite zero_R. lra.
@@ -908,3 +955,6 @@ Qed.
 (* So the claim can hold, and its opposite does not always. *)
 Corollary not_always D bounds claim : shows D bounds claim -> ~ valid bounds (Not claim).
 Proof. intros [R H] V. exact (V (world_of D) (element_named D) R H). Qed.
+(* And a claim whose opposite is true of a trace does not always hold. *)
+Theorem refuted D bounds claim p : accepts D bounds (Not claim) p = true -> ~ valid bounds claim.
+Proof. intros H V. destruct (shown D bounds (Not claim) p H) as [R N]. exact (N (V (world_of D) (element_named D) R)). Qed.

@@ -16,8 +16,8 @@ from roadproof.analysis.claims import name_of
 from roadproof.engines.solve.smt import ask
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.certificate import Certificate, read_certificate, refusal, to_json
+from roadproof.evidence.countermodel import Countermodel
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.evidence.refutation import Countermodel
 from roadproof.frontends.api.answer import Answer
 from roadproof.frontends.cli.main import main
 from roadproof.library.loading import bundled_library

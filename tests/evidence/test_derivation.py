@@ -16,12 +16,13 @@ from proving.claims import INVALID, VALID, specification, spelled
 from roadproof.errors import InputError
 from roadproof.evidence import atoms, derivation
 from roadproof.evidence.answers.drive import MOST_INSTANTS
+from roadproof.evidence.countermodel import Countermodel, Instant, Loop, read_trace, trace_data
 from roadproof.evidence.derivation import _Derivation, _join
 from roadproof.evidence.finding import NO_EVIDENCE
 from roadproof.evidence.folder import OTHER_LIBRARY
 from roadproof.evidence.heading import heading
-from roadproof.evidence.periodic import Loop, judge_periodic, unrolled
-from roadproof.evidence.refutation import Countermodel, Instant, fault_of, read_trace, trace_data
+from roadproof.evidence.periodic import judge_periodic, unrolled
+from roadproof.evidence.refutation import fault_of
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import build_library, bundled_library
 from roadproof.library.specification import Library, Source

@@ -16,8 +16,9 @@ from roadproof.engines.encode.problem import evaluate
 from roadproof.engines.encode.unroll import Grid, unroll
 from roadproof.engines.prove.prover import prove
 from roadproof.errors import UsageError
+from roadproof.evidence.countermodel import Countermodel, Instant
 from roadproof.evidence.drive_file import DriveFile, load_drive
-from roadproof.evidence.refutation import Countermodel, Instant, when_true
+from roadproof.evidence.refutation import when_true
 from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library, load_library

@@ -21,7 +21,8 @@ from roadproof.evidence.derivations.derive import derive
 from roadproof.evidence.derivations.parts import NoDerivationError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.kernel.derivation import coq_derivation
-from roadproof.evidence.kernel.drive import Shown, drive_lines
+from roadproof.evidence.kernel.drive import Shown
+from roadproof.evidence.kernel.world import world_lines
 from roadproof.library.bind import bind
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
@@ -136,7 +137,7 @@ def example(name, formula, drive, derivation, answer):
     file = DriveFile(None, "base", "", Fraction(0), LANES, {}, {}, ROAD, drive, overlaps_allowed=True)
     lines = [
         f"Definition {name} : drive :=",
-        *drive_lines(Shown(file, formula, {}, {}, {})),
+        *world_lines(Shown(file, formula, {}, {}, {}).world),
         ".",
         f"Example {name}_is : accepts {name} [] {raw.formula(formula)}",
         *coq_derivation(derivation),

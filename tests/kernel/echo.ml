@@ -69,7 +69,8 @@ let piece_ ((d, a), j) = node [ q_ d; q_ a; q_ j ]
 let course_ c = node [ q_ c.starts_at; q_ c.starts_with; all piece_ c.pieces; q_ c.finally ]
 let sort_ = function Car -> "car" | Truck -> "truck" | Bus -> "bus" | Motorcycle -> "motorcycle" | Other -> "other"
 let body_ (a, b) = node [ text a; sort_ b.is_a; q_ b.long; q_ b.wide; course_ b.along; course_ b.across ]
-let steps_ ((n, a), l) = node [ text n; text a; all (pair_ q_ q_) l ]
+let step_ ((time, x), after) = node [ q_ time; q_ x; q_ after ]
+let steps_ ((n, a), l) = node [ signal_ n; text a; all step_ l ]
 let end__ = function None -> "None" | Some x -> q_ x
 
 let rectangle_ r =
@@ -78,7 +79,8 @@ let rectangle_ r =
 let drive_ d =
   node
     [ all body_ d.bodies; all rectangle_ (d.first_rectangle :: d.other_rectangles); all (pair_ text text) d.beside;
-      all (pair_ text text) d.lanes_named; all (pair_ text q_) d.values0; all steps_ d.signals ]
+      all (pair_ text text) d.lanes_named; all (pair_ text q_) d.values0; all steps_ d.signals;
+      all (pair_ text q_) d.numbers ]
 
 let said = function
   | Node [ Word "formula"; given; f ] -> formula_ (formula (definitions given) f)

@@ -22,8 +22,9 @@ from roadproof.evidence.kernel.accept import file as theory_file
 from roadproof.evidence.kernel.accept import judge as accept_judge
 from roadproof.evidence.kernel.coq import CoqRun, ready
 from roadproof.evidence.kernel.derivation import Step, coq_derivation
-from roadproof.evidence.kernel.drive import claim_text, drive_lines, module, shown
+from roadproof.evidence.kernel.drive import claim_text, module, shown
 from roadproof.evidence.kernel.source import Module, file
+from roadproof.evidence.kernel.world import world_lines
 from roadproof.frontends.api.checking import check
 from roadproof.library.bind import bind
 from roadproof.library.loading import bundled_library
@@ -126,7 +127,7 @@ def test_a_changed_drive_on_which_the_formula_fails_is_refused():
         bound = bind(what.formula, what.file.road, what.file.lanes, what.values)
         others = [x for x in changed(what.file.drive) if not judge(bound, x).holds]
         false = [replace(what, file=replace(what.file, drive=x)) for x in others]
-        asked = [(" ".join(["(", *drive_lines(x), ")"]), "claim", "reasons") for x in false]
+        asked = [(" ".join(["(", *world_lines(x.world), ")"]), "claim", "reasons") for x in false]
         modules.append(refused(f"m{len(modules)}", what, derivation, asked))
         count += len(asked)
     assert count >= 20

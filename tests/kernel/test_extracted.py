@@ -267,16 +267,26 @@ def expected_drive(what):
     lanes = [f"({text(a)} {text(b)})" for a, b in sorted(file.lanes.items())]
     values = [f"({text(a)} {exact(b)})" for a, b in sorted(what.values.items())]
     own = [
-        f"({text(n)} {text(a)} {listed(f'({exact(at)} {exact(x)})' for at, x in steps)})"
+        f"((Own {text(n)}) {text(a)} {listed(f'({exact(at)} {exact(x)} {exact(x)})' for at, x in steps)})"
         for (n, a), steps in sorted(file.drive.own.items())
     ]
-    return f"({' '.join(map(listed, (bodies, rectangles, pairs, lanes, values, own)))})"
+    return f"({' '.join(map(listed, (bodies, rectangles, pairs, lanes, values, own, [])))})"
 
 
 BOUNDS = '(bounds [at_least_0 "a"; above_0 "b"; own_at_least "n" "a" (q 1 2); own_at_most "n" "" (3 # 4)])'
 BOUNDS_READ = (
     '[(at_least_0 "a"%string); (above_0 "b"%string); (own_at_least "n"%string "a"%string (Qmake (1) 2)); '
     '(own_at_most "n"%string ""%string (Qmake (3) 4))]'
+)
+TRACE = (
+    '(drive ([] ["x" main None None 0 1; "y" main None None 1 2] [] [] [] '
+    '[Speed_lon "A" [0 1 2; (1 # 2) 3 4]; Place_lat "B" []] ["v" 5]))'
+)
+TRACE_READ = (
+    '([] [("x"%string main None None (Qmake (0) 1) (Qmake (1) 1)); '
+    '("y"%string main None None (Qmake (1) 1) (Qmake (2) 1))] [] [] [] [(Speed_lon "A"%string '
+    "[((Qmake (0) 1) (Qmake (1) 1) (Qmake (2) 1)); ((Qmake (1) 2) (Qmake (3) 1) (Qmake (4) 1))]); "
+    '(Place_lat "B"%string [])] [("v"%string (Qmake (5) 1))])'
 )
 
 
@@ -299,14 +309,14 @@ def questions():
     """Forms for echo.ml with what it has to answer."""
     formulas = [*library_formulas(), *map(raw.random_formula, range(150))]
     asked = [(written(x), raw.formula(without_names(x))) for x in formulas]
-    asked.append((BOUNDS, BOUNDS_READ))
+    asked += [(BOUNDS, BOUNDS_READ), (TRACE, TRACE_READ)]
     for path in DRIVES:
         what, derivation = derivation_of(path)
         if path == DRIVES[0]:  # with ends of rectangles, jerk, kinds and signals
             what = replace(what, file=replace(what.file, road=ROAD, drive=varied(what.file.drive)))
         lines = drive("n", what, claim_text(what), derivation).text.splitlines()
         first = next(k for k, line in enumerate(lines) if line.startswith(" (["))
-        asked.append((f"(drive {' '.join(lines[first : first + 6])})", expected_drive(what)))
+        asked.append((f"(drive {' '.join(lines[first : first + 7])})", expected_drive(what)))
     return asked
 
 
@@ -330,7 +340,9 @@ FAULTS = [
     ('"Jerk_lon" -> Jerk_lon', '"Jerk_lon" -> Acceleration_lon'),
     ("((q seconds, q a), q j)", "((q seconds, q j), q a)"),
     ('"truck" -> Truck', '"truck" -> Car'),
-    ("((name n, name a), list (pair q q) l)", "((name a, name n), list (pair q q) l)"),
+    ("((q time, q x), q after)", "((q time, q after), q x)"),
+    ("((signal n, name a), list step l)", "((signal n, name a), List.rev (list step l))"),
+    ("numbers = list (pair name q) numbers", "numbers = list (pair name q) values"),
     ("Own_at_least (name n, name a, q low)", "Own_at_most (name n, name a, q low)"),
     ("Min (term x, term y)", "Max (term x, term y)"),
     ("Div (term x, term y)", "Div (term y, term x)"),

@@ -9,7 +9,7 @@ from asking import prove
 from definition import of_values
 from roadproof.engines.prove.prover import Result
 from roadproof.evidence.atoms import Atoms
-from roadproof.evidence.refutation import Countermodel
+from roadproof.evidence.countermodel import Countermodel
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.library.specification import Specification

@@ -10,7 +10,7 @@ from fractions import Fraction
 from itertools import pairwise, product
 from random import Random
 
-from roadproof.evidence.refutation import Countermodel
+from roadproof.evidence.countermodel import Countermodel
 from roadproof.world.road import Lanelet, Road, Zone
 
 VEHICLES = ("SV", "POV")

@@ -18,9 +18,9 @@ from roadproof.engines.search.settle import settle
 from roadproof.engines.solve.smt import ask
 from roadproof.errors import InputError
 from roadproof.evidence.certificate import certificate_data, read_certificate_data, refusal
+from roadproof.evidence.countermodel import Countermodel, Instant, Loop, read_trace, trace_data
 from roadproof.evidence.finding import Acceptance
-from roadproof.evidence.periodic import Loop
-from roadproof.evidence.refutation import Countermodel, Instant, fault_of, judge_trace, read_trace, trace_data
+from roadproof.evidence.refutation import fault_of, judge_trace
 from roadproof.frontends.api.checking import check
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library

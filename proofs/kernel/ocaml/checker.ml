@@ -3044,7 +3044,8 @@ type drive = { bodies : (vehicle * body) list; first_rectangle : rectangle;
                beside : (char list * char list) list;
                lanes_named : (char list * char list) list;
                values0 : (char list * q) list;
-               signals : ((char list * vehicle) * (q * q) list) list }
+               signals : ((signal * vehicle) * ((q * q) * q) list) list;
+               numbers : (char list * q) list }
 
 (** val look_up : char list -> (char list * 'a1) list -> 'a1 -> 'a1 **)
 
@@ -3053,11 +3054,41 @@ let look_up x l otherwise =
   | Some entry -> snd entry
   | None -> otherwise
 
-(** val first_step : (q * q) list -> q **)
+(** val first_step : ((q * q) * q) list -> q **)
 
 let first_step = function
 | [] -> { qnum = Z0; qden = XH }
-| p :: _ -> let (_, x) = p in x
+| p :: _ -> let (p2, _) = p in let (_, x) = p2 in x
+
+(** val same_signal : signal -> signal -> bool **)
+
+let same_signal m n0 =
+  match m with
+  | Place_lon -> (match n0 with
+                  | Place_lon -> true
+                  | _ -> false)
+  | Place_lat -> (match n0 with
+                  | Place_lat -> true
+                  | _ -> false)
+  | Speed_lon -> (match n0 with
+                  | Speed_lon -> true
+                  | _ -> false)
+  | Speed_lat -> (match n0 with
+                  | Speed_lat -> true
+                  | _ -> false)
+  | Acceleration_lon -> (match n0 with
+                         | Acceleration_lon -> true
+                         | _ -> false)
+  | Acceleration_lat -> (match n0 with
+                         | Acceleration_lat -> true
+                         | _ -> false)
+  | Jerk_lon -> (match n0 with
+                 | Jerk_lon -> true
+                 | _ -> false)
+  | Own name ->
+    (match n0 with
+     | Own name0 -> string_dec name name0
+     | _ -> false)
 
 (** val still : course **)
 
@@ -3071,13 +3102,13 @@ let nobody =
   { is_a = Other; long = { qnum = (Zpos XH); qden = XH }; wide = { qnum =
     (Zpos XH); qden = XH }; along = still; across = still }
 
-(** val steps_of : drive -> char list -> vehicle -> (q * q) list **)
+(** val steps_of : drive -> signal -> vehicle -> ((q * q) * q) list option **)
 
 let steps_of d n0 a =
-  match find (fun e -> (&&) (eqb0 n0 (fst (fst e))) (eqb0 a (snd (fst e))))
-          d.signals with
-  | Some e -> snd e
-  | None -> []
+  option_map snd
+    (find (fun e ->
+      if same_signal n0 (fst (fst e)) then eqb0 a (snd (fst e)) else false)
+      d.signals)
 
 (** val number_of_sort : sort -> q **)
 
@@ -3225,16 +3256,35 @@ type fleet = (vehicle * shaped_body) list
 let fleet_of d =
   map (fun e -> ((fst e), (body_shaped (snd e)))) d.bodies
 
-(** val step_on : q -> (q * q) list -> interval -> q option **)
+(** val only : interval -> q -> bool **)
+
+let only i k =
+  (&&) (qle_bool k i.from_)
+    (match i.to_ with
+     | Some p -> let (b, _) = p in qle_bool b k
+     | None -> false)
+
+(** val step_on : q -> ((q * q) * q) list -> interval -> q option **)
 
 let rec step_on before steps i =
   match steps with
   | [] -> Some before
   | p :: rest ->
-    let (k, x) = p in
+    let (p2, y) = p in
+    let (k, x) = p2 in
     if ends_by i k
     then Some before
-    else if qle_bool k i.from_ then step_on x rest i else None
+    else if only i k
+         then Some x
+         else if qle_bool k i.from_
+              then (match step_on y rest i with
+                    | Some z0 ->
+                      if (||) ((||) (below k i.from_) i.after_)
+                           (qeq_bool z0 x)
+                      then Some z0
+                      else None
+                    | None -> None)
+              else None
 
 (** val shaped_of : fleet -> vehicle -> shaped_body **)
 
@@ -3248,10 +3298,9 @@ let as_list p g =
   | Some p2 -> (g p2) :: []
   | None -> []
 
-(** val signal_on :
-    drive -> fleet -> signal -> vehicle -> interval -> q list list **)
+(** val motion_on : fleet -> signal -> vehicle -> interval -> q list list **)
 
-let signal_on d f n0 a i =
+let motion_on f n0 a i =
   let b = shaped_of f a in
   (match n0 with
    | Place_lon -> as_list (shape_on b.shaped_along i) (fun s -> s.of_place)
@@ -3263,10 +3312,18 @@ let signal_on d f n0 a i =
    | Acceleration_lat ->
      as_list (shape_on b.shaped_across i) (fun s -> s.of_acceleration)
    | Jerk_lon -> as_list (shape_on b.shaped_along i) (fun s -> s.of_jerk)
-   | Own n1 ->
-     (match step_on (first_step (steps_of d n1 a)) (steps_of d n1 a) i with
-      | Some x -> (x :: []) :: []
-      | None -> []))
+   | Own _ -> [] :: [])
+
+(** val signal_on :
+    drive -> fleet -> signal -> vehicle -> interval -> q list list **)
+
+let signal_on d f n0 a i =
+  match steps_of d n0 a with
+  | Some steps ->
+    (match step_on (first_step steps) steps i with
+     | Some x -> (x :: []) :: []
+     | None -> [])
+  | None -> motion_on f n0 a i
 
 (** val size_on : fleet -> size -> vehicle -> q **)
 
@@ -3326,7 +3383,7 @@ let divided l = function
 let rec term_on d f i = function
 | Num q0 -> (q0 :: []) :: []
 | Par n0 -> ((look_up n0 d.values0 { qnum = Z0; qden = XH }) :: []) :: []
-| Var _ -> []
+| Var x0 -> ((look_up x0 d.numbers { qnum = Z0; qden = XH }) :: []) :: []
 | Sig (n0, a) -> signal_on d f n0 a i
 | Siz (n0, a) -> ((size_on f n0 a) :: []) :: []
 | Add (x0, y) ->
@@ -3435,28 +3492,33 @@ let count d =
     drive -> fleet -> vehicle -> nat -> interval -> q list list option **)
 
 let edges d f a e i =
-  let b = shaped_of f a in
   let r = at_number d e in
-  (match shape_on b.shaped_along i with
-   | Some p ->
-     (match shape_on b.shaped_across i with
-      | Some q0 ->
-        Some
-          (app
-            (match r.from_s with
-             | Some x -> (psub0 p.of_place (x :: [])) :: []
-             | None -> [])
-            (app
-              (match r.to_s with
-               | Some x ->
-                 (psub0 (x :: []) (psub0 p.of_place (b.long_ :: []))) :: []
-               | None -> [])
-              ((psub0 q0.of_place (r.right_d :: [])) :: ((psub0
-                                                           (r.left_d :: [])
-                                                           (psub0 q0.of_place
-                                                             (b.wide_ :: []))) :: []))))
-      | None -> None)
-   | None -> None)
+  (match signal_on d f Place_lon a i with
+   | [] -> None
+   | p :: l ->
+     (match l with
+      | [] ->
+        (match signal_on d f Place_lat a i with
+         | [] -> None
+         | q0 :: l0 ->
+           (match l0 with
+            | [] ->
+              Some
+                (app
+                  (match r.from_s with
+                   | Some x -> (psub0 p (x :: [])) :: []
+                   | None -> [])
+                  (app
+                    (match r.to_s with
+                     | Some x ->
+                       (psub0 (x :: [])
+                         (psub0 p ((size_on f Length a) :: []))) :: []
+                     | None -> [])
+                    ((psub0 q0 (r.right_d :: [])) :: ((psub0 (r.left_d :: [])
+                                                        (psub0 q0
+                                                          ((size_on f Width a) :: []))) :: []))))
+            | _ :: _ -> None))
+      | _ :: _ -> None))
 
 (** val occupies_on :
     drive -> fleet -> bool -> vehicle -> nat -> interval -> bool **)
@@ -3805,6 +3867,14 @@ let rec check1 d f p f0 env pol0 i =
             (check1 d f q0 g env pol0))
       | _ -> false))
 
+(** val all_steps : (q -> bool) -> ((q * q) * q) list option -> bool **)
+
+let all_steps ok = function
+| Some l ->
+  (&&) (ok (first_step l))
+    (forallb (fun e -> (&&) (ok (snd (fst e))) (ok (snd e))) l)
+| None -> ok { qnum = Z0; qden = XH }
+
 (** val within_bound : drive -> bound -> bool **)
 
 let within_bound d = function
@@ -3815,11 +3885,9 @@ let within_bound d = function
   below { qnum = Z0; qden = XH }
     (look_up p d.values0 { qnum = Z0; qden = XH })
 | Own_at_least (n0, a, low) ->
-  (&&) (qle_bool low (first_step (steps_of d n0 a)))
-    (forallb (fun e -> qle_bool low (snd e)) (steps_of d n0 a))
+  all_steps (qle_bool low) (steps_of d (Own n0) a)
 | Own_at_most (n0, a, high) ->
-  (&&) (qle_bool (first_step (steps_of d n0 a)) high)
-    (forallb (fun e -> qle_bool (snd e) high) (steps_of d n0 a))
+  all_steps (fun x -> qle_bool x high) (steps_of d (Own n0) a)
 
 (** val now : interval **)
 

@@ -17,11 +17,11 @@
                 (FORMULA known) for a fact of Known.v
      PARAMETERS a list of strings: those that moments speak of, in the order of their numbers
      VALUES     a list of (NAME NUMBER): values of parameters that the claim demands (Values.v)
-     DRIVE      (BODIES RECTANGLES BESIDE LANES VALUES SIGNALS), the fields of `drive` in Drive.v:
+     DRIVE      (BODIES RECTANGLES BESIDE LANES VALUES SIGNALS NUMBERS), the fields of `drive` in Drive.v:
                 a body is (NAME SORT LONG WIDE ALONG ACROSS),
                 a course is (PLACE SPEED [(SECONDS ACCELERATION JERK)] ACCELERATION),
                 a rectangle is (LANE ZONE FROM TO RIGHT LEFT) with None for no end,
-                a signal is (NAME VEHICLE [(FROM VALUE)]) *)
+                a signal is (SIGNAL VEHICLE [(TIME VALUE AFTER)]) *)
 open Checker
 
 type text = Word of string | Quoted of string | Node of text list | List of text list
@@ -243,11 +243,13 @@ let rectangle = function
       { lane = name l; lies_in = zone x; from_s = end_ from; to_s = end_ upto; right_d = q right; left_d = q left }
   | _ -> unread "a rectangle"
 
-let steps = function Node [ n; a; l ] -> ((name n, name a), list (pair q q) l) | _ -> unread "a signal"
+let step = function Node [ time; x; after ] -> ((q time, q x), q after) | _ -> unread "a step"
+let steps = function Node [ n; a; l ] -> ((signal n, name a), list step l) | _ -> unread "a signal in steps"
 
 let drive = function
-  | Node [ bodies; List (first :: others); beside; lanes; values; own ] ->
+  | Node [ bodies; List (first :: others); beside; lanes; values; own; numbers ] ->
       { bodies = list body bodies; first_rectangle = rectangle first; other_rectangles = List.map rectangle others;
         beside = list (pair name name) beside; lanes_named = list (pair name name) lanes;
-        values0 = list (pair name q) values; signals = list steps own }
+        values0 = list (pair name q) values; signals = list steps own;
+        numbers = list (pair name q) numbers }
   | _ -> unread "a drive"

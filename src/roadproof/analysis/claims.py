@@ -18,9 +18,9 @@ from roadproof.evidence.answers import proofs as kept
 from roadproof.evidence.answers.proofs import SCHEMA, Claim, Index, Record
 from roadproof.evidence.answers.read import index_fields
 from roadproof.evidence.codec import ABSENT, read, write
+from roadproof.evidence.countermodel import read_trace, trace_data
 from roadproof.evidence.heading import library_of
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.evidence.refutation import read_trace, trace_data
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, JsonObject, read_json
 from roadproof.library.dependence import digest_of
 from roadproof.library.elaborate import read_claim

@@ -18,8 +18,8 @@ from roadproof.engines.search.ask import Search, ask
 from roadproof.engines.search.question import usual_road
 from roadproof.errors import InputError
 from roadproof.evidence.answers.redundancy import SCHEMA, Finding, Index, Record, Word
+from roadproof.evidence.countermodel import Countermodel, read_trace, trace_data
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.evidence.refutation import Countermodel, read_trace, trace_data
 from roadproof.evidence.settled import Settled
 from roadproof.library import scenarios as s
 from roadproof.library.bind import bind

@@ -8,13 +8,14 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from types import MappingProxyType
 
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers import read
 from roadproof.evidence.answers.entry import Entry, mismatch, read_evidence, stray_evidence
 from roadproof.evidence.answers.reader import FindLabel
 from roadproof.evidence.checking import without_place
-from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
+from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding, OtherVerdict
 from roadproof.evidence.heading import library_of
 from roadproof.evidence.journal import ANSWERS, HEAD, Journal, faults_of_line, read_kept
 from roadproof.evidence.journal import NAME as JOURNAL
@@ -242,29 +243,41 @@ def _words_of(entry: Entry) -> tuple[object, ...]:
     return entry.key, entry.verdict, entry.claim, entry.file
 
 
-def conclude(surveyed: Survey, found: Mapping[Path, Finding]) -> Iterator[Finding]:
-    """A finding for each claim: of a file alone, or of an entry with its file; then what is wrong besides."""
+_NOTHING_RULED: Mapping[str, OtherVerdict] = MappingProxyType({})
+
+
+def conclude(
+    surveyed: Survey, found: Mapping[Path, Finding], ruled: Mapping[str, OtherVerdict] = _NOTHING_RULED
+) -> Iterator[Finding]:
+    """A finding for each claim: of a file alone, or of an entry with its file; then what is wrong besides.
+
+    ``ruled``: what Coq says of the traces of entries, by where these stand.
+    """
     of_entries: set[Path] = set()
     for told in surveyed.told:
         of_entries |= {told.folder / name for name in told.named}
         yield from told.problems
         for entry in told.entries:
-            yield _of_entry(entry, told, found)
+            yield _of_entry(entry, told, found, ruled.get(entry.where))
         yield from _strays(told, found)
         yield from _of_whole(told, found)
     yield from (finding for path, finding in found.items() if path not in of_entries)
     yield from surveyed.problems
 
 
-def _of_entry(entry: Entry, told: FolderStatements, found: Mapping[Path, Finding]) -> Finding:
+def _of_entry(
+    entry: Entry, told: FolderStatements, found: Mapping[Path, Finding], ruled: OtherVerdict | None
+) -> Finding:
     """The entry's own words, where its evidence shows them."""
-    finding = _bound(entry, told, found)
+    finding = _bound(entry, told, found, ruled)
     if finding.outcome is not Acceptance.ACCEPTED or finding.kind == NO_EVIDENCE:
         return finding
     return replace(finding, unchecked=(*finding.unchecked, *told.unchecked))
 
 
-def _bound(entry: Entry, told: FolderStatements, found: Mapping[Path, Finding]) -> Finding:
+def _bound(
+    entry: Entry, told: FolderStatements, found: Mapping[Path, Finding], ruled: OtherVerdict | None
+) -> Finding:
     verdict = "WITNESSED" if entry.shows == "drive" else entry.verdict
     claim = statement(entry.assuming, entry.claim) if entry.claim else ""
     said = Finding(entry.where, "index", Acceptance.ACCEPTED, NO_REASON, verdict, entry.label, claim)
@@ -278,8 +291,14 @@ def _bound(entry: Entry, told: FolderStatements, found: Mapping[Path, Finding]) 
     if entry.file is None:
         claimed = entry.common.specification, entry.claim or "", entry.where, entry.assuming
         outcome, reason = judge_trace(entry.trace, *claimed)
+        if ruled is not None and outcome is Acceptance.ACCEPTED:
+            outcome, reason = ruled.outcome, ruled.reason
         return replace(
-            said, outcome=outcome, reason=reason, checked=() if reason else ("judged on its trace",)
+            said,
+            outcome=outcome,
+            reason=reason,
+            checked=("judged on its trace",) if outcome is Acceptance.ACCEPTED else (),
+            kernel="" if ruled is None else ruled.word,
         )
     path = told.folder / entry.file
     if entry.file not in told.named or path not in found:

@@ -3,7 +3,7 @@
 from typing import TypeAlias
 
 from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.countermodel import Countermodel
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.evidence.refutation import Countermodel
 
 Evidence: TypeAlias = Certificate | JudgedDrive | Countermodel

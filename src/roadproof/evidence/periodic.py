@@ -11,6 +11,7 @@ from math import ceil
 from typing import assert_never
 
 from roadproof.errors import InputError
+from roadproof.evidence.countermodel import Loop
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.runtime.records import dataclass
@@ -20,19 +21,6 @@ from roadproof.semantics.exact.exact import Judge, seconds
 from roadproof.semantics.exact.signals import AbstractSignals, Courses
 
 MOST_ROUNDS = 2000
-
-
-@dataclass(frozen=True)
-class Loop:
-    """From ``start`` (s) on, each ``period`` seconds are like the ones before."""
-
-    start: Fraction
-    period: Fraction
-
-    @property
-    def end(self) -> Fraction:
-        """When the first round ends."""
-        return self.start + self.period
 
 
 def judge_periodic(formula: Formula, given: Mapping[Formula, sets.TruthSet], loop: Loop) -> sets.TruthSet:

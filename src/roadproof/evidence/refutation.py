@@ -7,15 +7,12 @@ instant, lanes and lanelets as for drives, and time by the exact judge.
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
-from typing import Literal, assert_never
+from typing import assert_never
 
 from roadproof.errors import InputError, RoadproofError
-from roadproof.evidence.answers import drive as kept
-from roadproof.evidence.codec import read, write
-from roadproof.evidence.drive_file import road_of, road_said
+from roadproof.evidence.countermodel import NOWHERE, Countermodel, Instant, read_trace
 from roadproof.evidence.finding import Acceptance
-from roadproof.evidence.periodic import Loop, judge_periodic
-from roadproof.evidence.strict import JsonObject
+from roadproof.evidence.periodic import judge_periodic
 from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import under_limits
@@ -26,50 +23,11 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.node import once
 from roadproof.logic.rewrite import bounds_of, leaves_of, map_terms, without_names
 from roadproof.reasons import NO_REASON, Reason, Why
-from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact import TruthSet, judge
 from roadproof.semantics.exact.signals import AbstractSignals
 from roadproof.semantics.exact.truth import from_switches
 from roadproof.world.lanelet_rules import check_lanelets, shared_boundaries
-from roadproof.world.road import Road
 from roadproof.world.signals import FIXED
-
-Held = Literal["before", "after"]
-_BETWEEN: Mapping[Held, kept.Between] = {
-    "before": "the state of the instant before",
-    "after": "the state of the instant after",
-}
-NOWHERE = Road("no road", (), frozenset())
-
-
-@dataclass(frozen=True)
-class Instant:
-    """A state: signals, sizes and variables by name, ``s(SV)``, ``length(SV)``, ``v``, in SI units.
-
-    ``atoms`` tells a reader which predicates are true; nothing rests on it. ``after``: the state from just
-    after the instant up to the next, where it is one of its own.
-    """
-
-    time: Fraction
-    values: Mapping[str, Fraction]
-    atoms: Mapping[str, bool]
-    after: Mapping[str, Fraction] | None = None
-
-
-@dataclass(frozen=True)
-class Countermodel:
-    """A trace on which a claim is false at time 0.
-
-    ``held`` says which of two states fills the time between their instants, where the first has none of its
-    own. ``road`` is None where the claim speaks of none; its lanes and lanelets have the names that are free
-    in the claim. ``loop``: how the trace repeats itself for ever, where it does.
-    """
-
-    instants: tuple[Instant, ...]
-    parameters: Mapping[str, Fraction]
-    held: Held
-    road: Road | None = None
-    loop: Loop | None = None
 
 
 def fault_of(countermodel: Countermodel, claim: Formula, bounds: Mapping[str, str]) -> str | None:
@@ -109,9 +67,7 @@ def when_true(formula: Formula, trace: Countermodel) -> TruthSet:
 
     Raises ``InputError`` and ``UsageError`` where the trace lacks a lane, a value or a signal of it.
     """
-    first = trace.instants[0].values
-    numbered = map_terms(without_names(formula), lambda term: _with_variables(term, first))
-    bare = without_empty_windows(bind(numbered, trace.road or NOWHERE, {}, trace.parameters))
+    bare = without_empty_windows(bind(numbered(formula, trace), trace.road or NOWHERE, {}, trace.parameters))
     times = [instant.time for instant in trace.instants]
     given: dict[Formula, TruthSet] = {}
     for part in f.subformulas(bare):
@@ -121,6 +77,12 @@ def when_true(formula: Formula, trace: Countermodel) -> TruthSet:
     if trace.loop is not None:
         return judge_periodic(bare, given, trace.loop)
     return judge(bare, None, given).truth(bare)
+
+
+def numbered(formula: Formula, trace: Countermodel) -> Formula:
+    """A formula without names of definitions, and with the values of its variables."""
+    first = trace.instants[0].values
+    return map_terms(without_names(formula), lambda term: _with_variables(term, first))
 
 
 def without_empty_windows(formula: Formula) -> Formula:
@@ -217,36 +179,6 @@ def _sizes(values: Mapping[str, Fraction]) -> dict[str, Fraction]:
     return {name: value for name, value in values.items() if name.partition("(")[0] in FIXED}
 
 
-# --- plain data ----------------------------------------------------------------------------------
-
-
-def trace_data(countermodel: Countermodel) -> JsonObject:
-    """A countermodel: its road, and what holds at each instant; how it repeats itself, where it does."""
-    road, loop = countermodel.road, countermodel.loop
-    return write(
-        kept.Trace(
-            kind="trace",
-            between=_BETWEEN[countermodel.held],
-            parameters=_sorted(countermodel.parameters),
-            road=None if road is None else road_said(road),
-            repeats=None if loop is None else kept.Repeats(start=loop.start, period=loop.period),
-            instants=tuple(
-                kept.Instant(
-                    time=x.time,
-                    true=tuple(sorted(name for name, true in x.atoms.items() if true)),
-                    values=_sorted(x.values),
-                    after=None if x.after is None else _sorted(x.after),
-                )
-                for x in countermodel.instants
-            ),
-        )
-    )
-
-
-def _sorted(values: Mapping[str, Fraction]) -> dict[str, Fraction]:
-    return dict(sorted(values.items()))
-
-
 def judge_trace(
     content: object, specification: Specification, claim: str, where: str, said: Sequence[str] = ()
 ) -> tuple[Acceptance, Reason]:
@@ -259,16 +191,3 @@ def judge_trace(
     except RoadproofError as error:
         return Acceptance.UNREADABLE, Why.TOLD(error)
     return (Acceptance.REJECTED, Why.NOT_REFUTED(fault)) if fault else (Acceptance.ACCEPTED, NO_REASON)
-
-
-def read_trace(content: object, where: str) -> Countermodel:
-    """The inverse of ``trace_data``. Raises ``InputError``."""
-    place = f"{where}, trace"
-    said = read(kept.Trace, content, place)
-    return Countermodel(
-        tuple(Instant(x.time, x.values, dict.fromkeys(x.true, True), x.after) for x in said.instants),
-        said.parameters,
-        "before" if said.between == "the state of the instant before" else "after",
-        None if said.road is None else road_of(said.road, f"{place}, road"),
-        None if said.repeats is None else Loop(said.repeats.start, said.repeats.period),
-    )

@@ -17,8 +17,8 @@ from roadproof.engines.prove.states import TYPICAL_SIZE, StateChecker
 from roadproof.errors import RoadproofError
 from roadproof.evidence import state
 from roadproof.evidence.atoms import Atoms
-from roadproof.evidence.periodic import Loop
-from roadproof.evidence.refutation import Countermodel, Held, Instant, fault_of, when_true
+from roadproof.evidence.countermodel import Countermodel, Held, Instant, Loop
+from roadproof.evidence.refutation import fault_of, when_true
 from roadproof.library.specification import Query
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t

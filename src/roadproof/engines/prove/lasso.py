@@ -14,8 +14,9 @@ from roadproof.engines.prove.roads import open_quantifiers
 from roadproof.engines.prove.search import Model
 from roadproof.engines.prove.states import StateChecker
 from roadproof.errors import RoadproofError
-from roadproof.evidence.periodic import Loop, judge_periodic
-from roadproof.evidence.refutation import Countermodel, Instant, without_empty_windows
+from roadproof.evidence.countermodel import Countermodel, Instant, Loop
+from roadproof.evidence.periodic import judge_periodic
+from roadproof.evidence.refutation import without_empty_windows
 from roadproof.library.specification import Query
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula

@@ -16,8 +16,8 @@ from roadproof.engines.solve.smt import ask
 from roadproof.errors import InputError
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.certificate import Certificate, certify, goal_of
+from roadproof.evidence.countermodel import Countermodel
 from roadproof.evidence.derivation import derive_query, met_sites
-from roadproof.evidence.refutation import Countermodel
 from roadproof.evidence.settled import Settled
 from roadproof.evidence.sites import Lemma, Site, prefix_form
 from roadproof.evidence.times import ZERO

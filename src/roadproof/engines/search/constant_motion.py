@@ -5,9 +5,9 @@ from fractions import Fraction
 
 from roadproof.engines.prove.states import TYPICAL_SIZE
 from roadproof.errors import RoadproofError
+from roadproof.evidence.countermodel import NOWHERE, Countermodel
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.evidence.refutation import NOWHERE, Countermodel
 from roadproof.library.bind import values_with
 from roadproof.library.compose import negation
 from roadproof.library.specification import Query, Specification

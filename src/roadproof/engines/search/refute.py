@@ -10,8 +10,8 @@ from roadproof.engines.search.enumeration import Within, small_drive
 from roadproof.engines.search.initial_candidates import space_of
 from roadproof.engines.search.question import SearchOptions, Setting, pose, usual_model
 from roadproof.engines.search.sampling import Space, states
+from roadproof.evidence.countermodel import Countermodel, Instant
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.evidence.refutation import Countermodel, Instant
 from roadproof.library.bind import bind, values_with
 from roadproof.library.compose import negation
 from roadproof.library.specification import Query, Specification

@@ -9,7 +9,6 @@ enough there is no derivation. Nothing rests on this: Coq checks what comes out.
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import cached_property
 from typing import TypeAlias, assert_never
 
 from roadproof.evidence.derivations.parts import (
@@ -26,6 +25,7 @@ from roadproof.evidence.derivations.parts import (
     widened,
 )
 from roadproof.evidence.derivations.signs import (
+    DriveShapes,
     Part,
     Shapes,
     Signs,
@@ -43,7 +43,7 @@ from roadproof.logic.rewrite import leaves_of, with_values, without_names
 from roadproof.semantics.exact.algebraic import Root
 from roadproof.semantics.exact.exact import NOTHING_GIVEN, Judge, seconds
 from roadproof.semantics.exact.polynomial import Polynomial, polynomial
-from roadproof.semantics.exact.signals import Courses, DriveSignals
+from roadproof.semantics.exact.signals import AbstractSignals, Courses
 from roadproof.semantics.exact.truth import (
     ALWAYS,
     Cut,
@@ -57,6 +57,7 @@ from roadproof.world.road import Road
 
 MOST_STEPS = 5_000
 DEEPEST = 16  # how often a part is halved until a sign is seen
+NOTHING = Courses(AbstractSignals({}, {}))
 NOW = Part(Cut(Fraction(0), False), Cut(Fraction(0), True))
 # What a bound variable speaks of: the number of a lanelet, which stands for its lane, too.
 Scope: TypeAlias = Mapping[str, int]
@@ -69,30 +70,28 @@ def derive(
 
     Raises ``NoDerivationError``; also where the formula is false.
     """
-    known = with_values(without_names(formula), values)
-    finding = _Finding(drive, road, lanes, Shapes(drive, values))
-    return finding.why(known, {}, True, NOW)
+    return derive_on(DriveShapes(values, drive), with_values(without_names(formula), values), road, lanes)
+
+
+def derive_on(shapes: Shapes, formula: Formula, road: Road, lanes: Mapping[str, str]) -> Step:
+    """Why a formula without parameters is true at time 0. Raises as ``derive``."""
+    return _Finding(road, lanes, shapes).why(formula, {}, True, NOW)
 
 
 @dataclass
 class _Finding:
-    drive: Drive
     road: Road
     lanes: Mapping[str, str]
     shapes: Shapes
     judges: dict[tuple[tuple[str, int], ...], "_ScopedJudge"] = field(default_factory=dict)
     steps: int = 0
 
-    @cached_property
-    def courses(self) -> Courses:
-        return Courses(DriveSignals(self.drive))
-
     # --- when something is true ---------------------------------------------------------------------
 
     def when(self, formula: Formula, scope: Scope, positive: bool = True) -> TruthSet:
         key = tuple(sorted(scope.items()))
         if key not in self.judges:
-            self.judges[key] = _ScopedJudge(self.courses, NOTHING_GIVEN, finding=self, scope=scope)
+            self.judges[key] = _ScopedJudge(NOTHING, NOTHING_GIVEN, finding=self, scope=scope)
         truth = self.judges[key].visit(formula)
         return truth if positive else complement(truth)
 
@@ -169,12 +168,16 @@ class _Finding:
             def is_seen(part: Part, signs: Signs) -> bool:
                 return compares(self.shapes, formula.left, op, formula.right, part, signs)
 
-        knots = sorted({x for leaf in leaves for x in self.shapes.knots(leaf) if part.has_inside(x)})
-        cuts: list[Fraction] = []
-        for place, piece in enumerate(part.cut(knots)):
-            cuts += knots[place - 1 : place] if place else []
-            cuts += _cuts(is_seen, piece, DEEPEST)
-        return sign(tuple(cuts))
+        steps = sorted({x for leaf in leaves for x in self.shapes.steps(leaf)})
+        found: list[tuple[Part, Step]] = []
+        for whole in part.around(steps):
+            knots = sorted({x for leaf in leaves for x in self.shapes.knots(leaf) if whole.has_inside(x)})
+            cuts: list[Fraction] = []
+            for place, piece in enumerate(whole.cut(knots)):
+                cuts += knots[place - 1 : place] if place else []
+                cuts += _cuts(is_seen, piece, DEEPEST)
+            found.append((whole, sign(tuple(cuts))))
+        return put_together(found)
 
     def _joined(
         self,
@@ -242,7 +245,9 @@ class _Finding:
         match formula:
             case f.Compare():
                 leaves = {*leaves_of(formula)}
-                if any(part.has_inside(x) for leaf in leaves for x in self.shapes.knots(leaf)):
+                if any(part.has_inside(x) for leaf in leaves for x in self.shapes.knots(leaf)) or any(
+                    len(part.around(self.shapes.steps(leaf))) > 1 for leaf in leaves
+                ):
                     return formula
                 said = said_of(self.shapes, formula, part, changing, above)
                 return formula if said is None else f.Truth(said)
@@ -320,6 +325,8 @@ class _ScopedJudge(Judge):
 
     def _visit(self, formula: Formula) -> TruthSet:
         match formula:
+            case f.Compare():
+                return self.finding.shapes.when(formula)
             case f.Occupies(vehicle, name):
                 lanelet = self.finding.road.lanelets[self.finding.number(name, self.scope)]
                 return self.visit(occupies_formula(vehicle, lanelet))

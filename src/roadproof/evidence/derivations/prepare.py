@@ -3,14 +3,19 @@
 from collections.abc import Callable
 
 from roadproof.errors import RoadproofError
-from roadproof.evidence.derivations.derive import derive
+from roadproof.evidence.derivations.derive import derive, derive_on
 from roadproof.evidence.derivations.parts import NoDerivationError
+from roadproof.evidence.derivations.traces import TraceShapes
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.kernel.accept import CoqModule, Ruling, Word
 from roadproof.evidence.kernel.derivation import Step
 from roadproof.evidence.kernel.drive import Shown, claim_text, module, shown
 from roadproof.evidence.kernel.source import ClaimText, Module
+from roadproof.evidence.kernel.trace import Refutation, Refuted, refuted, trace_claim, trace_module
+from roadproof.evidence.refutation import numbered
 from roadproof.library.specification import Library
+from roadproof.logic import formula as f
+from roadproof.logic.rewrite import with_values
 
 
 def prepare(
@@ -27,6 +32,31 @@ def prepare(
     try:
         printed = claim_text(what)
         derivation = derive(what.formula, file.drive, file.road, file.lanes, what.values)
+        return CoqModule(written(name, what, printed, derivation))
+    except NoDerivationError as error:
+        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, f"no derivation was found: {error}"))
+    except RoadproofError as error:
+        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, f"it is not printed for Coq: {error}"))
+
+
+def prepare_trace(
+    name: str,
+    asked: Refutation,
+    library: Library,
+    written: Callable[[str, Refuted, ClaimText, Step], Module] = trace_module,
+) -> CoqModule:
+    """A trace as ``written`` with a derivation that a claim is false on it, or why there is none."""
+    try:
+        what = refuted(asked, library)
+    except RoadproofError as error:
+        return CoqModule(None, refusal=Ruling(Word.REFUSED, f"it cannot be put to Coq: {error}"))
+    if what.trace.loop is not None:
+        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, "its trace repeats itself for ever"))
+    world = what.world
+    try:
+        printed = trace_claim(what)
+        formula = with_values(numbered(what.formula, what.trace), world.values)
+        derivation = derive_on(TraceShapes(world.values, what), f.Not(formula), world.road, world.lanes)
         return CoqModule(written(name, what, printed, derivation))
     except NoDerivationError as error:
         return CoqModule(None, refusal=Ruling(Word.UNKNOWN, f"no derivation was found: {error}"))

@@ -4,10 +4,11 @@ Nothing rests on it: where it says yes too often Coq refuses, and where it says 
 longer, or is not found.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import reduce
+from functools import cached_property, reduce
 from itertools import pairwise, product
 
 from roadproof.logic import terms as t
@@ -24,12 +25,12 @@ from roadproof.semantics.exact.polynomial import (
     polynomial,
     primitive,
 )
-from roadproof.semantics.exact.signals import DriveSignals, course
-from roadproof.semantics.exact.truth import Cut
+from roadproof.semantics.exact.signals import Courses, DriveSignals, compare_truth, course
+from roadproof.semantics.exact.truth import Cut, TruthSet
 from roadproof.world.drive import Drive, value_at
 from roadproof.world.motion import State, starts_of
 from roadproof.world.road import Lanelet
-from roadproof.world.signals import SignalName
+from roadproof.world.signals import SIZES
 
 
 @dataclass(frozen=True)
@@ -56,6 +57,12 @@ class Part:
         """The parts between ascending instants inside."""
         cuts = [self.begin, *(Cut(x, False) for x in times)]
         return [Part(*pair) for pair in pairwise([*cuts, self.end])]  # type: ignore[arg-type]
+
+    def around(self, times: list[Fraction]) -> list["Part"]:
+        """The parts before, at and after ascending instants."""
+        cuts = [x for time in times for x in (Cut(time, False), Cut(time, True))]
+        inside = [x for x in cuts if self.begin < x and (self.end is None or x < self.end)]
+        return [Part(*pair) for pair in pairwise([self.begin, *inside, self.end])]  # type: ignore[arg-type]
 
 
 def _rational(cut: Cut) -> Fraction:
@@ -137,31 +144,29 @@ def splits(tested: set[Polynomial], part: Part) -> list[Fraction]:
 
 
 @dataclass
-class Shapes:
-    """A drive as polynomials of time."""
+class Shapes(ABC):
+    """Signals as polynomials of time; ``values``: of parameters."""
 
-    drive: Drive
     values: Mapping[str, Fraction]
-    _starts: dict[str, tuple[State, ...]] = field(default_factory=dict)
 
-    def starts(self, vehicle: str) -> tuple[State, ...]:
-        if vehicle not in self._starts:
-            self._starts[vehicle] = starts_of(self.drive.vehicles[vehicle])
-        return self._starts[vehicle]
-
+    @abstractmethod
     def knots(self, leaf: t.Leaf) -> list[Fraction]:
-        """The instants at which a leaf may change in another way than before."""
-        match leaf:
-            case t.Signal(_, vehicle):
-                return [x.time for x in self.starts(vehicle)[1:]]
-            case t.Own(name, vehicle):
-                return [start for start, _ in self.drive.own[name, vehicle][1:]]
-            case _:
-                return []
+        """The instants from which on a leaf may change in another way than before."""
 
-    def signal(self, name: SignalName, vehicle: str, part: Part) -> Polynomial:
-        """On a part without a knot of the vehicle inside."""
-        return course(name, [state for state in self.starts(vehicle) if state.time <= part.start][-1])
+    @abstractmethod
+    def steps(self, leaf: t.Leaf) -> list[Fraction]:
+        """The instants at which a leaf may be what it is neither before nor after."""
+
+    @abstractmethod
+    def signal(self, signal: t.Varying, part: Part) -> Polynomial:
+        """On a part without a knot or a step inside."""
+
+    @abstractmethod
+    def size(self, size: t.Size) -> Fraction: ...
+
+    @abstractmethod
+    def when(self, compared: Compare) -> TruthSet:
+        """When a comparison is true."""
 
     def term(self, term: Term, part: Part, signs: Signs) -> list[Polynomial]:
         """Polynomials of which one is the term at each instant; none where it cannot be said."""
@@ -180,12 +185,10 @@ class Shapes:
                 return [polynomial(value)]
             case t.Parameter(name, _):
                 return [polynomial(self.values[name])]
-            case t.Signal(name, vehicle):
-                return [self.signal(name, vehicle, part)]
-            case t.Own(name, vehicle):
-                return [polynomial(value_at(self.drive.own[name, vehicle], part.start))]
+            case t.Signal() | t.Own():
+                return [self.signal(term, part)]
             case t.Size():
-                return [polynomial(DriveSignals(self.drive).size(term))]
+                return [polynomial(self.size(term))]
             case t.Sum(terms):
                 return all_of(terms, lambda p, q: [add(p, q)])
             case t.Product(factors):
@@ -214,6 +217,47 @@ class Shapes:
         if signs.above(False, negate(difference), part):
             return [q]
         return [p, q]
+
+
+@dataclass
+class DriveShapes(Shapes):
+    """Those of a drive."""
+
+    drive: Drive
+    _starts: dict[str, tuple[State, ...]] = field(default_factory=dict)
+
+    @cached_property
+    def courses(self) -> Courses:
+        return Courses(DriveSignals(self.drive))
+
+    def when(self, compared: Compare) -> TruthSet:
+        return compare_truth(self.courses, compared.left, compared.op, compared.right)
+
+    def starts(self, vehicle: str) -> tuple[State, ...]:
+        if vehicle not in self._starts:
+            self._starts[vehicle] = starts_of(self.drive.vehicles[vehicle])
+        return self._starts[vehicle]
+
+    def knots(self, leaf: t.Leaf) -> list[Fraction]:
+        match leaf:
+            case t.Signal(_, vehicle):
+                return [x.time for x in self.starts(vehicle)[1:]]
+            case t.Own(name, vehicle):
+                return [start for start, _ in self.drive.own[name, vehicle][1:]]
+            case _:
+                return []
+
+    def steps(self, leaf: t.Leaf) -> list[Fraction]:
+        return []
+
+    def signal(self, signal: t.Varying, part: Part) -> Polynomial:
+        if isinstance(signal, t.Own):
+            return polynomial(value_at(self.drive.own[signal.name, signal.vehicle], part.start))
+        starts = self.starts(signal.vehicle)
+        return course(signal.name, [state for state in starts if state.time <= part.start][-1])
+
+    def size(self, size: t.Size) -> Fraction:
+        return self.courses.signals.size(size)
 
 
 _MIRRORED: Mapping[Comparison, tuple[bool, bool]] = {
@@ -288,16 +332,16 @@ def occupies(
     shapes: Shapes, vehicle: str, lanelet: Lanelet, positive: bool, part: Part, signs: Signs
 ) -> bool:
     """Whether Shown.v says that the box is in the lanelet (or is not) in all of ``part``."""
-    motion = shapes.drive.vehicles[vehicle]
-    along, across = (shapes.signal(name, vehicle, part) for name in ("s", "d"))
+    along, across = (shapes.signal(x, part) for x in (t.Signal("s", vehicle), t.Signal("d", vehicle)))
+    length, width = (polynomial(shapes.size(t.Size(x, vehicle))) for x in SIZES)
     low, high = lanelet.s
     edges: list[Polynomial] = []
     if low is not None:
         edges.append(subtract(along, polynomial(low)))
     if high is not None:
-        edges.append(subtract(polynomial(high), subtract(along, polynomial(motion.length))))
+        edges.append(subtract(polynomial(high), subtract(along, length)))
     edges.append(subtract(across, polynomial(lanelet.d[0])))
-    edges.append(subtract(polynomial(lanelet.d[1]), subtract(across, polynomial(motion.width))))
+    edges.append(subtract(polynomial(lanelet.d[1]), subtract(across, width)))
     if positive:
         return all(signs.above(True, p, part) for p in edges)
     return any(signs.above(False, negate(p), part) for p in edges)

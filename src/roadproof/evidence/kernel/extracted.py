@@ -11,16 +11,18 @@ from roadproof.errors import InputError
 from roadproof.evidence.kernel.accept import CoqModule, KernelRulings, Ruling, Word
 from roadproof.evidence.kernel.constructors import Writer, rational, term
 from roadproof.evidence.kernel.derivation import Step, coq_derivation
-from roadproof.evidence.kernel.drive import Shown, beside
+from roadproof.evidence.kernel.drive import Shown
 from roadproof.evidence.kernel.instant import Reason, reason
 from roadproof.evidence.kernel.names import comment, literal, quoted
 from roadproof.evidence.kernel.ocaml import Program
 from roadproof.evidence.kernel.source import ClaimText, Module, own_bounds, own_signals
 from roadproof.evidence.kernel.statement import Statement
 from roadproof.evidence.kernel.tableau import Tableau, coq_tree
+from roadproof.evidence.kernel.trace import Refuted
+from roadproof.evidence.kernel.world import WORDS_OF_SIGNALS, Steps, World, beside
 from roadproof.logic.rewrite import without_names
-from roadproof.logic.terms import Own, Term
-from roadproof.world.drive import Course, Motion
+from roadproof.logic.terms import Own, Term, Varying
+from roadproof.world.drive import Motion
 from roadproof.world.road import Lanelet
 
 
@@ -66,28 +68,41 @@ def drive(name: str, shown: Shown, printed: ClaimText, derivation: Step) -> Modu
     parts = [
         *_claimed("drive", name, shown.file.formula, _bounds(shown.bounds, printed.own), writer),
         f" {claim}",
-        *_drive(shown),
+        *_world(shown.world),
         *coq_derivation(derivation),
     ]
     return Module(name, "\n".join(parts) + ")\n", (), 0)
 
 
-def _drive(shown: Shown) -> Iterator[str]:
+def trace(name: str, refuted: Refuted, printed: ClaimText, derivation: Step) -> Module:
+    """That the opposite of a claim is true of a trace, as a form. Raises ``InputError``."""
+    writer = Writer()
+    claim = writer.formula(refuted.formula)
+    parts = [
+        *_claimed("drive", name, refuted.claim, _bounds(refuted.bounds, printed.own), writer),
+        f" (Not {claim})",
+        *_world(refuted.world),
+        *coq_derivation(derivation),
+    ]
+    return Module(name, "\n".join(parts) + ")\n", (), 0)
+
+
+def _world(world: World) -> Iterator[str]:
     """The fields of ``drive`` in Drive.v."""
-    file = shown.file
-    if not file.road.lanelets:
+    if not world.road.lanelets:
         raise InputError("a road without lanelets is not written")
-    yield f" ({_list(_body(name, motion) for name, motion in file.drive.vehicles.items())}"
-    yield f"  {_list(map(_rectangle, file.road.lanelets))}"
-    yield f"  {_list(f'{quoted(a)} {quoted(b)}' for a, b in beside(file.road))}"
-    yield f"  {_list(f'{literal(a)} {quoted(b)}' for a, b in sorted(file.lanes.items()))}"
-    yield f"  {_list(f'{literal(a)} {rational(x)}' for a, x in sorted(shown.values.items()))}"
-    yield f"  {_list(_signal(*key, x) for key, x in sorted(file.drive.own.items()))})"
+    yield f" ({_list(_body(name, motion) for name, motion in world.vehicles.items())}"
+    yield f"  {_list(map(_rectangle, world.road.lanelets))}"
+    yield f"  {_list(f'{quoted(a)} {quoted(b)}' for a, b in beside(world.road))}"
+    yield f"  {_list(f'{literal(a)} {quoted(b)}' for a, b in sorted(world.lanes.items()))}"
+    yield f"  {_list(f'{literal(a)} {rational(x)}' for a, x in sorted(world.values.items()))}"
+    yield f"  {_list(_signal(*x) for x in world.steps.items())}"
+    yield f"  {_list(f'{literal(a)} {rational(x)}' for a, x in sorted(world.numbers.items()))})"
 
 
-def _signal(name: str, vehicle: str, course: Course) -> str:
-    steps = _list(f"{rational(start)} {rational(value)}" for start, value in course)
-    return f"{literal(name)} {quoted(vehicle)} {steps}"
+def _signal(signal: Varying, steps: Steps) -> str:
+    word = f"(Own {literal(signal.name)})" if isinstance(signal, Own) else WORDS_OF_SIGNALS[signal.name]
+    return f"{word} {quoted(signal.vehicle)} {_list(' '.join(map(rational, x)) for x in steps)}"
 
 
 def _rectangle(x: Lanelet) -> str:

@@ -33,7 +33,9 @@ q by_ CloseTruth Close CloseLinear CloseRoad CloseRoads CloseZones Alpha Beta Ti
 NewRoad InstRoad Cut Fact the_drive drive reasons derivation shows shown bodies first_rectangle
 other_rectangles beside lanes_named values signals is_a car truck bus motorcycle other
 long wide long_above_0 wide_above_0 along across starts_at
-starts_with pieces finally lane lies_in from_s to_s right_d left_d Turn One Split Element Each Whole Moment
+starts_with pieces finally lane lies_in from_s to_s right_d left_d numbers
+Place_lon Place_lat Speed_lon Speed_lat Acceleration_lon Acceleration_lat Jerk_lon the_trace
+Turn One Split Element Each Whole Moment
 Reach Break Fixed Later Drive Signs Shown Roadproof Coq Meaning Text Linear Tableau Products Rss Instant
 Named Sane Guarantee Case Motion Integral Schemas Moves
 """

@@ -16,7 +16,7 @@ from roadproof.evidence.answers.catalogue_index import SCHEMA as CATALOGUE
 from roadproof.evidence.checking import Checker
 from roadproof.evidence.codec import write
 from roadproof.evidence.finding import Acceptance, Finding, OtherVerdict, exit_code, summary
-from roadproof.evidence.folder import FolderStatements, conclude, survey
+from roadproof.evidence.folder import FolderStatements, Survey, conclude, survey
 from roadproof.evidence.heading import heading
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.ci import BuildResult
@@ -144,13 +144,16 @@ def check(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
     library = load_library(named)
     surveyed = survey([Path(x) for x in paths], named, find_label)
     given = list(surveyed.files.items())
-    answered, ruled = (None, {}) if asked.kernel is None else _put_to_kernel(asked.kernel, given, asked)
-    work = [_Job(path, beside, ruled.get(path)) for path, beside in given]
+    traces = () if asked.kernel is None else _traces(surveyed, named)
+    answered, ruled = (
+        (None, {}) if asked.kernel is None else _put_to_kernel(asked.kernel, given, traces, asked)
+    )
+    work = [_Job(path, beside, ruled.get(str(path))) for path, beside in given]
     judge = partial(_examine, asked.solver, work_of(asked))
     answers = pool.in_order(pool.work(judge, work, asked.jobs, _doubt, asked.progress, "files"))
     found = {path: finding for (path, _), finding in zip(given, answers, strict=True)}
     beside = tuple(path for told in surveyed.told for path in told.specs)
-    findings = [*conclude(surveyed, found)]
+    findings = [*conclude(surveyed, found, ruled)]
     left: dict[str, tuple[str, ...]] = {}
     for told in surveyed.told:
         again = _judged_again(told, asked)
@@ -163,13 +166,14 @@ def check(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
 
 
 def _put_to_kernel(
-    kernel: Kernel, given: _Given, asked: Check
-) -> tuple["KernelAnswer", dict[Path, OtherVerdict]]:
-    """What a kernel says of all files, and of each by its path."""
+    kernel: Kernel, given: _Given, traces: Sequence[tuple[str, "KernelQuestion"]], asked: Check
+) -> tuple["KernelAnswer", dict[str, OtherVerdict]]:
+    """What a kernel says of all files and traces, and of each by its path or where it stands."""
     from roadproof.frontends.api.kernel import names_of, put, ruled
 
-    answered = put(_asked(given), asked.jobs, asked.progress, kernel)
-    names = names_of(path for path, _ in given).items()
+    answered = put([*_asked(given), *(x for _, x in traces)], asked.jobs, asked.progress, kernel)
+    names = [(str(path), name) for path, name in names_of(path for path, _ in given).items()]
+    names += [(where, x.name) for where, x in traces]
     said = answered.rulings
     return answered, {path: ruled(said[name]) for path, name in names if name in said}
 
@@ -197,10 +201,30 @@ def write_sources(
     from roadproof.frontends.api.kernel import names_of
     from roadproof.frontends.api.kernel import write as write_all
 
-    given = list(survey([Path(x) for x in paths], tuple(Path(x) for x in specs), find_label).files.items())
-    reasons = write_all(_asked(given), Path(folder), jobs, kernel)
+    named = tuple(Path(x) for x in specs)
+    surveyed = survey([Path(x) for x in paths], named, find_label)
+    given = list(surveyed.files.items())
+    traces = _traces(surveyed, named)
+    reasons = write_all([*_asked(given), *(x for _, x in traces)], Path(folder), jobs, kernel)
     by_name = {name: path for path, name in names_of(path for path, _ in given).items()}
+    by_name |= {x.name: Path(where) for where, x in traces}
     return {by_name[name]: reason for name, reason in reasons.items()}
+
+
+def _traces(surveyed: Survey, specs: tuple[Path, ...]) -> list[tuple[str, "KernelQuestion"]]:
+    """The traces that indexes and journals hold, with where they stand."""
+    from roadproof.evidence.kernel.trace import Refutation
+    from roadproof.frontends.api.kernel import KernelQuestion
+
+    found: list[tuple[str, KernelQuestion]] = []
+    for told in surveyed.told:
+        for entry in told.entries:
+            if entry.shows == "counterexample" and entry.file is None and entry.claim is not None:
+                common = entry.common
+                content = (entry.claim, common.set_name, common.options, entry.assuming, entry.trace)
+                asked, home = Refutation(*content, entry.where), (*specs, *told.specs)
+                found.append((entry.where, KernelQuestion(f"trace_{len(found) + 1}_of_index", asked, home)))
+    return found
 
 
 def _asked(given: _Given) -> list["KernelQuestion"]:

@@ -14,6 +14,7 @@ from roadproof.evidence import drive_file
 from roadproof.evidence.answers.shared import Kernel
 from roadproof.evidence.certificate import SCHEMAS_READ, Certificate, read_certificate_data
 from roadproof.evidence.derivations.prepare import prepare as prepare_drive
+from roadproof.evidence.derivations.prepare import prepare_trace
 from roadproof.evidence.drive_file import DriveFile, read_drive
 from roadproof.evidence.finding import Acceptance, OtherVerdict
 from roadproof.evidence.kernel import accept, coq, extracted, ocaml
@@ -22,6 +23,8 @@ from roadproof.evidence.kernel.drive import module as source_drive
 from roadproof.evidence.kernel.source import file
 from roadproof.evidence.kernel.source import module as source_proof
 from roadproof.evidence.kernel.statement import counted
+from roadproof.evidence.kernel.trace import Refutation
+from roadproof.evidence.kernel.trace import trace_module as source_trace
 from roadproof.evidence.strict import read_json
 from roadproof.frontends.settings.value_types import KernelName
 from roadproof.library.loading import load_library
@@ -47,10 +50,10 @@ _EXIT = {
 
 @dataclass(frozen=True)
 class KernelQuestion:
-    """A certificate, or the file that it or a drive is in; ``home`` is its library, or the files of that."""
+    """A certificate, a trace, or the file of a certificate or drive; ``home``: its library, or its files."""
 
     name: str
-    certificate: Certificate | Path
+    certificate: Certificate | Path | Refutation
     home: Library | tuple[Path, ...]
 
 
@@ -192,6 +195,11 @@ def prepare_all(
     return {x.name: y for x, y in zip(asked, made, strict=True) if y is not None}
 
 
+# How drives, traces and proofs are written for each kernel.
+_COQ = source_drive, source_trace, source_proof
+_EXTRACTED = extracted.drive, extracted.trace, extracted.proof
+
+
 def _prepare(kernel: KernelName, asked: KernelQuestion) -> CoqModule | None:
     content: object = asked.certificate
     if isinstance(content, Path):
@@ -200,7 +208,9 @@ def _prepare(kernel: KernelName, asked: KernelQuestion) -> CoqModule | None:
         except RoadproofError:
             return None
     home = asked.home if isinstance(asked.home, Library) else load_library(asked.home)
-    drive, proof = (source_drive, source_proof) if kernel == "coq" else (extracted.drive, extracted.proof)
+    drive, trace, proof = _COQ if kernel == "coq" else _EXTRACTED
+    if isinstance(content, Refutation):
+        return prepare_trace(asked.name, content, home, trace)
     if isinstance(content, DriveFile):
         return prepare_drive(asked.name, content, home, drive)
     return accept.prepare(asked.name, content, home, proof) if isinstance(content, Certificate) else None

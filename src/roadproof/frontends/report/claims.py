@@ -6,8 +6,8 @@ from itertools import groupby
 
 from roadproof.analysis.claims import ClaimResult, Claims
 from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.countermodel import Countermodel
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.evidence.refutation import Countermodel
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.motion import Assumption, is_moving, statement
 from roadproof.library.scenarios import LANE

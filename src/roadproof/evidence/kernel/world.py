@@ -1,0 +1,119 @@
+"""A drive or a trace as a term of proofs/kernel/Drive.v. Trusted: it says what is proved."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import TypeAlias
+
+from roadproof.errors import InputError
+from roadproof.evidence.kernel.derivation import rational
+from roadproof.evidence.kernel.names import literal, quoted
+from roadproof.logic import terms as t
+from roadproof.world.drive import Motion
+from roadproof.world.road import Lanelet, Road
+from roadproof.world.signals import SignalName
+
+# Times in their order, each with the value at it and the value after it, before the next.
+Steps: TypeAlias = tuple[tuple[Fraction, Fraction, Fraction], ...]
+WORDS_OF_SIGNALS: Mapping[SignalName, str] = {
+    "s": "Place_lon",
+    "d": "Place_lat",
+    "v_lon": "Speed_lon",
+    "v_lat": "Speed_lat",
+    "a_lon": "Acceleration_lon",
+    "a_lat": "Acceleration_lat",
+    "j_lon": "Jerk_lon",
+}
+
+
+@dataclass(frozen=True)
+class World:
+    """Vehicles on a road, and signals in steps; all others are those of the motions.
+
+    ``lanes``: the lane of the road that a name of the claim stands for. ``values``: of parameters;
+    ``numbers``: of those that the claim speaks of.
+    """
+
+    vehicles: Mapping[str, Motion]
+    road: Road
+    lanes: Mapping[str, str]
+    values: Mapping[str, Fraction]
+    steps: Mapping[t.Varying, Steps]
+    numbers: Mapping[str, Fraction] = field(default_factory=dict)
+
+
+def world_lines(world: World) -> Iterator[str]:
+    """Raises ``InputError`` for names that are not printed."""
+    if not world.road.lanelets:
+        raise InputError("a road without lanelets is not printed")
+    yield "{|"
+    yield from _field("bodies", [_body(name, motion) for name, motion in world.vehicles.items()])
+    first, *others = map(_rectangle, world.road.lanelets)
+    yield f"  first_rectangle := {first};"
+    yield from _field("other_rectangles", others)
+    yield from _field("beside", [_pair(quoted(a), quoted(b)) for a, b in beside(world.road)])
+    yield from _field("lanes_named", [_pair(literal(a), quoted(b)) for a, b in sorted(world.lanes.items())])
+    yield from _field("values", _numbers(world.values))
+    yield from _field("signals", [_signal(*x) for x in world.steps.items()])
+    yield from _field("numbers", _numbers(world.numbers), "")
+    yield "|}"
+
+
+def _numbers(values: Mapping[str, Fraction]) -> list[str]:
+    return [_pair(literal(name), rational(x)) for name, x in sorted(values.items())]
+
+
+def _field(name: str, items: Sequence[str], end: str = ";") -> Iterator[str]:
+    if not items:
+        yield f"  {name} := []{end}"
+        return
+    yield f"  {name} := ["
+    for place, item in enumerate(items):
+        yield f"    {item}{';' if place + 1 < len(items) else ''}"
+    yield f"  ]{end}"
+
+
+def _pair(one: str, other: str) -> str:
+    return f"({one}, {other})"
+
+
+def beside(road: Road) -> list[tuple[str, str]]:
+    found = sorted(tuple(sorted(pair)) for pair in road.adjacent)
+    return [(a, b) for a, b in found]
+
+
+def _rectangle(x: Lanelet) -> str:
+    low, high = ("None" if y is None else f"Some {rational(y)}" for y in x.s)
+    return (
+        f"{{| lane := {quoted(x.lane)}; lies_in := {x.zone}; from_s := {low}; to_s := {high}; "
+        f"right_d := {rational(x.d[0])}; left_d := {rational(x.d[1])} |}}"
+    )
+
+
+def _signal(signal: t.Varying, steps: Steps) -> str:
+    word = f"Own {literal(signal.name)}" if isinstance(signal, t.Own) else WORDS_OF_SIGNALS[signal.name]
+    shown = "; ".join(f"({', '.join(map(rational, step))})" for step in steps)
+    return f"({word}, {quoted(signal.vehicle)}, [{shown}])"
+
+
+def _body(name: str, motion: Motion) -> str:
+    along = _course(motion.s, motion.v_lon, [(p.duration, p.a_lon, p.j_lon) for p in motion.pieces])
+    across = _course(motion.d, motion.v_lat, [(p.duration, p.a_lat, Fraction(0)) for p in motion.pieces])
+    return (
+        f"({literal(name)}, {{| is_a := {motion.kind or 'other'};\n"
+        f"      long := {rational(motion.length)}; wide := {rational(motion.width)};\n"
+        f"      long_above_0 := eq_refl; wide_above_0 := eq_refl;\n"
+        f"      along := {along};\n      across := {across} |}})"
+    )
+
+
+def _course(
+    place: Fraction, speed: Fraction, pieces: Sequence[tuple[Fraction | None, Fraction, Fraction]]
+) -> str:
+    """``pieces``: duration, acceleration and jerk; the last is for ever and without jerk."""
+    *before, (_, last, _) = pieces
+    shown = [f"({', '.join(rational(x) for x in piece if x is not None)})" for piece in before]
+    return (
+        f"{{| starts_at := {rational(place)}; starts_with := {rational(speed)};\n"
+        f"        pieces := [{'; '.join(shown)}]; finally := {rational(last)} |}}"
+    )

@@ -1,0 +1,171 @@
+"""Traces that refute claims, put to Coq: accepted where the claim is false on them, and refused elsewhere."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import roadproof as rp
+from judge.cases import comparisons, formulas
+from kernel import raw
+from kernel.drives import HEAD
+from kernel.needs import needs_coq, needs_ocaml
+from roadproof.evidence.countermodel import Countermodel, Instant, Loop, trace_data
+from roadproof.evidence.derivations.derive import derive_on
+from roadproof.evidence.derivations.prepare import prepare_trace
+from roadproof.evidence.derivations.traces import TraceShapes
+from roadproof.evidence.finding import Acceptance
+from roadproof.evidence.kernel.accept import Word
+from roadproof.evidence.kernel.coq import ready
+from roadproof.evidence.kernel.derivation import coq_derivation
+from roadproof.evidence.kernel.trace import ANYWHERE, Refutation, Refuted, refuted, world_of
+from roadproof.evidence.kernel.world import world_lines
+from roadproof.evidence.refutation import when_true
+from roadproof.frontends.api.checking import check
+from roadproof.library.loading import bundled_library
+from roadproof.logic import formula as f
+
+FALSE = [
+    "v_lon(SV) > 0 -> G v_lon(SV) > 0",
+    "F danger(SV,POV) -> danger(SV,POV)",
+    "atLane(SV,L) -> G atLane(SV,L)",
+    "(some l in lanes: atLane(SV,l)) -> every l in lanes: atLane(SV,l)",
+    "F[0, 2 s] a_lon(SV) > 1 m/s^2 -> G[1 s, 2 s] a_lon(SV) > 1 m/s^2",
+    "kind(SV) = truck -> F kind(POV) = truck",
+    "(v_lon(SV) > 3 m/s U[1 s, 2 s] v_lon(SV) > 6 m/s) -> v_lon(SV) > 3 m/s",
+    "scenario_1(SV,POV,L) -> scenario_4(SV,POV,L)",
+    "given v: m/s: v_lon(SV) > v -> v_lon(POV) > v",
+]
+
+
+@needs_coq
+@needs_ocaml
+def test_refuting_traces_of_proofs_are_accepted(tmp_path):
+    found = rp.prove(*FALSE, drive=False, out=tmp_path, jobs=1)
+    assert {str(x) for x in found.verdicts.values()} == {"REFUTED"}
+    for kernel in ("coq", "extracted"):
+        findings = check(tmp_path, kernel=kernel, jobs=1).findings
+        assert [(x.outcome, x.kernel) for x in findings] == [(Acceptance.ACCEPTED, "accepted")] * len(FALSE)
+
+
+# --- random traces -------------------------------------------------------------------------------
+
+states = st.fixed_dictionaries(
+    {
+        f"{name}({vehicle})": st.integers(-3, 6).map(Fraction)
+        for name in ("s", "d", "v_lon", "v_lat", "a_lon", "a_lat")
+        for vehicle in "AB"
+    }
+)
+times = st.sets(st.integers(1, 6), max_size=3).map(lambda x: [Fraction(n, 2) for n in sorted({0, *x})])
+
+
+@st.composite
+def traces(draw):
+    instants = [Instant(time, draw(states), {}, draw(st.one_of(st.none(), states))) for time in draw(times)]
+    return Countermodel(tuple(instants), {}, draw(st.sampled_from(["before", "after"])))
+
+
+def is_true(formula, trace):
+    return when_true(formula, trace).at(Fraction(0))
+
+
+def cases(count):
+    """Triples of a formula, a trace on which it is false, and another one on which it is true, or None."""
+    found = []
+
+    @settings(
+        max_examples=count,
+        derandomize=True,
+        database=None,
+        deadline=None,
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(formulas(comparisons, leaves=5), traces(), st.lists(traces(), min_size=4, max_size=4))
+    def collect(formula, trace, others):
+        formula = f.Not(formula) if is_true(formula, trace) else formula
+        found.append((formula, trace, next((x for x in others if is_true(formula, x)), None)))
+
+    collect()
+    return found
+
+
+def refuted_by(formula, trace):
+    world = world_of(trace, ("A", "B"), (), ANYWHERE, {})
+    return Refuted("", "base", trace, formula, world, {}, {})
+
+
+def example(name, what, derivation, answer):
+    """That Coq's checker answers so of the opposite of a formula."""
+    lines = [
+        f"Definition {name} : drive :=",
+        *world_lines(what.world),
+        ".",
+        f"Example {name}_is : accepts {name} [] (Not {raw.formula(what.formula)})",
+        *coq_derivation(derivation),
+        f"= {str(answer).lower()}.",
+        "Proof. vm_compute. reflexivity. Qed.",
+    ]
+    return "\n".join(lines) + "\n"
+
+
+@needs_coq
+def test_coq_says_of_random_traces_what_the_judge_says():
+    """The same derivation is refused on a trace on which the formula is true."""
+    given, out, damaged = cases(60), [HEAD], 0
+    for number, (formula, trace, other) in enumerate(given):
+        what = refuted_by(formula, trace)
+        derivation = derive_on(TraceShapes({}, what), f.Not(formula), ANYWHERE, {})
+        out.append(example(f"yes_{number}", what, derivation, True))
+        if other is not None:
+            out.append(example(f"no_{number}", refuted_by(formula, other), derivation, False))
+            damaged += 1
+    assert len(given) >= 50
+    assert damaged >= 15
+    with ready() as coq:
+        ran = coq.run("".join(out))
+    assert (ran.code, ran.complained) == (0, "")
+
+
+# --- what is refused, and what is only unknown -----------------------------------------------------
+
+
+def jumping(**changed):
+    """v_lon(SV) is 1, 0 at 2 s, and 1 again after it."""
+    at, after = {"v_lon(SV)": Fraction(1)}, {"v_lon(SV)": Fraction(0)}
+    instants = (Instant(Fraction(0), at, {}), Instant(Fraction(2), after, {}, at))
+    return replace(Countermodel(instants, {}, "before"), **changed)
+
+
+def asked(claim, trace):
+    return Refutation(claim, "base", {}, (), trace_data(trace), "here")
+
+
+def test_a_claim_that_is_true_on_its_trace_has_no_module():
+    for claim, has in [("G v_lon(SV) > 0", True), ("G[0, 1 s] v_lon(SV) > 0", False)]:
+        made = prepare_trace("one", asked(claim, jumping()), bundled_library())
+        assert (made.module is not None) == has
+
+
+@pytest.mark.parametrize(
+    ("claim", "trace", "word", "reason"),
+    [
+        ("nobody(SV)", jumping(), Word.REFUSED, "it cannot be put to Coq"),
+        ("G v_lon(SV) > 0", jumping(loop=Loop(Fraction(0), Fraction(3))), Word.UNKNOWN, "repeats itself"),
+        ("given v: m/s: v > 0", jumping(), Word.REFUSED, "does not say what v is"),
+    ],
+)
+def test_what_is_refused_or_unknown(claim, trace, word, reason):
+    refusal = prepare_trace("one", asked(claim, trace), bundled_library()).refusal
+    assert refusal.word is word
+    assert reason in refusal.reason
+
+
+def test_what_is_printed_says_claim_trace_and_theorem():
+    text = prepare_trace("one", asked("G v_lon(SV) > 0", jumping()), bundled_library()).module.text
+    assert "Definition claim : formula := G (v_lon SV > 0)." in text
+    assert '(Speed_lon, "SV", [(0, 1, 1); (2, 0, 1)])' in text
+    assert "Theorem proved : ~ Roadproof.Meaning.valid bounds claim." in text
+    assert [*refuted(asked("G v_lon(SV) > 0", jumping()), bundled_library()).world.vehicles] == ["SV"]
