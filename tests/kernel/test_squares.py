@@ -18,12 +18,9 @@ from roadproof.evidence.kernel.reduction import reduce_constraints
 from roadproof.evidence.kernel.source import HEAD
 from roadproof.library.loading import bundled_library
 from roadproof.world.polynomial import Polynomial
+from tables import read_table
 
-CLAIMS = """
-given x: unitless: 100*x^2 - 2002*x + 10021 > 0
-given x, y: unitless: x^4 + y^4 + 1 >= 1.3*x*y + 0.7*x^2*y
-given v: m/s: 0 m/s <= v and b_min <= b_max -> 0 m <= dRSS_lon(v,v) - v*rho
-""".strip().splitlines()
+CLAIMS = read_table(__file__, "claims")
 
 
 def _module(claim):
@@ -95,6 +92,29 @@ def test_reduced_inequalities_have_the_signs_of_those_given(seed):
             given = one.polynomial.value(point.__getitem__)
             found = reduction.lift(other.polynomial).value(point.__getitem__)
             assert (given > 0, given < 0) == (found > 0, found < 0)
+
+
+def test_a_sum_of_inequalities_is_kept_where_each_speaks_of_a_direction_that_is_left_out():
+    """What is nonlinear depends on 2 - 1 and 2 + 3; 1 and 3 are at least 0, so 3 + 1 is."""
+    gap, way = _polynomial(x2=1, x1=-1), _polynomial(x2=1, x3=1)
+    hard = Constraint("above", gap * way)
+    sizes = [Constraint("at least", _polynomial(x1=1)), Constraint("above", _polynomial(x3=1))]
+    reduction = reduce_constraints([hard, *sizes])
+    (linear,) = (x for x in reduction.inequalities if x.polynomial.degree == 1)
+    lifted = reduction.lift(linear.polynomial)
+    assert linear.strict
+    assert lifted == _polynomial(x1=1, x3=1).scaled(lifted.terms[(1,)])
+    assert len(reduce_constraints([hard, sizes[0]]).inequalities) == 1
+
+
+@pytest.mark.parametrize(("strict", "left"), [(False, 3), (True, 4)])
+def test_linear_inequalities_that_follow_are_left_out(strict, left):
+    """x + y follows from x and y where it need not be above 0, and x + 1 does in any case."""
+    x, y = _polynomial(x1=1), _polynomial(x2=1)
+    linear = [x, y, x + _polynomial(one=1)]
+    constraints = [Constraint("at least", p) for p in (*linear, x * y * x - y)]
+    constraints.append(Constraint("above" if strict else "at least", x + y))
+    assert len(reduce_constraints(constraints).inequalities) == left
 
 
 def test_no_sum_of_squares_is_found_for_what_has_a_solution():

@@ -2,9 +2,10 @@
 
 The fact is taken to be false and taken apart; maxima and minima by cases, quotients as numbers of their own;
 then a contradiction of polynomial constraints is looked for (``cone.py``, then ``squares.py``), at last with
-quotients taken to be at least 0, or below.
+quotients and variables taken to be at least 0, or below.
 """
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -25,6 +26,7 @@ MOST_SUMS = 20  # cases in which sums of squares are looked for
 MOST_PARTS = 400  # of a polynomial
 MOST_CUTS = 2
 LEVELS = (1, 2, 3)
+_PLACES = ("s", "d")
 
 
 class NoReasonError(Exception):
@@ -142,8 +144,8 @@ class _Search:
         return found
 
     def _squares(self, state: _State) -> str | None:
-        """By sums of squares, which are asked before the signs of quotients are told apart."""
-        if state.cuts or self.sums <= 0:
+        """By sums of squares, which are asked before signs are told apart."""
+        if self.sums <= 0:
             return None
         self.sums -= 1
         from roadproof.evidence.kernel import squares  # with numpy and a solver
@@ -271,18 +273,28 @@ class _Search:
         return None
 
     def _cut(self, state: _State) -> str:
-        """A quotient of which no sign is known, at least 0 or below; else no reason is found."""
-        if state.cuts >= MOST_CUTS:
+        """What no sign is known of, at least 0 or below; else no reason is found."""
+        unknown = None if state.cuts >= MOST_CUTS else self._of_unknown_sign(state)
+        if unknown is None:
             raise NoReasonError
-        signs = {v for x in state.constraints for v in x.polynomial.variables if len(x.polynomial.terms) == 1}
+        cut = replace(state, cuts=state.cuts + 1)
+        first = self._prove(cut.constrained(cone.Constraint("at least", unknown)))
+        other = self._prove(cut.constrained(cone.Constraint("above", unknown.scaled(Fraction(-1)))))
+        return f"(Sign {cone.coq(unknown)} {first} {other})"
+
+    def _of_unknown_sign(self, state: _State) -> Polynomial[int] | None:
+        """A quotient, or the variable that most products contain; of a place the sign says nothing."""
+        constraints = [x.polynomial for x in state.constraints]
+        signs = {v for x in constraints for v in x.variables if len(x.terms) == 1}
         for x, polynomial in state.table.items():
             if isinstance(x, t.Quotient) and not polynomial.variables & signs:
-                below = polynomial.scaled(Fraction(-1))
-                cut = replace(state, cuts=state.cuts + 1)
-                first = self._prove(cut.constrained(cone.Constraint("at least", polynomial)))
-                other = self._prove(cut.constrained(cone.Constraint("above", below)))
-                return f"(Sign {cone.coq(polynomial)} {first} {other})"
-        raise NoReasonError
+                below = self._polynomial(state, x.denominator)
+                if below is None or below.degree > 0:
+                    return polynomial
+        places = {self.atoms[x] for x in self.atoms if isinstance(x, t.Signal) and x.name in _PLACES}
+        products = Counter(v for x in constraints for m in x.terms if len(m) > 1 for v in set(m))
+        found = [v for v, _ in products.most_common() if v not in signs | places]
+        return variable(found[0]) if found else None
 
 
 def _small(polynomial: Polynomial[int]) -> Polynomial[int]:

@@ -1,17 +1,21 @@
 """Fewer variables for the search of a contradiction: equations solved, directions without effect left out.
 
+What follows from other linear inequalities is left out, too; products of it follow from products of them.
+
 An equation in which a variable has a number as factor gives that variable; constraints become themselves
 plus a multiple of the equation. Where all nonlinear constraints depend on differences of variables only, as
 on gaps between vehicles, one variable stands for each difference. Not trusted: Coq adds up what comes out.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import log2
 
 from roadproof.evidence.kernel.cone import Constraint, coq, echelon, number, whole_factor
 from roadproof.world.polynomial import Polynomial, constant, variable
+
+_SMALL = 1e-6
 
 
 @dataclass(frozen=True)
@@ -189,15 +193,21 @@ def _flat(inequalities: list[Inequality], equations: list[Equation]) -> Reductio
     pivots = echelon(rows.values(), -1)
     forms = {v: Polynomial({(x,): q for x, q in row.items()}) for v, row in (pivots or {}).items()}
     dropped = {v for v in variables if v not in forms}
-    stays = [x for x in inequalities if _unchanged(x.polynomial, forms, dropped)]
     zero: Polynomial[int] = constant(Fraction(0))
+
+    def change(x: Inequality) -> Polynomial[int]:
+        """What it is not as a function of the forms; nothing where it is the same as of variables."""
+        kept = x.polynomial.substitute(lambda v: zero if v in dropped else forms.get(v, variable(v)))
+        return kept - x.polynomial
 
     def cut(polynomial: Polynomial[int]) -> Polynomial[int]:
         return polynomial.substitute(lambda x: zero if x in dropped else variable(x))
 
     return _scaled(
         Reduction(
-            tuple(replace(x, polynomial=cut(x.polynomial)) for x in stays),
+            tuple(
+                _independent([replace(x, polynomial=cut(x.polynomial)) for x in _kept(inequalities, change)])
+            ),
             tuple(replace(x, polynomial=cut(x.polynomial)) for x in equations),
             forms,
         )
@@ -212,11 +222,54 @@ def _derivative(polynomial: Polynomial[int], v: int) -> Polynomial[int]:
     return found
 
 
-def _unchanged(polynomial: Polynomial[int], forms: Mapping[int, Polynomial[int]], dropped: set[int]) -> bool:
-    """Whether it is the same function of the forms as of the variables that stay."""
-    zero: Polynomial[int] = constant(Fraction(0))
-    lifted = polynomial.substitute(lambda x: zero if x in dropped else forms.get(x, variable(x)))
-    return not (lifted - polynomial).terms
+def _kept(
+    inequalities: Sequence[Inequality], change: Callable[[Inequality], Polynomial[int]]
+) -> Iterator[Inequality]:
+    """Those without a change, and sums of two, such as of lengths, in which opposite changes cancel out."""
+    changed: list[tuple[Inequality, Polynomial[int]]] = []
+    for x in inequalities:
+        own = change(x)
+        if not own.terms:
+            yield x
+            continue
+        for other, its in changed:
+            share = _share(own, its)
+            if share is not None and share < 0:
+                yield Inequality(
+                    x.polynomial + other.polynomial.scaled(-share),
+                    x.strict or other.strict,
+                    f"(sum_ {x.written} (product_ {number(-share)} {other.written}))",
+                )
+        changed.append((x, own))
+
+
+def _share(one: Polynomial[int], other: Polynomial[int]) -> Fraction | None:
+    """How often ``one`` contains ``other``, None where it is no multiple of it."""
+    monomial = min(one.terms)
+    share = one.terms[monomial] / other.terms.get(monomial, Fraction(1))
+    return None if (one - other.scaled(share)).terms else share
+
+
+def _independent(inequalities: Sequence[Inequality]) -> list[Inequality]:
+    """Without linear inequalities that follow from other linear ones, as a linear program in floats says."""
+    kept = list(inequalities)
+    for x in inequalities:
+        others = [y for y in kept if y is not x and y.polynomial.degree < 2]
+        if x.polynomial.degree < 2 and _follows(x, others):
+            kept.remove(x)
+    return kept
+
+
+def _follows(x: Inequality, others: Sequence[Inequality]) -> bool:
+    """Whether it is a sum of others and of numbers that are at least 0, above 0 where it is strict."""
+    from scipy.optimize import linprog
+
+    monomials = sorted({m for y in (x, *others) for m in y.polynomial.terms} | {()})
+    columns = [[float(y.polynomial.terms.get(m, 0)) for y in others] + [float(not m)] for m in monomials]
+    strict = [-float(y.strict) for y in others] + [-1.0]
+    right = [float(x.polynomial.terms.get(m, 0)) for m in monomials]
+    found = linprog(strict, A_eq=columns, b_eq=right, method="highs-ds")
+    return bool(found.status == 3 or (found.status == 0 and (not x.strict or found.fun < -_SMALL)))
 
 
 # --- scales --------------------------------------------------------------------------------------

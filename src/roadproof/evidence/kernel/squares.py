@@ -36,7 +36,7 @@ MOST_ENTRIES = 4000  # of all Gram matrices together
 MOST_BLOCKS = 800
 MOST_FACTORS = 4
 MOST_ITERATIONS = 80
-DEGREES = (2, 4, 5)
+DEGREES = (2, 3, 4, 5)
 GRIDS = (16, 1000, 10**6)  # eigenvectors are rounded to fractions with these denominators
 _SMALL = 1e-6  # a share of a Gram matrix that is left out
 _Floats: TypeAlias = "np.ndarray[tuple[int, ...], np.dtype[np.float64]]"
@@ -192,7 +192,8 @@ def _semidefinite(blocks: Sequence[_Block], free: Sequence[Column]) -> list[_Flo
     settings.verbose = False
     settings.max_iter = MOST_ITERATIONS
     rows = csc_matrix(vstack([program.matrix, below]))
-    solver = clarabel.DefaultSolver(csc_matrix((count, count)), program.cost, rows, right, cones, settings)
+    nothing, cost = csc_matrix((count, count)), np.zeros(count)  # what costs nothing is far from all edges
+    solver = clarabel.DefaultSolver(nothing, cost, rows, right, cones, settings)
     solution = solver.solve()
     if "Solved" not in str(solution.status):
         return None
@@ -207,25 +208,22 @@ class _Program:
 
     matrix: "csr_array"
     one: float
-    cost: _Floats
 
 
 def _program(blocks: Sequence[_Block], free: Sequence[Column]) -> _Program:
     """Columns for multiples of equations, then for entries of Gram matrices; off the diagonal by sqrt 2."""
     from scipy.sparse import csr_array, diags_array
 
-    columns: list[tuple[Polynomial[int], float, bool, float]] = [
-        (x.polynomial, 1.0, False, 0.0) for x in free
-    ]
+    columns: list[tuple[Polynomial[int], float, bool]] = [(x.polynomial, 1.0, False) for x in free]
     for x in blocks:
         for i, j in x.entries:
             monomial = tuple(sorted(x.basis[i] + x.basis[j]))
             product = x.polynomial * Polynomial({monomial: Fraction(1)})
             weight = 1.0 if i == j else float(np.sqrt(2))
-            columns.append((product, weight, x.strict and not monomial, float(i == j)))
+            columns.append((product, weight, x.strict and not monomial))
     rows: dict[Monomial, int] = {}
     entries: list[tuple[int, int, float]] = []
-    for place, (polynomial, weight, strict, _) in enumerate(columns):
+    for place, (polynomial, weight, strict) in enumerate(columns):
         for monomial, q in polynomial.terms.items():
             entries.append((rows.setdefault(monomial, len(rows) + 1), place, float(q) * weight))
         if strict:
@@ -233,7 +231,7 @@ def _program(blocks: Sequence[_Block], free: Sequence[Column]) -> _Program:
     shape = (len(rows) + 1, len(columns))
     matrix = csr_array(([e[2] for e in entries], ([e[0] for e in entries], [e[1] for e in entries])), shape)
     norms = np.sqrt(np.asarray(matrix.multiply(matrix).sum(axis=1)).ravel())
-    return _Program(diags_array(1 / norms) @ matrix, 1 / float(norms[0]), np.array([x[3] for x in columns]))
+    return _Program(diags_array(1 / norms) @ matrix, 1 / float(norms[0]))
 
 
 def _gram(block: _Block, values: _Floats) -> _Floats:
