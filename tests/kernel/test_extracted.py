@@ -176,6 +176,37 @@ def test_changed_drives_and_derivations_are_refused():
     assert verdicts(modules) == ["accepted", *["refused"] * (len(modules) - 1)]
 
 
+def rulings_of(script, folder, *texts):
+    """The words on modules n0, n1 and so on with these texts, by a program that is a script."""
+    path = folder / "kernel"
+    path.write_text(f"#!/bin/sh\n{script}\n", "ascii")
+    path.chmod(0o700)
+    prepared = {f"n{k}": CoqModule(Module(f"n{k}", text, (), 0)) for k, text in enumerate(texts)}
+    return [str(x) for x in judge(ocaml.Program(path, "4.13.1"), prepared).rulings.values()]
+
+
+@pytest.mark.parametrize(
+    "script",
+    [
+        "echo n0 accepted; exit 1",
+        "echo n0 accepted; kill -9 $$",
+        "echo n1 accepted",
+        "echo n0 refused; echo n0 accepted",
+        "echo n0 accepted; echo n1 accepted",
+        "echo n0 accepted anyway",
+        "echo n0 Accepted",
+        "true",
+    ],
+)
+def test_a_program_that_fails_or_answers_otherwise_accepts_nothing(script, tmp_path):
+    assert rulings_of(script, tmp_path, "") == ["unknown"]
+
+
+def test_one_on_which_the_program_fails_does_not_take_others_with_it(tmp_path):
+    script = 'asked=$(cat); case "$asked" in *bad*) exit 2;; *) echo "$asked accepted";; esac'
+    assert rulings_of(script, tmp_path, "n0", "bad", "n2") == ["accepted", "unknown", "accepted"]
+
+
 STILL = "(0 0 [] 0) (0 0 [] 0)"
 RECTANGLE = '"l" main None None 0 1'
 UNREAD = [

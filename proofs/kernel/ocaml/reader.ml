@@ -4,6 +4,8 @@
    A file is a sequence of forms, of which each stands alone:
 
      (proof NAME TEXT BOUNDS DEFINITIONS CLAIM LEMMAS PARAMETERS VALUES TABLEAU)
+     (motions NAME TEXT BOUNDS DEFINITIONS CLAIM SCHEMAS SUPPOSED LEMMAS PARAMETERS VALUES TABLEAU)
+     (traces ...), as motions
      (drive NAME TEXT BOUNDS DEFINITIONS CLAIM DRIVE DERIVATION)
 
    NAME names the form in the verdict.  TEXT, a string, is the claim as roadproof writes it; nothing reads it.
@@ -13,6 +15,8 @@
      numbers    5, (3 # 4), (q 3 4): whole numbers in decimal, the lower one above 0
      strings    "SV"; a quotation mark inside is written twice
      DEFINITIONS  a list of (NAME FORMULA), NAME a string; later a string in place of a formula means it
+     SCHEMAS    a list of instances of Schemas.v; SUPPOSED is the claim with them as premises, which TABLEAU shows.
+                motions says that the claim holds of motions, traces that it is valid, by inductions alone
      LEMMAS     a list of (FORMULA TERMS REASON), where TERMS are the variables of the polynomials of REASON, or
                 (FORMULA known) for a fact of Known.v
      PARAMETERS a list of strings: those that moments speak of, in the order of their numbers

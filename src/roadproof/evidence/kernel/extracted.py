@@ -130,20 +130,25 @@ def _course(
 
 
 def judge(program: Program, prepared: Mapping[str, CoqModule]) -> KernelRulings:
-    """What the program says of each, by name."""
+    """What the program says of each, by name; where it fails on several, each is put to it alone."""
     judged = KernelRulings({name: x.refusal for name, x in prepared.items() if x.refusal is not None})
     asked = {name: x.module for name, x in prepared.items() if x.module is not None}
     if not asked:
         return judged
     ran = program.run("".join(x.text for x in asked.values()))
     judged.seconds = ran.seconds
-    said = dict(line.split(" ", 1) for line in ran.said.splitlines()) if ran.code == 0 else {}
-    for name in asked:
-        if name in said:
-            judged.rulings[name] = _ruling(said[name], prepared[name].limits)
-        else:
-            why = " ".join(ran.complained.split())[:200] or f"exit code {ran.code}"
-            judged.rulings[name] = Ruling(Word.UNKNOWN, f"the program ended without an answer: {why}")
+    said = [line.partition(" ") for line in ran.said.splitlines()]
+    if ran.code == 0 and [name for name, _, _ in said] == list(asked):
+        judged.rulings |= {name: _ruling(word, prepared[name].limits) for name, _, word in said}
+    elif len(asked) > 1:
+        for name in asked:
+            alone = judge(program, {name: prepared[name]})
+            judged.rulings |= alone.rulings
+            judged.seconds += alone.seconds
+    else:
+        why = " ".join(ran.complained.split())[:200] or f"exit code {ran.code}"
+        failed = Ruling(Word.UNKNOWN, f"the program ended without an answer: {why}")
+        judged.rulings |= dict.fromkeys(asked, failed)
     return judged
 
 
