@@ -15,7 +15,7 @@ same direction where the left way of one is the right way of the other.
 
 import re
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -41,6 +41,7 @@ from roadproof.recordings.formats.source import Files, Format, beside, first_lin
 from roadproof.recordings.formats.table import Table
 from roadproof.recordings.formats.tracks import RATE_AT, files_of, find_recordings, read_tracks, usable
 from roadproof.runtime.xml_reader import Element, by_id, number_in, read_xml
+from roadproof.world.maps.lanelet2 import Bounded, directed
 from roadproof.world.maps.network import ZONES_ENDING
 from roadproof.world.maps.projections import UtmPoint, utm_of
 from roadproof.world.maps.topology import MeasuredLanelet
@@ -53,12 +54,11 @@ LEFT_OUT = frozenset(
 
 @dataclass(frozen=True)
 class _LaneletNodes:
-    """A lanelet as drawn: ids of its ways, and its bounds as nodes in driving direction."""
+    """A lanelet as drawn: ids of its ways, and its bounds in driving direction."""
 
     id: str
     ways: tuple[str, str]
-    left: tuple[str, ...]
-    right: tuple[str, ...]
+    bounds: Bounded
 
 
 def read_osm(path: Path, origin: UtmPoint) -> tuple[dict[str, MeasuredLanelet], tuple[str, ...]]:
@@ -78,7 +78,7 @@ def read_osm(path: Path, origin: UtmPoint) -> tuple[dict[str, MeasuredLanelet], 
     places = _places(path, {ref: nodes[ref] for way in refs.values() for ref in way}, origin)
     drawn = {name: _draw(path, name, x, refs, places) for name, x in relations.items()}
     notes = (f"lanelets of subtype {', '.join(left_out)} are left out",) if left_out else ()
-    return _linked(drawn, places), notes
+    return _linked(drawn), notes
 
 
 def _tag(node: Element, key: str) -> str:
@@ -139,32 +139,21 @@ def _draw(
             raise InputError(f"{where}: {role} way {ways[role]} has fewer than two nodes")
     if _tag(relation, "one_way") == "no":
         raise InputError(f"{where}: one_way=no: lanelets that are driven both ways are not supported")
-    left, right = refs[ways["left"]], refs[ways["right"]]
-    ends = [np.array([places[x[0]], places[x[-1]]]) for x in (left, right)]
-    if np.hypot(*(ends[0] - ends[1]).T).sum() > np.hypot(*(ends[0] - ends[1][::-1]).T).sum():
-        right = right[::-1]
-    if _area([*(places[x] for x in left), *(places[x] for x in reversed(right))]) > 0:
-        left, right = left[::-1], right[::-1]
-    return _LaneletNodes(name, (ways["left"], ways["right"]), left, right)
+    left, right = ways["left"], ways["right"]
+    return _LaneletNodes(name, (left, right), directed(refs[left], refs[right], places))
 
 
-def _area(points: Sequence[Floats]) -> float:
-    """Of a polygon; greater than zero where it goes around to the left."""
-    x, y = np.array(points).T
-    return float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2)
-
-
-def _linked(drawn: Mapping[str, _LaneletNodes], places: Mapping[str, Floats]) -> dict[str, MeasuredLanelet]:
+def _linked(drawn: Mapping[str, _LaneletNodes]) -> dict[str, MeasuredLanelet]:
     begins: dict[tuple[str, str], list[str]] = defaultdict(list)
     for x in drawn.values():
-        begins[x.left[0], x.right[0]].append(x.id)
+        begins[x.bounds.left[0], x.bounds.right[0]].append(x.id)
     by_left = {x.ways[0]: x.id for x in drawn.values()}
     by_right = {x.ways[1]: x.id for x in drawn.values()}
     made = {}
     for x in drawn.values():
-        left, right = _even(*(np.array([places[ref] for ref in bound]) for bound in (x.left, x.right)))
+        left, right = _even(*x.bounds.lines)
         beside = [y for y in (by_right.get(x.ways[0]), by_left.get(x.ways[1])) if y is not None]
-        successors = tuple(begins[x.left[-1], x.right[-1]])
+        successors = tuple(begins[x.bounds.left[-1], x.bounds.right[-1]])
         made[x.id] = MeasuredLanelet(x.id, left, right, None, successors, tuple(beside))
     return made
 

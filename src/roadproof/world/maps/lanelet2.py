@@ -31,7 +31,7 @@ _SPACING = 1.0
 
 
 @dataclass(frozen=True)
-class _Bounded:
+class Bounded:
     """Ids of the nodes of both bounds in driving direction, and their points."""
 
     left: tuple[str, ...]
@@ -50,7 +50,7 @@ def read_map(
     root = read_xml(path, "osm")
     points = _points(path, by_id(path, root.findall("node")), origin)
     ways = by_id(path, root.findall("way"))
-    found: dict[str, _Bounded] = {}
+    found: dict[str, Bounded] = {}
     others = Counter[str]()
     for name, node in by_id(path, root.findall("relation")).items():
         tags = _tags(node)
@@ -59,7 +59,7 @@ def read_map(
         kind = tags.get("subtype", "road")
         if kind in ROADS:
             left, right = (_nodes(path, name, node, x, ways, points) for x in ("left", "right"))
-            found[name] = _directed(left, right, points)
+            found[name] = directed(left, right, points)
         else:
             others[kind] += 1
     if not found:
@@ -145,9 +145,11 @@ def _chained(parts: Sequence[list[str]]) -> Iterator[str]:
         last = ordered[-1] if ordered else last
 
 
-def _directed(
-    left: tuple[str, ...], right: tuple[str, ...], points: Mapping[str, tuple[float, float]]
-) -> _Bounded:
+def directed(
+    left: tuple[str, ...],
+    right: tuple[str, ...],
+    points: Mapping[str, tuple[float, float]] | Mapping[str, Floats],
+) -> Bounded:
     """Both bounds in the direction in which the left one is on the left."""
     one, other = (np.array([points[x] for x in side]) for side in (left, right))
     along = np.hypot(*(one[0] - other[0])) + np.hypot(*(one[-1] - other[-1]))
@@ -158,10 +160,10 @@ def _directed(
     area = float(np.sum(around[:-1, 0] * around[1:, 1] - around[1:, 0] * around[:-1, 1]))
     if area < 0:
         one, other, left, right = one[::-1], other[::-1], left[::-1], right[::-1]
-    return _Bounded(left, right, (one, other))
+    return Bounded(left, right, (one, other))
 
 
-def _linked(found: Mapping[str, _Bounded]) -> dict[str, MeasuredLanelet]:
+def _linked(found: Mapping[str, Bounded]) -> dict[str, MeasuredLanelet]:
     begins, rights, lefts = (defaultdict[tuple[str, ...], list[str]](list) for _ in range(3))
     for name, x in found.items():
         begins[x.left[0], x.right[0]].append(name)
