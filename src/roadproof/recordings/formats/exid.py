@@ -42,6 +42,7 @@ from roadproof.recordings.formats.table import Table
 from roadproof.recordings.formats.tracks import RATE_AT, files_of, find_recordings, read_tracks, usable
 from roadproof.runtime.xml_reader import Element, by_id, number_in, read_xml
 from roadproof.world.maps.lanelet2 import Bounded, directed
+from roadproof.world.maps.lines import way_along
 from roadproof.world.maps.network import ZONES_ENDING
 from roadproof.world.maps.projections import UtmPoint, utm_of
 from roadproof.world.maps.topology import MeasuredLanelet
@@ -162,7 +163,7 @@ def _even(left: Floats, right: Floats) -> tuple[Floats, Floats]:
     """Two lines with points at the same shares of their lengths."""
     shares = []
     for line in (left, right):
-        way = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))))
+        way = way_along(line)
         shares.append(way / max(float(way[-1]), 1e-9))
     at = np.union1d(np.round(shares[0], 9), np.round(shares[1], 9))
     one, other = (

@@ -16,7 +16,7 @@ import numpy as np
 
 from roadproof.errors import InputError
 from roadproof.world.maps.carriageway import Carriageway
-from roadproof.world.maps.lines import thinned
+from roadproof.world.maps.lines import thinned, to_millimetre
 from roadproof.world.maps.topology import Floats
 from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.road import Attribute, Lanelet, Zone
@@ -182,7 +182,7 @@ def _divided(
 
 def _strips(there: Sequence[MapLanelet], part: tuple[float, float], where: str) -> Iterator[_Strip]:
     """Lanelets side by side on a step, from right to left."""
-    s = _milli(part[0]), _milli(part[1])
+    s = to_millimetre(part[0]), to_millimetre(part[1])
     beside: list[_Edges] = []
     for x in there:
         found = _Edges(x, _values(x.right, part), _values(x.left, part))
@@ -273,15 +273,11 @@ def _evened(values: list[Fraction], step: Fraction) -> list[Fraction]:
     run: list[Fraction] = []
     for value in values:
         if run and max(*run, value) - min(*run, value) > step:
-            found += [_milli(float(min(run) + max(run)) / 2)] * len(run)
+            found += [to_millimetre(float(min(run) + max(run)) / 2)] * len(run)
             run = []
         run.append(value)
-    return found + [_milli(float(min(run) + max(run)) / 2)] * len(run) if run else found
+    return found + [to_millimetre(float(min(run) + max(run)) / 2)] * len(run) if run else found
 
 
 def _middle(values: Floats) -> Fraction:
-    return _milli((float(values.min()) + float(values.max())) / 2)
-
-
-def _milli(metres: float) -> Fraction:
-    return Fraction(round(metres * _MILLI), _MILLI)
+    return to_millimetre((float(values.min()) + float(values.max())) / 2)

@@ -21,13 +21,13 @@ def even_line(line: Floats, step: float = 5.0) -> Floats:
 
     Lanelets have vertices centimetres apart, whose rounded coordinates turn the line by a degree and back.
     """
-    way = _way(line)
+    way = way_along(line)
     return resampled(line, 1 + max(1, round(float(way[-1]) / step)))
 
 
 def resampled(line: Floats, count: int) -> Floats:
     """``count`` points of a line, equally far from each other along it."""
-    way = _way(line)
+    way = way_along(line)
     at = np.linspace(0, way[-1], count)
     return np.stack((np.interp(at, way, line[:, 0]), np.interp(at, way, line[:, 1])), axis=1)
 
@@ -53,10 +53,10 @@ def reference_line(line: Floats) -> ReferenceLine:
 
     Edges of lanelets are measured from it, so no lane has that error. Noise of points would be bends.
     """
-    points = [(_rounded(x), _rounded(y)) for x, y in _smoothed(even_line(line)).tolist()]
+    points = [(to_millimetre(x), to_millimetre(y)) for x, y in _smoothed(even_line(line)).tolist()]
     (x0, y0), *_ = points
     curve = Polyline(tuple((x - x0, y - y0) for x, y in points))
-    return ReferenceLine((Part(Fraction(0), _rounded(length_of(curve)), x0, y0, Fraction(0), curve),))
+    return ReferenceLine((Part(Fraction(0), to_millimetre(length_of(curve)), x0, y0, Fraction(0), curve),))
 
 
 def crossing(one: Floats, other: Floats, ends: float) -> tuple[float, float] | None:
@@ -98,10 +98,11 @@ def _turn(one: Floats, other: Floats) -> Floats:
     return made
 
 
-def _way(line: Floats) -> Floats:
+def way_along(line: Floats) -> Floats:
     """How far along the line its points are (m)."""
     return np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))))
 
 
-def _rounded(metres: float) -> Fraction:
+def to_millimetre(metres: float) -> Fraction:
+    """A length rounded to a millimetre."""
     return Fraction(round(metres * _MILLI), _MILLI)
