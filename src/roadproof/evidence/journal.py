@@ -21,7 +21,7 @@ from roadproof.evidence.answers.reader import FindLabel, without_labels
 from roadproof.evidence.refutation import judge_trace
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, Json, JsonObject, parse_json, read_json
 from roadproof.library.specification import Library
-from roadproof.runtime.files import read_limited
+from roadproof.runtime.files import read_limited, read_text
 from roadproof.runtime.records import dataclass
 
 NAME = "answers.jsonl"
@@ -85,11 +85,7 @@ def read_kept(folder: Path, but: Container[str] = ()) -> Journal | None:
 
 def read_journal(path: Path) -> Journal:
     """A journal, each line with its seal checked. Raises ``InputError`` where it is none."""
-    data = read_limited(path, LARGEST_INDEX, "roadproof reads no larger journals")
-    try:
-        first, *lines = data.decode("utf-8").split("\n")
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: byte {error.start} is not UTF-8 text") from None
+    first, *lines = read_text(path, LARGEST_INDEX, "roadproof reads no larger journals").split("\n")
     head, fields = _head(parse_json(first, f"{path}, line 1"), path, str(path))
     torn = bool(lines) and lines[-1] != ""
     read = [

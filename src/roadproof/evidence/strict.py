@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import NoReturn, TypeAlias
 
 from roadproof.errors import InputError
-from roadproof.runtime.files import read_limited
+from roadproof.runtime.files import read_text
 
 Json: TypeAlias = "bool | int | float | str | list[Json] | dict[str, Json] | None"
 JsonObject: TypeAlias = dict[str, Json]
@@ -29,12 +29,7 @@ _FORBIDDEN = re.compile("[\x00\ud800-\udfff]")
 
 def read_json(path: Path, most: int = LARGEST_EVIDENCE) -> Json:
     """What a file says. Raises ``InputError`` naming the file and the rule."""
-    data = read_limited(path, most, "roadproof reads no larger evidence")
-    try:
-        text = data.decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: byte {error.start} is not UTF-8 text") from None
-    return parse_json(text, str(path))
+    return parse_json(read_text(path, most, "roadproof reads no larger evidence"), str(path))
 
 
 def parse_json(text: str, where: str) -> Json:

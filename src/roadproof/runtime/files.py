@@ -176,3 +176,12 @@ def read_limited(path: Path, most: int, advice: str) -> bytes:
     if len(data) > most:
         raise InputError(f"{path} is larger than {most} bytes: {advice}")
     return data
+
+
+def read_text(path: Path, most: int, advice: str, remedy: str = "") -> str:
+    """As ``read_limited``, a text in UTF-8; ``remedy``: what is said of one that is not."""
+    data = read_limited(path, most, advice)
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: byte {error.start} is not UTF-8 text{remedy}") from None

@@ -12,7 +12,7 @@ from pathlib import Path
 from roadproof.analysis.requirements.requirement import Requirement, Requirements, split_links, told
 from roadproof.errors import InputError
 from roadproof.evidence.answers.trace import Position
-from roadproof.runtime.files import read_limited
+from roadproof.runtime.files import read_text
 
 LARGEST = 20_000_000
 """Bytes of a file."""
@@ -40,11 +40,7 @@ class _Node:
 
 def read_strictdoc(path: Path) -> Requirements:
     """The requirements of a .sdoc file. Raises ``InputError`` with the line of what is not understood."""
-    data = read_limited(path, LARGEST, "divide the document")
-    try:
-        lines = data.decode("utf-8").splitlines()
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: byte {error.start} is not UTF-8 text; save it as UTF-8") from None
+    lines = read_text(path, LARGEST, "divide the document", "; save it as UTF-8").splitlines()
     found: list[Requirement] = []
     notes: list[str] = []
     for node in _nodes(lines, path):

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple, TypeAlias
 
 from roadproof.errors import InputError
-from roadproof.runtime.files import read_limited
+from roadproof.runtime.files import read_text
 
 LARGEST = 1_000_000
 """Bytes of a file."""
@@ -31,11 +31,7 @@ Value: TypeAlias = str | tuple[Item, ...]
 
 def read_yaml(path: Path) -> dict[str, Value]:
     """The keys of a file with their values, all as texts. Raises ``InputError`` with the line."""
-    data = read_limited(path, LARGEST, "an item of requirements is smaller")
-    try:
-        lines = data.decode("utf-8").splitlines()
-    except UnicodeDecodeError as error:
-        raise InputError(f"{path}: byte {error.start} is not UTF-8 text; save it as UTF-8") from None
+    lines = read_text(path, LARGEST, "an item of requirements is smaller", "; save it as UTF-8").splitlines()
     found: dict[str, Value] = {}
     at = 0
     while at < len(lines):

@@ -7,7 +7,7 @@ goes on in the road that its links lead to, at a junction in the straightest one
 
 import math
 from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from roadproof.errors import InputError
@@ -97,15 +97,20 @@ def _single(document: Document, path: Path, name: str, place: Element) -> str:
     if place.tag == "LanePosition":
         left = (document.number(place, "laneId") > 0) != is_turned(document, place)
         return f"{path}#road={name},lanes={'left' if left else 'right'}"
-    for side in ("right", "left"):
-        stretch = f"{path}#road={name},lanes={side}"
+    sides = (f"{path}#road={name},lanes={side}" for side in ("right", "left"))
+    return _forward(document, place, sides) or f"{path}#road={name}"
+
+
+def _forward(document: Document, place: Element, stretches: Iterable[str]) -> str | None:
+    """The first stretch that can be read, and in whose direction the vehicle at ``place`` is."""
+    for stretch in stretches:
         try:
             positions = positions_on(document, load_road(stretch))
         except InputError:
             continue
         if positions.is_forward(place, {}):
             return stretch
-    return f"{path}#road={name}"
+    return None
 
 
 def _route(
@@ -113,14 +118,9 @@ def _route(
 ) -> str:
     """The roads in the order in which they are driven. Raises ``InputError``."""
     place = next(iter(wanted.values()))
-    for names in _chains(roads, [*wanted]):
-        route = f"{path}#route={'+'.join(names)}"
-        try:
-            positions = positions_on(document, load_road(route))
-        except InputError:
-            continue
-        if positions.is_forward(place, {}):
-            return route
+    routes = (f"{path}#route={'+'.join(names)}" for names in _chains(roads, [*wanted]))
+    if (route := _forward(document, place, routes)) is not None:
+        return route
     shown = ", ".join(sorted(wanted))
     rule = f"name the route as a parameter {STRETCH} with a value such as route=1+2"
     raise document.error(place, f"positions on several roads ({shown}) that are not one route; {rule}")
