@@ -154,7 +154,7 @@ def test_kept_drives_are_motions():
     printed = [x for x in modules if x is not None]
     goals = [
         f"Lemma moves_{x.name} : Roadproof.Motion.motion (Roadproof.Drive.world_of {x.name}.the_drive).\n"
-        "Proof. apply Roadproof.Moves.drives_move. repeat constructor; unfold Q2R; simpl; lra. Qed.\n"
+        "Proof. apply Roadproof.Moves.drives_move; repeat constructor; unfold Q2R; simpl; lra. Qed.\n"
         for x in printed
     ]
     head = "From Coq Require Import Reals Qreals Lra.\nFrom Roadproof Require Moves.\n"
