@@ -13,7 +13,7 @@ drive``), ``export`` for other tools, and the errors that they raise. Each is im
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from roadproof.version import VERSION as __version__
+from roadproof.runtime.version import VERSION as __version__
 
 if TYPE_CHECKING:
     from roadproof.errors import InputError as InputError

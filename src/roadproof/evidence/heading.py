@@ -6,7 +6,7 @@ from typing import Any
 from roadproof.errors import InputError
 from roadproof.evidence.strict import Fields
 from roadproof.library.specification import Library
-from roadproof.version import VERSION
+from roadproof.runtime.version import VERSION
 
 HEADING = ("schema", "roadproof", "library", "signals", "prevention")
 _FINGERPRINT = re.compile("[0-9a-f]{16}")

@@ -24,7 +24,7 @@ from roadproof.library.bind import default_values
 from roadproof.library.dependence import Used, used_by
 from roadproof.library.scenarios import name_of
 from roadproof.library.specification import Specification
-from roadproof.version import VERSION
+from roadproof.runtime.version import VERSION
 from roadproof.world.vehicle import Vehicle
 
 Parts: TypeAlias = dict[str, str]

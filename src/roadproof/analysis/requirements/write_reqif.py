@@ -7,7 +7,7 @@ from datetime import datetime
 from roadproof.analysis.requirements.requirement import FIELDS
 from roadproof.evidence.answers.trace import Answer, TracedRequirement
 from roadproof.recordings.export.xml import Element, document, element
-from roadproof.version import VERSION
+from roadproof.runtime.version import VERSION
 
 _NAMESPACE = "http://www.omg.org/spec/ReqIF/20110401/reqif.xsd"
 _XHTML = "http://www.w3.org/1999/xhtml"

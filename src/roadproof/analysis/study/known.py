@@ -20,7 +20,7 @@ from roadproof.runtime.cache import keep_bytes, kept_bytes, make_room
 from roadproof.runtime.files import write_whole
 from roadproof.runtime.package_data import shipped
 from roadproof.runtime.records import dataclass
-from roadproof.version import ANSWERS, VERSION
+from roadproof.runtime.version import ANSWERS, VERSION
 
 SCHEMA = "roadproof/known/1"
 SWITCH = "ROADPROOF_KNOWN"

@@ -16,7 +16,7 @@ from roadproof.evidence.answers.reader import Background, FindLabel, Reader, wit
 from roadproof.evidence.heading import HEADING, library_of
 from roadproof.evidence.strict import Fields
 from roadproof.library.specification import Library
-from roadproof.version import VERSION
+from roadproof.runtime.version import VERSION
 
 
 @cache

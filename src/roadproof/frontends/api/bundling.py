@@ -28,8 +28,8 @@ from roadproof.frontends.settings.questions import Bundle as Options
 from roadproof.runtime import pins as packages
 from roadproof.runtime.files import whole_file
 from roadproof.runtime.records import dataclass
+from roadproof.runtime.version import VERSION
 from roadproof.verdict import ExitCode
-from roadproof.version import VERSION
 
 if TYPE_CHECKING:
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey

@@ -9,7 +9,7 @@ from roadproof.evidence.drive_file import road_said
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.report.road_map import draw_stretches
 from roadproof.runtime.files import write_whole
-from roadproof.version import VERSION
+from roadproof.runtime.version import VERSION
 from roadproof.world.maps.overview import MapStretch, all_stretches, describe
 from roadproof.world.maps.selection import read_selection, select
 from roadproof.world.models import load_road

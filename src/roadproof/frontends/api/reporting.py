@@ -23,8 +23,8 @@ from roadproof.library.specification import Library
 from roadproof.library.words import words_of
 from roadproof.runtime.files import whole_file
 from roadproof.runtime.records import dataclass
+from roadproof.runtime.version import VERSION
 from roadproof.verdict import ExitCode
-from roadproof.version import VERSION
 
 
 @dataclass(frozen=True, repr=False)

@@ -16,8 +16,8 @@ from roadproof.frontends.settings.keywords import AtlasKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.studies import Atlas as Settings
 from roadproof.runtime.files import make_folder, write_whole
+from roadproof.runtime.version import VERSION
 from roadproof.verdict import ExitCode
-from roadproof.version import VERSION
 
 STYLE = "atlas.css"
 

@@ -20,8 +20,8 @@ from roadproof.frontends.cli.progress import be_quiet, clear
 from roadproof.frontends.cli.streams import FULL, forget_output, make_streams_lenient
 from roadproof.frontends.cli.supervising import supervise
 from roadproof.frontends.cli.terminal import dress_output
+from roadproof.runtime.version import VERSION
 from roadproof.verdict import ExitCode
-from roadproof.version import VERSION
 
 TRACEBACK = "ROADPROOF_TRACEBACK"
 

@@ -30,7 +30,7 @@ from roadproof.recordings.evaluate.matching import Match
 from roadproof.recordings.evaluate.questions import Settings
 from roadproof.recordings.formats.repeats import FramePair
 from roadproof.runtime.files import make_folder, whole_file
-from roadproof.version import VERSION
+from roadproof.runtime.version import VERSION
 
 RECORDING_SCHEMA = "roadproof/recording-findings/4"
 MATCH_COLUMNS = tuple(

@@ -37,7 +37,7 @@ from roadproof.recordings.formats.source import Files, Format, RecordingSource, 
 from roadproof.recordings.formats.table import Column, Frame, polars_module
 from roadproof.recordings.formats.windows import Window, WindowedRecording, divide
 from roadproof.runtime.files import read_limited, write_json, write_whole
-from roadproof.version import VERSION
+from roadproof.runtime.version import VERSION
 from roadproof.world.road import Lanelet
 from roadproof.world.signals import RECORDED
 

@@ -7,8 +7,8 @@ from pathlib import Path
 from urllib.parse import quote
 
 from roadproof.frontends.report.ci.cases import MEANINGS, Case, Location
+from roadproof.runtime.version import VERSION
 from roadproof.verdict import ExitCode
-from roadproof.version import VERSION
 
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 _ROOT = "SRCROOT"
