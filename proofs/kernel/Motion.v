@@ -2,8 +2,9 @@
 
    In a world of Meaning.v signals are any functions of time, and may jump.  In a motion a position is the integral
    of a speed, and a speed that of an acceleration (docs/explanation/motion.md).  Sizes and parameters have one value
-   at all times in every world.  The integral is Riemann's, of Coq's library: accelerations are bounded in bounded
-   time, and may jump.  Times are from 0 on.  Nothing here is about proofs. *)
+   at all times in every world.  The integral is Riemann's, of Coq's own library, so that no other (Coquelicot) has to
+   be installed: accelerations are bounded in bounded time, and may jump.  Times are from 0 on.  Nothing here is about
+   proofs. *)
 From Coq Require Import Reals String List.
 From Roadproof Require Import Meaning.
 Open Scope R_scope.

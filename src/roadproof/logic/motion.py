@@ -4,7 +4,8 @@ A *motion* gives vehicles positions and speeds for all time such that positions 
 and speeds those of accelerations (``SIGNALS[…].rate_of``), which are bounded in bounded time; sizes,
 parameters and numbers never change. So positions and speeds are continuous, and for an affine combination
 e of them with the rate e': e(t) - e(T) is the integral of e' from T to t. Every drive is a motion. Each
-schema says which theorem makes it true; docs/explanation/motion.md has the arguments.
+schema says which theorem makes it true; docs/explanation/motion.md has the arguments, and
+proofs/kernel/Schemas.v proves them.
 """
 
 import math

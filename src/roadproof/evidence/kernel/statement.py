@@ -105,6 +105,7 @@ def state(certificate: Certificate, library: Library, query: Query | None = None
     )
     demanded = values_said(specification, certificate.pinned)
     atoms, proved = Atoms(), with_values(supposed, demanded)
+    atoms.abstract(with_values(query.formula, {**here, **demanded}))  # named first, as in the certificate
     abstracted = atoms.abstract(proved)
     bounds = bounds_of(specification, parameters_of(supposed))
     parameters = tuple(sorted(bound_parameters(proved)))
