@@ -26,7 +26,7 @@ class Reason(str):
         made.kind, made.values = kind, values
         return made
 
-    def __reduce__(self) -> tuple[type["Reason"], tuple[object, ...]]:
+    def __reduce__(self) -> "tuple[type[Reason], tuple[object, ...]]":
         return Reason, (self.kind, *self.values)
 
 

@@ -381,12 +381,11 @@ class _ExaminationJobs:
         there = implication(both(*moving, self.query), change.changed)
         back = implication(both(*moving, change.changed), self.query)
         claim, label = both(there, back), f"redundancy-{self.scenario}"
-        result = self.basis.proof_of(claim, label=label)
-        if result.verdict is not Verdict.PROVED or result.certificate is None:
+        found = self.basis.proof_of(claim, label=label)
+        if found.verdict is not Verdict.PROVED or found.certificate is None:
             return None
-        return ChangeFinding(
-            change, claim, verdict=Verdict.PROVED, certificate=result.certificate, assuming=both(*moving)
-        )
+        sure, still = found.certificate, both(*moving)
+        return ChangeFinding(change, claim, verdict=Verdict.PROVED, certificate=sure, assuming=still)
 
     def _tells_apart(self, judged: JudgedDrive, query: Query, elsewhere: bool) -> JudgedDrive | None:
         """The drive judged on ``query`` where it is, or also on roads of other zones."""

@@ -107,11 +107,9 @@ def prove(
     premise, claim = goal_of(specification, query, assumed, states.atoms, pinned)
     attempt = _Attempt(specification, query, states, meter, motion.is_moving(assumed.said))
 
-    def result(
-        verdict: ClaimVerdict, reason: Reason = NO_REASON, certificate: Certificate | None = None
-    ) -> Result:
+    def result(verdict: ClaimVerdict, reason: Reason = NO_REASON, sure: Certificate | None = None) -> Result:
         spent, seconds = meter.spent, since(begun)
-        return Result(spent, verdict=verdict, reason=reason, certificate=certificate, seconds=seconds)
+        return Result(spent, verdict=verdict, reason=reason, certificate=sure, seconds=seconds)
 
     proofs: list[Proof] = []
     for goal in conjuncts(claim):

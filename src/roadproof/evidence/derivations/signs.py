@@ -53,12 +53,12 @@ class Part:
         before = Cut(time, False)
         return self.begin < before and (self.end is None or before < self.end)
 
-    def cut(self, times: list[Fraction]) -> list["Part"]:
+    def cut(self, times: list[Fraction]) -> "list[Part]":
         """The parts between ascending instants inside."""
         cuts = [self.begin, *(Cut(x, False) for x in times)]
         return [Part(*pair) for pair in pairwise([*cuts, self.end])]  # type: ignore[arg-type]
 
-    def around(self, times: list[Fraction]) -> list["Part"]:
+    def around(self, times: list[Fraction]) -> "list[Part]":
         """The parts before, at and after ascending instants."""
         cuts = [x for time in times for x in (Cut(time, False), Cut(time, True))]
         inside = [x for x in cuts if self.begin < x and (self.end is None or x < self.end)]

@@ -153,12 +153,12 @@ def judge(program: Program, prepared: Mapping[str, CoqModule]) -> KernelRulings:
 
 
 def _ruling(said: str, limits: int) -> Ruling:
-    match said.split(" "):
-        case ["accepted"]:
+    match said.partition(" "):
+        case "accepted", "", "":
             return Ruling(Word.ACCEPTED, "", None, limits)
-        case ["refused"]:
+        case "refused", "", "":
             return Ruling(Word.REFUSED, "the checker does not accept its certificate")
-        case ["lemma", number]:
+        case "lemma", _, number:
             why = f"lemma {number}, a fact about one instant, is not proved: --kernel coq tries tactics, too"
             return Ruling(Word.UNKNOWN, why, int(number))
         case _:
