@@ -15,7 +15,7 @@ Section Brakes.
     (collide x (fun t => w * t) g r y <-> hits v w g r q y 1 T A).
   Proof.
     intros B Hw Hy Hg Hr. destruct (brakes_right v q T A Hq HT HA x B) as [X0 X]. unfold collide, hits.
-    rewrite <- (ever v q T A Hv Hq HT HA x X0 X w Hw g y Hy Hg).
+    rewrite <- (ever v q T A Hv Hq HT HA x X0 X w Hw g y Hy).
     rewrite (gained_right v q T A Hv Hq HT HA x X0 X w (g + r) y Hy). split; intros [P Q]; (split; [lra|exact Q]).
   Qed.
 End Brakes.

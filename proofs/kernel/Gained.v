@@ -273,11 +273,11 @@ Section Gained.
     intros H. apply derivable_pt_lim_minus; [apply X; exact H|].
     apply (derivable_pt_lim_scal id w t 1), derivable_pt_lim_id.
   Qed.
-  Theorem ever g y : 0 <= y -> 0 <= g ->
+  Theorem ever g y : 0 <= y ->
     ((exists t, y <= t /\ x t - w * t > g)
      <-> hasGained v w g q y 1 T A \/ (stillFaster v w q y 1 T A /\ gains v w g q 1 T A)).
   Proof.
-    intros Hy Hg. rewrite gained_right, faster_right, gains_right by exact Hy.
+    intros Hy. rewrite gained_right, faster_right, gains_right by exact Hy.
     set (D := fun t => x t - w * t).
     assert (later : forall t u, 0 <= t <= u -> (v <= w \/ (w <= v /\ meets <= t)) -> D u <= D t).
     { intros t u L C. apply (falls D (fun t => speed_at v q T A t - w * 1)); [lra| |].

@@ -35,6 +35,7 @@ Definition later (delay : R) : option R -> option R := option_map (fun t => t + 
 (* Readings of the regulation (docs/explanation/preventable.md). *)
 Inductive perception := by_time | by_distance | by_overlap.
 Inductive gate := no_gate | before_perception | before_delay.
+Inductive aeb := in_place | greater | together.
 
 Section State.
   Variables (W : world) (now : R).
@@ -82,6 +83,21 @@ Section State.
     end.
   Definition careful p g a b (y w : R) (x : R -> R) : Prop :=
     exists o, onset p g a b y w o /\ brakes_from (speed a) o (par "cc_ramp") (par "cc_braking") x.
+
+  (* AEB, which Table 1 adds after full wrap: when b is within the width of a or covers it, at z, it begins to brake
+     by a ramp of its own: in place of the driver, whose ramp it goes on with; or the greater of both counts; or
+     their sum, up to that of AEB. *)
+  Definition assisted (h : aeb) (o : option R) (z t : R) : R :=
+    let own := match o with Some q => ramp (par "cc_ramp") (par "cc_braking") (t - q) | None => 0 end in
+    let by_aeb m := ramp (par "cc_ramp") (par "aeb_braking") (t - m) in
+    match h with
+    | in_place => if Rlt_dec t z then own else by_aeb (match o with Some q => Rmin q z | None => z end)
+    | greater => Rmax own (by_aeb z)
+    | together => Rmin (par "aeb_braking") (own + by_aeb z)
+    end.
+  Definition careful_with_aeb (h : aeb) p g a b (y w : R) (x : R -> R) : Prop :=
+    let z := (y + Rmin (measure W Width a) (measure W Width b)) / w in
+    exists o, onset p g a b y w o /\ goes (speed a) (assisted h o z) (z :: nil) x.
 
   (* --- a cut-out: b, which a follows, leaves the way of a at w; c, ahead of both and not faster, goes on ---- *)
   Definition in_way a b : Prop := beside a b <= 0 /\ beside b a <= 0.

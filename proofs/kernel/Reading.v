@@ -3,7 +3,7 @@
    `says` is `holds` for formulas about one instant, with numbers as the theories of boundaries write them.  The
    tactic `reads` shows that a printed formula is one that a theorem there is about. *)
 From Coq Require Import Reals QArith Qreals String List.
-From Roadproof Require Import Meaning Prescribed Gained Boundary Braked Following Responding.
+From Roadproof Require Import Meaning Prescribed Gained Boundary Braked Following Responding Joined Assisted Aeb.
 From Roadproof Require Text.
 Import ListNotations.
 Open Scope R_scope.
@@ -70,5 +70,6 @@ Ltac reads :=
     unaided careful_hits ungated gated seen weighed hit_by_careful cut_out_hits lies_in_way hit_behind
     standsLater meetsInFull meetsInRamp gainsSome gainsInRamp gainsBraking
     ahead following_hits notices rss_hits rss_following_hits
+    aided_hits aidedLate aidedGated aidedHits aidedGains wrap gainsFrom isFaster gainsOver gainsOnce gainsAdded faster farther
     speed gap lengths beside par];
   exact (iff_refl _).

@@ -181,7 +181,7 @@ Section Boundaries.
       { intros t T L H. apply (gains_is L). 
         assert (K : gains faster u G' ends 1 0 B \/ hasGained faster u G' ends ends 1 0 B).
         { assert (Q : exists t, ends <= t /\ X t - u * t > G') by (exists t; split; [exact T|apply same; assumption]).
-          apply (ever faster ends 0 B ltac:(lra) ltac:(lra) (Rle_refl 0) HB X X0 DX u Hu G' ends ltac:(lra) G0) in Q. tauto. }
+          apply (ever faster ends 0 B ltac:(lra) ltac:(lra) (Rle_refl 0) HB X X0 DX u Hu G' ends ltac:(lra)) in Q. tauto. }
         destruct (gains_is L) as [_ M]. apply Rgt_lt, same; [exact M|].
         destruct K as [K|K].
         - apply (gains_right faster ends 0 B ltac:(lra) ltac:(lra) (Rle_refl 0) HB X X0 DX u Hu) in K. fold m in K. lra.

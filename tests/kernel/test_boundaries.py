@@ -22,6 +22,9 @@ CELLS = [
     ("cut-in", "r157", {}),
     ("cut-in", "eu1426", {}),
     *(("cut-in", "careful", {"cc_perception": x, "cc_gate": y}) for x in PERCEPTIONS for y in GATES),
+    *(("cut-in", "careful", {"cc_aeb": x}) for x in ("replace", "max", "add")),
+    ("cut-in", "careful", {"cc_aeb": "max", "cc_gate": "before_delay", "cc_perception": "overlap"}),
+    ("cut-in", "careful", {"cc_aeb": "replace", "cc_gate": "before_perception", "cc_perception": "distance"}),
     ("cut-out", "careful", {}),
     ("deceleration", "careful", {"cc_threshold": "any"}),
     ("deceleration", "careful", {"cc_threshold": "hard"}),
@@ -29,7 +32,7 @@ CELLS = [
     ("deceleration", "rss", {}),
 ]
 WITHOUT = [
-    ("cut-in", "careful", {"cc_aeb": "max"}),
+    ("cut-in", "careful", {"cc_aeb": "add", "cc_gate": "before_delay"}),
     ("cut-in", "fsm", {}),
 ]
 
@@ -104,6 +107,12 @@ WRONG = [
         "careful",
         "def gainsBraking(v, w: m/s, b: m/s^2, g: m, q, T: s, A: m/s^2)\n"
         "  := standsLater(v, w, b, g, q, T, A) or meetsInFull(v, w, b, g, q, T, A)",
+    ),
+    (
+        "cut-in",
+        "careful",
+        "when cc_aeb = none {\n"
+        "  def careful_aided(v, u: m/s, g, y, z: m, w: m/s) := aidedLate(v, u, g, y, z, w)\n}",
     ),
     (
         "cut-in",

@@ -93,7 +93,7 @@ def test_theorems_stand_on_known_axioms_alone():
         *("holds_of_motions", "holds_by_induction", "drives_move", "refuted", "boxes_overlap"),
     ]
     theorems += ["unaided_boundary", "cut_out_boundary", "says_right", "following_boundary"]
-    theorems += ["rss_boundary", "rss_following_boundary"]
+    theorems += ["rss_boundary", "rss_following_boundary", "aeb_boundary"]
     with ready() as coq:
         whole = (
             "Definition whole := (" + ", ".join(f"@{x}" for x in theorems) + ").\nPrint Assumptions whole."

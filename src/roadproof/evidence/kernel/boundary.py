@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from roadproof.evidence.kernel.accept import AXIOMS, Word, axioms_of
 from roadproof.evidence.kernel.coq import Coq
+from roadproof.evidence.kernel.names import literal
 from roadproof.evidence.kernel.printer import Printer
 from roadproof.evidence.kernel.source import claim_lines, claim_text, comment_lines, wrapped
 from roadproof.evidence.kernel.statement import bounds_of, formals_of
@@ -19,7 +20,7 @@ from roadproof.logic.rewrite import parameters_of
 _HEAD = """\
 From Coq Require Import Reals QArith String List.
 From Roadproof Require Import Meaning Text.
-From Roadproof Require Prescribed Boundary Following Responding Reading.
+From Roadproof Require Prescribed Boundary Following Responding Aeb Reading.
 Import ListNotations.
 Open Scope string_scope.
 Open Scope nat_scope.
@@ -29,17 +30,21 @@ Open Scope formula_scope.
 # The motions in a cut-in and in a deceleration.
 _IN = "{p}cut_in W now ({p}DRIVER) {a} {b}"
 _BEHIND = "{p}decelerates W now ({p}DRIVER) {a} {b}"
+# What Prescribed.v calls the readings of AEB.
+_AEB = {"replace": "in_place", "max": "greater", "add": "together"}
 
 
 @dataclass(frozen=True)
 class _Entry:
     """A theorem of a file in proofs/kernel, and the motion of Prescribed.v that it is about.
 
-    In ``motion`` {p} stands before what Prescribed.v defines; {a}, {b} and {c} are vehicles.
+    In ``motion`` {p} stands before what Prescribed.v defines; {a}, {b} and {c} are vehicles. ``at_most``: two
+    parameters of which the first is supposed not to exceed the second.
     """
 
     theorem: str
     motion: str
+    at_most: tuple[str, str] | None = None
 
     def of(self, vehicles: Sequence[str], prefix: str = "") -> str:
         """The motion of these vehicles."""
@@ -61,19 +66,18 @@ class Boundary:
 
 @dataclass(frozen=True)
 class BoundaryTheorem:
-    """``formula`` holds in a state if and only if ``motion`` collides, where none of ``forward`` goes back.
+    """``formula`` holds in a state if and only if ``motion`` collides, where all is as ``supposed``.
 
     ``source``: the file for Coq, with the printed formula and the proof.
     """
 
     formula: str
     motion: str
-    forward: tuple[str, ...]
+    supposed: tuple[str, ...]
     source: str
 
     def __str__(self) -> str:
-        supposed = " and ".join(f"v_lon({x}) >= 0" for x in self.forward)
-        return f"{supposed} -> ({self.formula} <-> {self.motion})"
+        return f"{' and '.join(self.supposed)} -> ({self.formula} <-> {self.motion})"
 
 
 @dataclass(frozen=True)
@@ -127,7 +131,10 @@ def theorem_for(specification: Specification, boundary: Boundary) -> BoundaryThe
     return BoundaryTheorem(
         boundary.formula,
         entry.of(vehicles).replace(" W now", ""),
-        tuple(vehicles[x] for x in places),
+        (
+            *(f"v_lon({vehicles[x]}) >= 0" for x in places),
+            *([" <= ".join(entry.at_most)] if entry.at_most else []),
+        ),
         _HEAD + "\n".join(source) + "\n",
     )
 
@@ -159,6 +166,11 @@ def _entry(course: str, model: str, options: Mapping[str, str]) -> _Entry | None
             gate = "no_gate" if options["cc_gate"] == "none" else options["cc_gate"]
             driver = f"careful W now {{p}}by_{options['cc_perception']} {{p}}{gate} {{a}} {{b}}"
             return _Entry("Boundary.unaided_boundary", _IN.replace("DRIVER", driver))
+        case "cut-in", "careful" if options["cc_aeb"] != "add" or options["cc_gate"] == "none":
+            gate = "no_gate" if options["cc_gate"] == "none" else options["cc_gate"]
+            reading = f"{{p}}{_AEB[options['cc_aeb']]} {{p}}by_{options['cc_perception']} {{p}}{gate}"
+            driver = f"careful_with_aeb W now {reading} {{a}} {{b}}"
+            return _Entry("Aeb.aeb_boundary", _IN.replace("DRIVER", driver), ("cc_braking", "aeb_braking"))
         case "cut-out", "careful":
             motion = "{p}cut_out W now ({p}careful_behind W now {a}) {a} {b} {c}"
             return _Entry("Boundary.cut_out_boundary", motion)
@@ -177,6 +189,9 @@ def _theorem(printer: Printer, entry: _Entry, words: Sequence[str], forward: Seq
     yield "Theorem proved : forall (W : world) (named : string -> element W) (now : R), respects W bounds ->"
     for word in forward:
         yield f"  (0 <= Prescribed.speed W now {word})%R ->"
+    if entry.at_most is not None:
+        low, high = map(literal, entry.at_most)
+        yield f"  (parameter W {low} <= parameter W {high})%R ->"
     yield f"  (holds W named (unbound W) now claim <-> {entry.of(words, 'Prescribed.')})."
     yield "Proof."
     yield "  intros W named now B. unfold respects, bounds in B. Roadproof.Reading.bounds_in B. intros."

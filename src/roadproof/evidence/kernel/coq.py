@@ -26,7 +26,8 @@ from roadproof.runtime.package_data import shipped
 THEORIES = (
     *("Meaning", "Text", "Linear", "Tableau", "Products", "Rss", "Instant", "Named", "Values", "Known"),
     *("Drive", "Signs", "Shown", "Guarantee", "Motion", "Integral", "Schemas", "Moves"),
-    *("Prescribed", "Braking", "Gained", "Boundary", "Braked", "Following", "Responding", "Reading"),
+    *("Prescribed", "Braking", "Gained", "Boundary", "Braked", "Following", "Responding"),
+    *("Joined", "Aided", "Assisted", "Aeb", "Reading"),
 )
 APT = "apt-get install -y coq"
 PATIENCE = 1800.0  # seconds for one file; a backstop only

@@ -1,0 +1,210 @@
+(* The boundaries of the competent and careful driver with AEB.  NOT TRUSTED: proved. *)
+From Coq Require Import Reals String List Lra Psatz.
+From Roadproof Require Import Meaning Prescribed Braking Gained Boundary Joined Aided Assisted.
+Import ListNotations.
+Open Scope string_scope.
+Open Scope R_scope.
+
+Section Aeb.
+  Variables (W : world) (now : R) (a b : vehicle) (k : aeb).
+  Notation par := (parameter W).
+  Notation T := (parameter W "cc_ramp").
+  Notation A := (parameter W "cc_braking").
+  Notation B := (parameter W "aeb_braking").
+  Notation v := (speed W now a).
+  Notation u := (speed W now b).
+  Notation g := (gap W now a b).
+  Notation r := (lengths W a b).
+  Hypotheses (Ha : 0 <= v) (Hb : 0 <= u) (PT : 0 < T) (PA : 0 < A) (AB : A <= B) (H_delay : 0 <= par "cc_delay").
+
+  Lemma assisted_positive o z t : 0 <= assisted W k o z t.
+  Proof.
+    assert (R : forall C s, A <= C -> 0 <= ramp T C s) by (intros C s H; apply ramp_positive; lra).
+    assert (O : 0 <= match o with Some q => ramp T A (t - q) | None => 0 end) by (destruct o; [apply R|]; lra).
+    unfold assisted, Prescribed.par. pose proof (R B (t - z) AB). destruct k.
+    - destruct (Rlt_dec t z); [exact O|apply R, AB].
+    - apply Rle_trans with (1 := O), Rmax_l.
+    - apply Rmin_glb; lra.
+  Qed.
+  Lemma slower_hits_nobody o z x y : 0 <= g -> v <= u -> 0 <= y -> goes v (assisted W k o z) (z :: nil) x ->
+    ~ collide x (fun t => u * t) g r y.
+  Proof.
+    intros G V Y [L [Z [C [D [X0 X]]]]] [_ [t [H N]]].
+    assert (P : forall s, 0 <= s -> 0 <= L s).
+    { intros s S. rewrite <- Z. apply (rise_but z L (assisted W k o z)); [exact S|intros; apply C; lra| |intros; apply assisted_positive].
+      intros e E1 E2. apply D; [lra|]. intros [E|[]]. apply E2. symmetry. exact E. }
+    assert (x t - u * t <= x 0 - u * 0); [|lra].
+    apply (falls (fun t => x t - u * t) (fun t => Rmax 0 (v - L t) - u * 1)); [lra| |].
+    - intros s S. apply (gain_slope u x (fun t => Rmax 0 (v - L t)) X). lra.
+    - intros s S. pose proof (P s ltac:(lra)). assert (Rmax 0 (v - L s) <= u); [|lra]. apply Rmax_lub; lra.
+  Qed.
+
+  Lemma still_is_faster q h : isFaster (v - u) q h 1 T A <-> stillFaster v u q h 1 T A.
+  Proof.
+    unfold isFaster, stillFaster. split; intros [P [L|[[L K]|[L K]]]]; (split; [lra|]);
+      first [left; lra|right; left; split; lra|right; right; split; lra].
+  Qed.
+
+  Lemma assisted_collides q y z x : u < v -> 0 <= g -> 0 <= q -> 0 <= y <= z -> goes v (assisted W k (Some q) z) (z :: nil) x ->
+    (collide x (fun t => u * t) g r y
+     <-> hits v u g r q y 1 T A /\ (hasGained v u g q y 1 T A \/ aided k (v - u) g q z T A B)).
+  Proof.
+    intros V G Q Y [L [Z [C [D0 [X0 X]]]]].
+    assert (D : forall t, 0 < t -> t <> z -> derivable_pt_lim L t (assisted W k (Some q) z t)).
+    { intros t H N. apply D0; [exact H|]. intros [E|[]]. apply N. symmetry. exact E. }
+    destruct (brakes_exists v q T A Ha Q ltac:(lra) PA) as [X1 B1].
+    destruct (brakes_right v q T A Q ltac:(lra) PA X1 B1) as [X10 D1].
+    assert (P : as_ v L 0 z v T A q).
+    { apply from_0 with (W := W) (k := k) (q := q) (z := z); try assumption; try lra. intros t H1 H2. unfold assisted, Prescribed.par.
+      pose proof (ramp_positive T A (t - q) PT PA) as O. destruct k.
+      - destruct (Rlt_dec t z); [reflexivity|lra].
+      - rewrite (ramp_low T B) by lra. apply Rmax_left. lra.
+      - rewrite (ramp_low T B) by lra. rewrite Rmin_right; lra. }
+    assert (S : forall t, 0 <= t <= z -> x t = X1 t).
+    { intros t H. assert (Wt : x t = X1 t + (x 0 - X1 0)); [|lra].
+      apply way_as with (v := v) (L := L) (h := z) (w := v) (T' := T) (A' := A) (m := q); try assumption; lra. }
+    assert (F : forall t t', 0 <= t <= t' -> L t <= L t') by (apply L_grows with (W := W) (k := k) (q := q) (z := z); assumption).
+    unfold collide, hits. rewrite (S y) by lra.
+    rewrite (over_after u x (fun t => Rmax 0 (v - L t)) X (s_falls v L F) y g) by lra. rewrite (S y) by lra.
+    assert (AR : over x u g <-> aided k (v - u) g q z T A B).
+    { apply assisted_right with (L := L); try assumption; lra. }
+    rewrite AR.
+    rewrite !(gained_right v q T A Ha Q ltac:(lra) PA X1 X10 D1 u _ y) by lra.
+    rewrite <- still_is_faster, (is_faster_right v q T A ltac:(lra) PA u Hb y) by lra.
+    assert (E : Rmax 0 (v - L y) = speed_at v q T A y) by (unfold speed_at; rewrite (P y ltac:(lra)); reflexivity).
+    rewrite E.
+    assert (N : aided k (v - u) g q z T A B -> gains v u g q 1 T A).
+    { intros H. apply AR in H.
+      apply (from_right v q T A ltac:(lra) PA u). apply (over_right v q T A Ha Q ltac:(lra) PA X1 X10 D1 u Hb g V).
+      destruct H as [t [H1 H2]]. exists t. split; [exact H1|]. enough (x t - X1 t <= x 0 - X1 0) by lra.
+      apply (falls (fun t => x t - X1 t) (fun t => Rmax 0 (v - L t) - speed_at v q T A t)); [exact H1| |].
+      - intros s Hs. apply derivable_pt_lim_minus; [apply X|apply D1]; lra.
+      - intros s Hs. unfold speed_at.
+        assert (M : lost T A (s - q) <= L s) by (apply L_at_least with (W := W) (k := k) (z := z); try assumption; lra).
+        assert (Rmax 0 (v - L s) <= Rmax 0 (v - lost T A (s - q))); [|lra].
+        apply Rmax_lub; [apply Rmax_l|]. apply Rle_trans with (2 := Rmax_r _ _). lra. }
+    split.
+    - intros [H1 H2]. destruct H2 as [H2|[H2 H3]].
+      + split; [split; [lra|left; lra]|left; lra].
+      + split; [split; [lra|right; split; [split; assumption|apply N, H3]]|right; exact H3].
+    - intros [[H1 H2] H3]. split; [lra|]. destruct H2 as [H2|[[_ H2] _]]; [left; lra|].
+      destruct H3 as [H3|H3]; [left; lra|right; split; assumption].
+  Qed.
+
+  (* --- the formula ------------------------------------------------------------------------------------------ *)
+  Definition aidedHits y q z w : Prop :=
+    hasGained v u g q y w T A \/ aidedGains k ((v - u) * w ^ 2) (g * w ^ 3) q z w T A B.
+  Definition aidedGated y z p x w : Prop :=
+    (w * (g - par "cc_ttc" * (v - u)) <= p * (v - u) /\ aidedHits y (p + x) z w)
+    \/ (p * (v - u) < w * (g - par "cc_ttc" * (v - u))
+        /\ aidedHits (y * (v - u)) (w * (g - par "cc_ttc" * (v - u)) + x * (v - u)) (z * (v - u)) (w * (v - u))).
+  Definition wrap y : R := y + Rmin (measure W Width a) (measure W Width b).
+  Definition aidedLate p (h : gate) y w : Prop :=
+    match h with
+    | no_gate => aidedHits y (seen W p y + weighed W p w + par "cc_delay" * w) (wrap y) w
+    | before_perception => aidedGated y (wrap y) (seen W p y) (weighed W p w + par "cc_delay" * w) w
+    | before_delay => aidedGated y (wrap y) (seen W p y + weighed W p w) (par "cc_delay" * w) w
+    end.
+  Definition aided_hits p h y w : Prop := careful_hits W now a b p h y w /\ aidedLate p h y w.
+
+  Lemma wrap_after y : 0 <= y -> y < wrap y.
+  Proof.
+    intros Y. unfold wrap. pose proof (measure_positive W Width a). pose proof (measure_positive W Width b).
+    assert (0 < Rmin (measure W Width a) (measure W Width b)) by (apply Rmin_pos; assumption). lra.
+  Qed.
+  Lemma both_right y q z w o e : u < v -> 0 <= g -> 0 <= q -> 0 <= y <= z -> 0 < w -> o = q / w -> e = z / w ->
+    (hit_by_careful W now a b y q w /\ aidedHits y q z w
+     <-> exists x, goes v (assisted W k (Some o) e) (e :: nil) x /\ collide x (fun t => u * t) g r (y / w)).
+  Proof.
+    intros V G Q Y P -> ->.
+    assert (Q' : 0 <= q / w) by (apply over_positive; assumption). assert (Y' : 0 <= y / w) by (apply over_positive; lra).
+    assert (Z' : y / w <= z / w) by (apply frac_le; lra).
+    assert (S1 : hit_by_careful W now a b y q w <-> hits v u g r (q / w) (y / w) 1 T A).
+    { unfold hit_by_careful, hits. replace q with (w * (q / w)) at 1 2 3 4 by (field; lra).
+      replace y with (w * (y / w)) at 1 2 3 by (field; lra). rewrite !scale_gained, scale_faster, scale_gains by lra. reflexivity. }
+    assert (S2 : aidedHits y q z w <-> hasGained v u g (q / w) (y / w) 1 T A \/ aided k (v - u) g (q / w) (z / w) T A B).
+    { unfold aidedHits. rewrite <- (scale_aided w T k (v - u) g (q / w) (z / w) A B P PT PA ltac:(lra)).
+      rewrite <- (scale_gained v u g (q / w) (y / w) w T A P). rewrite !times_over by exact P. reflexivity. }
+    rewrite S1, S2. split.
+    - intros H. assert (AE : exists x, goes v (assisted W k (Some (q / w)) (z / w)) (z / w :: nil) x)
+        by (apply assisted_exists; try assumption; lra).
+      destruct AE as [x X]. exists x. split; [exact X|].
+      apply (assisted_collides (q / w) (y / w) (z / w) x V G Q' ltac:(lra) X). exact H.
+    - intros [x [X H]]. apply (assisted_collides (q / w) (y / w) (z / w) x V G Q' ltac:(lra) X). exact H.
+  Qed.
+
+  Lemma gated_aeb y w p x e (begins : option R -> Prop) : 0 < w -> 0 <= y -> 0 <= g -> 0 <= p -> 0 <= x -> x = e * w ->
+    (u < v -> forall o, begins o <-> exists d, first (close W now a b) (p / w) d /\ o = later e d) ->
+    (gated W now a b y w p x /\ aidedGated y (wrap y) p x w
+     <-> exists i, (exists o, begins o /\ goes v (assisted W k o (wrap y / w)) (wrap y / w :: nil) i)
+       /\ collide i (fun t => u * t) g r (y / w)).
+  Proof.
+    intros P Y G Hp Hx Ex Bg. unfold gated, aidedGated. pose proof (wrap_after y Y) as Wy.
+    destruct (Rle_lt_dec v u) as [V|V].
+    { split; [intros [[N _] _]; lra|]. intros [i [[o [_ Gi]] C]]. exfalso.
+      apply (slower_hits_nobody o (wrap y / w) i (y / w) G V (over_positive y w Y P) Gi C). }
+    specialize (Bg V). set (left_ := g - par "cc_ttc" * (v - u)) in *. set (z := wrap y) in *.
+    assert (Q : (exists i, (exists o, begins o /\ goes v (assisted W k o (z / w)) (z / w :: nil) i)
+      /\ collide i (fun t => u * t) g r (y / w))
+      <-> (exists i, goes v (assisted W k (Some (Rmax (p / w) (left_ / (v - u)) + e)) (z / w)) (z / w :: nil) i
+        /\ collide i (fun t => u * t) g r (y / w))).
+    { split.
+      - intros [i [[o [Bo Gi]] C]]. exists i. split; [|exact C]. apply Bg in Bo. destruct Bo as [d [F ->]].
+        apply (opens W now a b (p / w) d V) in F. subst d. exact Gi.
+      - intros [i [Gi C]]. exists i. split; [|exact C]. eexists. split; [|exact Gi]. apply Bg.
+        eexists. split; [apply (opens W now a b (p / w) _ V); reflexivity|reflexivity]. }
+    rewrite Q. clear Q.
+    assert (E1 : w * (v - u) * (left_ / (v - u)) = w * left_) by (field; lra).
+    assert (E2 : w * (v - u) * (p / w) = p * (v - u)) by (field; lra).
+    assert (W' : 0 < w * (v - u)) by (apply Rmult_lt_0_compat; lra).
+    destruct (Rle_lt_dec (w * left_) (p * (v - u))) as [L|L].
+    - rewrite Rmax_left by (apply Rmult_le_reg_l with (w * (v - u)); lra).
+      rewrite <- (both_right y (p + x) z w) by (try reflexivity; try (unfold z in *; lra); rewrite Ex; field; lra).
+      split; [intros [[_ [[_ H1]|[N _]]] [[_ H2]|[N' _]]]; try lra; split; assumption|].
+      intros [H1 H2]. split; [split; [exact V|left; split; assumption]|left; split; assumption].
+    - rewrite Rmax_right by (apply Rmult_le_reg_l with (w * (v - u)); lra).
+      assert (N1 : 0 <= y * (v - u)) by (apply Rmult_le_pos; lra).
+      assert (N3 : y * (v - u) <= z * (v - u)) by (apply Rmult_le_compat_r; lra).
+      assert (N2 : 0 <= w * left_ + x * (v - u)).
+      { assert (0 <= x * (v - u)) by (apply Rmult_le_pos; lra). assert (0 <= p * (v - u)) by (apply Rmult_le_pos; lra). lra. }
+      replace (y / w) with (y * (v - u) / (w * (v - u))) by (field; lra).
+      rewrite <- (both_right (y * (v - u)) (w * left_ + x * (v - u)) (z * (v - u)) (w * (v - u)))
+        by (try lra; first [rewrite Ex; field; lra|field; lra]).
+      split; [intros [[_ [[N _]|[_ H1]]] [[N' _]|[_ H2]]]; try lra; split; assumption|].
+      intros [H1 H2]. split; [split; [exact V|right; split; assumption]|right; split; assumption].
+  Qed.
+
+  Theorem aeb_boundary p h : known W p -> (from_both W now a b (aided_hits p h) <-> cut_in W now (careful_with_aeb W now k p h a b) a b).
+  Proof.
+    intros K. apply from_both_right. intros y w P Y G. unfold aided_hits.
+    pose proof (seen_positive W p y K Y) as S. pose proof (evaluation_positive W p K) as E.
+    assert (E' : 0 <= evaluation W p * w) by (apply Rmult_le_pos; lra).
+    assert (D' : 0 <= par "cc_delay" * w) by (apply Rmult_le_pos; lra).
+    pose proof (over_positive (seen W p y) w S P) as S'. pose proof (wrap_after y Y) as Wy.
+    destruct h; cbn [careful_hits aidedLate]; unfold careful_with_aeb; fold (wrap y).
+    - unfold ungated. rewrite weighed_is. destruct (Rle_lt_dec v u) as [V|V].
+      + split; [|intros [x [[o [_ Gx]] C]]; exfalso; apply (slower_hits_nobody o (wrap y / w) x (y / w) G V (over_positive y w Y P) Gx C)].
+        intros [H _]. exfalso.
+        assert (Qp : 0 <= seen W p y + evaluation W p * w + par "cc_delay" * w) by lra.
+        apply (hit_by_careful_right W now a b Ha Hb PT PA y _ w _ G Y Qp P eq_refl) in H. destruct H as [x [Bx C]].
+        refine (not_faster W now a b Ha Hb PT PA (Some _) x (y / w) G V (over_positive y w Y P) _ Bx C). apply over_positive; assumption.
+      + rewrite (both_right y _ (wrap y) w (seen W p y / w + (evaluation W p + par "cc_delay")) (wrap y / w)) by (try lra; field; lra).
+        split.
+        * intros [x [Gx C]]. exists x. split; [|exact C]. eexists. split; [|exact Gx]. cbn [onset].
+          exists (Some (seen W p y / w)). split; [apply first_perceived; auto|reflexivity].
+        * intros [x [[o [[s [F ->]] Gx]] C]]. exists x. split; [|exact C]. apply first_perceived in F; auto. subst s. exact Gx.
+    - apply (gated_aeb y w (seen W p y) _ (evaluation W p + par "cc_delay") (fun o => onset W now p before_perception a b y w o));
+        try assumption; [rewrite weighed_is; lra|rewrite weighed_is; ring|].
+      intros _ o. cbn [onset]. split; intros [s [F ->]]; exists s; (split; [|reflexivity]);
+        apply (first_of (perceived W p y w) (close W now a b) 0 (seen W p y / w) s); auto; intros t T'; rewrite perceived_is;
+        pose proof (times_over (seen W p y) w P); set (z := seen W p y / w) in *; split; intros; nra.
+    - apply (gated_aeb y w _ _ (par "cc_delay") (fun o => onset W now p before_delay a b y w o));
+        try assumption; [rewrite weighed_is; lra|ring|].
+      intros _ o. rewrite weighed_is.
+      replace ((seen W p y + evaluation W p * w) / w) with (seen W p y / w + evaluation W p) by (field; lra).
+      cbn [onset]. split.
+      + intros [s [d [F [D ->]]]]. apply first_perceived in F; auto. injection F as ->. exists d. split; [exact D|reflexivity].
+      + intros [d [D ->]]. exists (seen W p y / w), d.
+        split; [apply first_perceived; auto|]. split; [exact D|reflexivity].
+  Qed.
+End Aeb.
