@@ -4,6 +4,7 @@ import json
 import re
 from collections.abc import Callable, Iterator, Mapping
 from copy import deepcopy
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -12,13 +13,16 @@ from jsonschema import Draft202012Validator
 from referencing import Registry, Resource
 
 import roadproof as rp
+from asking import search_for
 from cli.test_coverage import components
 from roadproof.analysis.coverage import study
 from roadproof.analysis.coverage.found import Need
 from roadproof.analysis.coverage.study import Coverage
+from roadproof.engines.search.none_within import refute
 from roadproof.evidence.drive_file import load_drive, read_drive
 from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.evidence.none_within import none_within_data
 from roadproof.evidence.schemas import as_text, schemas
 from roadproof.frontends.cli.main import COMMANDS, main
 from roadproof.library.elaborate import read_claim
@@ -51,7 +55,15 @@ INTERNAL = {
     "roadproof/shown/1",
 }
 NOT_HEADED = {
-    *("road.json", "drive.json", "certificate.json", "question.json", "answer.json", "common.json"),
+    *(
+        "road.json",
+        "drive.json",
+        "certificate.json",
+        "none-within.json",
+        "question.json",
+        "answer.json",
+        "common.json",
+    ),
     "trace-lock.json",
 }
 
@@ -451,6 +463,11 @@ def test_spoiled_evidence_is_refused() -> None:
     refuse_spoiled("drive.json", with_jerk())
     proof = ROOT / "proofs" / "P1-scenario-04-base.json"
     refuse_spoiled("certificate.json", json.loads(proof.read_text("utf-8")))
+    search = search_for("v_lon(SV) > 41 m/s and atLane(SV, L)", horizon=Fraction(3, 5))
+    found = refute(search)
+    assert found is not None
+    accept("none-within.json", none_within_data(found))
+    refuse_spoiled("none-within.json", none_within_data(found))
 
 
 # --- the schemas ----------------------------------------------------------------------------------

@@ -147,6 +147,11 @@ def _proof(name: str) -> str:
     return f"impossible-{name}.json"
 
 
+def none_within_file(name: str) -> str:
+    """The file that shows a NONE-WITHIN, where there is one."""
+    return f"none-within-{name}.json"
+
+
 def name_of(number: int, search: Search) -> str:
     """Under which name what was found is kept, and how its files begin."""
     scenario = search.scenario

@@ -6,13 +6,14 @@ from fractions import Fraction
 from pathlib import Path
 
 from roadproof.errors import InputError, MissingSolverError, RoadproofError
-from roadproof.evidence import certificate, drive_file
+from roadproof.evidence import certificate, drive_file, none_within
 from roadproof.evidence.answers.proofs import misnamed, shown
 from roadproof.evidence.answers.reader import FindLabel
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.finding import Acceptance, Finding, OtherVerdict
 from roadproof.evidence.judged import judge_file, times_data
+from roadproof.evidence.none_within import Derive, Derived, NoneWithinFile
 from roadproof.evidence.strict import Fields, read_json
 from roadproof.library.bind import default_values, values_with
 from roadproof.library.elaborate import read_claim
@@ -35,13 +36,14 @@ class Checker:
     """``ask`` answers sat, unsat or unknown to a script; ``find_label`` knows the template properties.
 
     ``ruled``: what was said of it elsewhere: of a certificate in place of asking for its queries, of a drive
-    beside judging it.
+    beside judging it. ``derive``: the encoder, for files that show a NONE-WITHIN.
     """
 
     library: Library
     ask: Callable[[str], str]
     find_label: FindLabel
     ruled: OtherVerdict | None = None
+    derive: Derive | None = None
 
     def check(self, path: Path) -> Finding:
         """What a file shows. Never fails for what is in the file."""
@@ -52,7 +54,10 @@ class Checker:
                 return self._certificate(path, certificate.read_certificate_data(content, str(path)))
             if schema in drive_file.SCHEMAS_READ:
                 return self._drive(path, content)
-            known = " or ".join((certificate.SCHEMA, *drive_file.SCHEMAS_READ))
+            if schema == none_within.SCHEMA and self.derive is not None:
+                file = none_within.read_none_within(content, str(path))
+                return self._none_within(path, file, self.derive(file, self.library))
+            known = " or ".join((certificate.SCHEMA, *drive_file.SCHEMAS_READ, none_within.SCHEMA))
             raise InputError(f"its schema is {schema[:60]!r}, but must be {known}")
         except MissingSolverError:
             raise
@@ -87,6 +92,29 @@ class Checker:
             return certificate.rule(file, self.library, self.ask)
         unreadable = certificate.unreadable(file, self.library)
         return (Acceptance.UNREADABLE, unreadable) if unreadable else (self.ruled.outcome, self.ruled.reason)
+
+    def _none_within(self, path: Path, file: NoneWithinFile, derived: Derived) -> Finding:
+        """Trees are checked against programs that the encoder derives again from the question."""
+        fault = none_within.first_fault(file, derived)
+        outcome = Acceptance.REJECTED if fault else Acceptance.ACCEPTED
+        reason = Why.TOLD(fault) if fault else NO_REASON
+        if self.ruled is not None and not fault:
+            outcome, reason = self.ruled.outcome, self.ruled.reason
+        label = shown(None if file.scenario is None else ("", "", file.scenario), file.set_name)
+        checked, unchecked = ((), ()) if reason else ((derived.limits,), ("the encoder",))
+        word = "" if self.ruled is None else self.ruled.word
+        return Finding(
+            str(path),
+            "certificate",
+            outcome,
+            reason,
+            "NONE-WITHIN",
+            label,
+            file.formula,
+            checked,
+            unchecked,
+            kernel=word,
+        )
 
     def _drive(self, path: Path, content: object) -> Finding:
         file = drive_file.read_drive(content, str(path))

@@ -21,6 +21,7 @@ from roadproof.evidence.answers import (
     explore,
     library,
     monitor,
+    none_within,
     order,
     overlap,
     plates,
@@ -125,6 +126,9 @@ def schemas() -> Iterator[tuple[str, JsonObject]]:
     yield "certificate.json", {**made, **WITHOUT_ASSUMPTION}
     title = "A judged drive, with all that is needed to judge it again"
     yield "drive.json", tagged_schema(DRIVES, "drive.json", title)
+    title = "That no drive within limits satisfies a formula, with trees that a second program can check"
+    made = schema_of(none_within.NoneWithin, none_within.NoneWithin, "none-within.json", title)
+    yield "none-within.json", made
     yield "answer.json", kept_answers("answer.json")
     yield "question.json", questions("question.json")
     title, those = "What several kinds of answers share", shared_schemas(shared_types())

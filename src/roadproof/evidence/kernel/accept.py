@@ -198,7 +198,7 @@ def _blamed(modules: Sequence[Module], ran: CoqRun) -> tuple[int, Ruling] | None
 def _why(module: Module, line: int, said: str) -> Ruling:
     if line >= module.theorem:
         if '"true = true"' in said:
-            return Ruling(Word.REFUSED, "the checker of tableaux does not accept its tableau")
+            return Ruling(Word.REFUSED, "the proved checker does not accept it")
         if 'Unable to unify "true" with "false"' in said:
             return Ruling(Word.REFUSED, "what it supposes of motion is no instance of a schema")
         return Ruling(Word.UNKNOWN, f"coqc says: {said[:200]}")

@@ -28,6 +28,7 @@ THEORIES = (
     *("Drive", "Signs", "Shown", "Guarantee", "Motion", "Integral", "Schemas", "Moves"),
     *("Prescribed", "Braking", "Gained", "Boundary", "Braked", "Following", "Responding"),
     *("Joined", "Aided", "Assisted", "Aeb", "Reading"),
+    *("Programs", "Refuted"),
 )
 APT = "apt-get install -y coq"
 PATIENCE = 1800.0  # seconds for one file; a backstop only

@@ -24,7 +24,7 @@ MOST_COMPARISONS = 8  # of a fact that Coq's own tactics are asked about; with m
 HEAD = """\
 From Coq Require Import QArith String List.
 From Roadproof Require Import Meaning Text Linear Tableau Products Named.
-From Roadproof Require Drive Shown Values Motion Schemas.
+From Roadproof Require Drive Shown Values Motion Schemas Programs Refuted.
 Import ListNotations.
 Open Scope string_scope.
 Open Scope nat_scope.

@@ -18,6 +18,7 @@ from roadproof.evidence.codec import write
 from roadproof.evidence.finding import Acceptance, Finding, OtherVerdict, exit_code, summary
 from roadproof.evidence.folder import FolderStatements, Survey, conclude, survey
 from roadproof.evidence.heading import heading
+from roadproof.evidence.none_within import Derived, NoneWithinFile
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.settings import work_of
@@ -251,7 +252,12 @@ def _doubt(job: _Job, reason: Reason) -> Finding:
 def _examine(solver: str, effort: Effort, job: _Job) -> Finding:
     """Check one file by what its schema says that it is."""
 
+    def derive(file: NoneWithinFile, library: Library) -> Derived:
+        from roadproof.engines.search.none_within import derive as derive_programs  # loads the encoder
+
+        return derive_programs(file, library)
+
     def answer(script: str) -> SolverAnswer:
         return ask(script, solver, effort.meter())
 
-    return Checker(load_library(job.specs), answer, find_label, job.ruled).check(job.path)
+    return Checker(load_library(job.specs), answer, find_label, job.ruled, derive).check(job.path)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
+from dataclasses import field, replace
 from functools import partial
 from itertools import product
 from pathlib import Path
@@ -9,8 +10,9 @@ from typing import ClassVar, Unpack
 
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.frame import StudyResult, look_up, put_away
-from roadproof.analysis.witnesses import WitnessStudy, evidence_files, stems
+from roadproof.analysis.witnesses import WitnessStudy, evidence_files, none_within_file, stems
 from roadproof.engines.search.ask import Outcome, Search
+from roadproof.engines.search.none_within import refute
 from roadproof.engines.search.question import SearchOptions
 from roadproof.errors import UsageError
 from roadproof.evidence.answers import drives as kept
@@ -18,6 +20,7 @@ from roadproof.evidence.answers.drives import Answer
 from roadproof.evidence.codec import write
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.kinds import Evidence
+from roadproof.evidence.none_within import none_within_data
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.ci import BuildResult
@@ -34,7 +37,7 @@ from roadproof.frontends.settings.keywords import WitnessKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Witness
 from roadproof.library.specification import Library
-from roadproof.runtime.files import make_folder, write_whole
+from roadproof.runtime.files import json_bytes, make_folder, write_whole
 from roadproof.runtime.progress import Listener, listening
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict, exit_code
@@ -48,9 +51,12 @@ class DriveFolder:
     folder: Path
     library: Library
     views: Views
+    searches: Mapping[str, Search] = field(default_factory=dict)
 
     def __call__(self, name: str, outcome: Outcome) -> None:
         make_folder(self.folder)
+        if name in self.searches:
+            self._show_none(name, outcome)
         for stem, judged in zip(stems(name, outcome), outcome.drives, strict=True):
             samples = self.folder / f"{stem}.csv"
             former = samples.read_bytes() if samples.is_file() else b""
@@ -59,6 +65,15 @@ class DriveFolder:
             if samples.read_bytes() != former:  # the other files are those of a former drive
                 for ending in {*EVERY_VIEW.endings} - {*self.views.endings}:
                     (self.folder / f"{stem}{ending}").unlink(missing_ok=True)
+
+    def _show_none(self, name: str, outcome: Outcome) -> None:
+        """Evidence of a NONE-WITHIN, where a tree is found; none of a former answer is left."""
+        path = self.folder / none_within_file(name)
+        path.unlink(missing_ok=True)
+        if outcome.verdict is Verdict.NONE_WITHIN:
+            found = refute(self.searches[name])
+            if found is not None:
+                write_whole(path, json_bytes(none_within_data(found)))
 
     def lacks(self, name: str, outcome: Outcome) -> bool:
         """Whether any is not there."""
@@ -209,6 +224,8 @@ def witness_all(
     library, out, views = searches[0].specification.library, given.out, views_of(given)
     beside = None if out is None else DriveFolder(Path(out), library, views)
     study = WitnessStudy(tuple(searches), beside)
+    beside = None if beside is None else replace(beside, searches=study.named)
+    study = replace(study, finish=beside)
     found = Witnesses.asked(study, given, each)
     if beside is not None:
         left = [(name, x) for name in study.named if beside.lacks(name, x := found.found.answers[name])]
@@ -236,7 +253,9 @@ def views_of(given: Witness) -> Views:
     return Views(given.pictures, tuple(wanted))
 
 
-def files_written(name: str, outcome: Outcome, views: Views) -> list[str]:
+def files_written(name: str, outcome: Outcome, views: Views, folder: Path) -> list[str]:
     """The names of the files that an outcome has in a folder."""
+    if outcome.verdict is Verdict.NONE_WITHIN:
+        return [x for x in (none_within_file(name),) if (folder / x).is_file()]
     every = (f"{stem}{ending}" for stem in stems(name, outcome) for ending in (".json", *views.endings))
     return list(every) if outcome.drives else evidence_files(name, outcome)

@@ -17,7 +17,7 @@ from roadproof.evidence.derivations.prepare import prepare as prepare_drive
 from roadproof.evidence.derivations.prepare import prepare_trace
 from roadproof.evidence.drive_file import DriveFile, read_drive
 from roadproof.evidence.finding import Acceptance, OtherVerdict
-from roadproof.evidence.kernel import accept, coq, extracted, ocaml
+from roadproof.evidence.kernel import accept, coq, extracted, ocaml, programs
 from roadproof.evidence.kernel.accept import CoqModule, KernelRulings, Ruling, Word
 from roadproof.evidence.kernel.drive import module as source_drive
 from roadproof.evidence.kernel.source import file
@@ -25,6 +25,8 @@ from roadproof.evidence.kernel.source import module as source_proof
 from roadproof.evidence.kernel.statement import counted
 from roadproof.evidence.kernel.trace import Refutation
 from roadproof.evidence.kernel.trace import trace_module as source_trace
+from roadproof.evidence.none_within import SCHEMA as NONE_WITHIN
+from roadproof.evidence.none_within import NoneWithinFile, read_none_within
 from roadproof.evidence.strict import read_json
 from roadproof.frontends.settings.value_types import KernelName
 from roadproof.library.loading import load_library
@@ -208,6 +210,8 @@ def _prepare(kernel: KernelName, asked: KernelQuestion) -> CoqModule | None:
         except RoadproofError:
             return None
     home = asked.home if isinstance(asked.home, Library) else load_library(asked.home)
+    if isinstance(content, NoneWithinFile):
+        return _none_within(kernel, asked.name, content, home)
     drive, trace, proof = _COQ if kernel == "coq" else _EXTRACTED
     if isinstance(content, Refutation):
         return prepare_trace(asked.name, content, home, trace)
@@ -216,12 +220,29 @@ def _prepare(kernel: KernelName, asked: KernelQuestion) -> CoqModule | None:
     return accept.prepare(asked.name, content, home, proof) if isinstance(content, Certificate) else None
 
 
-def _read(path: Path) -> Certificate | DriveFile | None:
+def _none_within(kernel: KernelName, name: str, file: NoneWithinFile, home: Library) -> CoqModule:
+    """The programs that the encoder derives, with the trees of a file."""
+    from roadproof.engines.search.none_within import derive
+
+    if kernel != "coq":
+        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, "the extracted program reads no such file"))
+    try:
+        derived = derive(file, home)
+    except RoadproofError as error:
+        return CoqModule(None, refusal=Ruling(Word.REFUSED, f"it cannot be put to Coq: {error}"))
+    trees = (tree for _, tree in file.refutations)
+    pairs = list(zip(derived.programs, trees, strict=True))
+    return programs.prepare(name, [file.formula, derived.limits], pairs)
+
+
+def _read(path: Path) -> Certificate | DriveFile | NoneWithinFile | None:
     """Raises ``InputError`` for a file that is damaged."""
     content = read_json(path)
     schema = content.get("schema") if isinstance(content, dict) else None
     if schema in drive_file.SCHEMAS_READ:
         return read_drive(content, str(path))
+    if schema == NONE_WITHIN:
+        return read_none_within(content, str(path))
     return read_certificate_data(content, str(path)) if schema in SCHEMAS_READ else None
 
 

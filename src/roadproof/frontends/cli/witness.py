@@ -1,6 +1,7 @@
 """``roadproof witness``: drives on which scenarios and formulas hold, each judged exactly."""
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.frontends.cli.basis import in_order, read_definitions, study_keywords
@@ -48,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
     written: list[str] = []
 
     def show(name: str, outcome: "Outcome") -> None:
-        files = [] if args.out is None else files_written(name, outcome, views)
+        files = [] if args.out is None else files_written(name, outcome, views, Path(args.out))
         written.extend(files)
         clear()
         told = f"\n  written to {args.out}: {', '.join(files)}" if files else ""

@@ -1,0 +1,240 @@
+"""Searches for a tree that shows that a program has no solution: HiGHS finds it, integers decide.
+
+Depth first. A linear relaxation of the known facts gives multipliers where it is infeasible, else a point.
+Where a known disjunction is false at the point, or a product is wrong, the tree branches. A part of a
+disjunction whose refutation does not use that part refutes the whole.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from roadproof.engines.solve.relaxation import MARGIN, NotRefutedError, Relaxation
+from roadproof.evidence.program import (
+    Cases,
+    Cut,
+    Either,
+    Every,
+    Fact,
+    Known,
+    Linear,
+    Program,
+    Sum,
+    Tree,
+    is_absurd,
+    linear_of,
+)
+from roadproof.runtime.records import dataclass
+
+DIGITS = (2, 3, 5, 7, 9, 12)  # of the greatest multiplier, in turn
+NEAR = 1e-6  # how false a condition may be at a point
+TANGENTS = 5
+MIDDLE = 5  # an interval is cut at the point, or in its middle where the point is in the last fifth
+
+
+@dataclass(frozen=True)
+class Refutation:
+    """A tree, and the nodes of the program that it uses."""
+
+    tree: Tree
+    nodes: frozenset[int]
+
+
+def find_tree(program: Program, most: int) -> Tree:
+    """A tree that refutes ``program``, by at most so many linear programs. Raises ``NotRefutedError``."""
+    return Finder(program, most).run()
+
+
+class Finder:
+    """A search; ``solved`` counts its linear programs."""
+
+    def __init__(self, program: Program, most: int) -> None:
+        self.program, self.most, self.solved = program, most, 0
+        self.relaxation = Relaxation(program)
+        self.columns = len(program.box)
+        self.opposite = opposites(program)
+
+    def run(self) -> Tree:
+        """Raises ``NotRefutedError``."""
+        for number, linear in enumerate(self.program.equal):
+            self.relaxation.add(Fact("equal", number), linear)
+        for number, linear in enumerate(self.program.above):
+            self.relaxation.add(Fact("above", number), linear)
+        known = Known(self.program, self.program.box).also(len(self.program.nodes) - 1)
+        for product in range(len(self.program.products)):
+            self._add_product(known, product)
+        self._add_nodes(known.nodes)
+        return self._refute(known).tree
+
+    def _add_nodes(self, nodes: frozenset[int]) -> None:
+        for number in sorted(nodes):
+            node = self.program.nodes[number]
+            if isinstance(node, Linear):
+                self.relaxation.add(Fact("node", number), node)
+
+    def _add_product(self, known: Known, product: int) -> None:
+        one, other = self.program.products[product]
+        facts = [Fact("corner", product, (i, j)) for i in (0, 1) for j in (0, 1)]
+        if one == other:
+            low, high = known.box[one]
+            places = [low + (high - low) * k // (TANGENTS - 1) for k in range(TANGENTS)]
+            facts = [facts[1], *(Fact("tangent", product, (place, 0)) for place in places)]
+        for fact in facts:
+            linear = linear_of(known, fact)
+            if linear is not None:
+                self.relaxation.add(fact, linear)
+
+    def _refute(self, known: Known) -> Refutation:
+        weights = self._plain(known)
+        if weights is not None:
+            return _summed(weights)
+        self.solved += 1
+        if self.solved > self.most:
+            raise NotRefutedError(f"more than {self.most} linear programs")
+        point, ray = self.relaxation.solve()
+        if ray is not None:
+            return _summed(self._multipliers(known, ray))
+        node = self._open(known, point)
+        return self._cut(known, point) if node is None else self._cases(known, node)
+
+    def _plain(self, known: Known) -> tuple[tuple[Fact, int], ...] | None:
+        """A known inequality that the box excludes, or two that exclude each other."""
+        for number in sorted(known.nodes):
+            if not isinstance(self.program.nodes[number], Linear):
+                continue
+            weights = ((Fact("node", number), 1),)
+            if is_absurd(known, weights):
+                return weights
+            for other in self.opposite.get(number, ()):
+                if other in known.nodes:
+                    return (*weights, (Fact("node", other), 1))
+        return None
+
+    def _multipliers(self, known: Known, ray: Any) -> tuple[tuple[Fact, int], ...]:
+        """HiGHS gives them with either sign, and rounded."""
+        for signed in (ray, -ray):
+            for weights in (
+                *(self.relaxation.whole(signed, digits) for digits in DIGITS),
+                self.relaxation.simple(signed),
+            ):
+                if weights and is_absurd(known, weights):
+                    return weights
+        raise NotRefutedError("the multipliers of HiGHS are not exact enough")
+
+    def _open(self, known: Known, point: Any) -> int | None:
+        """Of the known disjunctions that are false at the point, that with the fewest possible parts."""
+        values: dict[int, float] = {}
+        found: list[tuple[int, float, int]] = []
+        for number in known.nodes:
+            node = self.program.nodes[number]
+            if isinstance(node, Either) and not known.nodes.intersection(node.parts):
+                value = self._value(number, point, values)
+                if value < -NEAR:
+                    found.append((sum(self._is_possible(known, p) for p in node.parts), value, number))
+        return min(found)[2] if found else None
+
+    def _value(self, number: int, point: Any, done: dict[int, float]) -> float:
+        """How true a node is at a point, by its least or greatest inequality; negative where it is false."""
+        if number not in done:
+            node = self.program.nodes[number]
+            if isinstance(node, Linear):
+                size = max((abs(k) for _, k in node.terms), default=1)
+                value = (sum(k * point[c] for c, k in node.terms) + node.constant) / size
+                done[number] = float(value) - (MARGIN if node.strict else 0.0)
+            else:
+                parts = [self._value(p, point, done) for p in node.parts]
+                end = float("inf") if isinstance(node, Every) else float("-inf")
+                done[number] = min([end, *parts]) if isinstance(node, Every) else max([end, *parts])
+        return done[number]
+
+    def _is_possible(self, known: Known, number: int) -> bool:
+        """Whether neither the box nor a single known inequality excludes a node."""
+        node = self.program.nodes[number]
+        if isinstance(node, Linear):
+            if known.nodes.intersection(self.opposite.get(number, ())):
+                return False
+            alone = Known(self.program, known.box, frozenset({number}))
+            return not is_absurd(alone, ((Fact("node", number), 1),))
+        parts = (self._is_possible(known, part) for part in node.parts)
+        return all(parts) if isinstance(node, Every) else any(parts)
+
+    def _cases(self, known: Known, number: int) -> Refutation:
+        """Impossible parts come first: one may refute the whole."""
+        node = self.program.nodes[number]
+        assert isinstance(node, Either)
+        trees: dict[int, Tree] = {}
+        used = {number}
+        for part in sorted(node.parts, key=lambda p: self._is_possible(known, p)):
+            inner = known.also(part)
+            new = inner.nodes - known.nodes
+            with self._taken_back():
+                self._add_nodes(new)
+                found = self._refute(inner)
+            if not found.nodes & new:
+                return found
+            used |= found.nodes - new
+            trees[part] = found.tree
+        return Refutation(Cases(number, tuple(trees[p] for p in node.parts)), frozenset(used))
+
+    def _cut(self, known: Known, point: Any) -> Refutation:
+        """The product that is most wrong at the point is cut at the wider one of its factors."""
+        wrong = [
+            (abs(point[self.columns + k] - point[one] * point[other]), k)
+            for k, (one, other) in enumerate(self.program.products)
+        ]
+        worst, product = max(wrong, default=(0.0, 0))
+        if worst <= NEAR:
+            raise NotRefutedError("the relaxation has a solution")
+        column = max(self.program.products[product], key=lambda c: known.box[c][1] - known.box[c][0])
+        low, high = known.box[column]
+        at = round(point[column] * self.program.scale)
+        if MIDDLE * min(at - low, high - at) < high - low:
+            at = (low + high) // 2
+        if not low < at < high:
+            raise NotRefutedError("an interval is too short to be cut")
+        halves = []
+        for ends in ((low, at), (at, high)):
+            with self._within(known, column, ends) as inner:
+                halves.append(self._refute(inner))
+        one, other = halves
+        return Refutation(Cut(column, at, one.tree, other.tree), one.nodes | other.nodes)
+
+    @contextmanager
+    def _within(self, known: Known, column: int, ends: tuple[int, int]) -> Iterator[Known]:
+        """In other bounds of a column, with the facts of its products in these."""
+        inner = known.within(column, ends)
+        products = [k for k, pair in enumerate(self.program.products) if column in pair]
+        with self._taken_back():
+            suspended = self.relaxation.suspend(products)
+            self.relaxation.bound(inner.box, column)
+            for product in products:
+                self._add_product(inner, product)
+            yield inner
+        self.relaxation.resume(suspended)
+        self.relaxation.bound(known.box, column)
+
+    @contextmanager
+    def _taken_back(self) -> Iterator[None]:
+        count = len(self.relaxation.facts)
+        yield
+        self.relaxation.take_back(count)
+
+
+def _summed(weights: tuple[tuple[Fact, int], ...]) -> Refutation:
+    nodes = frozenset(fact.number for fact, _ in weights if fact.kind == "node")
+    return Refutation(Sum(weights), nodes)
+
+
+def opposites(program: Program) -> dict[int, list[int]]:
+    """For each linear node those that contradict it because they say the opposite of the same terms."""
+    by_terms: dict[tuple[tuple[int, int], ...], list[tuple[int, Linear]]] = {}
+    linear = [(number, x) for number, x in enumerate(program.nodes) if isinstance(x, Linear)]
+    for number, x in linear:
+        by_terms.setdefault(tuple(sorted(x.terms)), []).append((number, x))
+    found: dict[int, list[int]] = {}
+    for number, x in linear:
+        for other, y in by_terms.get(tuple(sorted((c, -k) for c, k in x.terms)), ()):
+            total = x.constant + y.constant
+            if total < 0 or (total == 0 and (x.strict or y.strict)):
+                found.setdefault(number, []).append(other)
+    return found

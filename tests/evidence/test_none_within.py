@@ -1,0 +1,249 @@
+"""Trees that refute programs: found where there is no solution, never accepted where there is one."""
+
+import json
+import random
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+import z3
+
+from asking import search_for
+from evidence.trees import RIGHT, WRONG
+from planting import plant
+from roadproof.engines.prove.properties import find_label
+from roadproof.engines.search.none_within import derive, refute
+from roadproof.engines.solve.refuting import find_tree
+from roadproof.engines.solve.relaxation import NotRefutedError
+from roadproof.errors import InputError
+from roadproof.evidence import program as program_module
+from roadproof.evidence.checking import Checker
+from roadproof.evidence.finding import Acceptance
+from roadproof.evidence.none_within import (
+    first_fault,
+    lines_of,
+    none_within_data,
+    read_none_within,
+    tree_of,
+)
+from roadproof.evidence.program import Cases, Cut, Either, Every, Fact, Linear, Program, Sum, refutes
+from roadproof.frontends.cli.main import main
+from roadproof.library.loading import bundled_library
+from roadproof.verdict import ExitCode
+
+SHORT = {"horizon": Fraction(9, 5)}
+QUESTIONS = [
+    "v_lon(SV) > 41 m/s",
+    "F v_lon(SV) > 40 m/s",
+    "s(POV) - s(SV) = 60 m and s(SV) - s(POV2) = 60 m",
+    "s(SV)^2 > 1010000 * 1 m * 1 m and s(SV) > 0 m and s(POV) > s(POV2)",
+    "s(SV) < 0 m and F[0.6 s, 0.6 s] s(SV) > 24 m",
+    "rssViolation(SV, POV) and atLane(SV, L) and s(SV) > 9 m and v_lon(SV) > 41 m/s",
+    "F (v_lon(SV) > 20 m/s and F (v_lon(SV) < 3 m/s and F v_lon(SV) > 30 m/s))",
+]
+
+
+# --- random programs, against z3 --------------------------------------------------------------------------
+
+
+def linear(dice, columns, strict=False):
+    terms = {dice.randrange(columns): dice.choice([-3, -2, -1, 1, 2, 3]) for _ in range(dice.randint(1, 3))}
+    return Linear(tuple(terms.items()), dice.randint(-5, 8), strict)
+
+
+def random_program(dice):
+    count = dice.randint(2, 3)
+    box = tuple((-dice.randint(0, 4), dice.randint(0, 4)) for _ in range(count))
+    products = tuple(
+        dice.choice([(i, j) for i in range(count) for j in range(i, count)])
+        for _ in range(dice.randint(0, 2))
+    )
+    products = tuple(dict.fromkeys(products))
+    columns = count + len(products)
+    nodes = [linear(dice, columns, dice.random() < 0.3) for _ in range(6)]
+    for _ in range(4):
+        parts = tuple(dice.sample(range(len(nodes)), dice.choice([2, 3])))
+        nodes.append(dice.choice([Every, Either])(parts))
+    nodes.append(Every(tuple(range(6, len(nodes)))))
+    equal = (linear(dice, columns),) if dice.random() < 0.3 else ()
+    return Program(dice.choice([1, 2]), box, products, equal, (linear(dice, columns),), tuple(nodes))
+
+
+def nearly(dice, program):
+    """With another constant in one of its inequalities."""
+    place = dice.randrange(6)
+    node = program.nodes[place]
+    nodes = [*program.nodes]
+    nodes[place] = replace(node, constant=node.constant + dice.choice([4, 8, 20]))
+    return replace(program, nodes=tuple(nodes))
+
+
+def has_solution(program):
+    """By z3, from the definition of a program."""
+    solver = z3.Solver()
+    x = [z3.Real(f"x{k}") for k in range(len(program.box))]
+    for column, (low, high) in zip(x, program.box, strict=True):
+        solver.add(low <= program.scale * column, program.scale * column <= high)
+    x += [x[i] * x[j] for i, j in program.products]
+
+    def worth(row):
+        return sum((factor * x[column] for column, factor in row.terms), z3.RealVal(row.constant))
+
+    solver.add(*(worth(row) == 0 for row in program.equal), *(worth(row) >= 0 for row in program.above))
+    made = []
+    for node in program.nodes:
+        if isinstance(node, Linear):
+            made.append(worth(node) > 0 if node.strict else worth(node) >= 0)
+        else:
+            parts = [made[p] for p in node.parts]
+            made.append(z3.And(parts) if isinstance(node, Every) else z3.Or(parts))
+    solver.add(made[-1])
+    answer = solver.check()
+    assert answer != z3.unknown
+    return answer == z3.sat
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_of_random_programs_those_without_a_solution_are_refuted_and_no_others(seed):
+    dice, refuted, missed, solved, spoiled = random.Random(seed), 0, 0, 0, 0
+    for _ in range(60):
+        program = random_program(dice)
+        possible = has_solution(program)
+        solved += possible
+        try:
+            tree = find_tree(program, 200)
+        except NotRefutedError:
+            missed += not possible
+            continue
+        assert not possible
+        assert refutes(program, tree)
+        refuted += 1
+        for _ in range(6):
+            other = nearly(dice, program)
+            if has_solution(other):
+                spoiled += 1
+                assert not refutes(other, tree)
+    assert min(refuted, solved, spoiled) >= 5
+    assert missed <= 4  # false by nothing at all, on products
+
+
+def test_right_trees_are_accepted_and_wrong_ones_refused():
+    assert [told for told, (program, tree) in RIGHT.items() if not refutes(program, tree)] == []
+    assert [told for told, (program, tree) in WRONG.items() if refutes(program, tree)] == []
+
+
+# With each of these faults the checker accepts a wrong tree, or refuses a right one.
+FAULTS = [
+    ("linear_of", "if number in known.nodes else None", ""),
+    ("is_absurd", 'or (weight < 0 and fact.kind != "equal")', ""),
+    ("_greatest", "max(factor * end", "min(factor * end"),
+    ("is_absurd", "strict and greatest == 0", "greatest == 0"),
+    ("is_absurd", "linear.strict and weight > 0", "linear.strict"),
+    ("is_absurd", "constant * known.program.scale**2", "constant"),
+    ("refutes", "or number not in here.nodes", ""),
+    ("_of_product", "1 if first == second else -1", "1"),
+    ("_of_product", "if one != other:", "if False:"),
+]
+
+
+@pytest.mark.parametrize(("name", "right", "wrong"), FAULTS)
+def test_the_trees_notice_each_fault(monkeypatch, name, right, wrong):
+    plant(monkeypatch, program_module, name, right, wrong)
+    judged = {told: program_module.refutes(*pair) for told, pair in (RIGHT | WRONG).items()}
+    assert judged != {**dict.fromkeys(RIGHT, True), **dict.fromkeys(WRONG, False)}
+
+
+# --- questions, files -------------------------------------------------------------------------------------
+
+
+def none_within(what, **setting):
+    found = refute(search_for(what, **{**SHORT, **setting}))
+    assert found is not None
+    return found
+
+
+@pytest.mark.parametrize("what", QUESTIONS)
+def test_a_none_within_is_kept_and_derived_again(what):
+    file = none_within(what)
+    again = read_none_within(json.loads(json.dumps(none_within_data(file))), "it")
+    assert none_within_data(again) == none_within_data(file)
+    assert again.refutations == file.refutations
+    assert first_fault(again, derive(again, bundled_library())) == ""
+
+
+def test_for_what_has_a_drive_there_is_no_tree():
+    for what in ("4", "v_lon(SV) > 39 m/s", "s(POV) - s(SV) = 80 m"):
+        assert refute(search_for(what, **SHORT)) is None
+
+
+def accepted(tmp_path, data):
+    path = tmp_path / "file.json"
+    path.write_text(json.dumps(data), "utf-8")
+
+    def ask(script):
+        raise AssertionError("no solver is asked")
+
+    return Checker(bundled_library(), ask, find_label, derive=derive).check(path)
+
+
+def test_changed_files_are_rejected(tmp_path):
+    data = none_within_data(none_within("atLane(SV, L) and v_lon(SV) > 40.5 m/s"))
+    assert accepted(tmp_path, data).outcome is Acceptance.ACCEPTED
+    assert "horizon" not in accepted(tmp_path, data).reason
+    faster = {**data["vehicles"]["SV"], "v_lon": ["3", "41"]}
+    for change in (
+        {"formula": "atLane(SV, L) and v_lon(SV) > 39.5 m/s"},
+        {"formula": "v_lon(SV) > 39.5 m/s and atLane(SV, L)"},
+        {"vehicles": {"SV": faster}},
+        {"refutations": [{**x, "tree": ["sum above 0 * 1"]} for x in data["refutations"]]},
+    ):
+        finding = accepted(tmp_path, data | change)
+        assert finding.outcome is Acceptance.REJECTED, change
+        assert "does not refute" in finding.reason
+    [first, *_] = data["refutations"]
+    for change in (
+        {"refutations": [first, {**first, "lanes": {"L": "nowhere"}}]},
+        {"refutations": [{**first, "tree": ["cases 1 2", *first["tree"]]}]},
+        {"refutations": [{**first, "tree": [*first["tree"], *first["tree"]]}]},
+        {"vehicles": data["vehicles"] | {"POV": data["vehicles"]["SV"]}},
+        {"dt": "0"},
+        {"dt": "7/10"},
+        {"horizon": "-1"},
+    ):
+        assert accepted(tmp_path, data | change).outcome is Acceptance.UNREADABLE, change
+
+
+def test_a_missing_assignment_of_lanes_is_told():
+    file = none_within("given M: lane: atLane(SV, L) and atLane(SV, M) and v_lon(SV) > 41 m/s")
+    assert len(file.refutations) == 4
+    with pytest.raises(InputError, match="an assignment of lanes is missing"):
+        derive(replace(file, refutations=file.refutations[1:]), bundled_library())
+    # With both lanes fixed it says less, and its limits name them.
+    one = derive(replace(file, refutations=file.refutations[:1]), bundled_library())
+    assert "lane L=main-1, M=main-1" in one.limits
+
+
+@pytest.mark.parametrize(
+    "lines", [["sum node 1"], ["sum near 1 * 2"], ["cut 1 2", "sum node 1 * 1"], ["cases 1 x"], []]
+)
+def test_lines_that_are_no_tree_are_refused(lines):
+    with pytest.raises(InputError, match="tree"):
+        tree_of(lines, "it")
+
+
+def test_a_tree_is_read_as_it_was_written():
+    leaf = Sum(((Fact("corner", 3, (0, 1)), 5), (Fact("equal", 1), -2), (Fact("tangent", 0, (-7, 0)), 1)))
+    tree = Cases(4, (Cut(1, -3, leaf, Sum(((Fact("node", 2), 1),))), leaf, Cases(2, ())))
+    assert tree_of([*lines_of(tree)], "it") == tree
+
+
+def test_witness_writes_it_and_check_accepts_it(tmp_path, capsys):
+    out = tmp_path / "out"
+    words = ["witness", "v_lon(SV) > 41 m/s", "--horizon", "1.8", "--out", str(out), "--jobs", "1"]
+    assert main(words) == ExitCode.UNEXPECTED
+    assert "written to" in capsys.readouterr().out
+    assert [x.name for x in out.glob("none-within-*")] == ["none-within-formula-01-base.json"]
+    assert main(["check", str(out), "--jobs", "1"]) == 0
+    said = capsys.readouterr().out
+    assert said.startswith("NONE-WITHIN base  v_lon(SV) > 41 m/s  [no drive on road main-2")
+    assert "not checked: the encoder" in said
