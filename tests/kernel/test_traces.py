@@ -168,4 +168,8 @@ def test_what_is_printed_says_claim_trace_and_theorem():
     assert "Definition claim : formula := G (v_lon SV > 0)." in text
     assert '(Speed_lon, "SV", [(0, 1, 1); (2, 0, 1)])' in text
     assert "Theorem proved : ~ Roadproof.Meaning.valid bounds claim." in text
+    other = prepare_trace(
+        "one", asked("G v_lon(SV) > 0", jumping(held="after")), bundled_library()
+    ).module.text
+    assert '(Speed_lon, "SV", [(0, 1, 0); (2, 0, 1)])' in other
     assert [*refuted(asked("G v_lon(SV) > 0", jumping()), bundled_library()).world.vehicles] == ["SV"]
