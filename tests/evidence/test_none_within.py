@@ -12,7 +12,7 @@ from asking import search_for
 from evidence.trees import RIGHT, WRONG
 from planting import plant
 from roadproof.engines.prove.properties import find_label
-from roadproof.engines.search.none_within import derive, refute
+from roadproof.engines.search.none_within import derive, program_for, refute
 from roadproof.engines.solve.refuting import find_tree
 from roadproof.engines.solve.relaxation import NotRefutedError
 from roadproof.errors import InputError
@@ -30,6 +30,7 @@ from roadproof.evidence.program import Cases, Cut, Either, Every, Fact, Linear, 
 from roadproof.frontends.cli.main import main
 from roadproof.library.loading import bundled_library
 from roadproof.verdict import ExitCode
+from searching.known import known
 
 SHORT = {"horizon": Fraction(9, 5)}
 QUESTIONS = [
@@ -174,6 +175,15 @@ def test_a_none_within_is_kept_and_derived_again(what):
 def test_for_what_has_a_drive_there_is_no_tree():
     for what in ("4", "v_lon(SV) > 39 m/s", "s(POV) - s(SV) = 80 m"):
         assert refute(search_for(what, **SHORT)) is None
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_of_a_drive_that_is_known_the_program_is_not_refuted(seed):
+    case = known(seed)
+    question = case.question()
+    [lanes] = [x for x in question.lanes if x.items() <= case.lanes.items()]
+    with pytest.raises(NotRefutedError):
+        find_tree(program_for(question, lanes), 100)
 
 
 def accepted(tmp_path, data):

@@ -26,7 +26,8 @@ examples:
 
 A certificate is accepted when the claim, read with the library at hand, and the certificate's instances
 give the very query that is stored, and the solver answers unsat to it. A drive file is accepted when its
-formula holds on its drive, judged exactly in dense time. The index of a folder is a part of the evidence:
+formula holds on its drive, judged exactly in dense time. A NONE-WITHIN is accepted when its tree refutes
+the question, which is encoded again in exact numbers. The index of a folder is a part of the evidence:
 each entry must be that of its file, and no file may be without one; kept answers (answers.jsonl) too. Where
 an index names specification files beside it, such as classes.spec, these are put on top of the library,
 unless they would change what is there.
