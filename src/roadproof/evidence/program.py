@@ -101,14 +101,14 @@ Box: TypeAlias = Sequence[tuple[int, int]]
 
 
 @dataclass(frozen=True)
-class Known:
+class KnownFacts:
     """What is known at a place of a tree: the box, and which nodes are true."""
 
     program: Program
     box: Box
     nodes: frozenset[int] = field(default_factory=frozenset)
 
-    def also(self, node: int) -> "Known":
+    def also(self, node: int) -> "KnownFacts":
         """With one more node that is true, and the parts of conjunctions."""
         found, waiting = set(self.nodes), [node]
         while waiting:
@@ -119,19 +119,19 @@ class Known:
             content = self.program.nodes[number]
             if isinstance(content, Every):
                 waiting.extend(content.parts)
-        return Known(self.program, self.box, frozenset(found))
+        return KnownFacts(self.program, self.box, frozenset(found))
 
-    def within(self, column: int, ends: tuple[int, int]) -> "Known":
+    def within(self, column: int, ends: tuple[int, int]) -> "KnownFacts":
         """With other bounds of a column."""
         box = list(self.box)
         box[column] = ends
-        return Known(self.program, box, self.nodes)
+        return KnownFacts(self.program, box, self.nodes)
 
 
 def refutes(program: Program, tree: Tree) -> bool:
     """Whether ``tree`` shows that ``program`` has no solution."""
-    known = Known(program, program.box).also(len(program.nodes) - 1)
-    waiting: list[tuple[Known, Tree]] = [(known, tree)]
+    known = KnownFacts(program, program.box).also(len(program.nodes) - 1)
+    waiting: list[tuple[KnownFacts, Tree]] = [(known, tree)]
     while waiting:
         here, found = waiting.pop()
         match found:
@@ -155,7 +155,7 @@ def refutes(program: Program, tree: Tree) -> bool:
     return True
 
 
-def is_absurd(known: Known, weights: Iterable[tuple[Fact, int]]) -> bool:
+def is_absurd(known: KnownFacts, weights: Iterable[tuple[Fact, int]]) -> bool:
     """Whether the sum of these multiples of facts holds nowhere in the box."""
     factors: dict[int, int] = {}
     constant, strict = 0, False
@@ -171,7 +171,7 @@ def is_absurd(known: Known, weights: Iterable[tuple[Fact, int]]) -> bool:
     return greatest < 0 or (strict and greatest == 0)
 
 
-def _greatest(known: Known, factors: Mapping[int, int]) -> int:
+def _greatest(known: KnownFacts, factors: Mapping[int, int]) -> int:
     """The greatest value of Σ factor · column in the box, times the square of the scale."""
     program, total = known.program, 0
     for column, factor in factors.items():
@@ -183,7 +183,7 @@ def _greatest(known: Known, factors: Mapping[int, int]) -> int:
     return total
 
 
-def linear_of(known: Known, fact: Fact) -> Linear | None:
+def linear_of(known: KnownFacts, fact: Fact) -> Linear | None:
     """What a fact says to be at least 0, None where it is none."""
     program, number = known.program, fact.number
     if number < 0:
@@ -201,7 +201,7 @@ def linear_of(known: Known, fact: Fact) -> Linear | None:
             assert_never(fact.kind)
 
 
-def _of_product(known: Known, fact: Fact) -> Linear | None:
+def _of_product(known: KnownFacts, fact: Fact) -> Linear | None:
     """(x - a)·(y - b), with the sign that makes it at least 0, times the square of the scale."""
     one, other = known.program.products[fact.number]
     scale, column = known.program.scale, len(known.box) + fact.number

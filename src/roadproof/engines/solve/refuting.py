@@ -16,7 +16,7 @@ from roadproof.evidence.program import (
     Either,
     Every,
     Fact,
-    Known,
+    KnownFacts,
     Linear,
     Program,
     Sum,
@@ -60,7 +60,7 @@ class Finder:
             self.relaxation.add(Fact("equal", number), linear)
         for number, linear in enumerate(self.program.above):
             self.relaxation.add(Fact("above", number), linear)
-        known = Known(self.program, self.program.box).also(len(self.program.nodes) - 1)
+        known = KnownFacts(self.program, self.program.box).also(len(self.program.nodes) - 1)
         for product in range(len(self.program.products)):
             self._add_product(known, product)
         self._add_nodes(known.nodes)
@@ -72,7 +72,7 @@ class Finder:
             if isinstance(node, Linear):
                 self.relaxation.add(Fact("node", number), node)
 
-    def _add_product(self, known: Known, product: int) -> None:
+    def _add_product(self, known: KnownFacts, product: int) -> None:
         one, other = self.program.products[product]
         facts = [Fact("corner", product, (i, j)) for i in (0, 1) for j in (0, 1)]
         if one == other:
@@ -84,7 +84,7 @@ class Finder:
             if linear is not None:
                 self.relaxation.add(fact, linear)
 
-    def _refute(self, known: Known) -> Refutation:
+    def _refute(self, known: KnownFacts) -> Refutation:
         weights = self._plain(known)
         if weights is not None:
             return _summed(weights)
@@ -97,7 +97,7 @@ class Finder:
         node = self._open(known, point)
         return self._cut(known, point) if node is None else self._cases(known, node)
 
-    def _plain(self, known: Known) -> tuple[tuple[Fact, int], ...] | None:
+    def _plain(self, known: KnownFacts) -> tuple[tuple[Fact, int], ...] | None:
         """A known inequality that the box excludes, or two that exclude each other."""
         for number in sorted(known.nodes):
             if not isinstance(self.program.nodes[number], Linear):
@@ -110,7 +110,7 @@ class Finder:
                     return (*weights, (Fact("node", other), 1))
         return None
 
-    def _multipliers(self, known: Known, ray: Any) -> tuple[tuple[Fact, int], ...]:
+    def _multipliers(self, known: KnownFacts, ray: Any) -> tuple[tuple[Fact, int], ...]:
         """HiGHS gives them with either sign, and rounded."""
         for signed in (ray, -ray):
             for weights in (
@@ -121,7 +121,7 @@ class Finder:
                     return weights
         raise NotRefutedError("the multipliers of HiGHS are not exact enough")
 
-    def _open(self, known: Known, point: Any) -> int | None:
+    def _open(self, known: KnownFacts, point: Any) -> int | None:
         """Of the known disjunctions that are false at the point, that with the fewest possible parts."""
         values: dict[int, float] = {}
         found: list[tuple[int, float, int]] = []
@@ -147,18 +147,18 @@ class Finder:
                 done[number] = min([end, *parts]) if isinstance(node, Every) else max([end, *parts])
         return done[number]
 
-    def _is_possible(self, known: Known, number: int) -> bool:
+    def _is_possible(self, known: KnownFacts, number: int) -> bool:
         """Whether neither the box nor a single known inequality excludes a node."""
         node = self.program.nodes[number]
         if isinstance(node, Linear):
             if known.nodes.intersection(self.opposite.get(number, ())):
                 return False
-            alone = Known(self.program, known.box, frozenset({number}))
+            alone = KnownFacts(self.program, known.box, frozenset({number}))
             return not is_absurd(alone, ((Fact("node", number), 1),))
         parts = (self._is_possible(known, part) for part in node.parts)
         return all(parts) if isinstance(node, Every) else any(parts)
 
-    def _cases(self, known: Known, number: int) -> Refutation:
+    def _cases(self, known: KnownFacts, number: int) -> Refutation:
         """Impossible parts come first: one may refute the whole."""
         node = self.program.nodes[number]
         assert isinstance(node, Either)
@@ -176,7 +176,7 @@ class Finder:
             trees[part] = found.tree
         return Refutation(Cases(number, tuple(trees[p] for p in node.parts)), frozenset(used))
 
-    def _cut(self, known: Known, point: Any) -> Refutation:
+    def _cut(self, known: KnownFacts, point: Any) -> Refutation:
         """The product that is most wrong at the point is cut at the wider one of its factors."""
         wrong = [
             (abs(point[self.columns + k] - point[one] * point[other]), k)
@@ -200,7 +200,7 @@ class Finder:
         return Refutation(Cut(column, at, one.tree, other.tree), one.nodes | other.nodes)
 
     @contextmanager
-    def _within(self, known: Known, column: int, ends: tuple[int, int]) -> Iterator[Known]:
+    def _within(self, known: KnownFacts, column: int, ends: tuple[int, int]) -> Iterator[KnownFacts]:
         """In other bounds of a column, with the facts of its products in these."""
         inner = known.within(column, ends)
         products = [k for k, pair in enumerate(self.program.products) if column in pair]

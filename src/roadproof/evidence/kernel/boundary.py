@@ -30,6 +30,7 @@ Open Scope formula_scope.
 # The motions in a cut-in and in a deceleration.
 _IN = "{p}cut_in W now ({p}DRIVER) {a} {b}"
 _BEHIND = "{p}decelerates W now ({p}DRIVER) {a} {b}"
+_READINGS = ("aeb", "gate", "perception", "threshold")
 # What Prescribed.v calls the readings of AEB.
 _AEB = {"replace": "in_place", "max": "greater", "add": "together"}
 
@@ -157,25 +158,25 @@ def settle(coq: Coq, specification: Specification, boundary: Boundary) -> Bounda
 
 
 def _entry(course: str, model: str, options: Mapping[str, str]) -> _Entry | None:
+    aeb, gate, perception, threshold = (options[f"cc_{x}"] for x in _READINGS)
+    gated = "no_gate" if gate == "none" else gate
     match course, model:
         case "cut-in", "r157" | "eu1426":
             return _Entry(f"Boundary.{model}_boundary", _IN.replace("DRIVER", f"{model} W now {{a}}"))
         case "cut-in", "rss":
             return _Entry("Responding.rss_boundary", _IN.replace("DRIVER", "rss W now {a}"))
-        case "cut-in", "careful" if options["cc_aeb"] == "none":
-            gate = "no_gate" if options["cc_gate"] == "none" else options["cc_gate"]
-            driver = f"careful W now {{p}}by_{options['cc_perception']} {{p}}{gate} {{a}} {{b}}"
+        case "cut-in", "careful" if aeb == "none":
+            driver = f"careful W now {{p}}by_{perception} {{p}}{gated} {{a}} {{b}}"
             return _Entry("Boundary.unaided_boundary", _IN.replace("DRIVER", driver))
-        case "cut-in", "careful" if options["cc_aeb"] != "add" or options["cc_gate"] == "none":
-            gate = "no_gate" if options["cc_gate"] == "none" else options["cc_gate"]
-            reading = f"{{p}}{_AEB[options['cc_aeb']]} {{p}}by_{options['cc_perception']} {{p}}{gate}"
+        case "cut-in", "careful" if aeb != "add" or gate == "none":
+            reading = f"{{p}}{_AEB[aeb]} {{p}}by_{perception} {{p}}{gated}"
             driver = f"careful_with_aeb W now {reading} {{a}} {{b}}"
             return _Entry("Aeb.aeb_boundary", _IN.replace("DRIVER", driver), ("cc_braking", "aeb_braking"))
         case "cut-out", "careful":
             motion = "{p}cut_out W now ({p}careful_behind W now {a}) {a} {b} {c}"
             return _Entry("Boundary.cut_out_boundary", motion)
         case "deceleration", "careful":
-            only_hard = str(options["cc_threshold"] == "hard").lower()
+            only_hard = str(threshold == "hard").lower()
             driver = f"careful_following W now {only_hard} {{a}} {{b}}"
             return _Entry("Following.following_boundary", _BEHIND.replace("DRIVER", driver))
         case "deceleration", "rss":
