@@ -16,6 +16,7 @@ from roadproof.evidence.strict import JsonObject, is_rational, rational
 from roadproof.library.specification import Library
 from roadproof.runtime.records import dataclass
 from roadproof.world.road import Road
+from roadproof.world.signals import LIMITED
 from roadproof.world.vehicle import Vehicle
 
 SCHEMA = kept.SCHEMA
@@ -111,7 +112,7 @@ def read_none_within(content: object, where: str) -> NoneWithinFile:
 
 def _vehicle(said: kept.Model, where: str) -> Vehicle:
     """Only natural drives depend on the fields that the file does not have."""
-    for name in ("v_lon", "v_lat", "a_lon", "a_lat"):
+    for name in LIMITED:
         low, high = getattr(said, name)
         if low > high:
             raise InputError(f"{where}: {name} from {low} to {high} is empty")

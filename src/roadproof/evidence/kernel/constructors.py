@@ -12,6 +12,7 @@ from typing import assert_never
 
 from roadproof.errors import InputError
 from roadproof.evidence.kernel.names import comment, literal, quoted
+from roadproof.evidence.kernel.world import WORDS_OF_SIGNALS
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
@@ -19,15 +20,6 @@ from roadproof.logic.node import once
 from roadproof.logic.rewrite import free_roads
 from roadproof.logic.terms import Term
 
-_SIGNALS = {
-    "s": "Place_lon",
-    "d": "Place_lat",
-    "v_lon": "Speed_lon",
-    "v_lat": "Speed_lat",
-    "a_lon": "Acceleration_lon",
-    "a_lat": "Acceleration_lat",
-    "j_lon": "Jerk_lon",
-}
 _SIZES = {"length": "Length", "width": "Width", "kind": "Kind"}
 _COMPARISONS: Mapping[f.Comparison, str] = {"<": "LT", "<=": "LE", ">": "GT", ">=": "GE"}
 _ZONES = ("main", "merge", "depart")
@@ -44,7 +36,7 @@ def term(x: Term) -> str:
         case t.Variable(name, _):
             return f"(Var {literal(name)})"
         case t.Signal(name, vehicle):
-            return f"(Sig {_SIGNALS[name]} {literal(vehicle)})"
+            return f"(Sig {WORDS_OF_SIGNALS[name]} {literal(vehicle)})"
         case t.Size():
             return f"(Siz {size(x)})"
         case t.Own():

@@ -11,19 +11,16 @@ from roadproof.evidence.kernel.names import literal, quoted
 from roadproof.logic import terms as t
 from roadproof.world.drive import Motion
 from roadproof.world.road import Lanelet, Road
-from roadproof.world.signals import SignalName
+from roadproof.world.signals import SIGNALS, SignalName
 
 # Times in their order, each with the value at it and the value after it, before the next.
 Steps: TypeAlias = tuple[tuple[Fraction, Fraction, Fraction], ...]
+_BY_UNIT = {"m": "Place", "m/s": "Speed", "m/s^2": "Acceleration", "m/s^3": "Jerk"}
 WORDS_OF_SIGNALS: Mapping[SignalName, str] = {
-    "s": "Place_lon",
-    "d": "Place_lat",
-    "v_lon": "Speed_lon",
-    "v_lat": "Speed_lat",
-    "a_lon": "Acceleration_lon",
-    "a_lat": "Acceleration_lat",
-    "j_lon": "Jerk_lon",
+    name: f"{_BY_UNIT[about.unit]}_{'lon' if about.where.startswith('along') else 'lat'}"
+    for name, about in SIGNALS.items()
 }
+"""What Meaning.v calls each signal."""
 
 
 @dataclass(frozen=True)
