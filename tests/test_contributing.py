@@ -37,7 +37,7 @@ READERS_OF_NODES = {
         "evidence/refutation.py",
     ),
     *("logic/formula.py", "logic/rewrite.py", "logic/motion.py", "logic/restore.py"),
-    *("evidence/derivations/derive.py", "evidence/kernel/printer.py"),
+    *("evidence/derivations/derive.py", "evidence/kernel/printer.py", "evidence/kernel/constructors.py"),
     *("analysis/catalogue/nearest.py", "evidence/periodic.py"),
 }
 
