@@ -223,6 +223,35 @@ def test_changed_files_are_rejected(tmp_path):
         assert accepted(tmp_path, data | change).outcome is Acceptance.UNREADABLE, change
 
 
+def test_what_names_do_not_say_is_told(tmp_path):
+    data = none_within_data(none_within("atLane(SV, L) and v_lon(SV) > 40.5 m/s"))
+    assert len(accepted(tmp_path, data).checked) == 1
+    [model], road = data["vehicles"].values(), data["road"]
+    for change, told in (
+        ({"vehicles": {"SV": model | {"v_lon": ["15", "20"]}}}, "SV=car with v_lon=15..20"),
+        ({"vehicles": {"SV": model | {"kind": "bus"}}}, "SV=car with kind=bus"),
+        ({"vehicles": {"SV": model | {"name": "mine"}}}, "SV=mine with length=9/2, width=9/5, v_lon=15..40"),
+        ({"road": road | {"name": "main-9"}}, "road main-9 as in the file, with 2 lanelets"),
+        ({"road": road | {"lanelets": road["lanelets"][:1], "adjacent": []}}, "road main-2 as in the file"),
+    ):
+        finding = accepted(tmp_path, data | change | _of_one_lane(change, data))
+        assert finding.outcome is Acceptance.ACCEPTED, finding.reason
+        assert finding.checked[1].startswith(told)
+
+
+def _of_one_lane(change, data):
+    """The refutations for the lanes that a changed road has."""
+    lanes = {x["lane"] for x in change.get("road", data["road"])["lanelets"]}
+    return {"refutations": [x for x in data["refutations"] if set(x["lanes"].values()) <= lanes]}
+
+
+def test_the_scenario_of_a_file_is_that_of_its_formula(tmp_path):
+    data = none_within_data(none_within("atLane(SV, L) and v_lon(SV) > 40.5 m/s"))
+    finding = accepted(tmp_path, data | {"scenario": 4})
+    assert finding.outcome is Acceptance.REJECTED
+    assert "scenario=4, but its formula is another" in finding.reason
+
+
 def test_a_missing_assignment_of_lanes_is_told():
     file = none_within("given M: lane: atLane(SV, L) and atLane(SV, M) and v_lon(SV) > 41 m/s")
     assert len(file.refutations) == 4

@@ -20,7 +20,7 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import is_moving, statement
 from roadproof.library.scenario_references import own_names
 from roadproof.library.scenarios import Scenario, applied, name_of
-from roadproof.library.specification import Library
+from roadproof.library.specification import Library, Query
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.rewrite import parameters_of
 from roadproof.reasons import NO_REASON, Reason, Why
@@ -96,12 +96,15 @@ class Checker:
     def _none_within(self, path: Path, file: NoneWithinFile, derived: Derived) -> Finding:
         """Trees are checked against programs that the encoder derives again from the question."""
         fault = none_within.first_fault(file, derived)
-        outcome = Acceptance.REJECTED if fault else Acceptance.ACCEPTED
-        reason = Why.TOLD(fault) if fault else NO_REASON
-        if self.ruled is not None and not fault:
+        query = read_claim(self.library.select(file.set_name, file.options), file.formula)
+        reason = Why.TOLD(fault) if fault else self._misnamed(file, query)
+        outcome = Acceptance.REJECTED if reason else Acceptance.ACCEPTED
+        if self.ruled is not None and not reason:
             outcome, reason = self.ruled.outcome, self.ruled.reason
         label = shown(None if file.scenario is None else ("", "", file.scenario), file.set_name)
-        checked, unchecked = ((), ()) if reason else ((derived.limits,), ("the encoder",))
+        checked, unchecked = (
+            ((), ()) if reason else ((derived.limits, *none_within.own_parts(file)), ("the encoder",))
+        )
         word = "" if self.ruled is None else self.ruled.word
         return Finding(
             str(path),
@@ -153,13 +156,9 @@ class Checker:
         unsaid += [x for x in parameters_of(query.formula) if x not in file.values]
         if unsaid:
             return Why.UNSAID(unsaid[0])
-        if file.scenario is not None:
-            if name_of(file.scenario) not in specification.definitions:
-                return Why.NO_SCENARIO(file.scenario)
-            scenario = Scenario(file.scenario, file.set_name)
-            whole, own = applied(specification, scenario), own_names(specification, query.claim, scenario)
-            if whole.formula != query.formula and not own:
-                return Why.OTHER_SCENARIO(file.scenario, file.formula)
+        named = self._misnamed(file, query)
+        if named:
+            return named
         said = Fields(Fields(content, "it").mapping("verdict"), "its verdict", _VERDICT)
         if said.has("verdict") and said.text("verdict") != "WITNESSED":
             return Why.OTHER_VERDICT(said.text("verdict"))
@@ -170,6 +169,18 @@ class Checker:
         if said.has("times") and judgement is not None and said.get("times") != times_data(judgement):
             return Why.OTHER_TIMES()
         return NO_REASON
+
+    def _misnamed(self, file: DriveFile | NoneWithinFile, query: Query) -> Reason:
+        """Why the formula of a file is not that of the scenario that it names."""
+        if file.scenario is None:
+            return NO_REASON
+        specification = self.library.select(file.set_name, file.options)
+        if name_of(file.scenario) not in specification.definitions:
+            return Why.NO_SCENARIO(file.scenario)
+        scenario = Scenario(file.scenario, file.set_name)
+        whole, own = applied(specification, scenario), own_names(specification, query.claim, scenario)
+        same = whole.formula == query.formula or own
+        return NO_REASON if same else Why.OTHER_SCENARIO(file.scenario, file.formula)
 
 
 _VERDICT = ("verdict", "view", "natural", "times")

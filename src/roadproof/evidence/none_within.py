@@ -15,6 +15,7 @@ from roadproof.evidence.program import Cases, Cut, Fact, Kind, Program, Sum, Tre
 from roadproof.evidence.strict import JsonObject, is_rational, rational
 from roadproof.library.specification import Library
 from roadproof.runtime.records import dataclass
+from roadproof.world.models import load_road, load_vehicle, names_of
 from roadproof.world.road import Road
 from roadproof.world.signals import LIMITED
 from roadproof.world.vehicle import Vehicle
@@ -58,6 +59,23 @@ def first_fault(file: NoneWithinFile, derived: Derived) -> str:
             named = ", ".join(f"{name}={lane}" for name, lane in lanes.items())
             return f"its tree{f' for {named}' if named else ''} does not refute the program of the question"
     return ""
+
+
+def own_parts(file: NoneWithinFile) -> Iterator[str]:
+    """Where models and the road are not those that roadproof has under their names."""
+    for vehicle, model in file.vehicles.items():
+        known = load_vehicle(model.name) if model.name in names_of("vehicles") else None
+        fields = (name for name in kept.Model.__annotations__ if name != "name")
+        own = [x for x in fields if known is None or getattr(model, x) != getattr(known, x)]
+        if own:
+            yield f"{vehicle}={model.name} with " + ", ".join(f"{x}={_told(getattr(model, x))}" for x in own)
+    road = file.road
+    if road.name not in names_of("roads") or load_road(road.name) != road:
+        yield f"road {road.name} as in the file, with {len(road.lanelets)} lanelets"
+
+
+def _told(value: object) -> str:
+    return f"{value[0]}..{value[1]}" if isinstance(value, tuple) else str(value)
 
 
 def none_within_data(file: NoneWithinFile) -> JsonObject:
