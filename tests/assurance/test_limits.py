@@ -85,6 +85,14 @@ def test_limits_of_findings(checked: str, unchecked: str, expected: set[str]) ->
     assert {x.name for x in limits_of([], [finding])} == expected
 
 
+def test_how_far_a_search_looked_is_a_limit() -> None:
+    searched = ("no drive on road main-2", "SV=car with v_lon=15..20")
+    finding = Finding("x", "certificate", Acceptance.ACCEPTED, verdict="NONE-WITHIN", checked=searched)
+    [limit] = limits_of([], [finding])
+    assert limit.name == "within limits"
+    assert limit.told == tuple(f"NONE-WITHIN: {x}" for x in searched)
+
+
 def test_files_that_are_no_evidence_have_no_limits(tmp_path: Path) -> None:
     (tmp_path / "a.json").write_text("{", "utf-8")
     (tmp_path / "b.json").write_text("[]", "utf-8")

@@ -8,6 +8,7 @@ from fractions import Fraction
 import pytest
 import z3
 
+import roadproof as rp
 from asking import search_for
 from evidence.trees import RIGHT, WRONG
 from planting import plant
@@ -286,3 +287,7 @@ def test_witness_writes_it_and_check_accepts_it(tmp_path, capsys):
     said = capsys.readouterr().out
     assert said.startswith("NONE-WITHIN base  v_lon(SV) > 41 m/s  [no drive on road main-2")
     assert "not checked: the encoder" in said
+    page = rp.page(out, out=tmp_path / "page.html", jobs=1)
+    assert page.checked is not None
+    assert [x.verdict for x in page.checked.findings] == ["NONE-WITHIN"]
+    assert "sum node" not in page.text  # it is evidence, and no answer whose fields are listed

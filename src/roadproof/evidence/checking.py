@@ -28,6 +28,8 @@ from roadproof.runtime.budget import BudgetExceeded
 from roadproof.semantics.exact.exact import Judgement
 from roadproof.semantics.exact.replay import first_overlap
 
+SCHEMAS = (*certificate.SCHEMAS_READ, *drive_file.SCHEMAS_READ, none_within.SCHEMA)
+"""The files of evidence that are checked alone."""
 _TEMPLATE = ("P", "C")  # what labels of template properties begin with, before a digit
 
 
@@ -57,8 +59,7 @@ class Checker:
             if schema == none_within.SCHEMA and self.derive is not None:
                 file = none_within.read_none_within(content, str(path))
                 return self._none_within(path, file, self.derive(file, self.library))
-            known = " or ".join((certificate.SCHEMA, *drive_file.SCHEMAS_READ, none_within.SCHEMA))
-            raise InputError(f"its schema is {schema[:60]!r}, but must be {known}")
+            raise InputError(f"its schema is {schema[:60]!r}, but must be {' or '.join(SCHEMAS)}")
         except MissingSolverError:
             raise
         except BudgetExceeded as late:

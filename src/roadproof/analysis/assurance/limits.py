@@ -114,7 +114,9 @@ def _of_entry(said: Mapping[str, Json]) -> Found:
 def _of_findings(findings: Iterable[Finding]) -> Found:
     for finding in findings:
         for told in finding.checked:
-            if told == "declared parameters" or told.startswith("with "):
+            if finding.verdict in BOUNDED:
+                yield WITHIN, f"{finding.verdict}: {told}"
+            elif told == "declared parameters" or told.startswith("with "):
                 yield PARAMETERS, told
             elif told.startswith(("boxes apart up to", "collisions allowed")):
                 yield COLLISIONS, told.split(":")[0].removeprefix("collisions ")

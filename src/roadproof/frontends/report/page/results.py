@@ -8,14 +8,13 @@ from typing import TypeAlias
 
 from roadproof.analysis.study.evidence_store import INDEX
 from roadproof.errors import InputError
-from roadproof.evidence import certificate, drive_file
+from roadproof.evidence.checking import SCHEMAS
 from roadproof.evidence.journal import ANSWERS, HEAD
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, Json, read_json
 
 Words: TypeAlias = Mapping[int, str]
 """What scenarios are called."""
 TRAFFIC = "results.json"
-EVIDENCE = (certificate.SCHEMA, *drive_file.SCHEMAS_READ)
 
 
 @dataclass(frozen=True)
@@ -66,7 +65,7 @@ def read_results(paths: Sequence[Path]) -> Given:
             )
         for file in found:
             schema, data, digest = _read(file)
-            if schema in EVIDENCE:
+            if schema in SCHEMAS:
                 evidence.append(file)
             else:
                 here = file.parent if file.name in (INDEX, TRAFFIC) else _beside(file)
