@@ -20,6 +20,7 @@ from kernel import raw
 from roadproof.evidence.derivations.derive import derive
 from roadproof.evidence.derivations.parts import NoDerivationError
 from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.kernel.coq import ready
 from roadproof.evidence.kernel.derivation import coq_derivation
 from roadproof.evidence.kernel.drive import Shown
 from roadproof.evidence.kernel.world import world_lines
@@ -145,3 +146,16 @@ def example(name, formula, drive, derivation, answer):
         "Proof. vm_compute. reflexivity. Qed.",
     ]
     return "\n".join(lines) + "\n"
+
+
+def agrees_with_the_judge(given, least):
+    """What the judge says of a formula Coq's checker accepts, and not of its negation."""
+    asked = [(x, drive, made) for x, drive in given if (made := derived(x, drive)) is not None]
+    assert len(asked) >= least
+    out = [HEAD]
+    for number, (formula, drive, derivation) in enumerate(asked):
+        out.append(example(f"yes_{number}", formula, drive, derivation, True))
+        out.append(example(f"no_{number}", f.Not(formula), drive, derivation, False))
+    with ready() as coq:
+        ran = coq.run("".join(out))
+    assert (ran.code, ran.complained) == (0, "")

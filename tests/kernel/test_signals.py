@@ -6,12 +6,11 @@ from fractions import Fraction
 
 import roadproof as rp
 from judge.cases import formulas, jerk_comparisons, jerk_drives
-from kernel.drives import HEAD, ROAD, cases, derived, example, own_asked, own_drives
+from kernel.drives import HEAD, ROAD, agrees_with_the_judge, cases, derived, example, own_asked, own_drives
 from kernel.needs import needs_coq
 from roadproof.evidence.kernel.accept import Word, judge, prepare
 from roadproof.evidence.kernel.coq import ready
 from roadproof.library.bind import bind
-from roadproof.logic import formula as f
 from roadproof.semantics.exact import judge as judge_drive
 from roadproof.world.drive import Drive
 
@@ -50,19 +49,6 @@ def test_what_a_drive_with_jerk_shows_coq_accepts():
 def test_what_drives_with_own_signals_and_kinds_show_coq_accepts():
     given = cases(50, own_asked, own_drives)
     agrees_with_the_judge(given, len(given) - 4)
-
-
-def agrees_with_the_judge(given, least):
-    """What the judge says of a formula Coq's checker accepts, and not of its negation."""
-    asked = [(x, drive, made) for x, drive in given if (made := derived(x, drive)) is not None]
-    assert len(asked) >= least
-    out = [HEAD]
-    for number, (formula, drive, derivation) in enumerate(asked):
-        out.append(example(f"yes_{number}", formula, drive, derivation, True))
-        out.append(example(f"no_{number}", f.Not(formula), drive, derivation, False))
-    with ready() as coq:
-        ran = coq.run("".join(out))
-    assert (ran.code, ran.complained) == (0, "")
 
 
 def damaged(drive):
