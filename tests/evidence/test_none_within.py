@@ -217,6 +217,10 @@ def test_changed_files_are_rejected(tmp_path):
         {"refutations": [{**first, "tree": ["cases 1 2", *first["tree"]]}]},
         {"refutations": [{**first, "tree": [*first["tree"], *first["tree"]]}]},
         {"vehicles": data["vehicles"] | {"POV": data["vehicles"]["SV"]}},
+        {"vehicles": {"SV": data["vehicles"]["SV"] | {"length": "-5"}}},
+        {"vehicles": {"SV": data["vehicles"]["SV"] | {"v_lon": ["-1", "40"]}}},
+        {"road": data["road"] | {"lanelets": [], "adjacent": []}},
+        {"refutations": [{**x, "lanes": x["lanes"] | {"M": "main-1"}} for x in data["refutations"]]},
         {"dt": "0"},
         {"dt": "7/10"},
         {"horizon": "-1"},
@@ -261,6 +265,17 @@ def test_a_missing_assignment_of_lanes_is_told():
     # With both lanes fixed it says less, and its limits name them.
     one = derive(replace(file, refutations=file.refutations[:1]), bundled_library())
     assert "lane L=main-1, M=main-1" in one.limits
+
+
+def test_a_file_of_many_free_lanes_is_refused_at_once(tmp_path):
+    data = none_within_data(none_within("v_lon(SV) > 41 m/s"))
+    names = [f"L{k}" for k in range(40)]
+    tree = data["refutations"][0]["tree"]
+    some = [{"lanes": dict.fromkeys(names, lane), "tree": tree} for lane in ("main-1", "main-2")]
+    many = {"formula": f"given {', '.join(names)}: lane: v_lon(SV) > 41 m/s", "refutations": some}
+    finding = accepted(tmp_path, data | many)
+    assert finding.outcome is Acceptance.UNREADABLE
+    assert "an assignment of lanes is missing" in finding.reason
 
 
 @pytest.mark.parametrize(

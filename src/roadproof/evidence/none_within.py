@@ -17,7 +17,7 @@ from roadproof.library.specification import Library
 from roadproof.runtime.records import dataclass
 from roadproof.world.models import load_road, load_vehicle, names_of
 from roadproof.world.road import Road
-from roadproof.world.signals import LIMITED
+from roadproof.world.signals import LIMITED, SIZES
 from roadproof.world.vehicle import Vehicle
 
 SCHEMA = kept.SCHEMA
@@ -108,6 +108,9 @@ def read_none_within(content: object, where: str) -> NoneWithinFile:
     said: kept.NoneWithin = read(kept.NoneWithin, content, where)
     if said.horizon < 0 or said.dt <= 0 or said.reach < 0:
         raise InputError(f"{where}: horizon and reach must be at least 0, and dt above 0")
+    road = road_of(said.road, f"{where}, road")
+    if not road.lanelets:
+        raise InputError(f"{where}, road: it needs at least one lanelet")
     written = said.parameters
     numbers = {n: rational(x, f"{where}, parameters.{n}") for n, x in written.items() if is_rational(x)}
     return NoneWithinFile(
@@ -120,7 +123,7 @@ def read_none_within(content: object, where: str) -> NoneWithinFile:
         said.overlaps_allowed,
         numbers,
         {name: x for name, x in written.items() if name not in numbers},
-        road_of(said.road, f"{where}, road"),
+        road,
         {name: _vehicle(x, f"{where}, vehicle {name}") for name, x in said.vehicles.items()},
         tuple(
             (x.lanes, tree_of(x.tree, f"{where}, refutation {k}")) for k, x in enumerate(said.refutations, 1)
@@ -130,6 +133,11 @@ def read_none_within(content: object, where: str) -> NoneWithinFile:
 
 def _vehicle(said: kept.Model, where: str) -> Vehicle:
     """Only natural drives depend on the fields that the file does not have."""
+    for size in SIZES:
+        if getattr(said, size) <= 0:
+            raise InputError(f"{where}: {size}={getattr(said, size)}, but it must be greater than 0")
+    if said.v_lon[0] < 0:
+        raise InputError(f"{where}: v_lon starts at {said.v_lon[0]}, but a vehicle never reverses")
     for name in LIMITED:
         low, high = getattr(said, name)
         if low > high:

@@ -2,12 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from math import prod
 
 from roadproof.engines.encode.build import Assumptions, encode_formula, frame
 from roadproof.engines.encode.motion import Layout, own_columns
 from roadproof.engines.encode.program import program_of
 from roadproof.engines.search.ask import Search, telling_values
-from roadproof.engines.search.question import SearchProblem, assignments, make_grid, pose
+from roadproof.engines.search.question import SearchProblem, make_grid, pose
 from roadproof.engines.solve.refuting import find_tree
 from roadproof.engines.solve.relaxation import NotRefutedError
 from roadproof.errors import InputError
@@ -53,11 +54,11 @@ def derive(file: NoneWithinFile, library: Library) -> Derived:
     if set(query.vehicles) != set(file.vehicles):
         raise InputError("vehicles: there must be a model for each vehicle of the formula, and no other")
     told = tuple(lanes for lanes, _ in file.refutations)
-    every = assignments(query, file.road, {})
-    if not told or any(lanes not in every for lanes in told):
+    lanes = {*file.road.lanes}
+    if not told or any({*x} != {*query.lanes} or not lanes.issuperset(x.values()) for x in told):
         raise InputError("refutations: its lanes are none of the formula on this road")
-    fixed = {name: lane for name, lane in told[0].items() if all(x[name] == lane for x in told)}
-    if {*map(_key, told)} != {*map(_key, assignments(query, file.road, fixed))}:
+    several = (len({x[name] for x in told}) > 1 for name in query.lanes)
+    if len({frozenset(x.items()) for x in told}) < prod(len(lanes) for free in several if free):
         raise InputError("refutations: an assignment of lanes is missing")
     question = SearchProblem(
         query,
@@ -69,10 +70,6 @@ def derive(file: NoneWithinFile, library: Library) -> Derived:
         Assumptions(reach=file.reach, collisions=file.overlaps_allowed),
     )
     return Derived(tuple(program_for(question, lanes) for lanes in told), question.limits().text(()))
-
-
-def _key(lanes: Mapping[str, str]) -> tuple[tuple[str, str], ...]:
-    return tuple(sorted(lanes.items()))
 
 
 def program_for(question: SearchProblem, lanes: Mapping[str, str]) -> Program:
