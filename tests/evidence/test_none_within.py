@@ -257,6 +257,15 @@ def test_the_scenario_of_a_file_is_that_of_its_formula(tmp_path):
     assert "scenario=4, but its formula is another" in finding.reason
 
 
+def test_a_file_says_every_reading_and_value_of_its_question(tmp_path):
+    data = none_within_data(none_within("rssViolation(SV, POV) and v_lon(SV) > 41 m/s"))
+    for name in ("rho", "lateral_sign"):
+        left = {x: value for x, value in data["parameters"].items() if x != name}
+        finding = accepted(tmp_path, data | {"parameters": left})
+        assert finding.outcome is Acceptance.REJECTED
+        assert finding.reason == f"it does not say with which {name} it was judged"
+
+
 def test_a_missing_assignment_of_lanes_is_told():
     file = none_within("given M: lane: atLane(SV, L) and atLane(SV, M) and v_lon(SV) > 41 m/s")
     assert len(file.refutations) == 4

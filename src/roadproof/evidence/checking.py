@@ -98,7 +98,7 @@ class Checker:
         """Trees are checked against programs that the encoder derives again from the question."""
         fault = none_within.first_fault(file, derived)
         query = read_claim(self.library.select(file.set_name, file.options), file.formula)
-        reason = Why.TOLD(fault) if fault else self._misnamed(file, query)
+        reason = Why.TOLD(fault) if fault else self._question_fault(file, query)
         outcome = Acceptance.REJECTED if reason else Acceptance.ACCEPTED
         if self.ruled is not None and not reason:
             outcome, reason = self.ruled.outcome, self.ruled.reason
@@ -151,15 +151,10 @@ class Checker:
 
     def _untold(self, file: DriveFile, content: object, judgement: Judgement | None) -> Reason:
         """What a drive file says beside its formula, and is not so; or does not say, and should."""
-        specification = self.library.select(file.set_name, file.options)
-        query = read_claim(specification, file.formula)
-        unsaid = [x for x in specification.options if x not in file.options]
-        unsaid += [x for x in parameters_of(query.formula) if x not in file.values]
-        if unsaid:
-            return Why.UNSAID(unsaid[0])
-        named = self._misnamed(file, query)
-        if named:
-            return named
+        query = read_claim(self.library.select(file.set_name, file.options), file.formula)
+        fault = self._question_fault(file, query)
+        if fault:
+            return fault
         said = Fields(Fields(content, "it").mapping("verdict"), "its verdict", _VERDICT)
         if said.has("verdict") and said.text("verdict") != "WITNESSED":
             return Why.OTHER_VERDICT(said.text("verdict"))
@@ -171,11 +166,15 @@ class Checker:
             return Why.OTHER_TIMES()
         return NO_REASON
 
-    def _misnamed(self, file: DriveFile | NoneWithinFile, query: Query) -> Reason:
-        """Why the formula of a file is not that of the scenario that it names."""
+    def _question_fault(self, file: DriveFile | NoneWithinFile, query: Query) -> Reason:
+        """Which value a file lacks, or why its formula is not that of the scenario that it names."""
+        specification = self.library.select(file.set_name, file.options)
+        unsaid = [x for x in specification.options if x not in file.options]
+        unsaid += [x for x in parameters_of(query.formula) if x not in file.values]
+        if unsaid:
+            return Why.UNSAID(unsaid[0])
         if file.scenario is None:
             return NO_REASON
-        specification = self.library.select(file.set_name, file.options)
         if name_of(file.scenario) not in specification.definitions:
             return Why.NO_SCENARIO(file.scenario)
         scenario = Scenario(file.scenario, file.set_name)
