@@ -1,7 +1,8 @@
 (* What is said, and what it means.  TRUSTED: read this file, Text.v and the printed claim.
 
-   Signal temporal logic over dense time as roadproof writes it (docs/language.md, docs/meaning.md): terms of
-   real numbers, formulas, the worlds that they speak of, and when a formula is true of a world at a time.
+   Signal temporal logic over dense time as roadproof writes it (docs/reference/language.md,
+   docs/explanation/formal.md): terms of real numbers, formulas, the worlds that they speak of, and when a formula is
+   true of a world at a time.
    `valid` says what it is for a claim to hold always.  Nothing here is about proofs. *)
 From Coq Require Import Reals QArith Qreals String List Arith.
 Import ListNotations.
