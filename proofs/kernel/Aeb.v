@@ -39,12 +39,6 @@ Section Aeb.
     - intros s S. pose proof (P s ltac:(lra)). assert (Rmax 0 (v - L s) <= u); [|lra]. apply Rmax_lub; lra.
   Qed.
 
-  Lemma still_is_faster q h : isFaster (v - u) q h 1 T A <-> stillFaster v u q h 1 T A.
-  Proof.
-    unfold isFaster, stillFaster. split; intros [P [L|[[L K]|[L K]]]]; (split; [lra|]);
-      first [left; lra|right; left; split; lra|right; right; split; lra].
-  Qed.
-
   Lemma assisted_collides q y z x : u < v -> 0 <= g -> 0 <= q -> 0 <= y <= z -> goes v (assisted W k (Some q) z) (z :: nil) x ->
     (collide x (fun t => u * t) g r y
      <-> hits v u g r q y 1 T A /\ (hasGained v u g q y 1 T A \/ aided k (v - u) g q z T A B)).
@@ -119,13 +113,10 @@ Section Aeb.
     intros V G Q Y P -> ->.
     assert (Q' : 0 <= q / w) by (apply over_positive; assumption). assert (Y' : 0 <= y / w) by (apply over_positive; lra).
     assert (Z' : y / w <= z / w) by (apply frac_le; lra).
-    assert (S1 : hit_by_careful W now a b y q w <-> hits v u g r (q / w) (y / w) 1 T A).
-    { unfold hit_by_careful, hits. replace q with (w * (q / w)) at 1 2 3 4 by (field; lra).
-      replace y with (w * (y / w)) at 1 2 3 by (field; lra). rewrite !scale_gained, scale_faster, scale_gains by lra. reflexivity. }
     assert (S2 : aidedHits y q z w <-> hasGained v u g (q / w) (y / w) 1 T A \/ aided k (v - u) g (q / w) (z / w) T A B).
     { unfold aidedHits. rewrite <- (scale_aided w T k (v - u) g (q / w) (z / w) A B P PT PA ltac:(lra)).
       rewrite <- (scale_gained v u g (q / w) (y / w) w T A P). rewrite !times_over by exact P. reflexivity. }
-    rewrite S1, S2. split.
+    unfold hit_by_careful. rewrite hits_over by exact P. rewrite S2. split.
     - intros H. assert (AE : exists x, goes v (assisted W k (Some (q / w)) (z / w)) (z / w :: nil) x)
         by (apply assisted_exists; try assumption; lra).
       destruct AE as [x X]. exists x. split; [exact X|].
@@ -139,39 +130,14 @@ Section Aeb.
      <-> exists i, (exists o, begins o /\ goes v (assisted W k o (wrap y / w)) (wrap y / w :: nil) i)
        /\ collide i (fun t => u * t) g r (y / w)).
   Proof.
-    intros P Y G Hp Hx Ex Bg. unfold gated, aidedGated. pose proof (wrap_after y Y) as Wy.
-    destruct (Rle_lt_dec v u) as [V|V].
-    { split; [intros [[N _] _]; lra|]. intros [i [[o [_ Gi]] C]]. exfalso.
-      apply (slower_hits_nobody o (wrap y / w) i (y / w) G V (over_positive y w Y P) Gi C). }
-    specialize (Bg V). set (left_ := g - par "cc_ttc" * (v - u)) in *. set (z := wrap y) in *.
-    assert (Q : (exists i, (exists o, begins o /\ goes v (assisted W k o (z / w)) (z / w :: nil) i)
-      /\ collide i (fun t => u * t) g r (y / w))
-      <-> (exists i, goes v (assisted W k (Some (Rmax (p / w) (left_ / (v - u)) + e)) (z / w)) (z / w :: nil) i
-        /\ collide i (fun t => u * t) g r (y / w))).
-    { split.
-      - intros [i [[o [Bo Gi]] C]]. exists i. split; [|exact C]. apply Bg in Bo. destruct Bo as [d [F ->]].
-        apply (opens W now a b (p / w) d V) in F. subst d. exact Gi.
-      - intros [i [Gi C]]. exists i. split; [|exact C]. eexists. split; [|exact Gi]. apply Bg.
-        eexists. split; [apply (opens W now a b (p / w) _ V); reflexivity|reflexivity]. }
-    rewrite Q. clear Q.
-    assert (E1 : w * (v - u) * (left_ / (v - u)) = w * left_) by (field; lra).
-    assert (E2 : w * (v - u) * (p / w) = p * (v - u)) by (field; lra).
-    assert (W' : 0 < w * (v - u)) by (apply Rmult_lt_0_compat; lra).
-    destruct (Rle_lt_dec (w * left_) (p * (v - u))) as [L|L].
-    - rewrite Rmax_left by (apply Rmult_le_reg_l with (w * (v - u)); lra).
-      rewrite <- (both_right y (p + x) z w) by (try reflexivity; try (unfold z in *; lra); rewrite Ex; field; lra).
-      split; [intros [[_ [[_ H1]|[N _]]] [[_ H2]|[N' _]]]; try lra; split; assumption|].
-      intros [H1 H2]. split; [split; [exact V|left; split; assumption]|left; split; assumption].
-    - rewrite Rmax_right by (apply Rmult_le_reg_l with (w * (v - u)); lra).
-      assert (N1 : 0 <= y * (v - u)) by (apply Rmult_le_pos; lra).
-      assert (N3 : y * (v - u) <= z * (v - u)) by (apply Rmult_le_compat_r; lra).
-      assert (N2 : 0 <= w * left_ + x * (v - u)).
-      { assert (0 <= x * (v - u)) by (apply Rmult_le_pos; lra). assert (0 <= p * (v - u)) by (apply Rmult_le_pos; lra). lra. }
-      replace (y / w) with (y * (v - u) / (w * (v - u))) by (field; lra).
-      rewrite <- (both_right (y * (v - u)) (w * left_ + x * (v - u)) (z * (v - u)) (w * (v - u)))
-        by (try lra; first [rewrite Ex; field; lra|field; lra]).
-      split; [intros [[_ [[N _]|[_ H1]]] [[N' _]|[_ H2]]]; try lra; split; assumption|].
-      intros [H1 H2]. split; [split; [exact V|right; split; assumption]|right; split; assumption].
+    intros P Y G Hp Hx Ex Bg. pose proof (wrap_after y Y) as Wy. set (z := wrap y) in *.
+    refine (iff_trans _ (gate_right W now a b (fun o => goes v (assisted W k o (z / w)) (z / w :: nil))
+      (fun c q => hit_by_careful W now a b (y * c) q (w * c) /\ aidedHits (y * c) q (z * c) (w * c)) begins y w p x e P Hp Hx Ex _ _ Bg)).
+    - rewrite !Rmult_1_r. unfold gated, aidedGated. split; [|tauto].
+      intros [[V [[C H]|[C H]]] [[C' H']|[C' H']]]; try lra; (split; [exact V|]); [left|right]; tauto.
+    - intros V o i _ Gi. exact (slower_hits_nobody o (z / w) i (y / w) G V (over_positive y w Y P) Gi).
+    - intros V c q o Hc Hq Eo. replace (y / w) with (y * c / (w * c)) by (field; lra).
+      apply both_right; try assumption; [nra|apply Rmult_lt_0_compat; lra|field; lra].
   Qed.
 
   Theorem aeb_boundary p h : known W p -> (from_both W now a b (aided_hits p h) <-> cut_in W now (careful_with_aeb W now k p h a b) a b).
@@ -190,21 +156,13 @@ Section Aeb.
         refine (not_faster W now a b Ha Hb PT PA (Some _) x (y / w) G V (over_positive y w Y P) _ Bx C). apply over_positive; assumption.
       + rewrite (both_right y _ (wrap y) w (seen W p y / w + (evaluation W p + par "cc_delay")) (wrap y / w)) by (try lra; field; lra).
         split.
-        * intros [x [Gx C]]. exists x. split; [|exact C]. eexists. split; [|exact Gx]. cbn [onset].
-          exists (Some (seen W p y / w)). split; [apply first_perceived; auto|reflexivity].
-        * intros [x [[o [[s [F ->]] Gx]] C]]. exists x. split; [|exact C]. apply first_perceived in F; auto. subst s. exact Gx.
+        * intros [x [Gx C]]. exists x. split; [|exact C]. eexists. split; [apply onset_ungated; auto|exact Gx].
+        * intros [x [[o [O Gx]] C]]. exists x. split; [|exact C]. apply onset_ungated in O; auto. subst o. exact Gx.
     - apply (gated_aeb y w (seen W p y) _ (evaluation W p + par "cc_delay") (fun o => onset W now p before_perception a b y w o));
         try assumption; [rewrite weighed_is; lra|rewrite weighed_is; ring|].
-      intros _ o. cbn [onset]. split; intros [s [F ->]]; exists s; (split; [|reflexivity]);
-        apply (first_of (perceived W p y w) (close W now a b) 0 (seen W p y / w) s); auto; intros t T'; rewrite perceived_is;
-        pose proof (times_over (seen W p y) w P); set (z := seen W p y / w) in *; split; intros; nra.
-    - apply (gated_aeb y w _ _ (par "cc_delay") (fun o => onset W now p before_delay a b y w o));
-        try assumption; [rewrite weighed_is; lra|ring|].
-      intros _ o. rewrite weighed_is.
-      replace ((seen W p y + evaluation W p * w) / w) with (seen W p y / w + evaluation W p) by (field; lra).
-      cbn [onset]. split.
-      + intros [s [d [F [D ->]]]]. apply first_perceived in F; auto. injection F as ->. exists d. split; [exact D|reflexivity].
-      + intros [d [D ->]]. exists (seen W p y / w), d.
-        split; [apply first_perceived; auto|]. split; [exact D|reflexivity].
+      intros _ o. apply onset_before_perception; assumption.
+    - rewrite weighed_is. apply (gated_aeb y w _ _ (par "cc_delay") (fun o => onset W now p before_delay a b y w o));
+        try assumption; [lra|ring|].
+      intros _ o. apply onset_before_delay; assumption.
   Qed.
 End Aeb.

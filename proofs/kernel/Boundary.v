@@ -20,24 +20,25 @@ Section Brakes.
   Qed.
 End Brakes.
 
-Lemma brakes_collide v u g r q y w T A : 0 <= v -> 0 <= u -> 0 <= g -> 0 <= r -> 0 <= q -> 0 <= y -> 0 < w -> 0 <= T -> 0 < A ->
-  ((exists x, brakes_from v (Some (q / w)) T A x /\ collide x (fun t => u * t) g r (y / w)) <-> hits v u g r q y w T A).
-Proof.
-  intros Hv Hu Hg Hr Hq Hy Hw HT HA.
-  assert (P : forall z, 0 <= z -> 0 <= z / w) by (intros; apply Rmult_le_pos; [lra|left; apply Rinv_0_lt_compat; lra]).
-  assert (S : hits v u g r q y w T A <-> hits v u g r (q / w) (y / w) 1 T A).
-  { replace q with (w * (q / w)) at 1 by (field; lra). replace y with (w * (y / w)) at 1 by (field; lra).
-    unfold hits. rewrite !scale_gained, scale_faster, scale_gains by lra. reflexivity. }
-  rewrite S. split.
-  - intros [x [B C]]. apply (collides_right v (q / w) T A Hv (P q Hq) HT HA x) in C; auto.
-  - intros H. destruct (brakes_exists v (q / w) T A Hv (P q Hq) HT HA) as [x B]. exists x. split; [exact B|].
-    apply (collides_right v (q / w) T A Hv (P q Hq) HT HA x); auto.
-Qed.
-
 Lemma over_positive z w : 0 <= z -> 0 < w -> 0 <= z / w.
 Proof. intros. apply Rmult_le_pos; [lra|left; apply Rinv_0_lt_compat; lra]. Qed.
 Lemma times_over z w : 0 < w -> w * (z / w) = z.
 Proof. intros. field. lra. Qed.
+
+Lemma hits_over v u g r q y w T A : 0 < w -> (hits v u g r q y w T A <-> hits v u g r (q / w) (y / w) 1 T A).
+Proof.
+  intros P. rewrite <- (times_over q w P), <- (times_over y w P) at 1. unfold hits.
+  rewrite !scale_gained, scale_faster, scale_gains by exact P. reflexivity.
+Qed.
+Lemma brakes_collide v u g r q y w T A : 0 <= v -> 0 <= u -> 0 <= g -> 0 <= r -> 0 <= q -> 0 <= y -> 0 < w -> 0 <= T -> 0 < A ->
+  ((exists x, brakes_from v (Some (q / w)) T A x /\ collide x (fun t => u * t) g r (y / w)) <-> hits v u g r q y w T A).
+Proof.
+  intros Hv Hu Hg Hr Hq Hy Hw HT HA. rewrite hits_over by exact Hw.
+  pose proof (over_positive q w Hq Hw) as Q. pose proof (over_positive y w Hy Hw) as Y. split.
+  - intros [x [B C]]. apply (collides_right v (q / w) T A Hv Q HT HA x) in C; auto.
+  - intros H. destruct (brakes_exists v (q / w) T A Hv Q HT HA) as [x B]. exists x. split; [exact B|].
+    apply (collides_right v (q / w) T A Hv Q HT HA x); auto.
+Qed.
 
 (* the first instant at which it has gone z across at w *)
 Lemma reaches z w o : 0 <= z -> 0 < w -> (first (fun t => z <= w * t) 0 o <-> o = Some (z / w)).
@@ -196,6 +197,33 @@ Section Cut_in.
     destruct o; cbn [first]; destruct p; reflexivity.
   Qed.
 
+  (* the instant at which braking begins, by readings of the gate *)
+  Lemma onset_ungated p y w o : known p -> 0 < w -> 0 <= y ->
+    (onset W now p no_gate a b y w o <-> o = Some (seen p y / w + (evaluation W p + par "cc_delay"))).
+  Proof.
+    intros K P Y. cbn [onset]. split.
+    - intros [s [F ->]]. apply first_perceived in F; auto. subst s. reflexivity.
+    - intros ->. eexists. split; [apply first_perceived; auto|reflexivity].
+  Qed.
+  Lemma onset_before_perception p y w o : known p -> 0 < w -> 0 <= y ->
+    (onset W now p before_perception a b y w o
+     <-> exists d, first (close W now a b) (seen p y / w) d /\ o = later (evaluation W p + par "cc_delay") d).
+  Proof.
+    intros K P Y. pose proof (over_positive (seen p y) w (seen_positive p y K Y) P) as S.
+    cbn [onset]. split; intros [s [F ->]]; exists s; (split; [|reflexivity]);
+      apply (first_of (perceived W p y w) (close W now a b) 0 (seen p y / w) s); auto; intros t T; rewrite perceived_is;
+      pose proof (times_over (seen p y) w P); set (z := seen p y / w) in *; split; intros; nra.
+  Qed.
+  Lemma onset_before_delay p y w o : known p -> 0 < w -> 0 <= y ->
+    (onset W now p before_delay a b y w o
+     <-> exists d, first (close W now a b) ((seen p y + evaluation W p * w) / w) d /\ o = later (par "cc_delay") d).
+  Proof.
+    intros K P Y. replace ((seen p y + evaluation W p * w) / w) with (seen p y / w + evaluation W p) by (field; lra).
+    cbn [onset]. split.
+    - intros [s [d [F [D ->]]]]. apply first_perceived in F; auto. injection F as ->. exists d. split; [exact D|reflexivity].
+    - intros [d [D ->]]. exists (seen p y / w), d. split; [apply first_perceived; auto|]. split; [exact D|reflexivity].
+  Qed.
+
   Lemma ungated_right p y w : known p -> 0 < w -> 0 <= y -> 0 <= g ->
     (ungated p y w <-> exists x, careful W now p no_gate a b y w x /\ collide x (fun t => u * t) g both_lengths (y / w)).
   Proof.
@@ -204,12 +232,46 @@ Section Cut_in.
     assert (D' : 0 <= par "cc_delay" * w) by (apply Rmult_le_pos; lra). rewrite weighed_is.
     rewrite (hit_by_careful_right y _ w (seen p y / w + (evaluation W p + par "cc_delay"))) by (try lra; field; lra).
     unfold careful. split.
-    - intros [x [B C]]. exists x. split; [|exact C]. eexists. split; [|exact B]. cbn [onset].
-      exists (Some (seen p y / w)). split; [apply first_perceived; auto|reflexivity].
-    - intros [x [[o [[s [F ->]] B]] C]]. exists x. split; [|exact C]. apply first_perceived in F; auto. subst s. exact B.
+    - intros [x [B C]]. exists x. split; [|exact C]. eexists. split; [apply onset_ungated; auto|exact B].
+    - intros [x [[o [O B]] C]]. exists x. split; [|exact C]. apply onset_ungated in O; auto. subst o. exact B.
   Qed.
 
-  (* braking begins x/w after the gate is open, which counts from p/w on *)
+  (* Braking begins x/w after the gate is open, which counts from p/w on; `goes_ o` is how a goes where it begins at o,
+     and `hit c` whether it hits b, over times as fractions of w * c. *)
+  Lemma gate_right (goes_ : option R -> (R -> R) -> Prop) (hit : R -> R -> Prop) (begins : option R -> Prop) y w p x e :
+    0 < w -> 0 <= p -> 0 <= x -> x = e * w ->
+    (v <= u -> forall o z, begins o -> goes_ o z -> ~ collide z (fun t => u * t) g both_lengths (y / w)) ->
+    (u < v -> forall c q o, 0 < c -> 0 <= q -> o = q / (w * c) ->
+      (hit c q <-> exists z, goes_ (Some o) z /\ collide z (fun t => u * t) g both_lengths (y / w))) ->
+    (u < v -> forall o, begins o <-> exists d, first (close W now a b) (p / w) d /\ o = later e d) ->
+    (u < v /\ ((w * (g - par "cc_ttc" * (v - u)) <= p * (v - u) /\ hit 1 (p + x))
+       \/ (p * (v - u) < w * (g - par "cc_ttc" * (v - u)) /\ hit (v - u) (w * (g - par "cc_ttc" * (v - u)) + x * (v - u))))
+     <-> exists z, (exists o, begins o /\ goes_ o z) /\ collide z (fun t => u * t) g both_lengths (y / w)).
+  Proof.
+    intros P Hp Hx Ex N H B. destruct (Rle_lt_dec v u) as [V|V].
+    { split; [intros [M _]; lra|]. intros [z [[o [Bo Gz]] C]]. exfalso. exact (N V o z Bo Gz C). }
+    specialize (B V). specialize (H V). set (left_ := g - par "cc_ttc" * (v - u)) in *.
+    set (o := Rmax (p / w) (left_ / (v - u)) + e).
+    assert (Q : (exists z, (exists o, begins o /\ goes_ o z) /\ collide z (fun t => u * t) g both_lengths (y / w))
+      <-> (exists z, goes_ (Some o) z /\ collide z (fun t => u * t) g both_lengths (y / w))).
+    { split.
+      - intros [z [[o' [Bo Gz]] C]]. exists z. split; [|exact C]. apply B in Bo. destruct Bo as [d [F ->]].
+        apply (opens (p / w) d V) in F. subst d. exact Gz.
+      - intros [z [Gz C]]. exists z. split; [|exact C]. eexists. split; [|exact Gz]. apply B.
+        eexists. split; [apply (opens (p / w) _ V); reflexivity|reflexivity]. }
+    rewrite Q. clear Q.
+    assert (E1 : w * (v - u) * (left_ / (v - u)) = w * left_) by (field; lra).
+    assert (E2 : w * (v - u) * (p / w) = p * (v - u)) by (field; lra).
+    assert (W' : 0 < w * (v - u)) by (apply Rmult_lt_0_compat; lra).
+    destruct (Rle_lt_dec (w * left_) (p * (v - u))) as [L|L].
+    - rewrite <- (H 1 (p + x) o); [|lra|lra|].
+      + split; [intros [_ [[_ K]|[K _]]]; [exact K|lra]|]. intros K. split; [exact V|left; split; assumption].
+      + unfold o. rewrite Rmax_left by (apply Rmult_le_reg_l with (w * (v - u)); lra). rewrite Ex. field. lra.
+    - assert (N1 : 0 <= x * (v - u)) by (apply Rmult_le_pos; lra). assert (N2 : 0 <= p * (v - u)) by (apply Rmult_le_pos; lra).
+      rewrite <- (H (v - u) (w * left_ + x * (v - u)) o); [|lra|lra|].
+      + split; [intros [_ [[K _]|[_ K]]]; [lra|exact K]|]. intros K. split; [exact V|right; split; assumption].
+      + unfold o. rewrite Rmax_right by (apply Rmult_le_reg_l with (w * (v - u)); lra). rewrite Ex. field. lra.
+  Qed.
   Lemma gated_right y w p x e (begins : option R -> Prop) : 0 < w -> 0 <= y -> 0 <= g -> 0 <= p -> 0 <= x -> x = e * w ->
     (forall o, begins o -> match o with Some q => 0 <= q | None => True end) ->
     (u < v -> forall o, begins o <-> exists d, first (close W now a b) (p / w) d /\ o = later e d) ->
@@ -217,41 +279,12 @@ Section Cut_in.
        /\ collide z (fun t => u * t) g both_lengths (y / w)).
   Proof.
     intros P Y G Hp Hx Ex B0 B. unfold gated.
-    destruct (Rle_lt_dec v u) as [V|V].
-    { split; [intros [N _]; lra|]. intros [z [[o [Bo Bz]] C]]. exfalso.
-      apply (not_faster o z (y / w) G V (over_positive y w Y P) (B0 o Bo) Bz C). }
-    specialize (B V). set (gap_left := g - par "cc_ttc" * (v - u)) in *.
-    assert (Q : (exists z, (exists o, begins o /\ brakes_from v o (par "cc_ramp") (par "cc_braking") z)
-        /\ collide z (fun t => u * t) g both_lengths (y / w))
-      <-> (exists z, brakes_from v (Some (Rmax (p / w) (gap_left / (v - u)) + e)) (par "cc_ramp") (par "cc_braking") z
-        /\ collide z (fun t => u * t) g both_lengths (y / w))).
-    { split.
-      - intros [z [[o [Bo Bz]] C]]. exists z. split; [|exact C]. apply B in Bo. destruct Bo as [d [F ->]].
-        apply (opens (p / w) d V) in F. subst d. exact Bz.
-      - intros [z [Bz C]]. exists z. split; [|exact C]. eexists. split; [|exact Bz]. apply B.
-        eexists. split; [apply (opens (p / w) _ V); reflexivity|reflexivity]. }
-    rewrite Q. clear Q.
-    assert (Q : 0 <= p / w) by (apply over_positive; assumption).
-    destruct (Rle_lt_dec (w * gap_left) (p * (v - u))) as [L|L].
-    - assert (M : gap_left / (v - u) <= p / w).
-      { apply Rmult_le_reg_l with (w * (v - u)); [apply Rmult_lt_0_compat; lra|].
-        replace (w * (v - u) * (gap_left / (v - u))) with (w * gap_left) by (field; lra).
-        replace (w * (v - u) * (p / w)) with (p * (v - u)) by (field; lra). exact L. }
-      rewrite Rmax_left by exact M. rewrite <- (hit_by_careful_right y (p + x) w) by (try lra; rewrite Ex; field; lra).
-      split; [intros [_ [[_ H]|[N _]]]; [exact H|lra]|]. intros H. split; [exact V|left; split; assumption].
-    - assert (M : p / w <= gap_left / (v - u)).
-      { apply Rmult_le_reg_l with (w * (v - u)); [apply Rmult_lt_0_compat; lra|].
-        replace (w * (v - u) * (gap_left / (v - u))) with (w * gap_left) by (field; lra).
-        replace (w * (v - u) * (p / w)) with (p * (v - u)) by (field; lra). lra. }
-      rewrite Rmax_right by exact M.
-      assert (W' : 0 < w * (v - u)) by (apply Rmult_lt_0_compat; lra).
-      assert (N1 : 0 <= y * (v - u)) by (apply Rmult_le_pos; lra).
-      assert (N2 : 0 <= w * gap_left + x * (v - u)).
-      { assert (0 <= x * (v - u)) by (apply Rmult_le_pos; lra). assert (0 <= p * (v - u)) by (apply Rmult_le_pos; lra). lra. }
-      replace (y / w) with (y * (v - u) / (w * (v - u))) by (field; lra).
-      rewrite <- (hit_by_careful_right (y * (v - u)) (w * gap_left + x * (v - u)) (w * (v - u)))
-        by (try lra; rewrite Ex; field; lra).
-      split; [intros [_ [[N _]|[_ H]]]; [lra|exact H]|]. intros H. split; [exact V|right; split; assumption].
+    refine (iff_trans _ (gate_right (fun o => brakes_from v o (par "cc_ramp") (par "cc_braking"))
+      (fun c q => hit_by_careful (y * c) q (w * c)) begins y w p x e P Hp Hx Ex _ _ B)).
+    - rewrite !Rmult_1_r. reflexivity.
+    - intros V o z Bo Bz. exact (not_faster o z (y / w) G V (over_positive y w Y P) (B0 o Bo) Bz).
+    - intros V c q o Hc Hq Eo. replace (y / w) with (y * c / (w * c)) by (field; lra).
+      apply hit_by_careful_right; try assumption; [apply Rmult_le_pos; lra|apply Rmult_lt_0_compat; lra].
   Qed.
 
   Theorem careful_boundary p k : known p -> (from_both (careful_hits p k) <-> cut_in W now (careful W now p k a b) a b).
@@ -261,26 +294,16 @@ Section Cut_in.
     assert (E' : 0 <= evaluation W p * w) by (apply Rmult_le_pos; lra).
     assert (D' : 0 <= par "cc_delay" * w) by (apply Rmult_le_pos; lra).
     pose proof (over_positive (seen p y) w S P) as S'.
-    destruct k; cbn [careful_hits].
+    destruct k; cbn [careful_hits]; unfold careful.
     - apply ungated_right; assumption.
-    - unfold careful.
-      apply (gated_right y w (seen p y) _ (evaluation W p + par "cc_delay") (fun o => onset W now p before_perception a b y w o));
-        try assumption; [rewrite weighed_is; lra|rewrite weighed_is; ring| |].
-      + intros o [s [F ->]]. destruct s as [s|]; cbn [later option_map]; [|exact I]. destruct F as [F _]. unfold Prescribed.par. lra.
-      + intros _ o. cbn [onset]. split; intros [s [F ->]]; exists s; (split; [|reflexivity]);
-          apply (first_of (perceived W p y w) (close W now a b) 0 (seen p y / w) s); auto; intros t T; rewrite perceived_is;
-          pose proof (times_over (seen p y) w P); set (z := seen p y / w) in *; split; intros; nra.
-    - unfold careful.
+    - apply (gated_right y w (seen p y) _ (evaluation W p + par "cc_delay") (fun o => onset W now p before_perception a b y w o));
+        try assumption; [rewrite weighed_is; lra|rewrite weighed_is; ring| |intros _ o; apply onset_before_perception; assumption].
+      intros o [s [F ->]]. destruct s as [s|]; cbn [later option_map]; [|exact I]. destruct F as [F _]. unfold Prescribed.par. lra.
+    - rewrite weighed_is.
       apply (gated_right y w _ _ (par "cc_delay") (fun o => onset W now p before_delay a b y w o));
-        try assumption; [rewrite weighed_is; lra|ring| |].
-      + intros o [s [d [F [D ->]]]]. destruct d as [d|]; cbn [later option_map]; [|exact I].
-        destruct F as [F _]. destruct D as [D _]. unfold Prescribed.par. lra.
-      + intros _ o. rewrite weighed_is.
-        replace ((seen p y + evaluation W p * w) / w) with (seen p y / w + evaluation W p) by (field; lra).
-        cbn [onset]. split.
-        * intros [s [d [F [D ->]]]]. apply first_perceived in F; auto. injection F as ->. exists d. split; [exact D|reflexivity].
-        * intros [d [D ->]]. exists (seen p y / w), d.
-          split; [apply first_perceived; auto|]. split; [exact D|reflexivity].
+        try assumption; [lra|ring| |intros _ o; apply onset_before_delay; assumption].
+      intros o [s [d [F [D ->]]]]. destruct d as [d|]; cbn [later option_map]; [|exact I].
+      destruct F as [F _]. destruct D as [D _]. unfold Prescribed.par. lra.
   Qed.
   (* Without AEB the formula says so at its end. *)
   Definition unaided p k y w : Prop := careful_hits p k y w /\ true = true.

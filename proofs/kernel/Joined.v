@@ -117,6 +117,12 @@ Proof.
   pose proof (lost_grows T A (t - q) (t' - q) HT HA ltac:(lra)). lra.
 Qed.
 
+Lemma still_is_faster v u q h T A : isFaster (v - u) q h 1 T A <-> stillFaster v u q h 1 T A.
+Proof.
+  unfold isFaster, stillFaster. split; intros [P [L|[[L K]|[L K]]]]; (split; [lra|]);
+    first [left; lra|right; left; split; lra|right; right; split; lra].
+Qed.
+
 Section One.
   Variables v q T A : R.
   Hypotheses (Hv : 0 <= v) (Hq : 0 <= q) (HT : 0 <= T) (HA : 0 < A).
@@ -153,37 +159,29 @@ Section One.
   Qed.
   Lemma is_faster_right h : 0 <= h -> (isFaster (v - u) q h 1 T A <-> u < v /\ u < speed_at v q T A h).
   Proof.
-    intros H. transitivity (stillFaster v u q h 1 T A).
-    - unfold isFaster, stillFaster. split; intros [P [L|[[L K]|[L K]]]]; (split; [lra|]).
-      + left. exact L.
-      + right; left. split; lra.
-      + right; right. split; lra.
-      + left. exact L.
-      + right; left. split; lra.
-      + right; right. split; lra.
-    - rewrite (faster_right v q T A HT HA u h H). split; intros [V K]; (split; [exact V|]).
-      + (* strictly faster before *)
-        unfold speed_at. apply Rlt_le_trans with (2 := Rmax_r _ _).
-        destruct (Rle_lt_dec h q) as [B|B]; [rewrite lost_before; lra|].
-        destruct (Rlt_le_dec (2 * (v - u)) (A * T)) as [L|L].
-        * destruct (root_in_ramp v T A HT HA u ltac:(lra) L) as [PT [Ar R0]]. rewrite meets_ramp in K by lra.
-          set (z := sqrt (2 * T * (v - u) / A)) in *. rewrite lost_ramp by lra.
+    intros H. rewrite still_is_faster, (faster_right v q T A HT HA u h H). split; intros [V K]; (split; [exact V|]).
+    - (* strictly faster before *)
+      unfold speed_at. apply Rlt_le_trans with (2 := Rmax_r _ _).
+      destruct (Rle_lt_dec h q) as [B|B]; [rewrite lost_before; lra|].
+      destruct (Rlt_le_dec (2 * (v - u)) (A * T)) as [L|L].
+      + destruct (root_in_ramp v T A HT HA u ltac:(lra) L) as [PT [Ar R0]]. rewrite meets_ramp in K by lra.
+        set (z := sqrt (2 * T * (v - u) / A)) in *. rewrite lost_ramp by lra.
+        assert (A * (h - q) ^ 2 / (2 * T) < v - u); [|lra].
+        apply Rmult_lt_reg_r with (2 * T); [lra|]. replace (A * (h - q) ^ 2 / (2 * T) * (2 * T)) with (A * (h - q) ^ 2) by (field; lra).
+        assert (0 < h - q < z) by lra. assert ((h - q) ^ 2 < z ^ 2) by nra. nra.
+      + rewrite meets_full in K by lra. assert (Ae : A * ((v - u) / A) = v - u) by (field; lra).
+        set (e := (v - u) / A) in *. destruct (Rle_lt_dec (h - q) T) as [F|F].
+        * assert (PT : 0 < T) by lra. rewrite lost_ramp by lra.
           assert (A * (h - q) ^ 2 / (2 * T) < v - u); [|lra].
-          apply Rmult_lt_reg_r with (2 * T); [lra|]. replace (A * (h - q) ^ 2 / (2 * T) * (2 * T)) with (A * (h - q) ^ 2) by (field; lra).
-          assert (0 < h - q < z) by lra. assert ((h - q) ^ 2 < z ^ 2) by nra. nra.
-        * rewrite meets_full in K by lra. assert (Ae : A * ((v - u) / A) = v - u) by (field; lra).
-          set (e := (v - u) / A) in *. destruct (Rle_lt_dec (h - q) T) as [F|F].
-          -- assert (PT : 0 < T) by lra. rewrite lost_ramp by lra.
-             assert (A * (h - q) ^ 2 / (2 * T) < v - u); [|lra].
-             apply Rmult_lt_reg_r with (2 * T); [lra|].
-             replace (A * (h - q) ^ 2 / (2 * T) * (2 * T)) with (A * (h - q) ^ 2) by (field; lra).
-             assert ((h - q) ^ 2 <= T ^ 2) by (apply pow_incr; lra).
-             assert (N : A * T * T <= 2 * (v - u) * T) by (apply Rmult_le_compat_r; lra).
-             destruct (Rle_lt_or_eq_dec _ _ F) as [F'|F'].
-             ++ assert ((h - q) ^ 2 < T ^ 2) by nra. assert (A * (h - q) ^ 2 < A * T ^ 2) by (apply Rmult_lt_compat_l; lra). lra.
-             ++ rewrite F'. assert (T / 2 < e) by lra. assert (A * (T / 2) < v - u) by (rewrite <- Ae; apply Rmult_lt_compat_l; lra).
-                assert (A * (T / 2) * (2 * T) < (v - u) * (2 * T)) by (apply Rmult_lt_compat_r; lra). lra.
-          -- rewrite lost_full by lra. nra.
-      + apply Rnot_le_lt. intros N. pose proof (slower_from v q T A HT HA u Hu h (Rlt_le _ _ V) N). lra.
+          apply Rmult_lt_reg_r with (2 * T); [lra|].
+          replace (A * (h - q) ^ 2 / (2 * T) * (2 * T)) with (A * (h - q) ^ 2) by (field; lra).
+          assert ((h - q) ^ 2 <= T ^ 2) by (apply pow_incr; lra).
+          assert (N : A * T * T <= 2 * (v - u) * T) by (apply Rmult_le_compat_r; lra).
+          destruct (Rle_lt_or_eq_dec _ _ F) as [F'|F'].
+          -- assert ((h - q) ^ 2 < T ^ 2) by nra. assert (A * (h - q) ^ 2 < A * T ^ 2) by (apply Rmult_lt_compat_l; lra). lra.
+          -- rewrite F'. assert (T / 2 < e) by lra. assert (A * (T / 2) < v - u) by (rewrite <- Ae; apply Rmult_lt_compat_l; lra).
+             assert (A * (T / 2) * (2 * T) < (v - u) * (2 * T)) by (apply Rmult_lt_compat_r; lra). lra.
+        * rewrite lost_full by lra. nra.
+    - apply Rnot_le_lt. intros N. pose proof (slower_from v q T A HT HA u Hu h (Rlt_le _ _ V) N). lra.
   Qed.
 End One.

@@ -103,20 +103,19 @@ Section Drivers.
   Lemma some_careful_motion p k y w : known W p -> 0 <= y -> 0 < w -> exists x, careful W now p k a b y w x.
   Proof.
     intros K Y P. pose proof (evaluation_positive W p K) as E. pose proof (seen_positive W p y K Y) as S.
-    pose proof (over_positive _ _ S P) as S'. pose proof (first_perceived W p y w (Some (seen W p y / w)) K Y P) as F.
+    pose proof (over_positive _ _ S P) as S'.
+    assert (E' : 0 <= evaluation W p * w) by (apply Rmult_le_pos; lra).
+    assert (L : forall d s o, 0 <= d -> 0 <= s -> first (close W now a b) s o ->
+      match later d o with Some q => 0 <= q | None => True end).
+    { intros d s [t|] D T F; [|exact I]. destruct F as [F _]. cbn. lra. }
     assert (O : exists o, onset W now p k a b y w o /\ match o with Some q => 0 <= q | None => True end).
-    { destruct k; cbn [onset].
-      - eexists. split; [eexists; split; [apply F; reflexivity|reflexivity]|]. cbn. unfold Prescribed.par. lra.
-      - destruct (gate_is_found (seen W p y / w) S') as [o G].
-        exists (later (evaluation W p + par "cc_delay") o). split.
-        + exists o. split; [|reflexivity]. apply (first_of (perceived W p y w) (close W now a b) 0 (seen W p y / w) o); auto.
-          intros t T. rewrite perceived_is. pose proof (times_over (seen W p y) w P).
-          set (z := seen W p y / w) in *. split; intros; nra.
-        + destruct o as [d|]; [|exact I]. destruct G as [G _]. cbn. lra.
-      - destruct (gate_is_found (seen W p y / w + evaluation W p)) as [o G]; [lra|].
-        exists (later (par "cc_delay") o). split.
-        + exists (seen W p y / w), o. split; [apply F; reflexivity|split; [exact G|reflexivity]].
-        + destruct o as [d|]; [|exact I]. destruct G as [G _]. cbn. lra. }
+    { destruct k.
+      - eexists. split; [apply onset_ungated; auto|cbn; lra].
+      - destruct (gate_is_found _ S') as [o G]. exists (later (evaluation W p + par "cc_delay") o).
+        split; [apply onset_before_perception; auto; exists o; auto|exact (L (evaluation W p + par "cc_delay") _ o ltac:(lra) S' G)].
+      - assert (Q : 0 <= (seen W p y + evaluation W p * w) / w) by (apply over_positive; lra).
+        destruct (gate_is_found _ Q) as [o G]. exists (later (par "cc_delay") o).
+        split; [apply onset_before_delay; auto; exists o; auto|exact (L (par "cc_delay") _ o H_delay Q G)]. }
     destruct O as [[q|] [O Q]].
     - destruct (brakes_exists (speed W now a) q (par "cc_ramp") (par "cc_braking")) as [x X]; try lra.
       exists x, (Some q). split; assumption.
