@@ -73,16 +73,6 @@ Section Motion.
     - intros z Hz. unfold speed_at. rewrite <- (E z ltac:(lra)). apply X. lra.
     - intros z Hz. apply Y. lra.
   Qed.
-  Lemma piece k h T' A' m : 0 <= k <= h -> 0 < T' -> (forall t, k < t < h -> derivable_pt_lim L t (ramp T' A' (t - m))) ->
-    as_ k h (v - L k + lost T' A' (k - m)) T' A' m.
-  Proof.
-    intros K PT D t T. assert (E : L t - L k = lost T' A' (t - m) - lost T' A' (k - m)); [|lra].
-    apply (same_gain L (fun t => lost T' A' (t - m)) (fun t => ramp T' A' (t - m))); [lra| | | |].
-    - intros z Hz. apply C. lra.
-    - intros z Hz. apply derivable_continuous_pt. eexists. apply shift, lost_slope. exact PT.
-    - intros z Hz. apply D. lra.
-    - intros z Hz. apply shift, lost_slope. exact PT.
-  Qed.
 
   Section Two.
     Variables (k h v1 q T A c1 : R) (X1 : R -> R).

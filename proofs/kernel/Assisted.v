@@ -269,10 +269,6 @@ Section With.
     - apply from_on; [lra|exact PT'|exact E2].
   Qed.
 
-  Lemma alternatives (P1 P2 P3 Q1 Q2 Q3 R : Prop) : P1 \/ P2 \/ P3 -> ~ (P1 /\ P2) -> ~ (P1 /\ P3) -> ~ (P2 /\ P3) ->
-    (P1 -> (R <-> Q1)) -> (P2 -> (R <-> Q2)) -> (P3 -> (R <-> Q3)) -> (R <-> (P1 /\ Q1) \/ (P2 /\ Q2) \/ (P3 /\ Q3)).
-  Proof. tauto. Qed.
-
   Lemma in_place_right g : k = in_place -> (over x u g <-> aided k (v - u) g q z T A B).
   Proof.
     intros K. rewrite K. unfold aided.

@@ -81,10 +81,6 @@ Fixpoint plain (f : formula) : formula :=
 
 Lemma Q2R_red p : Q2R (Qred p) = Q2R p.
 Proof. apply Qeq_eqR, Qred_correct. Qed.
-Lemma Q2R_0 : Q2R 0 = 0.
-Proof. unfold Q2R. simpl. lra. Qed.
-Lemma Q2R_1 : Q2R 1 = 1.
-Proof. unfold Q2R. simpl. lra. Qed.
 Lemma Q2R_half : Q2R (1 # 2) = / 2.
 Proof. unfold Q2R. simpl. lra. Qed.
 Lemma zero_right p : Qeq_bool p 0 = true -> Q2R p = 0.
