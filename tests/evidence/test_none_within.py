@@ -129,6 +129,14 @@ def test_of_random_programs_those_without_a_solution_are_refuted_and_no_others(s
     assert missed <= 4  # false by nothing at all, on products
 
 
+def test_of_a_program_that_is_too_deep_for_recursion_the_work_is_counted():
+    nodes = [Linear(((0, 1),), -1), Linear(((0, 1), (1, 1)), -3)]
+    for _ in range(2000):
+        nodes += [Every((len(nodes) - 1, 0)), Either((len(nodes), 1))]
+    with pytest.raises(NotRefutedError, match="more than 20 linear programs"):
+        find_tree(Program(1, ((0, 2), (0, 0)), (), (), (), tuple(nodes)), 20)
+
+
 def test_right_trees_are_accepted_and_wrong_ones_refused():
     assert [told for told, (program, tree) in RIGHT.items() if not refutes(program, tree)] == []
     assert [told for told, (program, tree) in WRONG.items() if refutes(program, tree)] == []

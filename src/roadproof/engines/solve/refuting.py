@@ -5,7 +5,7 @@ Where a known disjunction is false at the point, or a product is wrong, the tree
 disjunction whose refutation does not use that part refutes the whole.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -123,40 +123,60 @@ class Finder:
 
     def _open(self, known: KnownFacts, point: Any) -> int | None:
         """Of the known disjunctions that are false at the point, that with the fewest possible parts."""
-        values: dict[int, float] = {}
-        found: list[tuple[int, float, int]] = []
-        for number in known.nodes:
-            node = self.program.nodes[number]
-            if isinstance(node, Either) and not known.nodes.intersection(node.parts):
-                value = self._value(number, point, values)
-                if value < -NEAR:
-                    found.append((sum(self._is_possible(known, p) for p in node.parts), value, number))
-        return min(found)[2] if found else None
+        nodes = self.program.nodes
+        found = [
+            (number, node)
+            for number in known.nodes
+            if isinstance(node := nodes[number], Either) and not known.nodes.intersection(node.parts)
+        ]
+        values = self._values([number for number, _ in found], point)
+        false = [(number, node) for number, node in found if values[number] < -NEAR]
+        possible = self._possible(known, [part for _, node in false for part in node.parts])
+        ranked = ((sum(possible[p] for p in node.parts), values[number], number) for number, node in false)
+        return min(ranked)[2] if false else None
 
-    def _value(self, number: int, point: Any, done: dict[int, float]) -> float:
-        """How true a node is at a point, by its least or greatest inequality; negative where it is false."""
-        if number not in done:
+    def _values(self, numbers: Iterable[int], point: Any) -> dict[int, float]:
+        """How true nodes are at a point, by their least or greatest inequality; negative where one is false.
+
+        With those of all their parts.
+        """
+        done: dict[int, float] = {}
+        for number in self._with_parts(numbers):
             node = self.program.nodes[number]
             if isinstance(node, Linear):
                 size = max((abs(k) for _, k in node.terms), default=1)
                 value = (sum(k * point[c] for c, k in node.terms) + node.constant) / size
                 done[number] = float(value) - (MARGIN if node.strict else 0.0)
             else:
-                parts = [self._value(p, point, done) for p in node.parts]
+                parts = [done[p] for p in node.parts]
                 end = float("inf") if isinstance(node, Every) else float("-inf")
                 done[number] = min([end, *parts]) if isinstance(node, Every) else max([end, *parts])
-        return done[number]
+        return done
 
-    def _is_possible(self, known: KnownFacts, number: int) -> bool:
-        """Whether neither the box nor a single known inequality excludes a node."""
-        node = self.program.nodes[number]
-        if isinstance(node, Linear):
-            if known.nodes.intersection(self.opposite.get(number, ())):
-                return False
-            alone = KnownFacts(self.program, known.box, frozenset({number}))
-            return not is_absurd(alone, ((Fact("node", number), 1),))
-        parts = (self._is_possible(known, part) for part in node.parts)
-        return all(parts) if isinstance(node, Every) else any(parts)
+    def _possible(self, known: KnownFacts, numbers: Iterable[int]) -> dict[int, bool]:
+        """Whether neither the box nor a single known inequality excludes these nodes, and their parts."""
+        done: dict[int, bool] = {}
+        for number in self._with_parts(numbers):
+            node = self.program.nodes[number]
+            if isinstance(node, Linear):
+                alone = KnownFacts(self.program, known.box, frozenset({number}))
+                denied = known.nodes.intersection(self.opposite.get(number, ()))
+                done[number] = not denied and not is_absurd(alone, ((Fact("node", number), 1),))
+            else:
+                parts = (done[part] for part in node.parts)
+                done[number] = all(parts) if isinstance(node, Every) else any(parts)
+        return done
+
+    def _with_parts(self, numbers: Iterable[int]) -> list[int]:
+        """These nodes and all their parts, parts first: a program may be too deep for recursion."""
+        found, waiting = set[int](), [*numbers]
+        while waiting:
+            number = waiting.pop()
+            if number not in found:
+                found.add(number)
+                node = self.program.nodes[number]
+                waiting += () if isinstance(node, Linear) else node.parts
+        return sorted(found)
 
     def _cases(self, known: KnownFacts, number: int) -> Refutation:
         """Impossible parts come first: one may refute the whole."""
@@ -164,7 +184,8 @@ class Finder:
         assert isinstance(node, Either)
         trees: dict[int, Tree] = {}
         used = {number}
-        for part in sorted(node.parts, key=lambda p: self._is_possible(known, p)):
+        possible = self._possible(known, node.parts)
+        for part in sorted(node.parts, key=lambda p: possible[p]):
             inner = known.also(part)
             new = inner.nodes - known.nodes
             with self._taken_back():
