@@ -7,7 +7,6 @@ that no value of the columns within their bounds satisfies. ``proofs/kernel/Prog
 checker, proved right.
 """
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field
 from typing import Literal, TypeAlias, assert_never
@@ -47,7 +46,7 @@ Node: TypeAlias = Linear | Every | Either
 class Program:
     """``box``: integer bounds of each column times ``scale``. Columns after these are ``products`` of two.
 
-    ``equal`` are 0 and ``above`` at least 0. The last node is the condition.
+    ``equal`` are 0 and ``above`` at least 0. Nodes follow their parts; the last one is the condition.
     """
 
     scale: int
@@ -217,8 +216,3 @@ def _of_product(known: KnownFacts, fact: Fact) -> Linear | None:
     sign = 1 if first == second else -1
     terms = ((column, sign * scale**2), (one, -sign * scale * b), (other, -sign * scale * a))
     return Linear(terms, sign * a * b)
-
-
-def common_scale(denominators: Iterable[int]) -> int:
-    """The least scale that makes whole numbers of all bounds."""
-    return math.lcm(*denominators)

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import assert_never
 
 from roadproof.engines.encode.problem import All, AnyOf, ColumnInequality, Leaf, Problem, nodes
-from roadproof.evidence.program import Either, Every, Linear, Node, Program, common_scale
+from roadproof.evidence.program import Either, Every, Linear, Node, Program
 
 
 def program_of(problem: Problem) -> Program | None:
@@ -28,7 +28,7 @@ def program_of(problem: Problem) -> Program | None:
     if written is None:
         return None
     ends = [(column.low, column.high) for column in problem.columns]
-    scale = common_scale(end.denominator for pair in ends for end in pair)
+    scale = math.lcm(*(end.denominator for pair in ends for end in pair))
     box = tuple((int(low * scale), int(high * scale)) for low, high in ends)
     return Program(scale, box, tuple(writer.products), tuple(equal), tuple(above), written)
 
