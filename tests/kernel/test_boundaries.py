@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+import roadproof as rp
 from kernel.needs import needs_coq
 from kernel.reading import answers, compared
 from roadproof.drivers.manoeuvres import MANOEUVRES
@@ -166,3 +167,15 @@ def test_a_theory_with_another_motion_does_not_compile():
 @pytest.mark.parametrize(("manoeuvre", "model", "options"), WITHOUT)
 def test_other_boundaries_have_no_theorem(manoeuvre, model, options):
     assert theorem_for(specification(options), boundary(manoeuvre, model)) is None
+
+
+@needs_coq
+@pytest.mark.parametrize("rates", [5, [5, 10]])
+def test_a_braking_that_grows_has_no_theorem(rates):
+    """The formula and the motion of a braking that is there at once say nothing of its plates."""
+    found = rp.preventable(
+        "deceleration", ["careful"], at={"dGdt": rates}, lines=2, lemmas=False, kernel="coq", jobs=1
+    )
+    [ruling] = found.boundaries
+    assert ruling.word is Word.UNKNOWN
+    assert ruling.reason.startswith("no theorem for gradual-deceleration ")

@@ -146,12 +146,17 @@ class Preventable(Unprepared):
                 found[name] = PlatePiece(name, model, fixed)
         return found
 
+    @property
+    def is_gradual(self) -> bool:
+        """Whether the braking of POV grows at a finite rate, which no formula describes."""
+        return gradual.RATE in self.fixed or gradual.RATE in self.sheet
+
     @cached_property
     def lemmas(self) -> dict[str, Lemma]:
         """The lemmas by name."""
         aeb = self.reading.choices.cc_aeb
-        is_said = gradual.RATE not in self.fixed and gradual.RATE not in self.sheet
-        asked = lemmas_for(self.manoeuvre.name, self.models, aeb) if self.with_lemmas and is_said else []
+        is_said = self.with_lemmas and not self.is_gradual
+        asked = lemmas_for(self.manoeuvre.name, self.models, aeb) if is_said else []
         return {f"lemma-{lemma.name}": lemma for lemma in asked}
 
     def pieces(self, known: Mapping[str, Answer]) -> Sequence[Piece]:

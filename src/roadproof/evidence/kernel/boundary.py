@@ -145,7 +145,7 @@ def settle(coq: Coq, specification: Specification, boundary: Boundary) -> Bounda
     model = boundary.model
     theorem = theorem_for(specification, boundary)
     if theorem is None:
-        return BoundaryRuling(model, Word.UNKNOWN, reason=f"no theorem ({_said(specification.options)})")
+        return BoundaryRuling(model, Word.UNKNOWN, reason=_no_theorem(boundary, specification))
     ran = coq.run(theorem.source)
     if ran.code:
         reason = f"coqc says: {' '.join(ran.complained.split())[:200]}"
@@ -155,6 +155,10 @@ def settle(coq: Coq, specification: Specification, boundary: Boundary) -> Bounda
         reason = f"it stands on {', '.join(axioms or ('unknown axioms',))}"
         return BoundaryRuling(model, Word.REFUSED, theorem, reason, seconds=ran.seconds)
     return BoundaryRuling(model, Word.ACCEPTED, theorem, "", axioms, ran.seconds)
+
+
+def _no_theorem(boundary: Boundary, specification: Specification) -> str:
+    return f"no theorem for {boundary.course} ({_said(specification.options)})"
 
 
 def _entry(course: str, model: str, options: Mapping[str, str]) -> _Entry | None:

@@ -174,7 +174,7 @@ def preventable(
 
 def _boundaries(study: Preventable) -> tuple[BoundaryRuling, ...]:
     """What Coq says of the boundary of each model. Raises ``MissingSolverError``."""
-    course: Course = GRADUAL if RATE in study.fixed else study.manoeuvre.name
+    course: Course = GRADUAL if study.is_gradual else study.manoeuvre.name
     vehicles = study.manoeuvre.vehicles
     asked = [
         Boundary(course, x.name, unpreventable(course, x.name, vehicles), vehicles) for x in study.models
