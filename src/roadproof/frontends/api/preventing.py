@@ -152,7 +152,7 @@ def preventable(
     study = Preventable(
         basis,
         kind,
-        models_for(kind.name, tuple(models)),
+        models_for(kind.name, tuple(dict.fromkeys(models))),
         fixed,
         sheet,
         _range(kind, kind.line, given.along) or kind.along,
