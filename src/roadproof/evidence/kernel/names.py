@@ -38,7 +38,7 @@ Place_lon Place_lat Speed_lon Speed_lat Acceleration_lon Acceleration_lat Jerk_l
 Turn One Split Element Each Whole Moment
 Reach Break Fixed Later Drive Signs Shown Roadproof Coq Meaning Text Linear Tableau Products Rss Instant
 Named Sane Guarantee Case Motion Integral Schemas Moves
-world element R holds respects unbound parameter now iff_trans Prescribed Braking Gained Boundary
+world element R W B named holds respects unbound parameter now iff_trans Prescribed Braking Gained Boundary
 Braked Following Responding Joined Aided Assisted Aeb Reading
 """
 WORDS = frozenset(_SAID.split())

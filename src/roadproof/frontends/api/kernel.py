@@ -20,6 +20,7 @@ from roadproof.evidence.finding import Acceptance, OtherVerdict
 from roadproof.evidence.kernel import accept, coq, extracted, ocaml, programs
 from roadproof.evidence.kernel.accept import CoqModule, KernelRulings, Ruling, Word
 from roadproof.evidence.kernel.drive import module as source_drive
+from roadproof.evidence.kernel.names import WORDS
 from roadproof.evidence.kernel.source import file
 from roadproof.evidence.kernel.source import module as source_proof
 from roadproof.evidence.kernel.statement import counted
@@ -173,15 +174,21 @@ def _sources(kernel: KernelName) -> list[Path]:
 
 
 def names_of(paths: Iterable[Path]) -> dict[Path, str]:
-    """A name for each file that is one in Coq, too: of its own name, and of a number where that is taken."""
+    """A name for each file that is one in Coq, too: of its own name, and of a number where that is taken.
+
+    >>> list(names_of([Path("a b.json"), Path("a_b.json"), Path("1.json"), Path("fun.json")]).values())
+    ['a_b', 'a_b_2', 'claim_1', 'fun_2']
+    """
     found: dict[Path, str] = {}
+    taken = set(WORDS)
     for path in paths:
         plain = re.sub(r"\W", "_", path.stem, flags=re.ASCII)[:100]
         plain = plain if plain[:1].isalpha() else f"claim_{plain}"
         name, count = plain, 1
-        while name in found.values():
+        while name in taken:
             count += 1
             name = f"{plain}_{count}"
+        taken.add(name)
         found[path] = name
     return found
 
