@@ -139,6 +139,15 @@ def jumping(**changed):
     return replace(Countermodel(instants, {}, "before"), **changed)
 
 
+def at(time):
+    return Countermodel((Instant(time, {"v_lon(SV)": Fraction(0)}, {}),), {}, "before")
+
+
+def sized(*lengths):
+    instants = (Instant(Fraction(k), {"length(SV)": Fraction(x)}, {}) for k, x in enumerate(lengths))
+    return Countermodel(tuple(instants), {}, "before")
+
+
 def asked(claim, trace):
     return Refutation(claim, "base", {}, (), trace_data(trace), "here")
 
@@ -155,6 +164,9 @@ def test_a_claim_that_is_true_on_its_trace_has_no_module():
         ("nobody(SV)", jumping(), Word.REFUSED, "it cannot be put to Coq"),
         ("G v_lon(SV) > 0", jumping(loop=Loop(Fraction(0), Fraction(3))), Word.UNKNOWN, "repeats itself"),
         ("given v: m/s: v > 0", jumping(), Word.REFUSED, "does not say what v is"),
+        ("G v_lon(SV) > 0", at(Fraction(1)), Word.REFUSED, "must ascend from 0"),
+        ("length(SV) > 0", sized(-1), Word.REFUSED, "not greater than 0"),
+        ("length(SV) > 0", sized(1, 2), Word.REFUSED, "changes"),
     ],
 )
 def test_what_is_refused_or_unknown(claim, trace, word, reason):

@@ -1,6 +1,6 @@
 """Traces over points in time on a road of rectangles, which refute claims, as plain data."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
@@ -10,6 +10,7 @@ from roadproof.evidence.codec import read, write
 from roadproof.evidence.drive_file import road_of, road_said
 from roadproof.evidence.strict import JsonObject
 from roadproof.world.road import Road
+from roadproof.world.signals import FIXED
 
 Held = Literal["before", "after"]
 _BETWEEN: Mapping[Held, kept.Between] = {
@@ -100,3 +101,28 @@ def read_trace(content: object, where: str) -> Countermodel:
         None if said.road is None else road_of(said.road, f"{place}, road"),
         None if said.repeats is None else Loop(said.repeats.start, said.repeats.period),
     )
+
+
+def fault_of_states(countermodel: Countermodel) -> str | None:
+    """Why instants, rounds and sizes make no trace, whatever the claim is; None where they make one."""
+    times = [instant.time for instant in countermodel.instants]
+    if not times or times[0] != 0 or times != sorted(set(times)):
+        return f"its instants are {', '.join(map(str, times))}, but must ascend from 0"
+    loop = countermodel.loop
+    if loop is not None:
+        if loop.start not in times or loop.period <= 0 or loop.end <= times[-1]:
+            return f"it repeats itself from {loop.start} s each {loop.period} s, which fits no instants of it"
+        if countermodel.held != "before":
+            return "it repeats itself, so between instants it must keep the state of the one before"
+    sizes = [_sizes(values) for instant in countermodel.instants for values in _states(instant)]
+    if any(other != sizes[0] for other in sizes) or any(value <= 0 for value in sizes[0].values()):
+        return "a length, width or kind changes or is not greater than 0"
+    return None
+
+
+def _states(instant: Instant) -> Sequence[Mapping[str, Fraction]]:
+    return (instant.values,) if instant.after is None else (instant.values, instant.after)
+
+
+def _sizes(values: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    return {name: value for name, value in values.items() if name.partition("(")[0] in FIXED}

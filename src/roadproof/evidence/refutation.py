@@ -10,7 +10,7 @@ from functools import lru_cache
 from typing import assert_never
 
 from roadproof.errors import InputError, RoadproofError
-from roadproof.evidence.countermodel import NOWHERE, Countermodel, Instant, read_trace
+from roadproof.evidence.countermodel import NOWHERE, Countermodel, fault_of_states, read_trace
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.periodic import judge_periodic
 from roadproof.library.bind import bind, values_with
@@ -27,7 +27,6 @@ from roadproof.semantics.exact import TruthSet, judge
 from roadproof.semantics.exact.signals import AbstractSignals
 from roadproof.semantics.exact.truth import from_switches
 from roadproof.world.lanelet_rules import check_lanelets, shared_boundaries
-from roadproof.world.signals import FIXED
 
 
 def fault_of(countermodel: Countermodel, claim: Formula, bounds: Mapping[str, str]) -> str | None:
@@ -38,18 +37,9 @@ def fault_of(countermodel: Countermodel, claim: Formula, bounds: Mapping[str, st
     for name, value in countermodel.parameters.items():
         if (bounds.get(name) and value < 0) or (bounds.get(name) == ">" and value == 0):
             return f"{name}={value}, but it is declared {name} {bounds[name]} 0"
-    times = [instant.time for instant in countermodel.instants]
-    if not times or times[0] != 0 or times != sorted(set(times)):
-        return f"its instants are {', '.join(map(str, times))}, but must ascend from 0"
-    loop = countermodel.loop
-    if loop is not None:
-        if loop.start not in times or loop.period <= 0 or loop.end <= times[-1]:
-            return f"it repeats itself from {loop.start} s each {loop.period} s, which fits no instants of it"
-        if countermodel.held != "before":
-            return "it repeats itself, so between instants it must keep the state of the one before"
-    sizes = [_sizes(values) for instant in countermodel.instants for values in _states(instant)]
-    if any(other != sizes[0] for other in sizes) or any(value <= 0 for value in sizes[0].values()):
-        return "a length, width or kind changes or is not greater than 0"
+    fault = fault_of_states(countermodel)
+    if fault is not None:
+        return fault
     try:
         if countermodel.road is not None:
             check_lanelets(countermodel.road.lanelets, "its road")
@@ -169,14 +159,6 @@ def _after(part: f.Compare, truths: Sequence[bool], trace: Countermodel) -> list
 def _spread(times: Sequence[Fraction], values: Sequence[bool], after: Sequence[bool]) -> TruthSet:
     """Truth at instants and after them."""
     return from_switches(zip(times, values, after, strict=True))
-
-
-def _states(instant: Instant) -> Sequence[Mapping[str, Fraction]]:
-    return (instant.values,) if instant.after is None else (instant.values, instant.after)
-
-
-def _sizes(values: Mapping[str, Fraction]) -> dict[str, Fraction]:
-    return {name: value for name, value in values.items() if name.partition("(")[0] in FIXED}
 
 
 def judge_trace(

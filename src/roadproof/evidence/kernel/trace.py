@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 
 from roadproof.errors import InputError
-from roadproof.evidence.countermodel import Countermodel, read_trace
+from roadproof.evidence.countermodel import Countermodel, fault_of_states, read_trace
 from roadproof.evidence.kernel.derivation import Step
 from roadproof.evidence.kernel.drive import closed
 from roadproof.evidence.kernel.printer import Formals, Printer
@@ -61,6 +61,9 @@ def refuted(asked: Refutation, library: Library) -> Refuted:
     specification = library.select(asked.set_name, asked.options)
     query = under_limits(specification, read_claim(specification, asked.claim), asked.assuming)
     trace = read_trace(asked.trace, asked.where)
+    fault = fault_of_states(trace)
+    if fault is not None:
+        raise InputError(fault)
     values = values_with(library, trace.parameters)
     spoken = parameters_of(query.formula)
     road = ANYWHERE if trace.road is None or not trace.road.lanelets else trace.road
