@@ -237,6 +237,21 @@ def test_results_that_were_changed_are_not_kept(folder: Path, tmp_path: Path) ->
     assert (tmp_path / "matches.csv").read_bytes() == before
 
 
+def test_results_that_are_no_findings_are_not_kept(folder: Path, tmp_path: Path) -> None:
+    run_experiment(Experiment(folder, tmp_path, default_settings()))
+    saved = tmp_path / "recordings" / "01.json"
+    whole = saved.read_text()
+    data = json.loads(whole)
+    del data["findings"]["triples"]
+    data["seal"] = results.seal(data["fingerprint"], data["findings"])
+    for text in (json.dumps(data), "[" * 100_000):
+        saved.write_text(text)
+        told: list[str] = []
+        run_experiment(Experiment(folder, tmp_path, default_settings()), told.append)
+        assert [line for line in told if line.startswith("[")] == ["[1/1] 01"]
+        assert saved.read_text() == whole
+
+
 def test_a_recording_under_two_names_counts_once(folder: Path, tmp_path: Path) -> None:
     ours = tmp_path / "ours"
     shutil.copytree(folder, ours)

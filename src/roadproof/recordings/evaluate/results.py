@@ -9,6 +9,7 @@ import hashlib
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import fields
 from fractions import Fraction
 from io import TextIOWrapper
 from itertools import product
@@ -113,9 +114,10 @@ def _kept(path: Path, mark: str) -> dict[str, object] | None:
     try:
         match json.loads(path.read_text()):
             case {"schema": schema, "fingerprint": of, "seal": sealed, "findings": dict() as found}:
+                whole = found.keys() == {x.name for x in fields(Findings)}
                 same = (schema, of, sealed) == (RECORDING_SCHEMA, mark, seal(mark, found))
-                return found if same else None
-    except (OSError, ValueError, TypeError):
+                return found if whole and same else None
+    except (OSError, ValueError, TypeError, RecursionError):
         pass
     return None
 
