@@ -42,6 +42,7 @@ def test_a_claim_about_motions_is_accepted_and_rests_on_no_fact(schemas, claim):
     (entry,) = proved.as_data()["verdicts"]
     limits = len(certificate.assumed.limits)
     assert entry["kernel"] == {"says": "accepted", "reason": "", "premises": limits}
+    assert ("  assuming motion" in proved.kernel_text()) == claim.startswith("assuming motion")
     text = prepare("one", certificate, bundled_library()).module.text
     read, _, proof = text.partition("(* From here on it is proof")
     assert "motion_" not in read

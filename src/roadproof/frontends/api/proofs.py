@@ -31,7 +31,7 @@ from roadproof.frontends.settings.keywords import ProveKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Prove
 from roadproof.library.elaborate import read_claim
-from roadproof.library.motion import MOTION, AssumedClaim, at_values, is_moving, limits_of, split
+from roadproof.library.motion import MOTION, AssumedClaim, at_values, is_moving, limits_of, split, statement
 from roadproof.library.scenario_references import names_scenarios, read_numbers
 from roadproof.library.specification import Specification
 from roadproof.reasons import Why
@@ -141,7 +141,7 @@ class Proofs(StudyAnswers[Claims, ClaimResult, Record], BuildResult):
         for x in self.answers:
             ruling = self.kernel.rulings.get(name_of(x.task))
             if ruling is not None:
-                claim = " ".join(x.task.claim.split())
+                claim = statement(x.task.assuming, " ".join(x.task.claim.split()))
                 lines.append(f"kernel: {ruling.told}  {claim}" + f": {ruling.reason}" * bool(ruling.reason))
         return "\n".join([*lines, str(self.kernel)])
 
