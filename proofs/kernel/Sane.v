@@ -88,15 +88,17 @@ Section Drivers.
   Notation par := (parameter W).
   Hypotheses (Ha : 0 <= speed W now a) (Hg : 0 <= gap W now a b).
   Hypotheses (H_ramp : 0 < par "cc_ramp") (H_braking : 0 < par "cc_braking") (H_delay : 0 <= par "cc_delay")
-    (H_ttc : 0 < par "cc_ttc").
+    (H_ttc : 0 <= par "cc_ttc").
   Lemma gate_is_found s : 0 <= s -> exists o, first (close W now a b) s o.
   Proof.
     intros S. destruct (Rtotal_order (speed W now b) (speed W now a)) as [V|V].
     - eexists. apply opens; [exact V|reflexivity].
     - destruct (Rle_lt_dec (gap W now a b) 0) as [G|G]; [destruct V as [V|V]|].
       + exists (Some s). repeat split; [lra| |intros; lra]. unfold close. rewrite V. nra.
-      + exists None. intros t T C. unfold close, Prescribed.par in C.
-        assert (0 < (speed W now b - speed W now a) * (t + par "cc_ttc")) by (apply Rmult_lt_0_compat; lra). lra.
+      + destruct (Rle_lt_dec (s + par "cc_ttc") 0) as [Z|Z].
+        * exists (Some s). repeat split; [lra| |intros; lra]. unfold close, Prescribed.par. nra.
+        * exists None. intros t T C. unfold close, Prescribed.par in C.
+          assert (0 < (speed W now b - speed W now a) * (t + par "cc_ttc")) by (apply Rmult_lt_0_compat; lra). lra.
       + exists None. intros t T C. unfold close, Prescribed.par in C.
         assert (0 <= (speed W now b - speed W now a) * (t + par "cc_ttc")) by (apply Rmult_le_pos; lra). lra.
   Qed.
