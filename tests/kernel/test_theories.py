@@ -67,13 +67,14 @@ def test_theories_compile_without_a_warning_and_are_kept(tmp_path, monkeypatch):
         assert again.theories == coq.theories
     assert len(said) == len(THEORIES) + 5
     assert coq_module._is_sound(coq.theories)
-    for change in (
-        lambda: (coq.theories / "Other.vo").write_bytes(b"one more"),
-        lambda: (coq.theories / "Text.vo").write_bytes(b"forged"),
-    ):
-        change()
+    (coq.theories / "Below").mkdir()
+    for name in ("Other.vo", "Text.vio", "Below/Text.vo"):
+        (coq.theories / name).write_bytes(b"one more, which Coq would load")
         assert not coq_module._is_sound(coq.theories)
-        (coq.theories / "Other.vo").unlink(missing_ok=True)
+        (coq.theories / name).unlink()
+        assert coq_module._is_sound(coq.theories)
+    (coq.theories / "Text.vo").write_bytes(b"forged")
+    assert not coq_module._is_sound(coq.theories)
     coq.theories.chmod(0o777)
     assert not coq_module._is_sound(coq.theories)
     (tmp_path / "roadproof" / "coq").chmod(0o777)
