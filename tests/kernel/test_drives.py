@@ -329,7 +329,7 @@ def test_batches_have_each_certificate_once(count: int) -> None:
 
 
 def test_what_was_not_prepared_keeps_its_refusal() -> None:
-    refusal = Ruling(Word.REFUSED, "it cannot be put to Coq")
+    refusal = Ruling(Word.REFUSED, "it cannot be put to the kernel")
     made = {"a": CoqModule(None, 0, refusal), "b": certificate("b", "good"), "c": certificate("c", "bad")}
     player = Player()
     found = accept_judge(player, made).rulings  # type: ignore[arg-type]

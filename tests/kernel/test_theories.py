@@ -247,14 +247,14 @@ def test_a_formula_that_cannot_be_read_is_refused() -> None:
     assert (made.module, made.limits) == (None, 0)
     assert made.refusal is not None
     assert made.refusal.word is Word.REFUSED
-    assert made.refusal.reason.startswith("it cannot be put to Coq: ")
+    assert made.refusal.reason.startswith("it cannot be put to the kernel: ")
 
 
 @pytest.mark.parametrize(
     ("error", "reason"),
     [
         (NoDerivationError("too hard"), "no derivation was found: too hard"),
-        (InputError("too long"), "it is not printed for Coq: too long"),
+        (InputError("too long"), "it is not printed for the kernel: too long"),
     ],
 )
 def test_a_drive_without_a_derivation_is_unknown(

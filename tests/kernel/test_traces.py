@@ -161,7 +161,7 @@ def test_a_claim_that_is_true_on_its_trace_has_no_module():
 @pytest.mark.parametrize(
     ("claim", "trace", "word", "reason"),
     [
-        ("nobody(SV)", jumping(), Word.REFUSED, "it cannot be put to Coq"),
+        ("nobody(SV)", jumping(), Word.REFUSED, "it cannot be put to the kernel"),
         ("G v_lon(SV) > 0", jumping(loop=Loop(Fraction(0), Fraction(3))), Word.UNKNOWN, "repeats itself"),
         ("given v: m/s: v > 0", jumping(), Word.REFUSED, "does not say what v is"),
         ("G v_lon(SV) > 0", at(Fraction(1)), Word.REFUSED, "must ascend from 0"),

@@ -7,7 +7,7 @@ from roadproof.evidence.derivations.derive import derive, derive_on
 from roadproof.evidence.derivations.parts import NoDerivationError
 from roadproof.evidence.derivations.traces import TraceShapes
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.kernel.accept import CoqModule, Ruling, Word
+from roadproof.evidence.kernel.accept import CoqModule, Ruling, Word, without_question, without_text
 from roadproof.evidence.kernel.derivation import Step
 from roadproof.evidence.kernel.drive import Shown, claim_text, module, shown
 from roadproof.evidence.kernel.source import ClaimText, Module
@@ -28,7 +28,7 @@ def prepare(
     try:
         what = shown(file, library)
     except RoadproofError as error:
-        return CoqModule(None, refusal=Ruling(Word.REFUSED, f"it cannot be put to Coq: {error}"))
+        return without_question(error)
     try:
         printed = claim_text(what)
         derivation = derive(what.formula, file.drive, file.road, file.lanes, what.values)
@@ -36,7 +36,7 @@ def prepare(
     except NoDerivationError as error:
         return CoqModule(None, refusal=Ruling(Word.UNKNOWN, f"no derivation was found: {error}"))
     except RoadproofError as error:
-        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, f"it is not printed for Coq: {error}"))
+        return without_text(error)
 
 
 def prepare_trace(
@@ -49,7 +49,7 @@ def prepare_trace(
     try:
         what = refuted(asked, library)
     except RoadproofError as error:
-        return CoqModule(None, refusal=Ruling(Word.REFUSED, f"it cannot be put to Coq: {error}"))
+        return without_question(error)
     if what.trace.loop is not None:
         return CoqModule(None, refusal=Ruling(Word.UNKNOWN, "its trace repeats itself for ever"))
     world = what.world
@@ -61,4 +61,4 @@ def prepare_trace(
     except NoDerivationError as error:
         return CoqModule(None, refusal=Ruling(Word.UNKNOWN, f"no derivation was found: {error}"))
     except RoadproofError as error:
-        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, f"it is not printed for Coq: {error}"))
+        return without_text(error)

@@ -70,6 +70,16 @@ class CoqModule:
     refusal: Ruling | None = None
 
 
+def without_question(error: RoadproofError) -> CoqModule:
+    """Evidence that says nothing that a kernel could be asked."""
+    return CoqModule(None, refusal=Ruling(Word.REFUSED, f"it cannot be put to the kernel: {error}"))
+
+
+def without_text(error: RoadproofError) -> CoqModule:
+    """Evidence whose claim or proof has no words in a kernel."""
+    return CoqModule(None, refusal=Ruling(Word.UNKNOWN, f"it is not printed for the kernel: {error}"))
+
+
 @dataclass
 class KernelRulings:
     """Rulings by the name of a module; seconds of the processor and megabytes that Coq took."""
@@ -100,13 +110,13 @@ def prepare(
     except NotFoundError as error:
         return CoqModule(None, refusal=Ruling(Word.UNKNOWN, f"no tableau was found: {error}"))
     except RoadproofError as error:
-        return CoqModule(None, refusal=Ruling(Word.REFUSED, f"it cannot be put to Coq: {error}"))
+        return without_question(error)
     try:
         return CoqModule(written(name, statement, tableau), statement.limits)
     except UnreasonedError as error:
         return CoqModule(None, refusal=Ruling(Word.UNKNOWN, str(error), error.number))
     except RoadproofError as error:
-        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, f"it is not printed for Coq: {error}"))
+        return without_text(error)
 
 
 def _tableau(certificate: Certificate, statement: Statement) -> Tableau:

@@ -6,12 +6,11 @@ applied to things of the claim is written once, under a name such as "danger(SV,
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from fractions import Fraction
 from functools import reduce
 from typing import assert_never
 
 from roadproof.errors import InputError
-from roadproof.evidence.kernel.names import comment, literal, quoted
+from roadproof.evidence.kernel.names import comment, literal, q, quoted
 from roadproof.evidence.kernel.world import WORDS_OF_SIGNALS
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
@@ -30,7 +29,7 @@ def term(x: Term) -> str:
     """A term in brackets. Raises ``InputError`` for what Meaning.v has no constructor for."""
     match x:
         case t.Number(value, _):
-            return f"(Num (q {whole(value.numerator)} {value.denominator}))"
+            return f"(Num {q(value)})"
         case t.Parameter(name, _):
             return f"(Par {literal(name)})"
         case t.Variable(name, _):
@@ -64,14 +63,6 @@ def term(x: Term) -> str:
 def size(x: t.Size) -> str:
     """Length "SV"."""
     return f"{_SIZES[x.name]} {literal(x.vehicle)}"
-
-
-def whole(value: int) -> str:
-    return str(value) if value >= 0 else f"({value})"
-
-
-def rational(value: Fraction) -> str:
-    return f"(q {whole(value.numerator)} {value.denominator})"
 
 
 def _folded(word: str, parts: Sequence[Term]) -> str:

@@ -9,11 +9,11 @@ from fractions import Fraction
 
 from roadproof.errors import InputError
 from roadproof.evidence.kernel.accept import CoqModule, KernelRulings, Ruling, Word
-from roadproof.evidence.kernel.constructors import Writer, rational, term
+from roadproof.evidence.kernel.constructors import Writer, term
 from roadproof.evidence.kernel.derivation import Step, coq_derivation
 from roadproof.evidence.kernel.drive import Shown
 from roadproof.evidence.kernel.instant import Reason, reason
-from roadproof.evidence.kernel.names import comment, literal, quoted
+from roadproof.evidence.kernel.names import comment, literal, q, quoted
 from roadproof.evidence.kernel.ocaml import Program
 from roadproof.evidence.kernel.source import ClaimText, Module, own_bounds, own_signals
 from roadproof.evidence.kernel.statement import Statement
@@ -36,7 +36,7 @@ def proof(name: str, statement: Statement, tableau: Tableau) -> Module:
         f"({Writer().formula(without_names(x))} {_why(reason(x, statement.bounds, own))})"
         for x, _ in statement.lemmas
     ]
-    values = (f"{literal(name)} {rational(x)}" for name, x in statement.demanded.items())
+    values = (f"{literal(name)} {q(x)}" for name, x in statement.demanded.items())
     parts = [
         *_claimed(word, name, statement.claim, _bounds(statement.bounds, own), writer),
         f" {claim}",
@@ -95,25 +95,25 @@ def _world(world: World) -> Iterator[str]:
     yield f"  {_list(map(_rectangle, world.road.lanelets))}"
     yield f"  {_list(f'{quoted(a)} {quoted(b)}' for a, b in beside(world.road))}"
     yield f"  {_list(f'{literal(a)} {quoted(b)}' for a, b in sorted(world.lanes.items()))}"
-    yield f"  {_list(f'{literal(a)} {rational(x)}' for a, x in sorted(world.values.items()))}"
+    yield f"  {_list(f'{literal(a)} {q(x)}' for a, x in sorted(world.values.items()))}"
     yield f"  {_list(_signal(*x) for x in world.steps.items())}"
-    yield f"  {_list(f'{literal(a)} {rational(x)}' for a, x in sorted(world.numbers.items()))})"
+    yield f"  {_list(f'{literal(a)} {q(x)}' for a, x in sorted(world.numbers.items()))})"
 
 
 def _signal(signal: Varying, steps: Steps) -> str:
     word = f"(Own {literal(signal.name)})" if isinstance(signal, Own) else WORDS_OF_SIGNALS[signal.name]
-    return f"{word} {quoted(signal.vehicle)} {_list(' '.join(map(rational, x)) for x in steps)}"
+    return f"{word} {quoted(signal.vehicle)} {_list(' '.join(map(q, x)) for x in steps)}"
 
 
 def _rectangle(x: Lanelet) -> str:
-    low, high = ("None" if y is None else rational(y) for y in x.s)
-    return f"{quoted(x.lane)} {x.zone} {low} {high} {rational(x.d[0])} {rational(x.d[1])}"
+    low, high = ("None" if y is None else q(y) for y in x.s)
+    return f"{quoted(x.lane)} {x.zone} {low} {high} {q(x.d[0])} {q(x.d[1])}"
 
 
 def _body(name: str, motion: Motion) -> str:
     along = _course(motion.s, motion.v_lon, [(p.duration, p.a_lon, p.j_lon) for p in motion.pieces])
     across = _course(motion.d, motion.v_lat, [(p.duration, p.a_lat, Fraction(0)) for p in motion.pieces])
-    sizes = f"{rational(motion.length)} {rational(motion.width)}"
+    sizes = f"{q(motion.length)} {q(motion.width)}"
     return f"{literal(name)} {motion.kind or 'other'} {sizes} {along} {across}"
 
 
@@ -122,8 +122,8 @@ def _course(
 ) -> str:
     """``pieces``: duration, acceleration and jerk; the last is for ever and without jerk."""
     *before, (_, last, _) = pieces
-    shown = (" ".join(rational(x) for x in piece if x is not None) for piece in before)
-    return f"({rational(place)} {rational(speed)} {_list(shown)} {rational(last)})"
+    shown = (" ".join(q(x) for x in piece if x is not None) for piece in before)
+    return f"({q(place)} {q(speed)} {_list(shown)} {q(last)})"
 
 
 # --- verdicts ------------------------------------------------------------------------------------
@@ -172,7 +172,7 @@ def _why(found: Reason | None) -> str:
 
 def _bounds(bounds: Mapping[str, bool], own: Iterable[Own]) -> Iterator[str]:
     yield from (f"{_BOUND[strict]} {literal(p)}" for p, strict in bounds.items())
-    yield from own_bounds(own, rational)
+    yield from own_bounds(own, q)
 
 
 def _claimed(word: str, name: str, claim: str, bounds: Iterable[str], writer: Writer) -> Iterator[str]:

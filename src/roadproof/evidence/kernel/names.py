@@ -7,6 +7,7 @@ What a name stands for, such as the vehicle "SV", is a text beside it, exactly a
 import re
 from collections.abc import Collection
 from dataclasses import dataclass, field
+from fractions import Fraction
 
 from roadproof.errors import InputError
 
@@ -121,3 +122,13 @@ def comment(words: str) -> str:
     """Words for a comment of Coq: nothing in them ends it, opens another, or begins a text."""
     said = " ".join(words.split()).replace("*", " * ").replace('"', "'")
     return "".join(c if c.isascii() and c.isprintable() else "?" for c in said)
+
+
+def q(value: Fraction) -> str:
+    """A rational, in words of Tableau.v that need no scope.
+
+    >>> q(Fraction(-3, 4))
+    '(q (-3) 4)'
+    """
+    top = str(value.numerator) if value >= 0 else f"({value.numerator})"
+    return f"(q {top} {value.denominator})"

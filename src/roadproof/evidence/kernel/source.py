@@ -9,11 +9,11 @@ from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.kernel.constructors import term
 from roadproof.evidence.kernel.derivation import rational
 from roadproof.evidence.kernel.instant import Reason, reason
-from roadproof.evidence.kernel.names import comment, literal
+from roadproof.evidence.kernel.names import comment, literal, q
 from roadproof.evidence.kernel.plain import comparisons
 from roadproof.evidence.kernel.printer import CLOSE, Printer
 from roadproof.evidence.kernel.statement import Instance, Statement, counted
-from roadproof.evidence.kernel.tableau import WIDTH, Tableau, coq_tree, q
+from roadproof.evidence.kernel.tableau import WIDTH, Tableau, coq_tree
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import own_of
 from roadproof.logic.formula import Formula

@@ -12,6 +12,7 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from roadproof.errors import InputError
+from roadproof.evidence.kernel.names import q
 
 # A linear expression: coefficients of 1 and of the numbered moments; multipliers: numbers of constraints.
 Row: TypeAlias = tuple[Fraction, ...]
@@ -168,9 +169,3 @@ def _coq(kind: str, argument: Argument) -> str:
         return str(argument)
     parts = (f"by_ {x[0]} {q(x[1])}" if isinstance(x, tuple) else q(x) for x in argument)
     return f"[{'; '.join(parts)}]"
-
-
-def q(value: Fraction) -> str:
-    """A rational, in words of Tableau.v that need no scope."""
-    top = str(value.numerator) if value >= 0 else f"({value.numerator})"
-    return f"(q {top} {value.denominator})"

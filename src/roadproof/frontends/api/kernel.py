@@ -236,7 +236,7 @@ def _none_within(kernel: KernelName, name: str, file: NoneWithinFile, home: Libr
     try:
         derived = derive(file, home)
     except RoadproofError as error:
-        return CoqModule(None, refusal=Ruling(Word.REFUSED, f"it cannot be put to Coq: {error}"))
+        return accept.without_question(error)
     trees = (tree for _, tree in file.refutations)
     pairs = list(zip(derived.programs, trees, strict=True))
     return programs.prepare(name, [file.formula, derived.limits], pairs)
