@@ -5,7 +5,6 @@ proved. The rest is a certificate, which the program checks.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from fractions import Fraction
 
 from roadproof.errors import InputError
 from roadproof.evidence.kernel.accept import CoqModule, KernelRulings, Ruling, Word
@@ -19,7 +18,7 @@ from roadproof.evidence.kernel.source import ClaimText, Module, own_bounds, own_
 from roadproof.evidence.kernel.statement import Statement
 from roadproof.evidence.kernel.tableau import Tableau, coq_tree
 from roadproof.evidence.kernel.trace import Refuted
-from roadproof.evidence.kernel.world import WORDS_OF_SIGNALS, Steps, World, beside
+from roadproof.evidence.kernel.world import WORDS_OF_SIGNALS, Course, Steps, World, beside, courses
 from roadproof.logic.rewrite import without_names
 from roadproof.logic.terms import Own, Term, Varying
 from roadproof.world.drive import Motion
@@ -65,25 +64,21 @@ def drive(name: str, shown: Shown, printed: ClaimText, derivation: Step) -> Modu
     """A drive file as a form; its claim is ``printed`` for Coq. Raises ``InputError``."""
     writer = Writer()
     claim = writer.formula(shown.formula)
-    parts = [
-        *_claimed("drive", name, shown.file.formula, _bounds(shown.bounds, printed.own), writer),
-        f" {claim}",
-        *_world(shown.world),
-        *coq_derivation(derivation),
-    ]
-    return Module(name, "\n".join(parts) + ")\n", (), 0)
+    head = _claimed("drive", name, shown.file.formula, _bounds(shown.bounds, printed.own), writer)
+    return _on_a_world(name, head, claim, shown.world, derivation)
 
 
 def trace(name: str, refuted: Refuted, printed: ClaimText, derivation: Step) -> Module:
     """That the opposite of a claim is true of a trace, as a form. Raises ``InputError``."""
     writer = Writer()
     claim = writer.formula(refuted.formula)
-    parts = [
-        *_claimed("drive", name, refuted.claim, _bounds(refuted.bounds, printed.own), writer),
-        f" (Not {claim})",
-        *_world(refuted.world),
-        *coq_derivation(derivation),
-    ]
+    head = _claimed("drive", name, refuted.claim, _bounds(refuted.bounds, printed.own), writer)
+    return _on_a_world(name, head, f"(Not {claim})", refuted.world, derivation)
+
+
+def _on_a_world(name: str, head: Iterable[str], claim: str, world: World, derivation: Step) -> Module:
+    """A form that says that a claim is true of a drive or trace."""
+    parts = [*head, f" {claim}", *_world(world), *coq_derivation(derivation)]
     return Module(name, "\n".join(parts) + ")\n", (), 0)
 
 
@@ -111,19 +106,14 @@ def _rectangle(x: Lanelet) -> str:
 
 
 def _body(name: str, motion: Motion) -> str:
-    along = _course(motion.s, motion.v_lon, [(p.duration, p.a_lon, p.j_lon) for p in motion.pieces])
-    across = _course(motion.d, motion.v_lat, [(p.duration, p.a_lat, Fraction(0)) for p in motion.pieces])
+    along, across = map(_course, courses(motion))
     sizes = f"{q(motion.length)} {q(motion.width)}"
     return f"{literal(name)} {motion.kind or 'other'} {sizes} {along} {across}"
 
 
-def _course(
-    place: Fraction, speed: Fraction, pieces: Sequence[tuple[Fraction | None, Fraction, Fraction]]
-) -> str:
-    """``pieces``: duration, acceleration and jerk; the last is for ever and without jerk."""
-    *before, (_, last, _) = pieces
-    shown = (" ".join(q(x) for x in piece if x is not None) for piece in before)
-    return f"({q(place)} {q(speed)} {_list(shown)} {q(last)})"
+def _course(course: Course) -> str:
+    shown = (" ".join(map(q, piece)) for piece in course.pieces)
+    return f"({q(course.place)} {q(course.speed)} {_list(shown)} {q(course.last)})"
 
 
 # --- verdicts ------------------------------------------------------------------------------------

@@ -24,6 +24,16 @@ WORDS_OF_SIGNALS: Mapping[SignalName, str] = {
 
 
 @dataclass(frozen=True)
+class Course:
+    """As `course` of Drive.v: ``pieces`` are durations with acceleration and jerk, ``last`` is for ever."""
+
+    place: Fraction
+    speed: Fraction
+    pieces: tuple[tuple[Fraction, Fraction, Fraction], ...]
+    last: Fraction
+
+
+@dataclass(frozen=True)
 class World:
     """Vehicles on a road, and signals in steps; all others are those of the motions.
 
@@ -94,8 +104,7 @@ def _signal(signal: t.Varying, steps: Steps) -> str:
 
 
 def _body(name: str, motion: Motion) -> str:
-    along = _course(motion.s, motion.v_lon, [(p.duration, p.a_lon, p.j_lon) for p in motion.pieces])
-    across = _course(motion.d, motion.v_lat, [(p.duration, p.a_lat, Fraction(0)) for p in motion.pieces])
+    along, across = map(_course, courses(motion))
     return (
         f"({literal(name)}, {{| is_a := {motion.kind or 'other'};\n"
         f"      long := {rational(motion.length)}; wide := {rational(motion.width)};\n"
@@ -104,13 +113,21 @@ def _body(name: str, motion: Motion) -> str:
     )
 
 
-def _course(
-    place: Fraction, speed: Fraction, pieces: Sequence[tuple[Fraction | None, Fraction, Fraction]]
-) -> str:
-    """``pieces``: duration, acceleration and jerk; the last is for ever and without jerk."""
-    *before, (_, last, _) = pieces
-    shown = [f"({', '.join(rational(x) for x in piece if x is not None)})" for piece in before]
+def _course(course: Course) -> str:
+    shown = [f"({', '.join(map(rational, piece))})" for piece in course.pieces]
     return (
-        f"{{| starts_at := {rational(place)}; starts_with := {rational(speed)};\n"
-        f"        pieces := [{'; '.join(shown)}]; finally := {rational(last)} |}}"
+        f"{{| starts_at := {rational(course.place)}; starts_with := {rational(course.speed)};\n"
+        f"        pieces := [{'; '.join(shown)}]; finally := {rational(course.last)} |}}"
+    )
+
+
+def courses(motion: Motion) -> tuple[Course, Course]:
+    """How a vehicle moves along the road, and across it."""
+    *before, last = motion.pieces
+    timed = [(x.duration, x) for x in before if x.duration is not None]
+    along = tuple((time, x.a_lon, x.j_lon) for time, x in timed)
+    across = tuple((time, x.a_lat, Fraction(0)) for time, x in timed)
+    return (
+        Course(motion.s, motion.v_lon, along, last.a_lon),
+        Course(motion.d, motion.v_lat, across, last.a_lat),
     )
