@@ -222,9 +222,8 @@ def witness_all(
     if not searches:
         raise UsageError("the spec set has no scenario: name formulas")
     library, out, views = searches[0].specification.library, given.out, views_of(given)
-    beside = None if out is None else DriveFolder(Path(out), library, views)
-    study = WitnessStudy(tuple(searches), beside)
-    beside = None if beside is None else replace(beside, searches=study.named)
+    study = WitnessStudy(tuple(searches))
+    beside = None if out is None else DriveFolder(Path(out), library, views, study.named)
     study = replace(study, finish=beside)
     found = Witnesses.asked(study, given, each)
     if beside is not None:
