@@ -323,3 +323,14 @@ def test_witness_writes_it_and_check_accepts_it(tmp_path, capsys):
     assert page.checked is not None
     assert [x.verdict for x in page.checked.findings] == ["NONE-WITHIN"]
     assert "sum node" not in page.text  # it is evidence, and no answer whose fields are listed
+
+
+def test_readings_that_are_not_usual_are_told(tmp_path):
+    claims = tmp_path / "claims"
+    for reading, told in (("rss", False), ("literal", True)):
+        using = rp.load(options={"lateral_sign": reading})
+        rp.prove("danger(SV,POV) -> danger(SV,POV)", using=using, out=claims / reading, jobs=1)
+        rp.witness("rssViolation(SV,POV)", using=using, out=claims / reading / "drive", jobs=1)
+        found = rp.check(claims / reading, jobs=1).findings
+        assert {x.verdict for x in found} == {"PROVED", "WITNESSED"}
+        assert [x.checked[-1:] == ("read with lateral_sign=literal",) for x in found] == [told] * len(found)

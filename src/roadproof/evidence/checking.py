@@ -1,6 +1,6 @@
 """One file of evidence, checked by what its schema says that it is, without what made it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -83,7 +83,8 @@ class Checker:
         named = shown(label, file.set_name)
         told = statement(file.assumed.said, file.claim)
         ruled = self.ruled or OtherVerdict(outcome, reason, "")
-        more = (ruled.checked, ruled.unchecked) if outcome is Acceptance.ACCEPTED else ((), ())
+        read = (*ruled.checked, *self._readings(file.options))
+        more = (read, ruled.unchecked) if outcome is Acceptance.ACCEPTED else ((), ())
         return Finding(
             str(path), "certificate", outcome, reason, "PROVED", named, told, *more, kernel=ruled.word
         )
@@ -103,9 +104,8 @@ class Checker:
         if self.ruled is not None and not reason:
             outcome, reason = self.ruled.outcome, self.ruled.reason
         label = shown(None if file.scenario is None else ("", "", file.scenario), file.set_name)
-        checked, unchecked = (
-            ((), ()) if reason else ((derived.limits, *none_within.own_parts(file)), ("the encoder",))
-        )
+        limits = (derived.limits, *none_within.own_parts(file), *self._readings(file.options))
+        checked, unchecked = ((), ()) if reason else (limits, ("the encoder",))
         word = "" if self.ruled is None else self.ruled.word
         return Finding(
             str(path),
@@ -129,6 +129,7 @@ class Checker:
             outcome, reason = Acceptance.UNREADABLE, with_hint(reason, file.formula)
         label = shown(None if file.scenario is None else ("", "", file.scenario), file.set_name)
         checked, unchecked = ((), ()) if reason else said_of(file, self.library)
+        checked += self._readings(file.options) if checked else ()
         word = ""
         if self.ruled is not None:
             word = self.ruled.word
@@ -165,6 +166,12 @@ class Checker:
         if said.has("times") and judgement is not None and said.get("times") != times_data(judgement):
             return Why.OTHER_TIMES()
         return NO_REASON
+
+    def _readings(self, options: Mapping[str, str]) -> tuple[str, ...]:
+        """Readings of a file that are not those by default, in words."""
+        usual = self.library.select().options
+        other = [f"{name}={value}" for name, value in sorted(options.items()) if usual.get(name) != value]
+        return (f"read with {', '.join(other)}",) if other else ()
 
     def _question_fault(self, file: DriveFile | NoneWithinFile, query: Query) -> Reason:
         """Which value a file lacks, or why its formula is not that of the scenario that it names."""
