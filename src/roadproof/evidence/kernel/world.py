@@ -12,12 +12,14 @@ from roadproof.logic import terms as t
 from roadproof.world.drive import Motion
 from roadproof.world.road import Lanelet, Road
 from roadproof.world.signals import SIGNALS, SignalName
+from roadproof.world.units import UNITS
 
 # Times in their order, each with the value at it and the value after it, before the next.
 Steps: TypeAlias = tuple[tuple[Fraction, Fraction, Fraction], ...]
-_BY_UNIT = {"m": "Place", "m/s": "Speed", "m/s^2": "Acceleration", "m/s^3": "Jerk"}
+# By how often the place is differentiated.
+_WORDS = ("Place", "Speed", "Acceleration", "Jerk")
 WORDS_OF_SIGNALS: Mapping[SignalName, str] = {
-    name: f"{_BY_UNIT[about.unit]}_{'lon' if about.where.startswith('along') else 'lat'}"
+    name: f"{_WORDS[-UNITS[about.unit][1][1]]}_{'lon' if about.where.startswith('along') else 'lat'}"
     for name, about in SIGNALS.items()
 }
 """What Meaning.v calls each signal."""
