@@ -7,26 +7,30 @@ From Coq Require Import Reals ZArith PArith List Bool Lia Lra FMapPositive.
 From Roadproof Require Import Programs.
 Import ListNotations.
 Open Scope R_scope.
-Module M := PositiveMap.
+(* A name for a module would extract all of it. *)
+Local Notation Table := PositiveMap.t. Local Notation empty := PositiveMap.empty.
+Local Notation find := PositiveMap.find. Local Notation mem := PositiveMap.mem.
+Local Notation add := PositiveMap.add. Local Notation gso := PositiveMap.gso.
+Local Notation gss := PositiveMap.gss. Local Notation gempty := PositiveMap.gempty.
 
 (* --- tables ------------------------------------------------------------------------------------------ *)
-Fixpoint table {A} (l : list (positive * A)) : M.t A :=
-  match l with [] => M.empty A | (k, a) :: l => M.add k a (table l) end.
-Lemma find_table {A} (l : list (positive * A)) k a : M.find k (table l) = Some a -> In (k, a) l.
+Fixpoint table {A} (l : list (positive * A)) : Table A :=
+  match l with [] => empty A | (k, a) :: l => add k a (table l) end.
+Lemma find_table {A} (l : list (positive * A)) k a : find k (table l) = Some a -> In (k, a) l.
 Proof.
-  induction l as [|[j b] l IH]; simpl; [rewrite M.gempty; discriminate|].
-  destruct (Pos.eq_dec k j) as [->|N]; [rewrite M.gss|rewrite M.gso by exact N]; intros H; auto.
+  induction l as [|[j b] l IH]; simpl; [rewrite gempty; discriminate|].
+  destruct (Pos.eq_dec k j) as [->|N]; [rewrite gss|rewrite gso by exact N]; intros H; auto.
   injection H as ->. auto.
 Qed.
 (* Every number stands for one thing, so that a node is what the table says. *)
 Fixpoint distinct {A} (l : list (positive * A)) : bool :=
-  match l with [] => true | (k, _) :: l => negb (M.mem k (table l)) && distinct l end.
+  match l with [] => true | (k, _) :: l => negb (mem k (table l)) && distinct l end.
 Lemma in_table {A} (l : list (positive * A)) k a :
-  distinct l = true -> In (k, a) l -> M.find k (table l) = Some a.
+  distinct l = true -> In (k, a) l -> find k (table l) = Some a.
 Proof.
   induction l as [|[j b] l IH]; simpl; [tauto|]. intros H. apply andb_prop in H as [N H].
-  intros [E|I]; [injection E as -> ->; apply M.gss|].
-  specialize (IH H I). destruct (Pos.eq_dec k j) as [->|D]; [|rewrite M.gso by exact D; exact IH].
+  intros [E|I]; [injection E as -> ->; apply gss|].
+  specialize (IH H I). destruct (Pos.eq_dec k j) as [->|D]; [|rewrite gso by exact D; exact IH].
   apply negb_true_iff in N. rewrite PositiveMap.mem_find, IH in N. discriminate.
 Qed.
 
@@ -70,13 +74,15 @@ Inductive tree :=
   | Cases (n : positive) (each : trees)
   | Cut (k : positive) (at_ : Z) (low high : tree)
 with trees := Done | More (t : tree) (each : trees).
+Definition a_multiple (f : fact) (w : Z) := (f, w).             (* how they are printed *)
 Scheme tree_both := Induction for tree Sort Prop with trees_both := Induction for trees Sort Prop.
 Combined Scheme tree_trees from tree_both, trees_both.
 
 (* --- the checker ------------------------------------------------------------------------------------- *)
 Record tables := {
-  size : Z; product_of : M.t (positive * positive); equals : M.t linear; aboves : M.t linear; node_of : M.t node }.
-Record state := { box : M.t (Z * Z); known : M.t unit }.
+  size : Z; product_of : Table (positive * positive); equals : Table linear; aboves : Table linear;
+  node_of : Table node }.
+Record state := { box : Table (Z * Z); known : Table unit }.
 
 Section Checker.
 Variable T : tables.
@@ -88,17 +94,17 @@ Definition corner (k i j : positive) (a b : Z) : linear :=
 (* Is it an equation, is it strict, and what is at least 0. *)
 Definition says (s : state) (f : fact) : option (bool * bool * linear) :=
   match f with
-  | Equal n => match M.find n (equals T) with Some l => Some (true, false, l) | None => None end
-  | Above n => match M.find n (aboves T) with Some l => Some (false, false, l) | None => None end
+  | Equal n => match find n (equals T) with Some l => Some (true, false, l) | None => None end
+  | Above n => match find n (aboves T) with Some l => Some (false, false, l) | None => None end
   | Known n =>
-      match M.find n (known s), M.find n (node_of T) with
+      match find n (known s), find n (node_of T) with
       | Some _, Some (Holds strict l) => Some (false, strict, l)
       | _, _ => None
       end
   | Corner k first second =>
-      match M.find k (product_of T) with
+      match find k (product_of T) with
       | Some (i, j) =>
-          match M.find i (box s), M.find j (box s) with
+          match find i (box s), find j (box s) with
           | Some one, Some other =>
               let l := corner k i j (pick first one) (pick second other) in
               Some (false, false, if Bool.eqb first second then l else (times (-1) (fst l), (- snd l)%Z))
@@ -107,7 +113,7 @@ Definition says (s : state) (f : fact) : option (bool * bool * linear) :=
       | None => None
       end
   | Tangent k a =>
-      match M.find k (product_of T) with
+      match find k (product_of T) with
       | Some (i, j) => if Pos.eqb i j then Some (false, false, corner k i j a a) else None
       | None => None
       end
@@ -125,15 +131,15 @@ Fixpoint total (s : state) (weights : list (fact * Z)) : option (bool * linear) 
       end
   end.
 Definition greatest (s : state) (k : positive) (c : Z) : option Z :=
-  match M.find k (product_of T) with
+  match find k (product_of T) with
   | Some (i, j) =>
-      match M.find i (box s), M.find j (box s) with
+      match find i (box s), find j (box s) with
       | Some (a, b), Some (a', b') =>
           Some (Z.max (Z.max (c * (a * a')) (c * (a * b'))) (Z.max (c * (b * a')) (c * (b * b'))))%Z
       | _, _ => None
       end
   | None =>
-      match M.find k (box s) with
+      match find k (box s) with
       | Some (a, b) => Some (size T * Z.max (c * a) (c * b))%Z
       | None => None
       end
@@ -153,26 +159,26 @@ Definition absurd_sum (s : state) (weights : list (fact * Z)) : bool :=
       end
   | None => false
   end.
-Fixpoint learn (fuel : nat) (k : M.t unit) (n : positive) : M.t unit :=
-  let k := M.add n tt k in
-  match fuel, M.find n (node_of T) with
+Fixpoint learn (fuel : nat) (k : Table unit) (n : positive) : Table unit :=
+  let k := add n tt k in
+  match fuel, find n (node_of T) with
   | S fuel, Some (Every parts) => fold_left (learn fuel) parts k
   | _, _ => k
   end.
 Definition DEPTH := 6%nat.
 Definition also (s : state) (n : positive) := {| box := box s; known := learn DEPTH (known s) n |}.
-Definition within (s : state) (k : positive) (ends : Z * Z) := {| box := M.add k ends (box s); known := known s |}.
+Definition within (s : state) (k : positive) (ends : Z * Z) := {| box := add k ends (box s); known := known s |}.
 
 Fixpoint refutes (s : state) (t : tree) : bool :=
   match t with
   | Sum weights => absurd_sum s weights
   | Cases n each =>
-      match M.find n (known s), M.find n (node_of T) with
+      match find n (known s), find n (node_of T) with
       | Some _, Some (Either parts) => refutes_all s parts each
       | _, _ => false
       end
   | Cut k a low high =>
-      match M.find k (box s) with
+      match find k (box s) with
       | Some (l, h) => refutes (within s k (l, a)) low && refutes (within s k (a, h)) high
       | None => false
       end
@@ -188,28 +194,28 @@ with refutes_all (s : state) (parts : list positive) (each : trees) : bool :=
 Variable x : positive -> R.
 Variable given : list (positive * node).
 Hypothesis positive_size : (0 < size T)%Z.
-Hypothesis products_hold : forall k i j, M.find k (product_of T) = Some (i, j) -> x k = x i * x j.
-Hypothesis equals_hold : forall n l, M.find n (equals T) = Some l -> worth x l = 0.
-Hypothesis aboves_hold : forall n l, M.find n (aboves T) = Some l -> 0 <= worth x l.
-Hypothesis nodes_given : forall n e, In (n, e) given -> M.find n (node_of T) = Some e.
+Hypothesis products_hold : forall k i j, find k (product_of T) = Some (i, j) -> x k = x i * x j.
+Hypothesis equals_hold : forall n l, find n (equals T) = Some l -> worth x l = 0.
+Hypothesis aboves_hold : forall n l, find n (aboves T) = Some l -> 0 <= worth x l.
+Hypothesis nodes_given : forall n e, In (n, e) given -> find n (node_of T) = Some e.
 
 Definition right (s : state) : Prop :=
-  (forall k a b, M.find k (box s) = Some (a, b) -> IZR a <= IZR (size T) * x k <= IZR b)
-  /\ (forall n, M.find n (known s) <> None -> true_at x given n).
+  (forall k a b, find k (box s) = Some (a, b) -> IZR a <= IZR (size T) * x k <= IZR b)
+  /\ (forall n, find n (known s) <> None -> true_at x given n).
 
-Lemma true_leaf n strict l : true_at x given n -> M.find n (node_of T) = Some (Holds strict l) ->
+Lemma true_leaf n strict l : true_at x given n -> find n (node_of T) = Some (Holds strict l) ->
   if strict then 0 < worth x l else 0 <= worth x l.
 Proof.
   intros A F. destruct A as [n s l' I W|n parts I V|n parts p I O V]; apply nodes_given in I; rewrite F in I;
     try discriminate. injection I as -> ->. exact W.
 Qed.
-Lemma true_every n parts : true_at x given n -> M.find n (node_of T) = Some (Every parts) ->
+Lemma true_every n parts : true_at x given n -> find n (node_of T) = Some (Every parts) ->
   forall p, In p parts -> true_at x given p.
 Proof.
   intros A F. destruct A as [n s l I W|n parts' I V|n parts' p I O V]; apply nodes_given in I; rewrite F in I;
     try discriminate. injection I as ->. exact V.
 Qed.
-Lemma true_either n parts : true_at x given n -> M.find n (node_of T) = Some (Either parts) ->
+Lemma true_either n parts : true_at x given n -> find n (node_of T) = Some (Either parts) ->
   exists p, In p parts /\ true_at x given p.
 Proof.
   intros A F. destruct A as [n s l I W|n parts' I V|n parts' p I O V]; apply nodes_given in I; rewrite F in I;
@@ -228,15 +234,15 @@ Definition said_holds (r : bool * bool * linear) : Prop :=
 Lemma says_sound s f r : right s -> says s f = Some r -> said_holds r /\ (fst (fst r) = true -> snd (fst r) = false).
 Proof.
   intros [B K] H. destruct f as [n|n|n|k first second|k a]; cbn [says] in H.
-  - destruct (M.find n (equals T)) as [l|] eqn:E; [|discriminate]. injection H as <-. simpl. eauto.
-  - destruct (M.find n (aboves T)) as [l|] eqn:E; [|discriminate]. injection H as <-. simpl. eauto.
-  - destruct (M.find n (known s)) as [u|] eqn:E; [|discriminate].
-    destruct (M.find n (node_of T)) as [[strict l|?|?]|] eqn:F; try discriminate.
+  - destruct (find n (equals T)) as [l|] eqn:E; [|discriminate]. injection H as <-. simpl. eauto.
+  - destruct (find n (aboves T)) as [l|] eqn:E; [|discriminate]. injection H as <-. simpl. eauto.
+  - destruct (find n (known s)) as [u|] eqn:E; [|discriminate].
+    destruct (find n (node_of T)) as [[strict l|?|?]|] eqn:F; try discriminate.
     injection H as <-. split; [|discriminate]. simpl.
     apply (true_leaf n); [apply K; congruence|exact F].
-  - destruct (M.find k (product_of T)) as [[i j]|] eqn:E; [|discriminate].
-    destruct (M.find i (box s)) as [[a b]|] eqn:F; [|discriminate].
-    destruct (M.find j (box s)) as [[a' b']|] eqn:G; [|discriminate].
+  - destruct (find k (product_of T)) as [[i j]|] eqn:E; [|discriminate].
+    destruct (find i (box s)) as [[a b]|] eqn:F; [|discriminate].
+    destruct (find j (box s)) as [[a' b']|] eqn:G; [|discriminate].
     injection H as <-. split; [|discriminate]. unfold said_holds.
     apply products_hold in E. apply B in F as [F1 F2]. apply B in G as [G1 G2].
     pose proof (fun p q => worth_corner k i j p q E) as C.
@@ -247,7 +253,7 @@ Proof.
     + pose proof (Rmult_le_pos (IZR b - IZR (size T) * x i) (IZR (size T) * x j - IZR a')). lra.
     + pose proof (Rmult_le_pos (IZR (size T) * x i - IZR a) (IZR b' - IZR (size T) * x j)). lra.
     + apply Rmult_le_pos; lra.
-  - destruct (M.find k (product_of T)) as [[i j]|] eqn:E; [|discriminate].
+  - destruct (find k (product_of T)) as [[i j]|] eqn:E; [|discriminate].
     destruct (Pos.eqb_spec i j) as [->|]; [|discriminate].
     injection H as <-. split; [|discriminate]. unfold said_holds. apply products_hold in E.
     rewrite (worth_corner _ _ _ _ _ E). apply Rle_0_sqr.
@@ -290,9 +296,9 @@ Lemma greatest_sound s k c q : right s -> greatest s k c = Some q ->
   IZR (size T) * IZR (size T) * (IZR c * x k) <= IZR q.
 Proof.
   intros [B K] H. unfold greatest in H. assert (P : 0 < IZR (size T)) by (apply IZR_lt; exact positive_size).
-  destruct (M.find k (product_of T)) as [[i j]|] eqn:E.
-  - destruct (M.find i (box s)) as [[a b]|] eqn:F; [|discriminate].
-    destruct (M.find j (box s)) as [[a' b']|] eqn:G; [|discriminate].
+  destruct (find k (product_of T)) as [[i j]|] eqn:E.
+  - destruct (find i (box s)) as [[a b]|] eqn:F; [|discriminate].
+    destruct (find j (box s)) as [[a' b']|] eqn:G; [|discriminate].
     injection H as <-. rewrite (products_hold _ _ _ E). apply B in F. apply B in G.
     rewrite <- !max_IZR, !mult_IZR.
     replace (IZR (size T) * IZR (size T) * (IZR c * (x i * x j)))
@@ -305,7 +311,7 @@ Proof.
     + eapply Rle_trans; [|apply Rmax_r].
       replace (IZR c * (IZR (size T) * x j) * IZR b) with (IZR c * IZR b * (IZR (size T) * x j)) by ring.
       eapply Rle_trans; [apply (at_ends _ _ _ _ G)|]. rewrite !Rmult_assoc. apply Rle_refl.
-  - destruct (M.find k (box s)) as [[a b]|] eqn:F; [|discriminate].
+  - destruct (find k (box s)) as [[a b]|] eqn:F; [|discriminate].
     injection H as <-. apply B in F. rewrite mult_IZR, <- max_IZR, !mult_IZR.
     replace (IZR (size T) * IZR (size T) * (IZR c * x k))
       with (IZR (size T) * (IZR c * (IZR (size T) * x k))) by ring.
@@ -337,16 +343,16 @@ Proof.
   - apply andb_prop in H as [-> H]. apply Z.leb_le, IZR_le in H.
     pose proof (Rmult_lt_0_compat _ _ P E). lra.
 Qed.
-Lemma learn_sound fuel : forall k n, (forall m, M.find m k <> None -> true_at x given m) -> true_at x given n ->
-  forall m, M.find m (learn fuel k n) <> None -> true_at x given m.
+Lemma learn_sound fuel : forall k n, (forall m, find m k <> None -> true_at x given m) -> true_at x given n ->
+  forall m, find m (learn fuel k n) <> None -> true_at x given m.
 Proof.
   induction fuel as [|fuel IH]; intros k n K A.
-  - intros m. simpl. destruct (Pos.eq_dec m n) as [->|D]; [auto|]. rewrite M.gso by exact D. apply K.
-  - assert (L : forall m, M.find m (M.add n tt k) <> None -> true_at x given m).
-    { intros m. destruct (Pos.eq_dec m n) as [->|D]; [auto|]. rewrite M.gso by exact D. apply K. }
-    simpl. destruct (M.find n (node_of T)) as [[? ?|parts|?]|] eqn:F; try exact L.
+  - intros m. simpl. destruct (Pos.eq_dec m n) as [->|D]; [auto|]. rewrite gso by exact D. apply K.
+  - assert (L : forall m, find m (add n tt k) <> None -> true_at x given m).
+    { intros m. destruct (Pos.eq_dec m n) as [->|D]; [auto|]. rewrite gso by exact D. apply K. }
+    simpl. destruct (find n (node_of T)) as [[? ?|parts|?]|] eqn:F; try exact L.
     pose proof (true_every _ _ A F) as P.
-    clear F. revert L. generalize (M.add n tt k). clear k K.
+    clear F. revert L. generalize (add n tt k). clear k K.
     induction parts as [|p parts IHp]; intros k L; simpl; [exact L|].
     apply IHp; [intros q Q; apply P; right; exact Q|]. apply IH; [exact L|]. apply P. left. reflexivity.
 Qed.
@@ -355,7 +361,7 @@ Proof. intros [B K] A. split; [exact B|]. exact (learn_sound DEPTH (known s) n K
 Lemma within_right s k a b : right s -> IZR a <= IZR (size T) * x k <= IZR b -> right (within s k (a, b)).
 Proof.
   intros [B K] A. split; [|exact K]. intros j p q. simpl.
-  destruct (Pos.eq_dec j k) as [->|D]; [rewrite M.gss|rewrite M.gso by exact D]; [|apply B].
+  destruct (Pos.eq_dec j k) as [->|D]; [rewrite gss|rewrite gso by exact D]; [|apply B].
   intros H. injection H as <- <-. exact A.
 Qed.
 Lemma refutes_sound :
@@ -366,12 +372,12 @@ Proof.
   apply tree_trees.
   - intros weights s S H. eapply absurd_sum_sound; [exact S|exact H].
   - intros n each IH s S H. simpl in H.
-    destruct (M.find n (known s)) as [u|] eqn:E; [|discriminate].
-    destruct (M.find n (node_of T)) as [[? ?|?|parts]|] eqn:F; try discriminate.
+    destruct (find n (known s)) as [u|] eqn:E; [|discriminate].
+    destruct (find n (node_of T)) as [[? ?|?|parts]|] eqn:F; try discriminate.
     assert (A : true_at x given n) by (apply (proj2 S); congruence).
     destruct (true_either _ _ A F) as (p & O & V). eapply IH; eassumption.
   - intros k a low IHl high IHh s S H. simpl in H.
-    destruct (M.find k (box s)) as [[l h]|] eqn:E; [|discriminate].
+    destruct (find k (box s)) as [[l h]|] eqn:E; [|discriminate].
     apply andb_prop in H as [Hl Hh]. pose proof (proj1 S _ _ _ E) as [A B].
     destruct (Rle_dec (IZR (size T) * x k) (IZR a)) as [C|C].
     + eapply IHl; [|exact Hl]. apply within_right; [exact S|lra].
@@ -388,7 +394,7 @@ Definition tables_of (p : program) : tables :=
   {| size := scale p; product_of := table (products p); equals := table (equal p); aboves := table (above p);
      node_of := table (nodes p) |}.
 Definition begin (p : program) : state :=
-  also (tables_of p) {| box := table (columns p); known := M.empty unit |} (condition p).
+  also (tables_of p) {| box := table (columns p); known := empty unit |} (condition p).
 Definition checks (p : program) (t : tree) : bool :=
   (0 <? scale p)%Z && distinct (nodes p) && refutes (tables_of p) (begin p) t.
 
@@ -396,7 +402,7 @@ Theorem no_solution (p : program) (t : tree) : checks p t = true -> forall x, ~ 
 Proof.
   intros H x (C & P & E & A & N). unfold checks in H.
   apply andb_prop in H as [H R]. apply andb_prop in H as [D U]. apply Z.ltb_lt in D.
-  assert (given : forall n e, In (n, e) (nodes p) -> M.find n (node_of (tables_of p)) = Some e)
+  assert (given : forall n e, In (n, e) (nodes p) -> find n (node_of (tables_of p)) = Some e)
     by (intros n e; apply in_table; exact U).
   refine (proj1 (refutes_sound (tables_of p) x (nodes p) D _ _ _ given) t (begin p) _ R).
   - intros k i j F. apply (P k). apply find_table. exact F.
@@ -404,5 +410,5 @@ Proof.
   - intros n l F. apply (A n). apply find_table. exact F.
   - apply also_right; [exact given| |exact N]. split.
     + intros k a b F. apply (C k). apply find_table. exact F.
-    + intros n F. simpl in F. rewrite M.gempty in F. congruence.
+    + intros n F. simpl in F. rewrite gempty in F. congruence.
 Qed.

@@ -1,4 +1,5 @@
-(* Formulas that reader.ml has read, as constructors of Meaning.v in the words of raw.py. *)
+(* Formulas, drives and programs that reader.ml has read, as constructors of Meaning.v in the words of raw.py
+   and test_extracted.py. *)
 open Checker
 open Reader
 
@@ -82,10 +83,31 @@ let drive_ d =
       all (pair_ text text) d.lanes_named; all (pair_ text q_) d.values0; all steps_ d.signals;
       all (pair_ text q_) d.numbers ]
 
+let column_ (k, (low, high)) = node [ z_ (Zpos k); z_ low; z_ high ]
+let product_ (k, (i, j)) = node (List.map (fun n -> z_ (Zpos n)) [ k; i; j ])
+let factor_ (k, c) = node [ z_ (Zpos k); z_ c ]
+let row_ (n, (terms, constant)) = node [ z_ (Zpos n); all factor_ terms; z_ constant ]
+let numbers_ = all (fun n -> z_ (Zpos n))
+
+let node_ (n, x) =
+  node
+    (z_ (Zpos n)
+    ::
+    (match x with
+    | Holds (strict, (terms, c)) -> [ (if strict then "above" else "at_least"); all factor_ terms; z_ c ]
+    | Every0 parts -> [ "all"; numbers_ parts ]
+    | Either0 parts -> [ "one"; numbers_ parts ]))
+
+let program_ p =
+  node
+    [ z_ p.scale; all column_ p.columns; all product_ p.products; all row_ p.equal; all row_ p.above2;
+      all node_ p.nodes; z_ (Zpos p.condition) ]
+
 let said = function
   | Node [ Word "formula"; given; f ] -> formula_ (formula (definitions given) f)
   | Node [ Word "bounds"; l ] -> all bound_ (list bound l)
   | Node [ Word "drive"; x ] -> drive_ (drive x)
+  | Node [ Word "program"; a; b; c; d; e; f; g ] -> program_ (program a b c d e f g)
   | _ -> unread "a form of echo.ml"
 
 let () = List.iter (fun x -> print_endline (try said x with Unread what -> "unread " ^ what)) (forms (read_line ()))

@@ -15,6 +15,7 @@ from kernel import raw
 from kernel.drives import ROAD
 from kernel.extract import extracted
 from kernel.needs import needs_coq, needs_ocaml
+from kernel.reader_faults import FAULTS
 from kernel.test_accept import ODD, ONE, PROOFS
 from kernel.test_drives import DRIVES, changed, derivation_of, with_one_missing
 from kernel.test_refused import CHANGES, EACH, FALSE, donors, exchange, on_roads
@@ -320,6 +321,16 @@ TRACE_READ = (
     '(Place_lat "B"%string [])] [("v"%string (Qmake (5) 1))])'
 )
 
+PROGRAM = (
+    "(program 2 [a_column 1 -4 6; a_column 2 (-1) 0] [a_product 3 1 2] [a_row 1 [a_term 3 -1; a_term 1 5] 7] "
+    "[a_row 2 [] -8] [a_leaf 1 true [a_term 1 9] 10; a_leaf 2 false [] 0; a_conjunction 3 [1; 2]; "
+    "a_disjunction 4 [3; 1]] 4)"
+)
+PROGRAM_READ = (
+    "(2 [(1 -4 6); (2 -1 0)] [(3 1 2)] [(1 [(3 -1); (1 5)] 7)] [(2 [] -8)] "
+    "[(1 above [(1 9)] 10); (2 at_least [] 0); (3 all [1; 2]); (4 one [3; 1])] 4)"
+)
+
 
 def varied(drive):
     """The drive with jerk, kinds of vehicles and signals."""
@@ -340,7 +351,7 @@ def questions():
     """Forms for echo.ml with what it has to answer."""
     formulas = [*library_formulas(), *map(raw.random_formula, range(150))]
     asked = [(written(x), raw.formula(without_names(x))) for x in formulas]
-    asked += [(BOUNDS, BOUNDS_READ), (TRACE, TRACE_READ)]
+    asked += [(BOUNDS, BOUNDS_READ), (TRACE, TRACE_READ), (PROGRAM, PROGRAM_READ)]
     for path in DRIVES:
         what, derivation = derivation_of(path)
         if path == DRIVES[0]:  # with ends of rectangles, jerk, kinds and signals
@@ -357,55 +368,6 @@ def test_formulas_and_drives_are_read_as_they_are_meant(compiled):
     said = echoed(compiled, [text for text, _ in asked], READER)
     assert len(said) == len(asked) >= 300
     assert said == [answer for _, answer in asked]
-
-
-FAULTS = [
-    ('"LT" -> LT', '"LT" -> LE'),
-    ('"LE" -> LE', '"LE" -> LT'),
-    ('"GT" -> GT', '"GT" -> LT'),
-    ('"GE" -> GE', '"GE" -> GT'),
-    ('"Place_lon" -> Place_lon', '"Place_lon" -> Place_lat'),
-    ('"Acceleration_lat" -> Acceleration_lat', '"Acceleration_lat" -> Acceleration_lon'),
-    ('"Width" -> Width', '"Width" -> Length'),
-    ('"Kind" -> Kind', '"Kind" -> Width'),
-    ('"Jerk_lon" -> Jerk_lon', '"Jerk_lon" -> Acceleration_lon'),
-    ("((q seconds, q a), q j)", "((q seconds, q j), q a)"),
-    ('"truck" -> Truck', '"truck" -> Car'),
-    ("((q time, q x), q after)", "((q time, q after), q x)"),
-    ("((signal n, name a), list step l)", "((signal n, name a), List.rev (list step l))"),
-    ("numbers = list (pair name q) numbers", "numbers = list (pair name q) values"),
-    ("Own_at_least (name n, name a, q low)", "Own_at_most (name n, name a, q low)"),
-    ("Min (term x, term y)", "Max (term x, term y)"),
-    ("Div (term x, term y)", "Div (term y, term x)"),
-    ("Pow (term x, nat n)", "Pow (term x, S (nat n))"),
-    ("Inv (term x)", "Fin (term x)"),
-    ("-> Par (name x)", "-> Var (name x)"),
-    ("Bound (nat n)", "Bound (S (nat n))"),
-    ("-> Adjacent (road l)", "-> Lanelets (road l)"),
-    ('"merge" -> Merge', '"merge" -> Main'),
-    ("Some_ (nat n, domain d, formula known f)", "Every (nat n, domain d, formula known f)"),
-    ("Or (formula known f, formula known g)", "And (formula known f, formula known g)"),
-    (
-        "Until (formula known f, term lo, high hi, formula known g)",
-        "Until (formula known g, term lo, high hi, formula known f)",
-    ),
-    ("Always (term lo, high hi, formula known f)", "Always (term lo, None, formula known f)"),
-    ("Eventually (term lo, high hi, formula known f)", "Always (term lo, high hi, formula known f)"),
-    ('| Node [ Word "Not"; f ] -> Not (formula known f)', '| Node [ Word "Not"; f ] -> formula known f'),
-    ("Z.opp !found else !found", "!found else !found"),
-    ("let ten = small 10", "let ten = small 9"),
-    ("At_least_0 (name p)", "Above_0 (name p)"),
-    ("starts_at = q x; starts_with = q v", "starts_at = q v; starts_with = q x"),
-    ("along = course s; across = course d", "along = course d; across = course s"),
-    ("long = above_0 l; wide = above_0 w", "long = above_0 w; wide = above_0 l"),
-    ("from_s = end_ from; to_s = end_ upto", "from_s = end_ from; to_s = end_ from"),
-    ("right_d = q right; left_d = q left", "right_d = q left; left_d = q right"),
-    (
-        "first_rectangle = rectangle first",
-        "first_rectangle = rectangle (List.hd others)",
-    ),
-    ("lanes_named = list (pair name name) lanes", "lanes_named = list (pair name name) beside"),
-]
 
 
 @needs_ocaml

@@ -1,4 +1,4 @@
-(* Tableaux, reasons and derivations as data of checker.ml.  NOT TRUSTED: whatever they are read as is checked. *)
+(* Tableaux, reasons, derivations and trees as data of checker.ml.  NOT TRUSTED: whatever they are read as is checked. *)
 open Checker
 open Reader
 
@@ -83,3 +83,26 @@ let rec derivation = function
   | Node [ Word "Reach"; m; p; r ] -> Reach (moment m, derivation p, derivation r)
   | Node [ Word "Break"; m; p; r ] -> Break (moment m, derivation p, derivation r)
   | _ -> unread "a derivation"
+
+(* --- Refuted.v ----------------------------------------------------------------------------------------- *)
+
+let fact = function
+  | Node [ Word "Equal"; n ] -> Equal0 (positive n)
+  | Node [ Word "Above"; n ] -> Above (positive n)
+  | Node [ Word "Known"; n ] -> Known (positive n)
+  | Node [ Word "Corner"; k; first; second ] -> Corner (positive k, bool first, bool second)
+  | Node [ Word "Tangent"; k; at ] -> Tangent (positive k, z at)
+  | _ -> unread "a fact about a program"
+
+let multiple = function Node [ Word "a_multiple"; f; w ] -> (fact f, z w) | _ -> unread "a multiple of a fact"
+
+let rec refutation = function
+  | Node [ Word "Sum"; l ] -> Sum (list multiple l)
+  | Node [ Word "Cases"; n; l ] -> Cases (positive n, refutations l)
+  | Node [ Word "Cut"; k; at; low; high ] -> Cut0 (positive k, z at, refutation low, refutation high)
+  | _ -> unread "a tree"
+
+and refutations = function
+  | Word "Done" -> Done
+  | Node [ Word "More"; t; l ] -> More (refutation t, refutations l)
+  | _ -> unread "trees"

@@ -319,6 +319,20 @@ module Coq_Pos =
   let compare =
     compare_cont Eq
 
+  (** val eqb : positive -> positive -> bool **)
+
+  let rec eqb p q0 =
+    match p with
+    | XI p2 -> (match q0 with
+                | XI q1 -> eqb p2 q1
+                | _ -> false)
+    | XO p2 -> (match q0 with
+                | XO q1 -> eqb p2 q1
+                | _ -> false)
+    | XH -> (match q0 with
+             | XH -> true
+             | _ -> false)
+
   (** val ggcdn :
       nat -> positive -> positive -> positive * (positive * positive) **)
 
@@ -439,6 +453,13 @@ let rec map f = function
 let rec flat_map f = function
 | [] -> []
 | x :: t0 -> app (f x) (flat_map f t0)
+
+(** val fold_left : ('a1 -> 'a2 -> 'a1) -> 'a2 list -> 'a1 -> 'a1 **)
+
+let rec fold_left f l a0 =
+  match l with
+  | [] -> a0
+  | b :: t0 -> fold_left f t0 (f a0 b)
 
 (** val existsb : ('a1 -> bool) -> 'a1 list -> bool **)
 
@@ -581,6 +602,20 @@ module Z =
     match compare x y with
     | Gt -> false
     | _ -> true
+
+  (** val ltb : z -> z -> bool **)
+
+  let ltb x y =
+    match compare x y with
+    | Lt -> true
+    | _ -> false
+
+  (** val max : z -> z -> z **)
+
+  let max n0 m =
+    match compare n0 m with
+    | Lt -> m
+    | _ -> n0
 
   (** val abs : z -> z **)
 
@@ -1367,11 +1402,11 @@ let vscale k v =
 let vsub u v =
   vadd u (vscale { qnum = (Zneg XH); qden = XH } v)
 
-(** val unit0 : nat -> vec **)
+(** val unit1 : nat -> vec **)
 
-let rec unit0 = function
+let rec unit1 = function
 | O -> { qnum = (Zpos XH); qden = XH } :: []
-| S n1 -> { qnum = Z0; qden = XH } :: (unit0 n1)
+| S n1 -> { qnum = Z0; qden = XH } :: (unit1 n1)
 
 type con = bool * vec
 
@@ -1795,7 +1830,7 @@ let rec index p = function
 
 let rec linear ps = function
 | Num q0 -> Some (q0 :: [])
-| Par p -> option_map (fun i -> unit0 (S i)) (index p ps)
+| Par p -> option_map (fun i -> unit1 (S i)) (index p ps)
 | Add (x0, y) ->
   (match linear ps x0 with
    | Some u ->
@@ -1867,9 +1902,9 @@ let window ps m lo hi =
 (** val window_cons : nat -> (vec * vec option) -> con list -> con list **)
 
 let window_cons n0 w c =
-  let c1 = (false, (vsub (unit0 n0) (fst w))) :: c in
+  let c1 = (false, (vsub (unit1 n0) (fst w))) :: c in
   (match snd w with
-   | Some b -> (false, (vsub b (unit0 n0))) :: c1
+   | Some b -> (false, (vsub b (unit1 n0))) :: c1
    | None -> c1)
 
 (** val inside :
@@ -2155,15 +2190,15 @@ let rec check ps facts g c = function
                   (match window ps m lo hi with
                    | Some w ->
                      (&&) (fits n0 w)
-                       (check ps facts ((Throughout ((fst w), (unit0 n0),
-                         f)) :: ((At (true, (unit0 n0), g0)) :: g))
+                       (check ps facts ((Throughout ((fst w), (unit1 n0),
+                         f)) :: ((At (true, (unit1 n0), g0)) :: g))
                          (window_cons n0 w c) t0)
                    | None -> false)
                 | Eventually (lo, hi, f) ->
                   (match window ps m lo hi with
                    | Some w ->
                      (&&) (fits n0 w)
-                       (check ps facts ((At (true, (unit0 n0), f)) :: g)
+                       (check ps facts ((At (true, (unit1 n0), f)) :: g)
                          (window_cons n0 w c) t0)
                    | None -> false)
                 | _ -> false)
@@ -2172,7 +2207,7 @@ let rec check ps facts g c = function
                   (match window ps m lo hi with
                    | Some w ->
                      (&&) (fits n0 w)
-                       (check ps facts ((At (false, (unit0 n0), f)) :: g)
+                       (check ps facts ((At (false, (unit1 n0), f)) :: g)
                          (window_cons n0 w c) t0)
                    | None -> false)
                 | _ -> false)
@@ -2224,9 +2259,9 @@ let rec check ps facts g c = function
                              (check ps facts ((At (false, m, g0)) :: g) c t1))
                            (fresh ps n0 g c)) (fits n0 w))
                        (Nat.leb (length m) n0))
-                     (check ps facts ((At (false, (unit0 n0), f)) :: g)
-                       ((true, (vsub m (unit0 n0))) :: ((false,
-                       (vsub (unit0 n0) (fst w))) :: c)) t2)
+                     (check ps facts ((At (false, (unit1 n0), f)) :: g)
+                       ((true, (vsub m (unit1 n0))) :: ((false,
+                       (vsub (unit1 n0) (fst w))) :: c)) t2)
                  | None -> false)
               | _ -> false)
       | _ -> false)
@@ -2292,7 +2327,7 @@ let rec bound_cons ps = function
    | Some p2 ->
      let (p, strict) = p2 in
      (match index p ps with
-      | Some i -> (strict, (unit0 (S i))) :: (bound_cons ps bounds0)
+      | Some i -> (strict, (unit1 (S i))) :: (bound_cons ps bounds0)
       | None -> bound_cons ps bounds0)
    | None -> bound_cons ps bounds0)
 
@@ -3693,19 +3728,19 @@ let same_sign s q0 =
 
 (** val says_less : bool -> bool -> bool option **)
 
-let says_less same0 above2 =
-  if same0 then Some above2 else if above2 then Some false else None
+let says_less same0 above3 =
+  if same0 then Some above3 else if above3 then Some false else None
 
 (** val says_greater : bool -> bool -> bool option **)
 
-let says_greater same0 above2 =
-  if same0 then if above2 then Some false else None else Some above2
+let says_greater same0 above3 =
+  if same0 then if above3 then Some false else None else Some above3
 
 (** val said_of :
     drive -> fleet -> interval -> q list -> bool -> side -> comparison0 ->
     side -> bool option **)
 
-let said_of d f i s above2 l o r =
+let said_of d f i s above3 l o r =
   match l with
   | Fin x ->
     (match r with
@@ -3723,10 +3758,10 @@ let said_of d f i s above2 l o r =
                    (match same_sign s (psub0 v u) with
                     | Some same0 ->
                       (match o with
-                       | LT -> says_less same0 above2
-                       | LE -> option_map negb (says_greater same0 above2)
-                       | GT -> says_greater same0 above2
-                       | GE -> option_map negb (says_less same0 above2))
+                       | LT -> says_less same0 above3
+                       | LE -> option_map negb (says_greater same0 above3)
+                       | GT -> says_greater same0 above3
+                       | GE -> option_map negb (says_less same0 above3))
                     | None -> None)
                  | _ :: _ -> None))
            | _ :: _ -> None))
@@ -3736,16 +3771,16 @@ let said_of d f i s above2 l o r =
 (** val assume :
     drive -> fleet -> interval -> q list -> bool -> formula -> formula **)
 
-let rec assume d f i s above2 f0 = match f0 with
+let rec assume d f i s above3 f0 = match f0 with
 | Compare (l, o, r) ->
-  (match said_of d f i s above2 l o r with
+  (match said_of d f i s above3 l o r with
    | Some b -> Truth b
    | None -> f0)
-| Some_ (n0, d0, f1) -> Some_ (n0, d0, (assume d f i s above2 f1))
-| Every (n0, d0, f1) -> Every (n0, d0, (assume d f i s above2 f1))
-| Not f1 -> Not (assume d f i s above2 f1)
-| And (f1, g) -> And ((assume d f i s above2 f1), (assume d f i s above2 g))
-| Or (f1, g) -> Or ((assume d f i s above2 f1), (assume d f i s above2 g))
+| Some_ (n0, d0, f1) -> Some_ (n0, d0, (assume d f i s above3 f1))
+| Every (n0, d0, f1) -> Every (n0, d0, (assume d f i s above3 f1))
+| Not f1 -> Not (assume d f i s above3 f1)
+| And (f1, g) -> And ((assume d f i s above3 f1), (assume d f i s above3 g))
+| Or (f1, g) -> Or ((assume d f i s above3 f1), (assume d f i s above3 g))
 | _ -> f0
 
 (** val somewhere_in : interval option -> (interval -> bool) -> bool **)
@@ -4331,12 +4366,349 @@ let is_instance bounds schemas f =
 
 let adds bounds schemas supposed claim =
   let (p, q0) = parted supposed in
-  let fact1 = is_instance bounds schemas in
-  (||) ((&&) (same q0 claim) (forallb fact1 (conjuncts p)))
+  let fact2 = is_instance bounds schemas in
+  (||) ((&&) (same q0 claim) (forallb fact2 (conjuncts p)))
     (let (p', q') = parted claim in
      (&&) (same q0 q')
-       (forallb (fun f -> (||) (existsb (same f) (conjuncts p')) (fact1 f))
+       (forallb (fun f -> (||) (existsb (same f) (conjuncts p')) (fact2 f))
          (conjuncts p)))
+
+module PositiveMap =
+ struct
+  type key = positive
+
+  type 'a tree =
+  | Leaf
+  | Node of 'a tree * 'a option * 'a tree
+
+  type 'a t = 'a tree
+
+  (** val empty : 'a1 t **)
+
+  let empty =
+    Leaf
+
+  (** val find : key -> 'a1 t -> 'a1 option **)
+
+  let rec find i = function
+  | Leaf -> None
+  | Node (l, o, r) ->
+    (match i with
+     | XI ii -> find ii r
+     | XO ii -> find ii l
+     | XH -> o)
+
+  (** val mem : key -> 'a1 t -> bool **)
+
+  let rec mem i = function
+  | Leaf -> false
+  | Node (l, o, r) ->
+    (match i with
+     | XI ii -> mem ii r
+     | XO ii -> mem ii l
+     | XH -> (match o with
+              | Some _ -> true
+              | None -> false))
+
+  (** val add : key -> 'a1 -> 'a1 t -> 'a1 t **)
+
+  let rec add i v = function
+  | Leaf ->
+    (match i with
+     | XI ii -> Node (Leaf, None, (add ii v Leaf))
+     | XO ii -> Node ((add ii v Leaf), None, Leaf)
+     | XH -> Node (Leaf, (Some v), Leaf))
+  | Node (l, o, r) ->
+    (match i with
+     | XI ii -> Node (l, o, (add ii v r))
+     | XO ii -> Node ((add ii v l), o, r)
+     | XH -> Node (l, (Some v), r))
+ end
+
+type linear0 = (positive * z) list * z
+
+type node =
+| Holds of bool * linear0
+| Every0 of positive list
+| Either0 of positive list
+
+type program = { scale : z; columns : (positive * (z * z)) list;
+                 products : (positive * (positive * positive)) list;
+                 equal : (positive * linear0) list;
+                 above2 : (positive * linear0) list;
+                 nodes : (positive * node) list; condition : positive }
+
+(** val table0 : (positive * 'a1) list -> 'a1 PositiveMap.t **)
+
+let rec table0 = function
+| [] -> PositiveMap.empty
+| p :: l0 -> let (k, a) = p in PositiveMap.add k a (table0 l0)
+
+(** val distinct : (positive * 'a1) list -> bool **)
+
+let rec distinct = function
+| [] -> true
+| p :: l0 ->
+  let (k, _) = p in (&&) (negb (PositiveMap.mem k (table0 l0))) (distinct l0)
+
+(** val merge :
+    (positive * z) list -> (positive * z) list -> (positive * z) list **)
+
+let rec merge u =
+  let rec into v =
+    match u with
+    | [] -> v
+    | p :: u' ->
+      let (i, a) = p in
+      (match v with
+       | [] -> u
+       | p2 :: v' ->
+         let (j, b) = p2 in
+         (match Coq_Pos.compare i j with
+          | Eq -> (i, (Z.add a b)) :: (merge u' v')
+          | Lt -> (i, a) :: (merge u' v)
+          | Gt -> (j, b) :: (into v')))
+  in into
+
+(** val times0 : z -> (positive * z) list -> (positive * z) list **)
+
+let times0 w u =
+  map (fun e -> ((fst e), (Z.mul w (snd e)))) u
+
+type fact1 =
+| Equal0 of positive
+| Above of positive
+| Known of positive
+| Corner of positive * bool * bool
+| Tangent of positive * z
+
+type tree0 =
+| Sum of (fact1 * z) list
+| Cases of positive * trees
+| Cut0 of positive * z * tree0 * tree0
+and trees =
+| Done
+| More of tree0 * trees
+
+type tables = { size0 : z; product_of : (positive * positive) PositiveMap.t;
+                equals : linear0 PositiveMap.t;
+                aboves : linear0 PositiveMap.t; node_of : node PositiveMap.t }
+
+type state = { box : (z * z) PositiveMap.t; known1 : unit PositiveMap.t }
+
+(** val pick : bool -> (z * z) -> z **)
+
+let pick b ends =
+  if b then snd ends else fst ends
+
+(** val corner :
+    tables -> positive -> positive -> positive -> z -> z -> linear0 **)
+
+let corner t0 k i j a b =
+  let d = t0.size0 in
+  ((merge
+     (merge ((i, (Z.mul (Z.opp d) b)) :: []) ((j, (Z.mul (Z.opp d) a)) :: []))
+     ((k, (Z.mul d d)) :: [])), (Z.mul a b))
+
+(** val says0 :
+    tables -> state -> fact1 -> ((bool * bool) * linear0) option **)
+
+let says0 t0 s = function
+| Equal0 n0 ->
+  (match PositiveMap.find n0 t0.equals with
+   | Some l -> Some ((true, false), l)
+   | None -> None)
+| Above n0 ->
+  (match PositiveMap.find n0 t0.aboves with
+   | Some l -> Some ((false, false), l)
+   | None -> None)
+| Known n0 ->
+  (match PositiveMap.find n0 s.known1 with
+   | Some _ ->
+     (match PositiveMap.find n0 t0.node_of with
+      | Some n1 ->
+        (match n1 with
+         | Holds (strict, l) -> Some ((false, strict), l)
+         | _ -> None)
+      | None -> None)
+   | None -> None)
+| Corner (k, first, second) ->
+  (match PositiveMap.find k t0.product_of with
+   | Some p ->
+     let (i, j) = p in
+     (match PositiveMap.find i s.box with
+      | Some one ->
+        (match PositiveMap.find j s.box with
+         | Some other ->
+           let l = corner t0 k i j (pick first one) (pick second other) in
+           Some ((false, false),
+           (if eqb first second
+            then l
+            else ((times0 (Zneg XH) (fst l)), (Z.opp (snd l)))))
+         | None -> None)
+      | None -> None)
+   | None -> None)
+| Tangent (k, a) ->
+  (match PositiveMap.find k t0.product_of with
+   | Some p ->
+     let (i, j) = p in
+     if Coq_Pos.eqb i j
+     then Some ((false, false), (corner t0 k i j a a))
+     else None
+   | None -> None)
+
+(** val total :
+    tables -> state -> (fact1 * z) list -> (bool * linear0) option **)
+
+let rec total t0 s = function
+| [] -> Some (false, ([], Z0))
+| p :: weights0 ->
+  let (f, w) = p in
+  (match says0 t0 s f with
+   | Some p2 ->
+     let (p3, l) = p2 in
+     let (equation, strict) = p3 in
+     (match total t0 s weights0 with
+      | Some p4 ->
+        let (strict', l') = p4 in
+        if (||) equation (Z.leb Z0 w)
+        then Some (((||) ((&&) strict (Z.ltb Z0 w)) strict'),
+               ((merge (times0 w (fst l)) (fst l')),
+               (Z.add (Z.mul w (snd l)) (snd l'))))
+        else None
+      | None -> None)
+   | None -> None)
+
+(** val greatest : tables -> state -> positive -> z -> z option **)
+
+let greatest t0 s k c =
+  match PositiveMap.find k t0.product_of with
+  | Some p ->
+    let (i, j) = p in
+    (match PositiveMap.find i s.box with
+     | Some p2 ->
+       let (a, b) = p2 in
+       (match PositiveMap.find j s.box with
+        | Some p3 ->
+          let (a', b') = p3 in
+          Some
+          (Z.max (Z.max (Z.mul c (Z.mul a a')) (Z.mul c (Z.mul a b')))
+            (Z.max (Z.mul c (Z.mul b a')) (Z.mul c (Z.mul b b'))))
+        | None -> None)
+     | None -> None)
+  | None ->
+    (match PositiveMap.find k s.box with
+     | Some p ->
+       let (a, b) = p in Some (Z.mul t0.size0 (Z.max (Z.mul c a) (Z.mul c b)))
+     | None -> None)
+
+(** val most : tables -> state -> (positive * z) list -> z option **)
+
+let rec most t0 s = function
+| [] -> Some Z0
+| p :: terms0 ->
+  let (k, c) = p in
+  (match greatest t0 s k c with
+   | Some a ->
+     (match most t0 s terms0 with
+      | Some b -> Some (Z.add a b)
+      | None -> None)
+   | None -> None)
+
+(** val absurd_sum : tables -> state -> (fact1 * z) list -> bool **)
+
+let absurd_sum t0 s weights =
+  match total t0 s weights with
+  | Some p ->
+    let (strict, l) = p in
+    (match most t0 s (fst l) with
+     | Some a ->
+       let q0 = Z.add (Z.mul (snd l) (Z.mul t0.size0 t0.size0)) a in
+       (||) (Z.ltb q0 Z0) ((&&) strict (Z.leb q0 Z0))
+     | None -> false)
+  | None -> false
+
+(** val learn :
+    tables -> nat -> unit PositiveMap.t -> positive -> unit PositiveMap.t **)
+
+let rec learn t0 fuel k n0 =
+  let k0 = PositiveMap.add n0 () k in
+  (match fuel with
+   | O -> k0
+   | S fuel0 ->
+     (match PositiveMap.find n0 t0.node_of with
+      | Some n1 ->
+        (match n1 with
+         | Every0 parts0 -> fold_left (learn t0 fuel0) parts0 k0
+         | _ -> k0)
+      | None -> k0))
+
+(** val dEPTH : nat **)
+
+let dEPTH =
+  S (S (S (S (S (S O)))))
+
+(** val also : tables -> state -> positive -> state **)
+
+let also t0 s n0 =
+  { box = s.box; known1 = (learn t0 dEPTH s.known1 n0) }
+
+(** val within : state -> positive -> (z * z) -> state **)
+
+let within s k ends =
+  { box = (PositiveMap.add k ends s.box); known1 = s.known1 }
+
+(** val refutes0 : tables -> state -> tree0 -> bool **)
+
+let refutes0 t0 =
+  let rec refutes1 s = function
+  | Sum weights -> absurd_sum t0 s weights
+  | Cases (n0, each) ->
+    (match PositiveMap.find n0 s.known1 with
+     | Some _ ->
+       (match PositiveMap.find n0 t0.node_of with
+        | Some n1 ->
+          (match n1 with
+           | Either0 parts0 -> refutes_all s parts0 each
+           | _ -> false)
+        | None -> false)
+     | None -> false)
+  | Cut0 (k, a, low, high) ->
+    (match PositiveMap.find k s.box with
+     | Some p ->
+       let (l, h) = p in
+       (&&) (refutes1 (within s k (l, a)) low)
+         (refutes1 (within s k (a, h)) high)
+     | None -> false)
+  and refutes_all s parts0 each =
+    match parts0 with
+    | [] -> (match each with
+             | Done -> true
+             | More (_, _) -> false)
+    | p :: parts1 ->
+      (match each with
+       | Done -> false
+       | More (t1, each0) ->
+         (&&) (refutes1 (also t0 s p) t1) (refutes_all s parts1 each0))
+  in refutes1
+
+(** val tables_of : program -> tables **)
+
+let tables_of p =
+  { size0 = p.scale; product_of = (table0 p.products); equals =
+    (table0 p.equal); aboves = (table0 p.above2); node_of = (table0 p.nodes) }
+
+(** val begin0 : program -> state **)
+
+let begin0 p =
+  also (tables_of p) { box = (table0 p.columns); known1 = PositiveMap.empty }
+    p.condition
+
+(** val checks : program -> tree0 -> bool **)
+
+let checks p t0 =
+  (&&) ((&&) (Z.ltb Z0 p.scale) (distinct p.nodes))
+    (refutes0 (tables_of p) (begin0 p) t0)
 
 (** val accepts_proof :
     char list list -> bound list -> formula list -> values -> formula -> tree
@@ -4367,6 +4739,11 @@ let accepts_drive =
 
 let adds_instances =
   adds
+
+(** val refutes_program : program -> tree0 -> bool **)
+
+let refutes_program =
+  checks
 
 (** val are_inductions : schema list -> bool **)
 

@@ -31,8 +31,15 @@ let proves bounds known claim = function
           ruled (accepts_proof (list name parameters) bounds facts values claim (tree tableau)))
   | _ -> unread "a proof"
 
+let refuted = function
+  | Node [ scale; columns; products; equal; above; nodes; condition; tree ] ->
+      let question = program scale columns products equal above nodes condition in
+      refutes_program question (refutation tree)
+  | _ -> unread "a program"
+
 (* proof: the claim is valid.  traces: so it is where instances of inductions are put before it, which makes the
-   formula that is supposed; motions: where instances of all schemas are, and the claim holds of motions. *)
+   formula that is supposed; motions: where instances of all schemas are, and the claim holds of motions.  drive: it is true of a drive or trace.
+   none_within: no program has a solution. *)
 let judge = function
   | Word "proof" :: _ :: _ :: bounds :: given :: claim :: why ->
       let known = definitions given in
@@ -46,6 +53,7 @@ let judge = function
   | [ Word "drive"; _; _; bounds; given; claim; what; why ] ->
       let claim = formula (definitions given) claim in
       ruled (accepts_drive (drive what) (list bound bounds) claim (derivation why))
+  | [ Word "none_within"; _; _; programs ] -> ruled (List.for_all Fun.id (list refuted programs))
   | _ -> unread "a form"
 
 let said form =

@@ -7,6 +7,7 @@
      (motions NAME TEXT BOUNDS DEFINITIONS CLAIM SCHEMAS SUPPOSED LEMMAS PARAMETERS VALUES TABLEAU)
      (traces ...), as motions
      (drive NAME TEXT BOUNDS DEFINITIONS CLAIM DRIVE DERIVATION)
+     (none_within NAME TEXT PROGRAMS): that no program of them has a solution
 
    NAME names the form in the verdict.  TEXT, a string, is the claim as roadproof writes it; nothing reads it.
    BOUNDS, CLAIM, TABLEAU, DERIVATION and all inside are written as Coq writes data without notations: the name
@@ -25,7 +26,10 @@
                 a body is (NAME SORT LONG WIDE ALONG ACROSS),
                 a course is (PLACE SPEED [(SECONDS ACCELERATION JERK)] ACCELERATION),
                 a rectangle is (LANE ZONE FROM TO RIGHT LEFT) with None for no end,
-                a signal is (SIGNAL VEHICLE [(TIME VALUE AFTER)]) *)
+                a signal is (SIGNAL VEHICLE [(TIME VALUE AFTER)])
+     PROGRAMS   a list of (SCALE COLUMNS PRODUCTS EQUAL ABOVE NODES CONDITION TREE): the fields of `program` in
+                Programs.v, whose entries are written with its functions, such as (a_column 1 0 40), and a tree
+                of Refuted.v *)
 open Checker
 
 type text = Word of string | Quoted of string | Node of text list | List of text list
@@ -257,3 +261,30 @@ let drive = function
         values0 = list (pair name q) values; signals = list steps own;
         numbers = list (pair name q) numbers }
   | _ -> unread "a drive"
+
+(* --- Programs.v ---------------------------------------------------------------------------------------- *)
+
+let column = function
+  | Node [ Word "a_column"; k; low; high ] -> (positive k, (z low, z high))
+  | _ -> unread "a column"
+
+let product = function
+  | Node [ Word "a_product"; k; i; j ] -> (positive k, (positive i, positive j))
+  | _ -> unread "a product"
+
+let a_term = function Node [ Word "a_term"; k; c ] -> (positive k, z c) | _ -> unread "a coefficient"
+
+let row = function
+  | Node [ Word "a_row"; n; terms; constant ] -> (positive n, (list a_term terms, z constant))
+  | _ -> unread "a row"
+
+let node = function
+  | Node [ Word "a_leaf"; n; strict; terms; constant ] ->
+      (positive n, Holds (bool strict, (list a_term terms, z constant)))
+  | Node [ Word "a_conjunction"; n; parts ] -> (positive n, Every0 (list positive parts))
+  | Node [ Word "a_disjunction"; n; parts ] -> (positive n, Either0 (list positive parts))
+  | _ -> unread "a node"
+
+let program scale columns products equal above nodes condition =
+  { scale = z scale; columns = list column columns; products = list product products; equal = list row equal;
+    above2 = list row above; nodes = list node nodes; condition = positive condition }

@@ -1,21 +1,24 @@
-"""Programs and trees that refute them, printed for Coq.
+"""Programs and trees that refute them, printed for Coq and for the extracted program.
 
-Columns, rows and nodes count from 1 in Coq, because it looks them up by positive numbers.
+Columns, rows and nodes count from 1 there, where they are looked up by positive numbers.
 """
 
 from collections.abc import Iterator, Sequence
 from typing import assert_never
 
 from roadproof.evidence.kernel.accept import CoqModule
+from roadproof.evidence.kernel.names import comment
 from roadproof.evidence.kernel.source import Module, comment_lines, wrapped
 from roadproof.evidence.program import Cases, Cut, Either, Every, Fact, Linear, Node, Program, Sum, Tree
 
 
 def prepare(name: str, said: Sequence[str], pairs: Sequence[tuple[Program, Tree]]) -> CoqModule:
     """Programs with their trees as a module; ``said``: what they are programs of, for a reader."""
-    out = [f"Module {name}.", "Import Roadproof.Programs Roadproof.Refuted.", *comment_lines(said)]
+    out = [f"Module {name}.", "Import Roadproof.Programs Roadproof.Refuted.", "Open Scope positive_scope."]
+    out += comment_lines(said)
     for k, (program, _) in enumerate(pairs, 1):
-        out += wrapped(f"Definition question_{k} : program := {_program(program)}.")
+        fields = "; ".join(f"{field} := {x}" for field, x in _fields(program).items())
+        out += wrapped(f"Definition question_{k} : program := {{| {fields} |}}.")
     out += ["(* From here on it is proof: what is proved is said in the theorem at the end. *)"]
     theorem = len(out) + 1
     for k, (program, tree) in enumerate(pairs, 1):
@@ -29,9 +32,18 @@ def prepare(name: str, said: Sequence[str], pairs: Sequence[tuple[Program, Tree]
     return CoqModule(Module(name, "\n".join(out) + "\n", (), theorem))
 
 
-def _program(program: Program) -> str:
+def form(name: str, said: Sequence[str], pairs: Sequence[tuple[Program, Tree]]) -> CoqModule:
+    """The same as a form of ``proofs/kernel/ocaml/reader.ml``."""
+    fields = ((*_fields(program).values(), f"({_tree(tree, len(program.box))})") for program, tree in pairs)
+    programs = _list("\n  ".join(x) for x in fields)
+    text = f'(none_within {name} "{comment(" ".join(said))}"\n {programs})\n'
+    return CoqModule(Module(name, text, (), 0))
+
+
+def _fields(program: Program) -> dict[str, str]:
+    """Those of ``program`` in Programs.v, by their names and in their order."""
     columns = len(program.box)
-    fields = {
+    return {
         "scale": str(program.scale),
         "columns": _list(f"a_column {k} {_z(a)} {_z(b)}" for k, (a, b) in enumerate(program.box, 1)),
         "products": _list(
@@ -42,7 +54,6 @@ def _program(program: Program) -> str:
         "nodes": _list(_node(n, x) for n, x in enumerate(program.nodes, 1)),
         "condition": str(len(program.nodes)),
     }
-    return "{| " + "; ".join(f"{name} := {x}" for name, x in fields.items()) + " |}"
 
 
 def _node(number: int, node: Node) -> str:
@@ -71,7 +82,7 @@ def _tree(tree: Tree, columns: int) -> str:
         found, ready = waiting.pop()
         match found:
             case Sum(weights):
-                done.append(f"Sum {_list(f'({_fact(x, columns)}, {_z(w)}%Z)' for x, w in weights)}")
+                done.append(f"Sum {_list(f'a_multiple ({_fact(x, columns)}) {_z(w)}' for x, w in weights)}")
             case Cases(number, trees):
                 if ready:
                     each = "Done"
@@ -117,7 +128,7 @@ def _fact(fact: Fact, columns: int) -> str:
 
 
 def _numbers(parts: Sequence[int]) -> str:
-    return f"{_list(str(part + 1) for part in parts)}%positive"
+    return _list(str(part + 1) for part in parts)
 
 
 def _list(items: Iterator[str]) -> str:

@@ -231,15 +231,14 @@ def _none_within(kernel: KernelName, name: str, file: NoneWithinFile, home: Libr
     """The programs that the encoder derives, with the trees of a file."""
     from roadproof.engines.search.none_within import derive
 
-    if kernel != "coq":
-        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, "the extracted program reads no such file"))
     try:
         derived = derive(file, home)
     except RoadproofError as error:
         return accept.without_question(error)
     trees = (tree for _, tree in file.refutations)
     pairs = list(zip(derived.programs, trees, strict=True))
-    return programs.prepare(name, [file.formula, derived.limits], pairs)
+    written = programs.prepare if kernel == "coq" else programs.form
+    return written(name, [file.formula, derived.limits], pairs)
 
 
 def _read(path: Path) -> Certificate | DriveFile | NoneWithinFile | None:
