@@ -6,6 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from roadproof.library import loading
+from roadproof.library.loading import load_library
+from roadproof.library.specification import on_request
 from roadproof.logic import parse
 from roadproof.logic.parse import parse_bundled, parse_library
 from roadproof.runtime.cache import SWITCH, private_folder, remembered
@@ -86,3 +89,23 @@ def test_trees_are_those_of_their_text(home: Path, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(parse, "version", lambda: "another")
     assert parse_bundled(text, "mine.spec") == first
     assert len({*home.iterdir()} - before) == 1
+
+
+def test_files_of_roadproof_are_parsed_once_and_others_are_read_as_they_stand(
+    home: Path, tmp_path: Path
+) -> None:
+    """A copy beside evidence is the shipped text; one that was changed is not."""
+    shipped = on_request()["driver"].read_text("utf-8")
+    copy, changed = tmp_path / "driver.spec", tmp_path / "changed.spec"
+    copy.write_text(shipped, "utf-8")
+    changed.write_text(f"{shipped}\ndef mine(a: vehicle) := v_lon(a) < 3 m/s\n", "utf-8")
+    loading._library_with.cache_clear()
+    first = load_library([copy])
+    assert [x.name.partition("-")[0] for x in home.iterdir()].count("tree") >= 1
+    kept = {*home.iterdir()}
+    assert load_library([copy]) is first
+    assert "mine" in load_library([changed]).definitions
+    assert "mine" not in first.definitions
+    assert {*home.iterdir()} == kept
+    copy.write_text(shipped.replace("1 ", "2 ", 1), "utf-8")
+    assert load_library([copy]).files[0].text != first.files[0].text

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, lru_cache
 from importlib import resources
 from pathlib import Path
 from typing import TypeAlias, assert_never
@@ -17,6 +17,7 @@ from roadproof.library.specification import (
     Source,
     is_within,
     key_of,
+    on_request,
     read_specification,
     unknown,
 )
@@ -39,10 +40,14 @@ def bundled_library() -> Library:
 
 def load_library(files: Iterable[Path | Source] = ()) -> Library:
     """The bundled library, with the users' files or texts on top: their definitions replace or add."""
-    extra = sources_of(files)
-    if not extra:
-        return bundled_library()
-    return replace(build_library(extra, bundled_library()), files=tuple(extra))
+    extra = tuple(sources_of(files))
+    return _library_with(extra) if extra else bundled_library()
+
+
+@lru_cache(maxsize=8)
+def _library_with(extra: tuple[Source, ...]) -> Library:
+    """The bundled library with texts on top; kept, because a check asks for the same texts many times."""
+    return replace(build_library(extra, bundled_library()), files=extra)
 
 
 def sources_of(files: Iterable[Path | Source]) -> list[Source]:
@@ -50,8 +55,20 @@ def sources_of(files: Iterable[Path | Source]) -> list[Source]:
     return [file if isinstance(file, Source) else read_specification(file) for file in files]
 
 
+@cache
+def _texts_on_request() -> dict[str, str]:
+    """The names of the files that come with roadproof and are read where they are named, by text."""
+    return {file.read_text("utf-8"): file.name for file in on_request().values()}
+
+
+def _statements(text: str, name: str) -> tuple[syntax.Statement, ...]:
+    """The statements of a text, those of roadproof's own files from the cache. Raises ``TextError``."""
+    shipped = _texts_on_request().get(text)
+    return parse_library(text, name) if shipped is None else parse_bundled(text, shipped)
+
+
 def build_library(
-    sources: Iterable[Source], below: Library | None = None, parse: Parse = parse_library
+    sources: Iterable[Source], below: Library | None = None, parse: Parse = _statements
 ) -> Library:
     """Put statements into their mappings, as ``parse`` reads them.
 
@@ -62,7 +79,7 @@ def build_library(
     return gathered.library
 
 
-def _parsed(source: Source, parse: Parse = parse_library) -> ParseResult:
+def _parsed(source: Source, parse: Parse = _statements) -> ParseResult:
     """What is read of a text; the whole at once, which is quicker where it has no mistake."""
     try:
         return ParseResult(parse(source.text, source.name))

@@ -15,8 +15,12 @@ LONGEST_CLAIM = 100_000
 _PARENTHESES = re.compile(r'[()\[\]{}]|"[^"\n]*"|#[^\n]*')
 
 
+@lru_cache(maxsize=64)
 def parse_library(text: str, source: str) -> tuple[Statement, ...]:
-    """The statements of a specification file. Raises ``TextError``."""
+    """The statements of a specification file. Raises ``TextError``.
+
+    A check reads the files beside evidence several times, so trees are kept in memory.
+    """
     statements = cast(tuple[Statement, ...], _parse(text, source, "library"))
     for definition in _definitions(statements):
         _check_depth(definition.body, definition.at, source, text)
