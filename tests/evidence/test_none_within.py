@@ -319,6 +319,10 @@ def test_witness_writes_it_and_check_accepts_it(tmp_path, capsys):
     said = capsys.readouterr().out
     assert said.startswith("NONE-WITHIN base  v_lon(SV) > 41 m/s  [no drive on road main-2")
     assert "not checked: the encoder" in said
+    assert said.endswith("\n1 of 1 accepted by exact integer arithmetic\n")
+    rp.prove("true", jobs=1, out=tmp_path / "proof")
+    both = str(rp.check(tmp_path, jobs=1)).splitlines()[-1]
+    assert both == "2 of 2 accepted by z3, the exact judge and exact integer arithmetic"
     page = rp.page(out, out=tmp_path / "page.html", jobs=1)
     assert page.checked is not None
     assert [x.verdict for x in page.checked.findings] == ["NONE-WITHIN"]

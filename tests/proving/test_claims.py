@@ -421,6 +421,22 @@ def test_limits_that_contradict_each_other_make_every_claim_vacuous(claim):
     assert found.rows()[0]["reason"] == "what is assumed contradicts itself, so every claim follows"
 
 
+@pytest.mark.parametrize(
+    ("claim", "told"),
+    [
+        ("assuming motion: false", "false on a drive without vehicles, judged exactly in dense time"),
+        ("assuming motion: F[0 s, 1 s] some M in lanes: false", "false on a drive without vehicles"),
+        ("assuming motion: rho < 1 s", "judged exactly in dense time, with rho=1"),
+    ],
+)
+def test_a_claim_about_no_vehicle_is_refuted_under_motion(claim, told, tmp_path):
+    """Facts about motion do not concern it."""
+    found = rp.prove(claim, jobs=1, out=tmp_path)
+    assert (found.verdict, found.rows()[0]["refuted_by"]) == (Verdict.REFUTED, "drive")
+    assert told in str(found)
+    assert check(tmp_path, jobs=1).accepted
+
+
 @needs_coq
 def test_coq_names_limits_as_limits(tmp_path):
     claim = f"assuming motion, {LIMIT}: a_lon(SV) <= 4 m/s^2"

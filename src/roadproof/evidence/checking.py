@@ -203,9 +203,7 @@ def label_of(file: Certificate) -> tuple[str, str, int | None] | None:
 
 def said_of(file: DriveFile, library: Library) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """What was checked of a drive that is accepted, and what was not, in words."""
-    declared = default_values(library)
-    values = values_with(library, file.values)
-    other = [f"{name}={value}" for name, value in sorted(values.items()) if declared.get(name) != value]
+    other = other_values(file, library)
     checked = ["dense, unbounded time", f"with {', '.join(other)}" if other else "declared parameters"]
     overlap = first_overlap(file.drive, None) if len(file.drive.vehicles) > 1 else None
     unchecked = ["limits of vehicles"]
@@ -216,6 +214,13 @@ def said_of(file: DriveFile, library: Library) -> tuple[tuple[str, ...], tuple[s
     else:
         checked.append(f"boxes apart up to {_seconds(file.horizon)} s; after that {overlap}")
     return tuple(checked), tuple(unchecked)
+
+
+def other_values(file: DriveFile, library: Library) -> list[str]:
+    """The parameters of a drive file with other values than those declared, in words."""
+    declared = default_values(library)
+    values = values_with(library, file.values)
+    return [f"{name}={value}" for name, value in sorted(values.items()) if declared.get(name) != value]
 
 
 def _seconds(value: Fraction) -> str:

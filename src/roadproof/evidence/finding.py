@@ -8,7 +8,7 @@ from roadproof.evidence.answers.shared import KernelWord, Reason
 from roadproof.evidence.codec import LEFT_OUT, Doc
 from roadproof.reasons import NO_REASON, Why
 from roadproof.runtime.records import dataclass
-from roadproof.verdict import ExitCode
+from roadproof.verdict import ExitCode, Verdict
 
 
 class Acceptance(StrEnum):
@@ -39,6 +39,8 @@ Kind: TypeAlias = Literal["certificate", "drive", "index", "journal", "test", "n
 STALE: Final = (Why.TEST_GONE, Why.TEST_UNKNOWN, Why.FILE_GONE, Why.FILE_CHANGED)
 """Why an answer is about tests that are others now."""
 NO_EVIDENCE: Final = "none"  # the kind of an answer that promises nothing, or nothing that is for all time
+
+ARITHMETIC: Final = "exact integer arithmetic"
 
 
 @dataclass(frozen=True)
@@ -109,9 +111,17 @@ def summary(findings: Sequence[Finding], solver: str) -> str:
     """How many claims came out how, in a line."""
     counted = [finding for finding in findings if finding.kind != NO_EVIDENCE]
     accepted = sum(finding.outcome is Acceptance.ACCEPTED for finding in counted)
-    line = f"{accepted} of {len(counted)} accepted by {solver} and the exact judge"
+    line = f"{accepted} of {len(counted)} accepted by {checkers(counted, solver)}"
     for outcome in (Acceptance.REJECTED, Acceptance.UNDECIDED, Acceptance.UNREADABLE, Acceptance.FAULT):
         count = sum(finding.outcome is outcome for finding in counted)
         line += f", {count} {outcome}" if count else ""
     without = len(findings) - len(counted)
     return line + (f"; {without} without evidence" if without else "")
+
+
+def checkers(findings: Sequence[Finding], solver: str) -> str:
+    """What checked these, in words: trees of a NONE-WITHIN are added up, where no kernel was asked."""
+    trees = [x.verdict == Verdict.NONE_WITHIN and not x.kernel for x in findings]
+    if trees and all(trees):
+        return ARITHMETIC
+    return f"{solver}, the exact judge and {ARITHMETIC}" if any(trees) else f"{solver} and the exact judge"

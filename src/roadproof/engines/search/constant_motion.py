@@ -28,11 +28,11 @@ def steady_drive(
 ) -> JudgedDrive | None:
     """The first state of ``found`` with constant accelerations, judged to refute ``claim``.
 
-    None where the claim is about more than one instant, says its numbers or signals itself, needs jerk or
-    other values of ``parameters`` (where None: than the declared ones and those that its premise demands);
-    and where the judge rejects the drive.
+    None where the claim is about vehicles at more than one instant, says its numbers or signals itself, needs
+    jerk or other values of ``parameters`` (where None: than the declared ones and those that its premise
+    demands); and where the judge rejects the drive.
     """
-    if not is_state(claim.formula):
+    if claim.vehicles and not is_state(claim.formula):
         return None
     values = found.instants[0].values
     known = {

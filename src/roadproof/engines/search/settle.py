@@ -157,6 +157,8 @@ class _Settler:
         from roadproof.engines.search.question import Setting
         from roadproof.engines.search.refute import quick_drive, sampled_drive
 
+        if not self.against.vehicles:
+            return self._empty() if is_moving(self.said) else None
         try:
             found = quick_drive(self.specification, self.against)
             if found is None and is_cubic_state(self.against.formula):
@@ -165,6 +167,14 @@ class _Settler:
             return found
         except (InputError, UsageError):
             return None
+
+    def _empty(self) -> JudgedDrive | None:
+        """A drive of no vehicles on which a claim about none is false: facts about motion do not concern it."""
+        found = prove(self.specification, self.against, self.effort.of(min(BRIEF, self.effort.units)))
+        trace = found.countermodel
+        if trace is None:
+            return None
+        return steady_drive(self.specification, self.against, trace, trace.parameters)
 
     def _searched(self, known: JudgedDrive | None) -> JudgedDrive | None:
         """A drive on which the claim is false; ``known`` or None where none is found that is better."""

@@ -6,12 +6,13 @@ from itertools import groupby
 
 from roadproof.analysis.claims import ClaimResult, Claims
 from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.checking import other_values
 from roadproof.evidence.countermodel import Countermodel
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.motion import Assumption, is_moving, statement
 from roadproof.library.scenarios import LANE
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Library, Specification
 from roadproof.library.words import called_by, legend
 from roadproof.world.motion import state_at
 from roadproof.world.road import Road
@@ -109,7 +110,7 @@ def details(answered: ClaimResult, asked: Claims) -> str:
         )
         lines += _show_premises(certificate.assumed)
     if settled.drive is not None:
-        lines += _show_drive(settled.drive)
+        lines += _show_drive(settled.drive, asked.specification_of(task).library)
         lines += [f"  this drive lies outside the {settled.beyond}"] if settled.beyond else []
     elif result.countermodel is not None:
         lines += _show_countermodel(result.countermodel)
@@ -136,10 +137,14 @@ def _show_premises(assumed: Assumption) -> list[str]:
     return lines + [f"  by induction over time: {x}" for x in assumed.inductions]
 
 
-def _show_drive(judged: JudgedDrive) -> list[str]:
+def _show_drive(judged: JudgedDrive, library: Library) -> list[str]:
     """Where each vehicle starts and how its speed goes; the whole drive is in the file of --out."""
     named = judged.file.lanes
     lanes = named[LANE] if set(named) == {LANE} else ", ".join(f"{k}={v}" for k, v in named.items())
+    if not judged.file.drive.vehicles and not judged.file.drive.own:
+        values = ", ".join(other_values(judged.file, library))
+        at_values = f", with {values}" if values else ""
+        return [f"  false on a drive without vehicles, judged exactly in dense time{at_values}"]
     lines = [f"  false on this drive, judged exactly in dense time{f' (lane {lanes})' if lanes else ''}:"]
     for name, motion in judged.file.drive.vehicles.items():
         start = f"starts at s={_short(motion.s)} m, d={_short(motion.d)} m"

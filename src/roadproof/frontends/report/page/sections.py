@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, TypeAlias
 from roadproof.errors import InputError
 from roadproof.evidence.answers import compare, trace
 from roadproof.evidence.codec import read
-from roadproof.evidence.finding import Finding
+from roadproof.evidence.finding import Finding, checkers
 from roadproof.frontends.report.page import catalogues, claims, values
 from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.results import Result, Words
@@ -72,7 +72,8 @@ def evidence_section(findings: Sequence[Finding], context: PageContext, solver: 
     proofs = [Statement(x.verdict, x.label, "evidence") for x in findings if x.kind == "certificate"]
     told = "" if proofs else f"{len(findings)} files"
     head = Overview("Evidence", "Does independent code accept it?", "evidence", told=told, statements=proofs)
-    html = render("evidence.html", page=context, solver=solver, count=len(findings), head=head, **said)
+    by = checkers(findings, solver)
+    html = render("evidence.html", page=context, checkers=by, count=len(findings), head=head, **said)
     return Section(head, html)
 
 
