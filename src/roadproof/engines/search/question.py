@@ -5,7 +5,7 @@ from dataclasses import field
 from fractions import Fraction
 from functools import cached_property
 from itertools import product
-from math import ceil
+from math import ceil, prod
 from typing import Literal, TypeAlias
 
 from roadproof.engines.encode.along import starting_range
@@ -33,6 +33,8 @@ from roadproof.world.models import load_road, load_vehicle, names_of
 from roadproof.world.road import Road
 from roadproof.world.signals import KINDS, Kind
 from roadproof.world.vehicle import Range, Vehicle, with_limits
+
+MOST_ASSIGNMENTS = 1024  # of lanes of a road to the lanes of a formula
 
 
 def usual_model(formula: Formula, vehicle: str) -> Vehicle:
@@ -279,7 +281,8 @@ def pose(library: Library, query: Query, setting: Setting) -> SearchProblem:
 def assignments(query: Query, road: Road, chosen: Mapping[str, str]) -> tuple[dict[str, str], ...]:
     """Every way to give the free lanes of ``query`` lanes of ``road`` that agrees with ``chosen``.
 
-    Raises ``UsageError`` for a lane that the road does not have or the query does not speak of.
+    Raises ``UsageError`` for a lane that the road does not have or the query does not speak of, and for more
+    ways than a search can try.
     """
     for name, lane in chosen.items():
         if lane not in road.lanes:
@@ -288,6 +291,12 @@ def assignments(query: Query, road: Road, chosen: Mapping[str, str]) -> tuple[di
             known = ", ".join(query.lanes) or "no lane"
             raise UsageError(f"lane {name}={lane}: the formula mentions {known}")
     options = [[chosen[name]] if name in chosen else list(road.lanes) for name in query.lanes]
+    ways = prod(map(len, options))
+    if ways > MOST_ASSIGNMENTS:
+        raise UsageError(
+            f"the formula mentions {len(options)} lanes, which can be those of road '{road.name}' in {ways:,} "
+            f"ways (limit {MOST_ASSIGNMENTS:,}): fix some with --lane {query.lanes[0]}=NAME"
+        )
     return tuple(dict(zip(query.lanes, lanes, strict=True)) for lanes in product(*options))
 
 
