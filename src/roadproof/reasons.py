@@ -116,6 +116,10 @@ class Why(StrEnum):
     SLIGHT_CROSSING = "POV moves across at {:.2g} m/s when it begins, and is supposed to go on so"
     SLIGHT_BRAKING = "POV brakes at {:.2g} m/s^2 when it begins, and is supposed to go on so"
     NO_PLACE = "no place of the plane is {}"
+    PASSED = (
+        "no drive shows it: SV has passed POV, which then hits it from behind, or is never faster than POV and "
+        "never brakes"
+    )
     CONTRADICTS_BOUNDARY = "the drive from {} (SI) is not {}, as the boundary says it is: {}"
     # Evidence that is checked
     DOES_NOT_HOLD = "the formula does not hold on the drive: {}"

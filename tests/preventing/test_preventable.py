@@ -23,6 +23,7 @@ from roadproof.frontends.cli.main import main
 from roadproof.frontends.report import preventable as report
 from roadproof.logic import parse
 from roadproof.logic.parse import parse_claim
+from roadproof.reasons import Reason, Why
 from roadproof.semantics.exact.algebraic import moved
 from roadproof.semantics.exact.truth import Cut, TruthSet, union
 
@@ -201,6 +202,23 @@ def test_a_boundary_that_a_drive_contradicts_is_told():
     )
     assert isinstance(found, str)
     assert "is not unpreventable, as the boundary says it is: " in found
+
+
+def test_places_of_which_no_drive_is_to_be_expected_contradict_nothing():
+    """A gate that opens when the boxes meet: SV has passed POV and is hit from behind, or never brakes."""
+    options, other = {"cc_gate": "before_perception"}, {"cc_ttc": Fraction(0)}
+    where = plane("cut-in", Ve0=Fraction(25))
+    formula = boundary("cut-in", "careful", other, **options)
+    true = tuple(line(where, formula, row) for row in where.rows)
+    home = specification(**options)
+    reading = DriverSettings(values() | other, home.options)
+    places = [*beside_boundary(where, true, "preventable")]
+    found = first_drive(where, "careful", places, "preventable", home, reading)
+    assert isinstance(found, Reason)
+    assert (found.kind, len(places) > 3) == (Why.PASSED, True)
+    for at in places:
+        with pytest.raises(rp.InputError, match="does not hold on the drive"):
+            judged_drive(where.manoeuvre, "careful", at, "preventable", home, reading)
 
 
 def moved_by(true: TruthSet, metres: int) -> TruthSet:

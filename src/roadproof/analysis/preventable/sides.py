@@ -3,20 +3,22 @@
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from itertools import islice, pairwise
 from math import ceil
 
 from roadproof.drivers.driving import OWN_LANE, DriverSettings, drive_of, rest_of, road_of
 from roadproof.drivers.lines import Side, claim_of, with_also
-from roadproof.drivers.manoeuvres import Manoeuvre, Plane, Values
+from roadproof.drivers.manoeuvres import OTHER, CutIn, Manoeuvre, Plane, Values, start_of
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, RejectedError
-from roadproof.library.scenarios import LANE
+from roadproof.library.scenarios import LANE, SUBJECT
 from roadproof.library.specification import Specification
 from roadproof.reasons import Reason, Why
 from roadproof.semantics.exact.algebraic import Point, bounds
 from roadproof.semantics.exact.truth import TruthSet
+from roadproof.world.motion import state_at
 
 _FINE = 10**9  # of a line, for spans that have no place with few digits
 _LOOKED_AT = 400  # candidates for a drive
@@ -101,14 +103,19 @@ def first_drive(
 
     ``also`` as for ``judged_drive``; ``most`` candidates are tried, besides those that have no exact drive.
     A drive that is rejected, though nothing else is asked of it, contradicts the boundary: no other is tried.
+    But places of which the boundary says more than a drive can show are passed over once one is rejected.
     """
     reason = Why.NO_PLACE(side)
-    tried = 0
-    for values in islice(candidates, _LOOKED_AT):
+    tried, manoeuvre, is_met = 0, plane.manoeuvre, False
+    without = partial(_is_without_drive, manoeuvre, model, reading)
+    left = (x for x in candidates if not (is_met and without(x)))
+    for values in islice(left, _LOOKED_AT):
         try:
-            manoeuvre = plane.manoeuvre
             return values, judged_drive(manoeuvre, model, values, side, specification, reading, also)
         except RejectedError as error:
+            if not is_met and side == "preventable" and not also and without(values):
+                is_met, reason = True, Why.PASSED()
+                continue
             tried, reason = tried + 1, Why.TOLD(error)
             if not also:
                 told = ", ".join(f"{name}={value}" for name, value in values.items())
@@ -118,6 +125,25 @@ def first_drive(
         if tried == most:
             break
     return reason
+
+
+def _is_without_drive(manoeuvre: Manoeuvre, model: str, reading: DriverSettings, values: Values) -> bool:
+    """Whether no drive of a preventable cut-in is to be expected from these values.
+
+    Either SV is ahead of POV when this comes into its way, which then may hit it from behind; or a gate never
+    opens, and the formula of a driver is about one who brakes. False where there is no exact drive.
+    """
+    start = start_of(manoeuvre, values)
+    if not isinstance(start, CutIn):
+        return False
+    if model == "careful" and reading.choices.cc_gate != "none" and start.dV0 <= 0:
+        return True
+    try:
+        moving = drive_of(manoeuvre, model, values, reading).vehicles
+    except InputError:
+        return False
+    mine, other = (state_at(moving[name], start.dy0 / start.Vy) for name in (SUBJECT, OTHER))
+    return mine.s - start.length >= other.s
 
 
 def far_apart(
