@@ -117,8 +117,8 @@ class Why(StrEnum):
     SLIGHT_BRAKING = "POV brakes at {:.2g} m/s^2 when it begins, and is supposed to go on so"
     NO_PLACE = "no place of the plane is {}"
     PASSED = (
-        "no drive shows it: SV has passed POV, which then hits it from behind, or is never faster than POV and "
-        "never brakes"
+        "no drive shows it: SV has passed POV, which then hits it from behind, or is never faster than POV "
+        "and never brakes"
     )
     CONTRADICTS_BOUNDARY = "the drive from {} (SI) is not {}, as the boundary says it is: {}"
     # Evidence that is checked

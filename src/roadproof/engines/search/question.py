@@ -294,8 +294,8 @@ def assignments(query: Query, road: Road, chosen: Mapping[str, str]) -> tuple[di
     ways = prod(map(len, options))
     if ways > MOST_ASSIGNMENTS:
         raise UsageError(
-            f"the formula mentions {len(options)} lanes, which can be those of road '{road.name}' in {ways:,} "
-            f"ways (limit {MOST_ASSIGNMENTS:,}): fix some with --lane {query.lanes[0]}=NAME"
+            f"the formula mentions {len(options)} lanes, which can be those of road '{road.name}' in "
+            f"{ways:,} ways (limit {MOST_ASSIGNMENTS:,}): fix some with --lane {query.lanes[0]}=NAME"
         )
     return tuple(dict(zip(query.lanes, lanes, strict=True)) for lanes in product(*options))
 

@@ -169,7 +169,7 @@ class _Settler:
             return None
 
     def _empty(self) -> JudgedDrive | None:
-        """A drive of no vehicles on which a claim about none is false: facts about motion do not concern it."""
+        """A drive of no vehicles on which a claim about none is false, whatever motion is."""
         found = prove(self.specification, self.against, self.effort.of(min(BRIEF, self.effort.units)))
         trace = found.countermodel
         if trace is None:
