@@ -6,6 +6,7 @@ A module that is imported while a test has replaced something would keep the rep
 random cases are for ``make fuzz``. Answers are computed, not taken from those that are known.
 """
 
+import gc
 import os
 import pkgutil
 from collections.abc import Iterator
@@ -17,9 +18,11 @@ from hypothesis import settings
 
 import roadproof
 from lengthy import COLLECTED, LENGTHY
+from roadproof.runtime.memory import collect_rarely
 from studio.browser import browsing
 
 os.environ["ROADPROOF_KNOWN"] = "off"
+gc.disable()  # until all tests are collected: what is imported stays
 settings.register_profile("same", derandomize=True, deadline=None)
 settings.load_profile("same")
 
@@ -34,6 +37,13 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for item in items:
         if item.nodeid.startswith(LENGTHY):
             item.add_marker("long")
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_finish() -> None:
+    gc.freeze()
+    gc.enable()
+    collect_rarely()
 
 
 @pytest.fixture(scope="module")

@@ -63,6 +63,8 @@ def step_cut_in(v, w, gap, lengths, beside, lateral, braking, rate, seconds) -> 
         faster = np.maximum(speed - braking(time + 0.5 / rate) / rate, 0)
         gained += (speed + faster) / 2 / rate - w / rate
         speed = faster
+        if begun.all() and not speed.any():
+            break  # whoever stands has braked, and stays where it is
     return Outcome(farthest > 0, np.minimum(np.abs(farthest), to_pass))
 
 
@@ -78,6 +80,8 @@ def step_deceleration(v, w, gap, other_braking, braking, rate, seconds) -> Outco
         left += (other + slower - speed - faster) / 2 / rate
         least = np.minimum(least, left)
         speed, other = faster, slower
+        if not (speed.any() or other.any()):
+            break
     return Outcome(least < 0, np.abs(least))
 
 
@@ -88,4 +92,6 @@ def stopping_way(v: Floats, braking, rate: int, seconds: float) -> Floats:
         slower = np.maximum(speed - braking((step + 0.5) / rate) / rate, 0)
         gone += (speed + slower) / 2 / rate
         speed = slower
+        if not speed.any():
+            break
     return gone

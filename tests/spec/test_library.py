@@ -13,6 +13,7 @@ from roadproof.evidence.specifications import read_beside
 from roadproof.evidence.strict import Fields
 from roadproof.frontends import cli
 from roadproof.frontends.cli.main import main
+from roadproof.library.diagnose import checked_library
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import build_library, bundled_library, load_library
 from roadproof.library.specification import (
@@ -79,6 +80,19 @@ def test_users_files_go_on_top() -> None:
     again = library("def danger(a, b: vehicle) := rssViolation(a, b)", base)
     assert again.select().definitions["danger"].body != base.select().definitions["danger"].body
     assert base.select().definitions["danger"].doc == "durable danger"
+
+
+def test_a_file_is_read_once_until_it_changes(tmp_path: Path) -> None:
+    file = tmp_path / "my.spec"
+    file.write_text("def mine(a: vehicle) := v_lon(a) > 1 m/s\n", "utf-8")
+    first = load_library([file])
+    assert load_library([file]) is checked_library([file]) is first
+    file.write_text(file.read_text("utf-8").replace("1 m", "2 m"), "utf-8")
+    assert load_library([file]).definitions["mine"] != first.definitions["mine"]
+    file.write_text("def mine(a: vehicle) := other(a)\n", "utf-8")
+    for _ in range(2):
+        with pytest.raises(TextError, match="other"):
+            checked_library([file])
 
 
 def test_each_makes_one_definition_an_index() -> None:

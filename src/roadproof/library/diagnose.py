@@ -6,7 +6,7 @@ An error in a definition that others use is told once, and nothing follows from 
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Literal, TypeAlias
 
@@ -15,7 +15,7 @@ from roadproof.library import scopes
 from roadproof.library.arithmetic import ValueOfTermError
 from roadproof.library.elaborate import mistakes_in
 from roadproof.library.elaboration import Elaborator, Known, LostError
-from roadproof.library.loading import gather, gather_files, place_of
+from roadproof.library.loading import gather, gather_files, load_library, place_of, sources_of
 from roadproof.library.quantity import Quantity
 from roadproof.library.scopes import Value, Vehicles
 from roadproof.library.specification import Library, Source, Specification, source_of
@@ -147,12 +147,18 @@ def checked_library(files: Iterable[Path | Source] = ()) -> Library:
 
     Raises ``TextError`` for all mistakes at once, ``InputError`` where a file cannot be read.
     """
-    gathered = gather_files(files)
+    return _checked(tuple(sources_of(files)))
+
+
+# The studio and scripts ask many questions of the same texts.
+@lru_cache(maxsize=16)
+def _checked(sources: tuple[Source, ...]) -> Library:
+    gathered = gather_files(sources)
     library = gathered.library
     order = [source.name for source in library.files]
     errors = once_each([*gathered.errors, *definition_errors(library, library.files, gathered.lost)])
     raise_all(sorted(errors, key=lambda x: (x.source in order and order.index(x.source), place_of(x))))
-    return library
+    return load_library(sources)
 
 
 def definition_errors(library: Library, sources: Sequence[Source], lost: Lost = ()) -> list[TextError]:
