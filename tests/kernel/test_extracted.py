@@ -65,6 +65,21 @@ def test_drives_of_all_eight_scenarios_are_accepted():
     assert [(x.outcome, x.kernel) for x in checked.findings] == [(Acceptance.ACCEPTED, "accepted")] * 8
 
 
+@needs_ocaml
+def test_claims_that_quantify_over_lanes_are_accepted(tmp_path):
+    """Whose proof speaks of any lane, since every road has one; or of an atom inside a quantifier."""
+    claims = (
+        "some M in lanes: atLane(SV,M) -> some N in lanes: atLane(SV,N)",
+        "some M in lanes: atLane(SV,M) -> every N in lanes: atLane(SV,N)",
+        "(every M in lanes: atLane(SV,M)) -> (some N in lanes: atLane(SV,N))",
+        "(some M in lanes: v_lon(SV) > 3 m/s) -> some N in lanes: v_lon(SV) > 2 m/s",
+        "(F some M in lanes: G v_lon(SV) > 3 m/s) -> F v_lon(SV) > 2 m/s",
+    )
+    rp.prove(*claims, jobs=1, out=tmp_path)
+    checked = check(tmp_path, kernel="extracted", jobs=1)
+    assert [(x.outcome, x.kernel) for x in checked.findings] == [(Acceptance.ACCEPTED, "accepted")] * 5
+
+
 ANY_OTHER = '(proof b "" [] [] (Truth true) [] [] [] (CloseTruth 0))'
 
 

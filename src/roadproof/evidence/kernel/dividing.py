@@ -95,6 +95,7 @@ def _divide(means: b.Means, branch: b.Branch) -> b.Move:
         for choice in _dividing(means, branch):
             if best is None or choice[0] < best[0]:
                 best = choice
+    best = best or _with_any_lane(branch)
     if best is None:
         cut = _open_guard(means, branch) or _open_equality(means, branch)
         if cut is None:
@@ -143,6 +144,20 @@ def _dividing(means: b.Means, branch: b.Branch) -> Iterator[_Choice]:
                     yield 2 - _refuted(means, branch, False, where, formula.right), (universal, where)
         elif universal.kind == "road":
             yield from ((2, (universal, x)) for x in list(universal.left) if x in branch.elements)
+
+
+def _with_any_lane(branch: b.Branch) -> _Choice | None:
+    """An instance at an element that nothing is known of: every road has a lane. It has the name from now on."""
+    for universal in branch.universals:
+        fact = branch.facts.get(universal.number) if universal.kind == "road" else None
+        if not isinstance(fact, b.At) or not isinstance(fact.formula, f.Some | f.Every):
+            continue
+        if fact.formula.domain.kind == "lanes":
+            for name in universal.left:
+                if isinstance(name, str) and name not in branch.elements:
+                    branch.elements.add(name)
+                    return 2, (universal, name)
+    return None
 
 
 def _until_fails(means: b.Means, branch: b.Branch, universal: b.Universal, moment: Moment) -> b.Move:

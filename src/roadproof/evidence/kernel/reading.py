@@ -89,6 +89,8 @@ def _expand(means: b.Means, branch: b.Branch, number: int, fact: b.At) -> b.Move
             site = Site(prefix_form(formula), sign, str(moment))
             if isinstance(formula, f.Some) == sign:
                 name = means.named(site, "M")
+                if name in branch.elements:
+                    raise b.NotFoundError(f"the certificate calls two elements {name}")
                 branch.elements.add(name)
                 inside = means.goal.atoms.abstract(rename(body, variable, name))
                 met: list[b.Fact] = [b.Belongs(True, domain, name), b.At(sign, moment, inside)]

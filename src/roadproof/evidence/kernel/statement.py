@@ -10,6 +10,7 @@ from fractions import Fraction
 
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.derivation import met_sites
 from roadproof.evidence.kernel.branch import Goal
 from roadproof.evidence.kernel.printer import Formals
 from roadproof.evidence.times import bound_parameters
@@ -107,6 +108,10 @@ def state(certificate: Certificate, library: Library, query: Query | None = None
     atoms, proved = Atoms(), with_values(supposed, demanded)
     atoms.abstract(with_values(query.formula, {**here, **demanded}))  # named first, as in the certificate
     abstracted = atoms.abstract(proved)
+    if any(name not in atoms.named for lemma in certificate.lemmas for name, _ in lemma.literals):
+        # an atom inside a quantifier has its name once there is an instance
+        sites = certificate.instances, certificate.names
+        met_sites(abstracted, atoms, *sites, library.bounds, query.lanes)
     bounds = bounds_of(specification, parameters_of(supposed))
     parameters = tuple(sorted(bound_parameters(proved)))
     lemmas = tuple(
