@@ -147,7 +147,7 @@ def _dividing(means: b.Means, branch: b.Branch) -> Iterator[_Choice]:
 
 
 def _with_any_lane(branch: b.Branch) -> _Choice | None:
-    """An instance at an element that nothing is known of: every road has a lane. It has the name from now on."""
+    """An instance at an element that nothing is known of, called so from now on: a road has a lane."""
     for universal in branch.universals:
         fact = branch.facts.get(universal.number) if universal.kind == "road" else None
         if not isinstance(fact, b.At) or not isinstance(fact.formula, f.Some | f.Every):
