@@ -16,6 +16,8 @@ from roadproof.evidence.answers.drives import SCHEMA
 from roadproof.library.bind import values_with
 from roadproof.library.dependence import digest_of
 from roadproof.library.elaborate import StatedQuery, read_claim
+from roadproof.library.scenarios import without_sectors
+from roadproof.logic.formula import Formula
 from roadproof.logic.show import declared
 from roadproof.reasons import Reason
 from roadproof.runtime.budget import Effort
@@ -50,17 +52,28 @@ class WitnessStudy:
         specification = self.searches[0].specification
         return Question(SCHEMA, readings(specification), {}, specification.library)
 
-    def pieces(self, known: Mapping[str, Outcome]) -> Sequence[str]:
-        return [name for name in self.named if name not in known]
+    def pieces(self, known: Mapping[str, Outcome]) -> Sequence[tuple[str, ...]]:
+        """The names that are left; those of which one search may answer several are in one piece."""
+        groups: dict[object, list[str]] = {}
+        first: dict[tuple[str, Formula], int] = {}
+        for name, search in self.named.items():
+            if name not in known:
+                alike = search.specification.set_name, without_sectors(search.query.formula)
+                number = search.scenario
+                group = name if number is None else first.setdefault(alike, number)
+                groups.setdefault(group, []).append(name)
+        return [tuple(names) for names in groups.values()]
 
-    def settle(self, piece: str) -> dict[str, Outcome]:
-        outcome = ask.answer(self.named[piece])
-        if self.finish is not None:
-            self.finish(piece, outcome)
-        return {piece: outcome}
+    def settle(self, piece: tuple[str, ...]) -> dict[str, Outcome]:
+        found: dict[str, Outcome] = {}
+        for name in piece:
+            found[name] = ask.answer(self.named[name])
+            if self.finish is not None:
+                self.finish(name, found[name])
+        return found
 
-    def doubt(self, piece: str, reason: Reason) -> dict[str, Outcome]:
-        return {piece: ask.undecided(self.named[piece], reason)}
+    def doubt(self, piece: tuple[str, ...], reason: Reason) -> dict[str, Outcome]:
+        return {name: ask.undecided(self.named[name], reason) for name in piece}
 
     def is_sure(self, answer: Outcome) -> bool:
         """Whether all drives that were asked for are there, or a proof that there is none."""

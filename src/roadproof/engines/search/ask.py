@@ -1,7 +1,7 @@
 """A search for drives of values, and its typed outcome."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
@@ -16,6 +16,7 @@ from roadproof.engines.search.question import (
     usual_road,
 )
 from roadproof.engines.search.search import Attempt, find_witness
+from roadproof.engines.search.siblings import find_once, offered
 from roadproof.evidence.answers import drives as kept
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
@@ -24,7 +25,7 @@ from roadproof.library.specification import Library, Query, Specification
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import parameters_of
 from roadproof.reasons import NO_REASON, Reason, Why
-from roadproof.runtime.budget import BudgetExceeded
+from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.runtime.progress import about, begin
 from roadproof.runtime.records import dataclass
 from roadproof.runtime.timing import now, since
@@ -136,7 +137,7 @@ def _ask(search: Search) -> Outcome:
     begun = now()
     library = search.specification.library
     question = pose(library, search.query, search.setting)
-    answers = list(_clearly_different(question, search))
+    answers = list(_answers(question, search))
     first = answers[0]
     judged = tuple(judge_found(search, question, a.found) for a in answers if a.found is not None)
     impossibility = None
@@ -162,6 +163,18 @@ def _ask(search: Search) -> Outcome:
         None if impossibility else first.limits,
         first.exhausted and impossibility is None,
     )
+
+
+def _answers(question: SearchProblem, search: Search) -> Iterator[Attempt]:
+    """The answers to a search; a scenario takes the drive of its sibling where that answers it too."""
+    if search.count > 1 or search.scenario is None or search.setting.road is not None:
+        yield from _clearly_different(question, search)
+        return
+    begun, options = search.search_options.effort.meter(), search.search_options
+    sibling = offered(search.specification, search.scenario, question, search.setting, options)
+    if sibling is None and options.effort.timeout is not None:
+        options = replace(options, effort=Effort(options.effort.units, begun.seconds_left()))
+    yield sibling or find_once(question, options)
 
 
 def _clearly_different(question: SearchProblem, search: Search) -> Iterator[Attempt]:

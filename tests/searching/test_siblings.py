@@ -1,0 +1,129 @@
+"""The drive of a scenario, offered for those that differ from it in the road sector only."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from asking import posed, search_for
+from roadproof.analysis.witnesses import WitnessStudy
+from roadproof.engines.search import search, siblings
+from roadproof.engines.search.ask import answer
+from roadproof.engines.search.question import FoundDrive, SearchProblem
+from roadproof.evidence.judged import judge_file
+from roadproof.library.loading import bundled_library
+from roadproof.verdict import Verdict
+from roadproof.world.drive import Drive
+from roadproof.world.models import load_road
+
+
+@pytest.fixture
+def solved(monkeypatch):
+    """A list that grows with each question to a solver; no search is remembered."""
+    true_solve, calls = search.solve_mixed, []
+
+    def solve(problem, *given, **more):
+        calls.append(len(problem.columns))
+        return true_solve(problem, *given, **more)
+
+    monkeypatch.setattr(search, "solve_mixed", solve)
+    monkeypatch.setattr(siblings, "_remembered", {})
+    return calls
+
+
+def test_one_search_answers_a_scenario_in_every_sector(solved):
+    first = answer(search_for("4")).drives[0].file
+    asked = len(solved)
+    for number, road in (("12", "merge"), ("20", "depart")):
+        outcome = answer(search_for(number))
+        file = outcome.drives[0].file
+        assert (outcome.verdict, outcome.natural, outcome.scenario) == (Verdict.WITNESSED, True, int(number))
+        assert (file.road, file.drive, file.lanes) == (load_road(road), first.drive, first.lanes)
+        assert judge_file(file, bundled_library()).accepted
+    assert len(solved) == asked
+
+
+def test_the_drive_is_the_same_where_the_scenario_is_asked_alone(solved, monkeypatch):
+    together = [answer(search_for(number)).drives[0].file for number in ("3", "11")]
+    monkeypatch.setattr(siblings, "_remembered", {})
+    assert answer(search_for("11")).drives[0].file == together[1]
+
+
+def test_equal_formulas_of_two_sets_are_searched_once(solved):
+    base = answer(search_for("5"))
+    asked = len(solved)
+    other = answer(search_for("5", set_name="extA"))
+    assert (other.drives[0].file.drive, len(solved)) == (base.drives[0].file.drive, asked)
+    assert other.drives[0].file.set_name == "extA"
+
+
+@pytest.mark.parametrize("more", [{"road": "merge"}, {"lanes": {"L": "main-1"}}])
+def test_chosen_places_are_searched_by_themselves(solved, more):
+    asked = search_for("12", **more)
+    assert siblings._first(asked.specification, 12, asked.query, asked.setting) is None
+
+
+def test_a_scenario_whose_sibling_gives_no_drive_is_searched(solved, monkeypatch):
+    monkeypatch.setattr(siblings, "put_on", lambda *_: None)
+    outcome = answer(search_for("12"))
+    assert (outcome.verdict, outcome.natural) == (Verdict.WITNESSED, True)
+    assert len(solved) > 1
+
+
+# --- Drives that are none of another question ------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def pair() -> tuple[SearchProblem, FoundDrive]:
+    """The question for scenario 12, and the drive of scenario 4."""
+    first = search_for("4")
+    attempt = siblings.find_once(posed(first), first.search_options)
+    assert attempt.found is not None
+    return posed(search_for("12")), attempt.found
+
+
+def moved(found: FoundDrive, s: int = 0, d: Fraction = Fraction(0)) -> FoundDrive:
+    motions = {name: replace(x, s=x.s + s, d=x.d + d) for name, x in found.drive.vehicles.items()}
+    return replace(found, drive=Drive(motions))
+
+
+def test_a_drive_is_put_on_another_road(pair):
+    question, found = pair
+    put = siblings.put_on(question, found)
+    assert put is not None
+    assert put.drive == found.drive
+    assert put.formula == question.bound(found.lanes) != found.formula
+
+
+@pytest.mark.parametrize("s", [-2000, 2000])
+def test_a_drive_outside_of_the_zone_is_refused(pair, s):
+    question, found = pair
+    assert siblings._keeps(question, moved(found, s))
+    assert siblings.put_on(question, moved(found, s)) is None
+
+
+@pytest.mark.parametrize("d", [Fraction(9, 10), Fraction(-9, 10), Fraction(-9)])
+def test_a_drive_beside_the_middle_of_its_lane_or_of_the_road_is_refused(pair, d):
+    question, found = pair
+    assert not siblings._keeps(question, moved(found, d=d))
+    assert siblings.put_on(question, moved(found, d=d)) is None
+
+
+def test_a_drive_in_a_lane_that_is_not_asked_for_is_refused(pair):
+    question, found = pair
+    assert siblings.put_on(replace(question, lanes=({"L": "main-2"},)), found) is None
+
+
+# --- Which questions are asked together ------------------------------------------------------------
+
+
+def test_scenarios_alike_are_one_piece_whatever_their_set():
+    asked = [("4", "base"), ("12", "base"), ("5", "base"), ("4", "ext"), ("20", "ext"), ("true", "base")]
+    study = WitnessStudy(tuple(search_for(text, set_name=name) for text, name in asked))
+    alike = ("scenario-04-base", "scenario-12-base", "scenario-04-ext", "scenario-20-ext")
+    assert study.pieces({}) == [alike, ("scenario-05-base",), ("formula-06-base",)]
+    known = answer(search_for("true and v_lon(SV) > 20 m/s", horizon=Fraction(6, 5)))
+    assert study.pieces({"scenario-12-base": known, "formula-06-base": known}) == [
+        ("scenario-04-base", "scenario-04-ext", "scenario-20-ext"),
+        ("scenario-05-base",),
+    ]
