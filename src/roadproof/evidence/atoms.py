@@ -117,17 +117,23 @@ def _combined(formula: Formula) -> Iterator[Formula]:
 
 def up_to_variables(formula: Formula) -> Formula:
     """``formula`` without names of definitions, and with bound variables called by their depth."""
+    return _with_numbers(without_names(formula))
 
-    def visit(current: Formula, depth: int) -> Formula:
-        match current:
-            case f.Some(variable, domain, body) | f.Every(variable, domain, body):
-                inner = rename(body, variable, f"#{depth}")
-                return type(current)(f"#{depth}", domain, visit(inner, depth + 1))
-            case _:
-                return f.with_children(current, tuple(visit(c, depth) for c in f.children(current)))
 
-    bare = without_names(formula)
-    return bare if not road_names(bare) else visit(bare, 1)
+@once
+def _with_numbers(bare: Formula) -> Formula:
+    if isinstance(bare, f.Some | f.Every):
+        return _numbered(bare, 1)
+    return f.with_children(bare, tuple(map(_with_numbers, f.children(bare))))
+
+
+def _numbered(current: Formula, depth: int) -> Formula:
+    match current:
+        case f.Some(variable, domain, body) | f.Every(variable, domain, body):
+            inner = rename(body, variable, f"#{depth}")
+            return type(current)(f"#{depth}", domain, _numbered(inner, depth + 1))
+        case _:
+            return f.with_children(current, tuple(_numbered(c, depth) for c in f.children(current)))
 
 
 def membership(domain: f.Domain, element: str) -> str:

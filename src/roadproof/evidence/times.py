@@ -4,7 +4,7 @@ They are what quantifiers over time are instantiated with, so they must print an
 """
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from fractions import Fraction
 
 from roadproof.errors import InputError
@@ -31,10 +31,10 @@ class Moment:
     constant: Fraction = Fraction(0)
 
     def __add__(self, other: "Moment") -> "Moment":
-        return _combine(self, other, Fraction(1))
+        return _sum(self, other.parts, other.constant)
 
     def __sub__(self, other: "Moment") -> "Moment":
-        return _combine(self, other, Fraction(-1))
+        return _sum(self, [(name, -factor) for name, factor in other.parts], -other.constant)
 
     @once
     def __str__(self) -> str:
@@ -49,7 +49,11 @@ class Moment:
 
     def value(self, values: Mapping[str, Fraction]) -> Fraction:
         """The moment in seconds where each name has a value."""
-        return self.constant + sum((values[n] * k for n, k in self.parts), Fraction(0))
+        total = self.constant
+        for name, factor in self.parts:
+            value = values[name] if factor == 1 else values[name] * factor
+            total = total + value if total else value
+        return total
 
     @once
     def smt(self) -> str:
@@ -74,12 +78,12 @@ def at(name: str) -> Moment:
     return Moment(((name, Fraction(1)),))
 
 
-def _combine(left: Moment, right: Moment, sign: Fraction) -> Moment:
-    total = dict(left.parts)
-    for name, factor in right.parts:
-        total[name] = total.get(name, Fraction(0)) + sign * factor
-    kept = tuple(sorted((n, k) for n, k in total.items() if k))
-    return Moment(kept, left.constant + sign * right.constant)
+def _sum(moment: Moment, parts: Iterable[tuple[str, Fraction]], constant: Fraction) -> Moment:
+    total = dict(moment.parts)
+    for name, factor in parts:
+        total[name] = total[name] + factor if name in total else factor
+    kept = tuple(sorted(item for item in total.items() if item[1]))
+    return Moment(kept, moment.constant + constant if constant else moment.constant)
 
 
 def rational(value: Fraction) -> str:

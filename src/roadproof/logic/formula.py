@@ -9,7 +9,7 @@ Semantics (semantics §1; paper, Table *Boolean semantics of STL*): time is dens
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import cache
+from operator import is_
 from typing import Literal, TypeAlias, assert_never
 
 from roadproof.logic.node import node, once
@@ -197,22 +197,25 @@ def children(formula: Formula) -> tuple[Formula, ...]:
 
 
 def with_children(formula: Formula, new: tuple[Formula, ...]) -> Formula:
-    """``formula`` with its direct sub-formulas replaced, in the order of ``children``."""
+    """``formula`` with its direct sub-formulas replaced, in the order of ``children``.
+
+    It is ``formula`` itself where these are the same objects, and what is known of it stays known.
+    """
     match formula:
         case Truth() | Compare() | Occupies():
             return formula
-        case And() | Or():
-            return type(formula)(new)
-        case Not():
-            return Not(new[0])
-        case Until(_, interval, _):
-            return Until(new[0], interval, new[1])
-        case Eventually(interval, _) | Always(interval, _):
-            return type(formula)(interval, new[0])
-        case Some(variable, domain, _) | Every(variable, domain, _):
-            return type(formula)(variable, domain, new[0])
-        case Application(name, arguments, _):
-            return Application(name, arguments, new[0])
+        case And(parts) | Or(parts):
+            return formula if all(map(is_, new, parts)) else type(formula)(new)
+        case Not(body):
+            return formula if new[0] is body else Not(new[0])
+        case Until(left, interval, right):
+            return formula if new[0] is left and new[1] is right else Until(new[0], interval, new[1])
+        case Eventually(interval, body) | Always(interval, body):
+            return formula if new[0] is body else type(formula)(interval, new[0])
+        case Some(variable, domain, body) | Every(variable, domain, body):
+            return formula if new[0] is body else type(formula)(variable, domain, new[0])
+        case Application(name, arguments, body):
+            return formula if new[0] is body else Application(name, arguments, new[0])
         case _:
             assert_never(formula)
 
@@ -299,9 +302,13 @@ def share(formulas: Iterable[Formula], change: Callable[[Formula], Formula]) -> 
 def transform(formula: Formula, change: Callable[[Formula], Formula]) -> Formula:
     """``formula`` rebuilt from its leaves up, ``change`` applied to every rebuilt node once."""
 
-    @cache
+    done: dict[Formula, Formula] = {}
+
     def visit(current: Formula) -> Formula:
-        return change(with_children(current, tuple(map(visit, children(current)))))
+        made = done.get(current)
+        if made is None:
+            made = done[current] = change(with_children(current, tuple(map(visit, children(current)))))
+        return made
 
     return visit(formula)
 

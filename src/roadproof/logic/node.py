@@ -12,6 +12,9 @@ from typing import Any, TypeVar, dataclass_transform
 T = TypeVar("T")
 N = TypeVar("N")
 
+# In place of a fact of a node: it was not asked for yet; it is the node itself, which would be a cycle.
+_UNKNOWN, _ITSELF = object(), object()
+
 
 @dataclass_transform(frozen_default=True)
 def node(cls: type[T]) -> type[T]:
@@ -21,10 +24,11 @@ def node(cls: type[T]) -> type[T]:
     same: Callable[[Any, object], bool] = made.__eq__
 
     def remembered(self: Any) -> int:
-        known: int | None = self.__dict__.get("_hash")
-        if known is None:
+        try:
+            known: int = self._hash
+        except AttributeError:
             known = structural(self)
-            self.__dict__["_hash"] = known
+            object.__setattr__(self, "_hash", known)
         return known
 
     def state(self: Any) -> dict[str, object]:
@@ -51,10 +55,11 @@ def once(fact: Callable[[N], T]) -> Callable[[N], T]:
 
     @wraps(fact)
     def known(of: N) -> T:
-        kept = of.__dict__
-        if key not in kept:
-            kept[key] = fact(of)
-        found: T = kept[key]
+        kept = getattr(of, key, _UNKNOWN)
+        if kept is _UNKNOWN:
+            kept = fact(of)
+            object.__setattr__(of, key, _ITSELF if kept is of else kept)
+        found: T = of if kept is _ITSELF else kept  # type: ignore[assignment]
         return found
 
     return known

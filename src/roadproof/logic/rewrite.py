@@ -60,9 +60,12 @@ def _giving(values: Mapping[str, Fraction]) -> Callable[[t.Term], t.Term]:
     return give
 
 
+@once
 def without_names(formula: f.Formula) -> f.Formula:
     """``formula`` with every ``Application`` node replaced by its body."""
-    return f.transform(formula, lambda x: x.body if isinstance(x, f.Application) else x)
+    if isinstance(formula, f.Application):
+        return without_names(formula.body)
+    return f.with_children(formula, tuple(map(without_names, f.children(formula))))
 
 
 def terms_of(*formulas: f.Formula) -> Iterator[t.Term]:
@@ -140,16 +143,14 @@ def _free_name(name: str, taken: Set[str]) -> str:
 @once
 def road_names(formula: f.Formula) -> frozenset[str]:
     """Names of lanes and lanelets that ``formula`` speaks of or calls a variable by."""
-    found: set[str] = set()
-    for part in f.subformulas(formula):
-        match part:
-            case f.Occupies(_, lanelet):
-                found.add(lanelet)
-            case f.Some(variable, domain, _) | f.Every(variable, domain, _):
-                found |= {variable, domain.of} if domain.kind in ("lanelets", "adjacent") else {variable}
-            case _:
-                pass
-    return frozenset(found)
+    inside = frozenset[str]().union(*map(road_names, f.children(formula)))
+    match formula:
+        case f.Occupies(_, lanelet):
+            return inside | {lanelet}
+        case f.Some(variable, domain, _) | f.Every(variable, domain, _):
+            return inside | ({variable, domain.of} if domain.kind in ("lanelets", "adjacent") else {variable})
+        case _:
+            return inside
 
 
 def free_roads(formula: f.Formula) -> frozenset[str]:

@@ -9,7 +9,7 @@ from dataclasses import field
 from fractions import Fraction
 from typing import TypeAlias
 
-from roadproof.evidence.atoms import Atoms, up_to_variables
+from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.kernel.linear import GOAL, Linear, Witness
 from roadproof.evidence.kernel.tableau import Argument, Node
 from roadproof.evidence.sites import Site
@@ -168,19 +168,12 @@ class Means:
 
     goal: Goal
     linear: Linear = field(default_factory=Linear)
-    keys: dict[Formula, Formula] = field(default_factory=dict)
     count: int = 0
     unnamed: int = 0
 
     def number(self) -> int:
         self.count += 1
         return self.count
-
-    def key(self, formula: Formula) -> Formula:
-        """The same for formulas that are alike up to names of definitions and of what is bound."""
-        if formula not in self.keys:
-            self.keys[formula] = up_to_variables(formula)
-        return self.keys[formula]
 
     def named(self, site: Site, prefix: str) -> str:
         if site in self.goal.names:

@@ -7,6 +7,7 @@ decided by the constraints, they are divided by it.
 from collections.abc import Iterator
 from typing import TypeAlias
 
+from roadproof.evidence.atoms import up_to_variables
 from roadproof.evidence.kernel import branch as b
 from roadproof.evidence.kernel.linear import GOAL, Witness
 from roadproof.evidence.sites import Site
@@ -220,7 +221,7 @@ def _open_equality(means: b.Means, branch: b.Branch) -> Moment | None:
 
 
 def _holds(means: b.Means, branch: b.Branch, sign: bool, moment: Moment, formula: Formula) -> bool:
-    known = branch.known.get(means.key(formula), ())
+    known = branch.known.get(up_to_variables(formula), ())
     return any(s == sign and m == moment for s, m, _ in known)
 
 
@@ -228,7 +229,7 @@ def _refuted(means: b.Means, branch: b.Branch, sign: bool, moment: Moment, formu
     """Whether ``formula`` with this sign would close a branch at once."""
     if isinstance(formula, f.Truth):
         return formula.value != sign
-    for known, where, _ in branch.known.get(means.key(formula), ()):
+    for known, where, _ in branch.known.get(up_to_variables(formula), ()):
         if known != sign and (where == moment or means.equal(where, moment) is not None):
             return True
     match formula:

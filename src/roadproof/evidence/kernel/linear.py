@@ -2,14 +2,15 @@
 
 The simplex method for satisfiability (Dutertre and de Moura 2006) in exact rationals: each linear form has a
 variable of its own, constraints bound these, and what is strict is above by an infinitesimal. A conflict is a
-sum of constraints that is absurd (Farkas), which Coq adds up again.
+sum of constraints that is absurd (Farkas), which Coq adds up again. Integers are ``int`` inside, since most
+numbers are and ``Fraction`` is slow.
 """
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 from roadproof.evidence.times import Moment
 
@@ -17,25 +18,26 @@ from roadproof.evidence.times import Moment
 Witness: TypeAlias = tuple[tuple[int, Fraction], ...]
 GOAL = -1
 
-_Form: TypeAlias = tuple[tuple[str, Fraction], ...]
-_Value: TypeAlias = tuple[Fraction, Fraction]  # a rational and a multiple of the infinitesimal
+_Number: TypeAlias = int | Fraction
+N = TypeVar("N", Fraction, int | Fraction)
+_Form: TypeAlias = tuple[tuple[str, _Number], ...]
+_Value: TypeAlias = tuple[_Number, _Number]  # a rational and a multiple of the infinitesimal
 
-_ZERO = Fraction(0)
-_NOTHING: _Value = (_ZERO, _ZERO)
+_NOTHING: _Value = (0, 0)
 
 
 @dataclass(frozen=True)
 class _Bound:
     value: _Value
     constraint: int
-    scale: Fraction  # the constraint is scale times what the bound says, scale > 0
+    scale: _Number  # the constraint is scale times what the bound says, scale > 0
 
 
 @dataclass
 class Linear:
     """``0 <= m`` and ``0 < m`` for moments m, each constraint with a number."""
 
-    rows: dict[int, dict[int, Fraction]] = field(default_factory=dict)  # basic variable: over the others
+    rows: dict[int, dict[int, _Number]] = field(default_factory=dict)  # basic variable: over the others
     forms: dict[_Form, int] = field(default_factory=dict)
     lower: dict[int, _Bound] = field(default_factory=dict)
     upper: dict[int, _Bound] = field(default_factory=dict)
@@ -64,13 +66,10 @@ class Linear:
             absurd = moment.constant < 0 or (strict and moment.constant == 0)
             return ((constraint, Fraction(1)),) if absurd else None
         first = moment.parts[0][1]
-        variable = self._variable(tuple((name, factor / first) for name, factor in moment.parts))
-        edge = -moment.constant / first
-        infinitesimal = Fraction(int(strict))
-        if first > 0:
-            bound = _Bound((edge, infinitesimal), constraint, first)
-            return self._bound(False, variable, bound)
-        return self._bound(True, variable, _Bound((edge, -infinitesimal), constraint, -first))
+        variable = self._variable(tuple((name, _quotient(factor, first)) for name, factor in moment.parts))
+        edge, scale = _quotient(-moment.constant, first), _quotient(abs(first), 1)
+        infinitesimal = int(strict) if first > 0 else -int(strict)
+        return self._bound(first < 0, variable, _Bound((edge, infinitesimal), constraint, scale))
 
     def entails(self, moment: Moment, strict: bool = False) -> Witness | None:
         """Multipliers that show ``0 <= moment`` (``0 < moment``), or None where it does not follow.
@@ -89,12 +88,12 @@ class Linear:
     def _refuted(self, moment: Moment, strict: bool) -> bool:
         """Whether the values at hand, which satisfy all constraints, show that it does not follow."""
         self._repair()
-        total, small = moment.constant, _ZERO
-        for name, factor in moment.parts:
-            place = self.forms.get(((name, Fraction(1)),))
+        total, small = _quotient(moment.constant, 1), _quotient(0, 1)
+        for name, share in moment.parts:
+            place = self.forms.get(((name, 1),))
             if place is None:
                 return True  # nothing is known of it
-            value = self.values[place]
+            value, factor = self.values[place], _quotient(share, 1)
             total += factor * value[0]
             small += factor * value[1]
         return (total, small) <= _NOTHING if strict else (total, small) < _NOTHING
@@ -105,11 +104,11 @@ class Linear:
         """The variable that stands for a form, with its row where it is a sum of others."""
         if form in self.forms:
             return self.forms[form]
-        row: dict[int, Fraction] = {}
+        row: dict[int, _Number] = {}
         if len(form) > 1 or form[0][1] != 1:
             for name, factor in form:
-                part = self._variable(((name, Fraction(1)),))
-                add_to(row, self.rows.get(part, {part: Fraction(1)}), factor)
+                part = self._variable(((name, 1),))
+                add_to(row, self.rows.get(part, {part: 1}), factor)
         variable = self.count
         self.count += 1
         self.forms[form] = variable
@@ -118,10 +117,10 @@ class Linear:
             self.rows[variable] = row
         return variable
 
-    def _value_of(self, row: Mapping[int, Fraction]) -> _Value:
+    def _value_of(self, row: Mapping[int, _Number]) -> _Value:
         return (
-            sum((q * self.values[x][0] for x, q in row.items()), _ZERO),
-            sum((q * self.values[x][1] for x, q in row.items()), _ZERO),
+            sum(q * self.values[x][0] for x, q in row.items()),
+            sum(q * self.values[x][1] for x, q in row.items()),
         )
 
     def _forget(self, known: int) -> None:
@@ -145,7 +144,7 @@ class Linear:
         self.trail.append((is_upper, variable, before))
         bounds[variable] = bound
         if other is not None and (other.value > bound.value if is_upper else other.value < bound.value):
-            return ((bound.constraint, 1 / bound.scale), (other.constraint, 1 / other.scale))
+            return tuple((x.constraint, 1 / Fraction(x.scale)) for x in (bound, other))
         if variable not in self.rows:
             value = self.values[variable]
             if value > bound.value if is_upper else value < bound.value:
@@ -196,22 +195,22 @@ class Linear:
         value = self.values[variable]
         return bound is None or (value < bound.value if up else value > bound.value)
 
-    def _conflict(self, row: Mapping[int, Fraction], bound: _Bound, grow: bool) -> Witness:
-        shares = [(bound.constraint, 1 / bound.scale)]
+    def _conflict(self, row: Mapping[int, _Number], bound: _Bound, grow: bool) -> Witness:
+        shares = [(bound.constraint, 1 / Fraction(bound.scale))]
         for place, factor in row.items():
             held = self.upper[place] if (factor > 0) == grow else self.lower[place]
-            shares.append((held.constraint, abs(factor) / held.scale))
+            shares.append((held.constraint, Fraction(factor if factor > 0 else -factor, held.scale)))
         total: dict[int, Fraction] = {}
         for constraint, share in shares:
-            total[constraint] = total.get(constraint, _ZERO) + share
+            total[constraint] = total.get(constraint, Fraction(0)) + share
         return tuple(total.items())
 
     def _pivot(self, basic: int, place: int) -> None:
         """``place`` becomes a sum of the others, and ``basic`` is free to choose."""
         row = self.rows.pop(basic)
         factor = row.pop(place)
-        new = {x: -q / factor for x, q in row.items()}
-        new[basic] = 1 / factor
+        new = {x: _quotient(-q, factor) for x, q in row.items()}
+        new[basic] = _quotient(1, factor)
         for other in self.rows.values():
             share = other.pop(place, None)
             if share is not None:
@@ -219,10 +218,16 @@ class Linear:
         self.rows[place] = new
 
 
-def add_to(row: dict[int, Fraction], other: Mapping[int, Fraction], factor: Fraction) -> None:
+def _quotient(dividend: _Number, divisor: _Number) -> _Number:
+    """An ``int`` where it is a whole number."""
+    exact = Fraction(dividend, divisor) if divisor != 1 else dividend
+    return exact.numerator if exact.denominator == 1 else exact
+
+
+def add_to(row: dict[int, N], other: Mapping[int, N], factor: N) -> None:
     """Add a multiple of another row to a row; what becomes 0 is left out."""
     for place, share in other.items():
-        total = row.get(place, _ZERO) + factor * share
+        total = row.get(place, 0) + factor * share
         if total:
             row[place] = total
         else:

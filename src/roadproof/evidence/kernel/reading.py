@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from roadproof.evidence.atoms import ZONES, is_rigid
+from roadproof.evidence.atoms import ZONES, is_rigid, up_to_variables
 from roadproof.evidence.kernel import branch as b
 from roadproof.evidence.sites import Site, prefix_form
 from roadproof.evidence.times import ZERO, Moment, at, compared_times, moment_of
@@ -32,7 +32,7 @@ def _read(means: b.Means, branch: b.Branch, number: int, fact: b.At) -> b.Proof 
     closed = _close(means, branch, number, fact)
     if closed is not None:
         return closed
-    known = branch.known.setdefault(means.key(formula), [])
+    known = branch.known.setdefault(up_to_variables(formula), [])
     if any(s == sign and m == moment for s, m, _ in known):
         return None
     known.append((sign, moment, number))
@@ -40,7 +40,7 @@ def _read(means: b.Means, branch: b.Branch, number: int, fact: b.At) -> b.Proof 
 
 
 def _close(means: b.Means, branch: b.Branch, number: int, fact: b.At) -> b.Proof | None:
-    for sign, moment, other in branch.known.get(means.key(fact.formula), ()):
+    for sign, moment, other in branch.known.get(up_to_variables(fact.formula), ()):
         if sign == fact.sign:
             continue
         true, false = (number, other) if fact.sign else (other, number)
