@@ -40,7 +40,9 @@ class Disturbances:
 
     def choose(self, wanted: Bools) -> "Disturbances":
         """Those of some of the pairs."""
-        rows = np.repeat(wanted, self.pairs.samples)
+        if wanted.all():
+            return self
+        rows = np.flatnonzero(np.repeat(wanted, self.pairs.samples))
         pairs = self.pairs.choose(wanted)
         return Disturbances(
             self.meeting,
@@ -68,12 +70,13 @@ def find_disturbances(recording: Recording, questions: Questions) -> Disturbance
         truth = np.zeros((int(block.samples.max()), len(block)), bool)
         truth[frame[here] - block.low[within], within] = True
         answers = questions.danger.evaluate(_batch(recording, questions, block, truth), at="all").answers
-        inside = np.arange(len(truth))[:, None] < block.samples
-        frames = np.arange(len(truth))[:, None] + block.low
-        place = (np.arange(len(truth))[:, None] + offset[:-1][index])[inside]
-        next_safe[place] = _next(answers[SAFE].true, frames)[inside]
+        sample = np.arange(len(truth))[:, None]
+        inside = np.flatnonzero(sample < block.samples)
+        frames = sample + block.low
+        place = (sample + offset[:-1][index]).take(inside)
+        next_safe[place] = _next(answers[SAFE].true, frames).take(inside)
         for k, last in enumerate(last_danger):
-            last[place] = _last(answers[Danger(k)].true, frames)[inside]
+            last[place] = _last(answers[Danger(k)].true, frames).take(inside)
     start = next_safe[offset[:-1]]
     end = []
     for steps, danger in zip(questions.danger_steps, last_danger, strict=True):
@@ -98,7 +101,7 @@ def _violations(recording: Recording, questions: Questions, meeting: Pairs) -> t
         rows = dict(zip(PAIR, (moments.first[None], moments.second[None]), strict=True))
         lengths = np.ones(len(moments), np.int64)
         batch = gather_rows(recording, vehicles, rows, lengths, questions.violation.signals)
-        true = questions.violation.evaluate(batch).answers[VIOLATION].true
+        true = np.flatnonzero(questions.violation.evaluate(batch).answers[VIOLATION].true)
         pairs.append(moments.pair[true])
         frames.append(moments.frame[true])
     return np.concatenate(pairs), np.concatenate(frames)

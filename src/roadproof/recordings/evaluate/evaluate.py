@@ -241,7 +241,6 @@ def _ask_all(
     tally: _Tally,
 ) -> Iterator[Match]:
     """For each minDanger and question the traces that satisfy it, each cut at its own end."""
-    ids = recording.vehicle_id
     last = np.max(ends, axis=0)
     signals = [signal for monitor in monitors for signal in monitor.signals]
     batch = gather(recording, vehicles, start, last, signals, lanes, questions.lane_atoms)
@@ -261,13 +260,22 @@ def _ask_all(
                 questions.lane_atoms,
                 questions.settings.convention,
             )
-            for p, unsure in zip(hits.tolist(), uncertain(recording, there).tolist(), strict=True):
-                sv, pov, *more = (int(ids[index[p]]) for index in vehicles.values())
-                if asked.sv == "second":
-                    sv, pov = pov, sv
-                place = more[0] if more else None, _lane_name(recording, lanes[asked.lane][p])
-                frames = int(start[p]), int(end[p])
-                yield Match(sv, pov, *place, *frames, k, asked.set_name, asked.number, unsure)
+            yield from _matches_of(recording, asked, there, k)
+
+
+def _matches_of(
+    recording: Recording, asked: MonitorKey, there: TraceQuestion, min_danger: int
+) -> Iterator[Match]:
+    """A match for each trace."""
+    sv, pov, *more = (recording.vehicle_id[index].tolist() for index in there.vehicles.values())
+    if asked.sv == "second":
+        sv, pov = pov, sv
+    (pov2,) = more or [[None] * len(sv)]
+    lanes = (_lane_name(recording, lane) for lane in there.lanes[asked.lane].tolist())
+    frames = there.low.tolist(), there.high.tolist()
+    unsure = uncertain(recording, there).tolist()
+    for a, b, c, lane, low, high, doubt in zip(sv, pov, pov2, lanes, *frames, unsure, strict=True):
+        yield Match(a, b, c, lane, low, high, min_danger, asked.set_name, asked.number, doubt)
 
 
 def _lane_at(recording: Recording, vehicle: Integers, frame: Integers) -> Integers:

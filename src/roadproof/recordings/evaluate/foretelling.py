@@ -28,6 +28,8 @@ _Key: TypeAlias = tuple[int, int, int | None, int, int, int]
 
 def foretell(recording: Recording, questions: Questions, matches: Sequence[Match]) -> list[Match]:
     """The matches in their order, those of which models speak with ``begun`` and ``labels``."""
+    if not questions.courses:
+        return [*matches]
     found: dict[tuple[int, _Key], tuple[int | None, tuple[str, ...]]] = {}
     place = {number: k for k, number in enumerate(recording.vehicle_id.tolist())}
     of = {number: k for k, course in enumerate(questions.courses) for number in course.scenarios}

@@ -17,7 +17,7 @@ from roadproof.recordings.formats.commonroad_obstacles import Obstacle, Obstacle
 from roadproof.recordings.formats.lanelets import network_of
 from roadproof.recordings.formats.measured_roads import MeasuredTraffic, place_traffic
 from roadproof.recordings.formats.neighbours import describe_overlaps
-from roadproof.recordings.formats.plausible import SHARE, check
+from roadproof.recordings.formats.plausible import SHARE, ContradictionChecks
 from roadproof.recordings.formats.recording import Bools, Floats, Integers, Recording, offsets, with_notes
 from roadproof.recordings.formats.reliable import contradicts_motion, named, reliable
 from roadproof.recordings.formats.repeats import moments_of
@@ -51,7 +51,7 @@ def read_commonroad(path: Path, strict: bool = True, truck_length: float = 7.0) 
     if _is_made(root):
         traffic = replace(traffic, moments=np.zeros_like(traffic.moments))
     whole = place_traffic(traffic, network)
-    recording = reliable(whole, strict, partial(_check_plausible, path))
+    recording = reliable(whole, strict, partial(_check_plausible, path, whole))
     return with_notes(recording, (*_say_consistent(traffic, whole, recording), *_describe(recording)))
 
 
@@ -133,16 +133,12 @@ def _change(drift: Floats, start: Integers, rate: int) -> Floats:
     return step
 
 
-def _check_plausible(path: Path, recording: Recording, rows: Integers) -> Iterator[str]:
-    """Notes on what the file contradicts itself in. Raises ``InputError`` where that is too much.
-
-    Obstacles and time steps say where that is, so ``rows`` of the file do not matter.
-    """
-    checks, ids = check(recording), recording.vehicle_id[recording.row_vehicle]
-    found = [
-        (f"{ids[x.row]}, time step {recording.row_frame[x.row]}: {x.told}", x.refused)
-        for x in checks.doubts()
-    ]
+def _check_plausible(
+    path: Path, whole: Recording, checks: ContradictionChecks, rows: Integers
+) -> Iterator[str]:
+    """Notes on what the file contradicts itself in. Raises ``InputError`` where that is too much."""
+    ids, frames = whole.vehicle_id[whole.row_vehicle][rows], whole.row_frame[rows]
+    found = [(f"{ids[x.row]}, time step {frames[x.row]}: {x.told}", x.refused) for x in checks.doubts()]
     off = checks.off_road()
     if off is not None:
         found.append((f"{ids[off.row]}: on no lanelet at any time, like {off.count} obstacles", off.refused))

@@ -18,7 +18,7 @@ from roadproof.recordings.formats.plausible import (
     LARGEST_SIZE,
     LARGEST_SPEED,
     OFF_CENTRE,
-    check,
+    ContradictionChecks,
 )
 from roadproof.recordings.formats.recording import (
     Bools,
@@ -159,7 +159,7 @@ def _check_sight(meta: Table, tracks: Table) -> tuple[str, ...]:
     return (f"{tracks.path.name}, {told}",)
 
 
-def _check_plausible(whole: Table, recording: Recording, rows: Integers) -> Iterator[str]:
+def _check_plausible(whole: Table, checks: ContradictionChecks, rows: Integers) -> Iterator[str]:
     """Notes on what the recording contradicts itself in; each vehicle must be at least once on a lane.
 
     Raises ``InputError`` where that is too much.
@@ -174,7 +174,7 @@ def _check_plausible(whole: Table, recording: Recording, rows: Integers) -> Iter
         return f"vehicle id={tracks['id'][row]}, column y={tracks['y'][row]}"
 
     lanes, advice = "lane of its direction", "the markings do not fit"
-    return contradictions(tracks.path, check(recording), at, vehicle_at, lanes, advice)
+    return contradictions(tracks.path, checks, at, vehicle_at, lanes, advice)
 
 
 def highd_files(folder: Path, name: str) -> Files:

@@ -13,8 +13,13 @@ import numpy as np
 
 from roadproof.recordings.formats.contradictions import contradictions, seldom
 from roadproof.recordings.formats.measured_roads import MeasuredTraffic
-from roadproof.recordings.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED, check
-from roadproof.recordings.formats.recording import Integers, Recording
+from roadproof.recordings.formats.plausible import (
+    LARGEST_ACCELERATION,
+    LARGEST_SIZE,
+    LARGEST_SPEED,
+    ContradictionChecks,
+)
+from roadproof.recordings.formats.recording import Integers
 from roadproof.recordings.formats.table import Kind, Table, kinds_of, read_named
 from roadproof.recordings.formats.tracks import cells_of, in_order, match_vehicles, rate_of, vehicles_by_id
 
@@ -106,7 +111,7 @@ def traffic_of(
     )
 
 
-def check_plausible(whole: Table, recording: Recording, rows: Integers) -> Iterator[str]:
+def check_plausible(whole: Table, checks: ContradictionChecks, rows: Integers) -> Iterator[str]:
     """Notes on what the file contradicts itself in. Raises ``InputError`` where that is too much."""
     tracks = whole if len(rows) == whole.rows else whole.at(rows)
 
@@ -114,4 +119,4 @@ def check_plausible(whole: Table, recording: Recording, rows: Integers) -> Itera
         return f"{tracks.cell(row, 'frame')}, trackId={tracks['trackId'][row]}"
 
     vehicle_at = partial(tracks.cell, column="trackId")
-    return contradictions(tracks.path, check(recording), at, vehicle_at, "lanelet of the map")
+    return contradictions(tracks.path, checks, at, vehicle_at, "lanelet of the map")

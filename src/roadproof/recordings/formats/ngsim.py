@@ -21,7 +21,12 @@ import numpy as np
 
 from roadproof.recordings.formats.contradictions import contradictions, seldom
 from roadproof.recordings.formats.ngsim_lanes import FOOT, FREEWAYS, measured_road
-from roadproof.recordings.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED, check
+from roadproof.recordings.formats.plausible import (
+    LARGEST_ACCELERATION,
+    LARGEST_SIZE,
+    LARGEST_SPEED,
+    ContradictionChecks,
+)
 from roadproof.recordings.formats.recording import Bools, Floats, Integers, Recording, with_notes
 from roadproof.recordings.formats.reliable import rate_of_change, reliable
 from roadproof.recordings.formats.source import Files, Format, find_files, first_line
@@ -259,7 +264,7 @@ def _changes(values: Floats, start: Integers) -> Floats:
     return np.concatenate([rate_of_change(values[a:b], RATE) for a, b in pairwise(start.tolist())])
 
 
-def _check_plausible(whole: Table, recording: Recording, rows: Integers) -> Iterator[str]:
+def _check_plausible(whole: Table, checks: ContradictionChecks, rows: Integers) -> Iterator[str]:
     """Notes on what the file contradicts itself in. Raises ``InputError`` where that is too much."""
     table = whole if len(rows) == whole.rows else whole.at(rows)
 
@@ -267,7 +272,7 @@ def _check_plausible(whole: Table, recording: Recording, rows: Integers) -> Iter
         return f"{table.cell(row, _SIGNALS[signal])} of vehicle {table['track'][row]}"
 
     vehicle_at = partial(table.cell, column="Vehicle_ID")
-    return contradictions(table.path, check(recording), at, vehicle_at, "lane")
+    return contradictions(table.path, checks, at, vehicle_at, "lane")
 
 
 def _check_lanes(rows: Table, recording: Recording) -> Iterator[str]:

@@ -21,7 +21,12 @@ from roadproof.errors import InputError
 from roadproof.reasons import Why
 from roadproof.recordings.formats.contradictions import contradictions
 from roadproof.recordings.formats.measured_roads import MeasuredTraffic
-from roadproof.recordings.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED, check
+from roadproof.recordings.formats.plausible import (
+    LARGEST_ACCELERATION,
+    LARGEST_SIZE,
+    LARGEST_SPEED,
+    ContradictionChecks,
+)
 from roadproof.recordings.formats.protobuf import WireError, doubles_in, fields_of, integer_in, message_in
 from roadproof.recordings.formats.recording import Floats, Integers, Recording
 from roadproof.recordings.formats.reliable import left_out_note, named, rate_of_change, reliable
@@ -258,14 +263,14 @@ def _traffic(
 
 
 def _check_plausible(
-    path: Path, ids: Integers, frame: Integers, recording: Recording, rows: Integers
+    path: Path, ids: Integers, frame: Integers, checks: ContradictionChecks, rows: Integers
 ) -> Iterator[str]:
     """Notes on what the trace contradicts itself in. Raises ``InputError`` where that is too much."""
 
     def at(row: int, signal: str) -> str:
         return f"message {frame[rows[row]] + 1}, moving_object {ids[rows[row]]}, {signal} on the road"
 
-    return contradictions(path, check(recording), at, lambda row: at(row, "place"), "lanelet of the road")
+    return contradictions(path, checks, at, lambda row: at(row, "place"), "lanelet of the road")
 
 
 def _find(path: Path, road: str | None = None) -> dict[str, Files]:

@@ -21,6 +21,8 @@ class _Columns:
 
     def choose(self, wanted: Bools | Integers | slice) -> Self:
         """The rows at ``wanted``: a mask, indices or a slice."""
+        if isinstance(wanted, np.ndarray) and wanted.dtype == np.bool_:
+            wanted = np.flatnonzero(wanted)  # several times as fast as the mask
         return type(self)(*(column[wanted] for column in vars(self).values()))
 
 

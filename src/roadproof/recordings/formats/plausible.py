@@ -290,7 +290,7 @@ class _Places:
         )
         for way in np.unique(recording.direction).tolist():
             ours = (direction == way) & (recording.lane >= 0)
-            self.beside.setdefault(way, Median(MOST_SAMPLES)).add(beside[ours])
+            self.beside.setdefault(way, Median(MOST_SAMPLES)).add(beside[np.flatnonzero(ours)])
             left, right = ours & (beside > OFF_CENTRE[0]), ours & (beside < -OFF_CENTRE[0])
             off = left | right
             if off.any():

@@ -71,30 +71,33 @@ def named(vehicles: Sequence[object]) -> str:
 
 
 def reliable(
-    recording: Recording, strict: bool, doubts: Callable[[Recording, Integers], Iterable[str]]
+    recording: Recording, strict: bool, doubts: Callable[[ContradictionChecks, Integers], Iterable[str]]
 ) -> Recording:
     """The part of a recording that stands, with notes on what was left out and on ``doubts``.
 
-    ``doubts`` gets a recording and the rows of the whole that it has, and gives notes; it raises
-    ``InputError`` where the recording contradicts itself too much. ``strict``: leave nothing out.
+    ``doubts`` gets the checks of a part and its rows of the whole, and gives notes; it raises
+    ``InputError`` where the part contradicts itself too much. ``strict``: leave nothing out.
     """
     rows = np.arange(len(recording.s))
     if strict:
-        return with_notes(recording, doubts(recording, rows))
+        return with_notes(recording, doubts(check(recording), rows))
     found = selection_of(lambda: iter((recording,)))
     out = len(found.lost)
     if out > MOST_LEFT_OUT * recording.vehicles:
         return with_notes(recording, _rejecting(recording, rows, out, doubts))
     kept = np.repeat(~np.isin(recording.vehicle_id, found.lost), np.diff(recording.start))
     part = with_notes(found.of(recording), found.notes)
-    return with_notes(part, doubts(part, rows[kept]))
+    return with_notes(part, doubts(found.checks or check(part), rows[kept]))
 
 
 def _rejecting(
-    recording: Recording, rows: Integers, out: int, doubts: Callable[[Recording, Integers], Iterable[str]]
+    recording: Recording,
+    rows: Integers,
+    out: int,
+    doubts: Callable[[ContradictionChecks, Integers], Iterable[str]],
 ) -> list[str]:
     try:
-        return [*doubts(recording, rows)]
+        return [*doubts(check(recording), rows)]
     except InputError as error:
         raise too_many(error, out, recording.vehicles) from None
 
@@ -110,10 +113,11 @@ def too_many(error: InputError, out: int, of: int) -> InputError:
 class Selection:
     """What a recording is read without. ``lost``: ids; ``repaired``: ids by the signal that is computed.
 
-    ``vehicles``: how many there are.
+    ``vehicles``: how many there are; ``checks``: those of the part that it is read as, where they were made.
     """
 
     vehicles: int = 0
+    checks: ContradictionChecks | None = None
     lost: list[int] = field(default_factory=list)
     found: list[LeftOut] = field(default_factory=list)
     repaired: dict[SignalName, list[int]] = field(default_factory=dict)
@@ -147,7 +151,7 @@ def selection_of(parts: Callable[[], Iterator[Recording]]) -> Selection:
             count += part.vehicles
             checks = checks or ContradictionChecks(part.rate, part.lanes)
             checks.add(part)
-        chosen.vehicles = chosen.vehicles or count
+        chosen.vehicles, chosen.checks = chosen.vehicles or count, checks
         if checks is None or not count or stands(checks):
             return chosen
         rules = {x.rule: x for x in checks.doubts() if x.refused}

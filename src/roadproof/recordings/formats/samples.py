@@ -20,7 +20,13 @@ from roadproof.errors import InputError
 from roadproof.library.roles import vehicle_order
 from roadproof.reasons import Why
 from roadproof.recordings.formats.contradictions import contradictions
-from roadproof.recordings.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED, check
+from roadproof.recordings.formats.plausible import (
+    LARGEST_ACCELERATION,
+    LARGEST_SIZE,
+    LARGEST_SPEED,
+    ContradictionChecks,
+    check,
+)
 from roadproof.recordings.formats.recording import Floats, Integers, Recording, own_numbers, with_notes
 from roadproof.recordings.formats.reliable import MOST_LEFT_OUT, left_out_note, reliable
 from roadproof.recordings.formats.source import first_line
@@ -239,7 +245,7 @@ def doubts_in(columns: Table, road: StraightRoad) -> tuple[str, ...]:
             "accelerations were not compared with each other",
         )
     recording = vehicles_of(table, ids, clock, road, columns.path.stem)
-    return tuple(_check_plausible(table, recording, np.arange(table.rows)))
+    return tuple(_check_plausible(table, check(recording), np.arange(table.rows)))
 
 
 def vehicles_of(table: Table, ids: Integers, clock: "Clock", road: StraightRoad, name: str) -> Recording:
@@ -353,7 +359,7 @@ def _check_cells(table: Table, start: Integers) -> None:
     table.require(ends, "s", "a vehicle never ends further back than its length from where it began")
 
 
-def _check_plausible(whole: Table, recording: Recording, rows: Integers) -> Iterator[str]:
+def _check_plausible(whole: Table, checks: ContradictionChecks, rows: Integers) -> Iterator[str]:
     """Notes on what the file contradicts itself in. Raises ``InputError`` where that is too much."""
     table = whole if len(rows) == whole.rows else whole.at(rows)
 
@@ -361,4 +367,4 @@ def _check_plausible(whole: Table, recording: Recording, rows: Integers) -> Iter
         return f"{table.cell(row, signal)} of vehicle {table['vehicle'][row]}"
 
     vehicle_at = partial(table.cell, column="vehicle")
-    return contradictions(table.path, check(recording), at, vehicle_at, "lanelet of the road")
+    return contradictions(table.path, checks, at, vehicle_at, "lanelet of the road")

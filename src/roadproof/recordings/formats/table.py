@@ -325,7 +325,12 @@ def _read_fast(
     full |= {name: full[name].fill_null(math.nan if wanted[name] == "number" else -1) for name in gaps}
     if frame.height != rows or any(values.null_count() for values in full.values()):
         return None
-    return {name: values.to_numpy() for name, values in full.items()}
+    return {name: _joined(values.get_chunks()) for name, values in full.items()}
+
+
+def _joined(chunks: "Sequence[polars.Series]") -> Column:
+    """The values of all chunks, in memory that is kept for the next file, unlike that of polars."""
+    return np.concatenate([chunk.to_numpy() for chunk in chunks])
 
 
 def _blame(

@@ -55,10 +55,13 @@ def observe_truth(
     """The packed truth of every comparison at every sample of ``batch``; ``program`` is that of them."""
     words = [np.zeros((batch.samples, words_for(batch.traces)), dtype="<u8") for _ in comparisons]
     blocks = list(_blocks(batch))
-    if comparisons:
+    if comparisons and threads > 1:
         with ThreadPoolExecutor(threads) as pool:
             for _ in pool.map(lambda block: _observe_block(program, batch, words, *block), blocks):
                 pass
+    elif comparisons:
+        for block in blocks:
+            _observe_block(program, batch, words, *block)
     return dict(zip(comparisons, words, strict=True))
 
 

@@ -28,6 +28,7 @@ class View(Enum):
     STRONG = "strong"
     WEAK = "weak"
     CLIP = "clip"
+    __hash__ = object.__hash__  # of an enumeration it is slow, and asked for at each look-up
 
 
 OPPOSITE = {View.STRONG: View.WEAK, View.WEAK: View.STRONG, View.CLIP: View.CLIP}
@@ -66,12 +67,13 @@ class Evaluation:
 
     def value(self, formula: Formula, view: View) -> Array:
         """Values of ``formula`` at every sample; those after the end of a trace mean nothing."""
-        if formula in self.leaves:
-            return self.leaves[formula]
-        key = (formula, View.CLIP if formula in self.states else view)
-        if key not in self.known:
-            self.known[key] = self._value(formula, view)
-        return self.known[key]
+        found = self.leaves.get(formula)
+        if found is None:
+            key = (formula, View.CLIP if formula in self.states else view)
+            found = self.known.get(key)
+            if found is None:
+                found = self.known[key] = self._value(formula, view)
+        return found
 
     def _value(self, formula: Formula, view: View) -> Array:
         match formula:
@@ -165,8 +167,13 @@ def join_shifted(operation: np.ufunc, values: Array, other: Array, steps: int, p
 
 
 def extremum(operation: np.ufunc, values: Array, low: int, high: int | None, padding: Any) -> Array:
-    """Join or meet of rows k+low … k+high for every row k, in log(high-low) doubling steps."""
+    """Join or meet of rows k+low … k+high for every row k, in log(high-low) doubling steps.
+
+    Where windows reach beyond the last row, all rows from k on and the padding are joined.
+    """
     width, wanted = 1, _samples_in_window(low, high, len(values))
+    if wanted > len(values):
+        return shift(operation(operation.accumulate(values[::-1])[::-1], padding), low, padding)
     window = values
     while width < wanted:
         step = min(width, wanted - width)
@@ -196,5 +203,11 @@ def until(lattice: Lattice, held: Array, reached: Array, low: int, high: int | N
 
 
 def _samples_in_window(low: int, high: int | None, samples: int) -> int:
-    """Of an interval in steps; more than ``samples`` + 1, the padding included, change nothing."""
-    return samples + 1 if high is None else min(high - low, samples) + 1
+    """Of an interval in steps.
+
+    More than ``samples`` + 1, the padding included, change nothing: then it is the next power of two, which
+    doubling reaches without a remainder.
+    """
+    if high is None or high - low >= samples:
+        return 1 << samples.bit_length()
+    return high - low + 1
