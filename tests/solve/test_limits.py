@@ -1,6 +1,7 @@
 """A solver that reaches a limit knows nothing: no answer of it is a no, nor a yes that time has made."""
 
 import random
+from dataclasses import replace
 from fractions import Fraction
 
 import cvxpy
@@ -19,6 +20,7 @@ from roadproof.engines.encode.problem import (
 )
 from roadproof.engines.solve import exact, milp, smt
 from roadproof.engines.solve.exact import solve_exactly
+from roadproof.engines.solve.highs import Answer
 from roadproof.engines.solve.milp import box_of, solve_mixed
 from roadproof.engines.solve.smt import Session, ask, solve
 from roadproof.runtime import budget
@@ -158,7 +160,7 @@ def test_a_mixed_integer_search_cut_off_by_the_clock_says_so():
 
 @pytest.mark.parametrize("status", NO_ANSWERS)
 def test_no_status_but_infeasible_is_a_no(monkeypatch, status):
-    monkeypatch.setattr(milp, "_solve", lambda program, known, allowed: status)
+    monkeypatch.setattr(milp, "_solve", lambda program, known, allowed: Answer(status))
     problem = split()
     meter = Effort(3).meter()
     assert solve_mixed(problem, box_of(problem), meter=meter) == Solution("unknown")
@@ -170,9 +172,7 @@ def test_what_is_no_solution_is_not_handed_out(monkeypatch, status):
     """HiGHS hands out a vector of zeros where it reaches a limit before it has found any."""
 
     def stop(program, known, allowed):
-        for variable in program.variables():
-            variable.value = 0 * variable.bounds[0]
-        return status
+        return Answer(status, 0 * program.box[:, 0])
 
     monkeypatch.setattr(milp, "_solve", stop)
     problem = split()
@@ -189,9 +189,10 @@ def test_what_was_found_when_the_clock_ended_the_search_is_not_used(monkeypatch)
 
     def solve_until(status, end):
         def run(program, known, allowed):
-            assert true_solve(program, known, allowed) == "optimal"
+            answer = true_solve(program, known, allowed)
+            assert answer.status == "optimal"
             now[0] = end
-            return status
+            return replace(answer, status=status)
 
         return run
 

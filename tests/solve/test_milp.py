@@ -150,7 +150,7 @@ def test_unknown_and_missing_solvers_are_told_apart(monkeypatch):
     with pytest.raises(UsageError, match="choose one of cbc"):
         find_solver("nothing")
     monkeypatch.setattr(milp, "find_spec", lambda name: None)
-    with pytest.raises(MissingSolverError, match="pip install cvxpy, or choose the engine smt"):
+    with pytest.raises(MissingSolverError, match="pip install highspy, or choose the engine smt"):
         find_solver("highs")
 
 

@@ -1,8 +1,8 @@
-"""Mixed-integer solvers through cvxpy: one sparse matrix constraint, one-sided big-M.
+"""Mixed-integer solvers, HiGHS and through cvxpy others: one sparse matrix constraint, one-sided big-M.
 
 A disjunction gets one binary column per part, and a chosen part must hold; nothing follows from a
 part that is not chosen, so no condition is needed in the other direction. Each big-M is the bound of
-its own condition on the box. ``cvxpy`` is imported here and in ``solve.smooth`` only.
+its own condition on the box. ``cvxpy`` is imported here only.
 """
 
 import gc
@@ -29,7 +29,9 @@ from roadproof.engines.encode.problem import (
     nodes,
     replace_leaves,
 )
+from roadproof.engines.solve import highs
 from roadproof.engines.solve.bounds import Affine, Bound, Box, Side, Triplets, approximate, loosened
+from roadproof.engines.solve.highs import Answer, Program
 from roadproof.errors import MissingSolverError, UsageError
 from roadproof.runtime.budget import Budget, Effort
 
@@ -60,16 +62,19 @@ class Limits:
 
 @dataclass(frozen=True)
 class SolverFacts:
-    """What we know of a solver: cvxpy's name for it, the module it needs, its options."""
+    """What we know of a solver: cvxpy's name for it, the module it needs, its options.
 
-    cvxpy_name: str
+    The name is None where the solver is asked without cvxpy.
+    """
+
+    cvxpy_name: str | None
     module: str
     options: Callable[[Limits], Mapping[str, object]]
 
 
 SOLVERS: Mapping[str, SolverFacts] = {
     "highs": SolverFacts(
-        "HIGHS",
+        None,
         "highspy",
         lambda limits: {
             "mip_max_nodes": limits.nodes,
@@ -140,7 +145,8 @@ def find_solver(name: str) -> SolverFacts:
     """Raises ``UsageError`` for an unknown name, ``MissingSolverError`` where it is not installed."""
     if name not in SOLVERS:
         raise UsageError(f"solver={name}: unknown solver; choose one of {', '.join(sorted(SOLVERS))}")
-    for module in ("cvxpy", SOLVERS[name].module):
+    needed = ["cvxpy"] if SOLVERS[name].cvxpy_name is not None else []
+    for module in (*needed, SOLVERS[name].module):
         if find_spec(module) is None:
             raise MissingSolverError(
                 f"solver={name} needs the module {module}, which is missing here: pip install {module}, or "
@@ -241,62 +247,66 @@ class _Tableau:
 
 
 def _run(tableau: _Tableau, wanted: int, known: SolverFacts, meter: Budget) -> Solution:
-    cvxpy = modelling()
     from scipy.sparse import csr_array
 
-    count = len(tableau.box)
     entries = tableau.entries
-    matrix = csr_array((entries.values, (entries.rows, entries.columns)), shape=(len(tableau.high), count))
-    low, high = np.array(entries.right), np.array(tableau.high)
-    equal = low == high
-    above, below = ~equal & np.isfinite(low), ~equal & np.isfinite(high)
-    limits = np.array(tableau.box)
-    boolean = [np.array(tableau.binaries)] if tableau.binaries else False
-    x = cvxpy.Variable(count, bounds=[limits[:, 0], limits[:, 1]], boolean=boolean)
-    constraints = [matrix[equal] @ x == low[equal]] if equal.any() else []
-    if above.any():
-        constraints.append(matrix[above] @ x >= low[above])
-    if below.any():
-        constraints.append(matrix[below] @ x <= high[below])
-    program = cvxpy.Problem(cvxpy.Minimize(np.zeros(count) @ x), constraints)  # any solution will do
+    shape = len(tableau.high), len(tableau.box)
+    matrix = csr_array((entries.values, (entries.rows, entries.columns)), shape=shape)
+    low, high, box = np.array(entries.right), np.array(tableau.high), np.array(tableau.box)
     allowed = Limits(meter.left(), meter.seconds_left(), GAP)
-    status = _solve(program, known, allowed)
-    meter.spend(_spent(program.solver_stats, allowed, status))
-    if status in INFEASIBLE:
+    answer = _solve(Program(matrix, low, high, box, tableau.binaries), known, allowed)
+    meter.spend(_spent(answer, allowed))
+    if answer.status in INFEASIBLE:
         return Solution("infeasible")
-    if status != "optimal":
+    if answer.status != "optimal":
         # What is there when the clock ends the search depends on the machine, so nobody may see it.
         meter.seconds_left()
-    if x.value is None or not _fits(x.value, limits, matrix, low, high):
+    values = answer.values
+    if values is None or not _fits(values, box, matrix, low, high):
         return Solution("unknown")
-    return Solution("found", tuple(float(v) for v in x.value[:wanted]))
+    return Solution("found", tuple(float(v) for v in values[:wanted]))
 
 
-def _solve(program: Any, known: SolverFacts, allowed: Limits) -> str:
-    """cvxpy's status: only those of ``INFEASIBLE`` say that there is no solution; "" is any failure."""
+def _solve(program: Program, known: SolverFacts, allowed: Limits) -> Answer:
+    """A solver's answer: only the statuses of ``INFEASIBLE`` say that there is no solution."""
+    options = known.options(allowed)
+    if known.cvxpy_name is None:
+        return highs.solve(program, options)
+    return _through_cvxpy(program, known.cvxpy_name, options)
+
+
+def _through_cvxpy(program: Program, solver: str, options: Mapping[str, object]) -> Answer:
     cvxpy = modelling()
+    box, count = program.box, len(program.box)
+    boolean = [np.array(program.binaries)] if program.binaries else False
+    x = cvxpy.Variable(count, bounds=[box[:, 0], box[:, 1]], boolean=boolean)
+    equal, above, below = program.equal, program.above, program.below
+    constraints = [program.matrix[equal] @ x == program.low[equal]] if equal.any() else []
+    if above.any():
+        constraints.append(program.matrix[above] @ x >= program.low[above])
+    if below.any():
+        constraints.append(program.matrix[below] @ x <= program.high[below])
+    asked = cvxpy.Problem(cvxpy.Minimize(np.zeros(count) @ x), constraints)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # an answer that may be inaccurate is judged anyway
-            program.solve(solver=known.cvxpy_name, **known.options(allowed))
+            asked.solve(solver=solver, **options)
     except cvxpy.error.SolverError:
-        return ""
+        return Answer("")
     except ValueError as error:
         if "Cannot unpack invalid solution" in str(error):  # a status of the solver that cvxpy does not know
-            return ""
+            return Answer("")
         raise
-    return str(program.status)
+    stats = asked.solver_stats.extra_stats if asked.solver_stats is not None else None
+    nodes = int(stats.get("mip_node_count") or 0) if isinstance(stats, dict) else 0
+    return Answer(str(asked.status), x.value, nodes)
 
 
-def _spent(stats: Any, allowed: Limits, status: str) -> float:
+def _spent(answer: Answer, allowed: Limits) -> float:
     """The units that a solver has worked; all that were allowed where it came to no end."""
-    if status != "optimal" and status not in INFEASIBLE:
+    if answer.status != "optimal" and answer.status not in INFEASIBLE:
         return allowed.units
-    found = stats.extra_stats if stats is not None else None
-    if isinstance(found, dict):
-        return float((found.get("mip_node_count") or 0) / NODES_A_UNIT)
-    iterations = getattr(found, "simplex_iteration_count", 0) / ITERATIONS_A_UNIT
-    return float(max(iterations, getattr(found, "mip_node_count", 0) / NODES_A_UNIT))
+    return max(answer.iterations / ITERATIONS_A_UNIT, answer.nodes / NODES_A_UNIT)
 
 
 def _fits(x: Any, limits: Any, matrix: Any, low: Any, high: Any) -> bool:
@@ -308,12 +318,11 @@ def _fits(x: Any, limits: Any, matrix: Any, low: Any, high: Any) -> bool:
 
 
 def prepare() -> None:
-    """Import cvxpy and HiGHS now rather than at the first question, for processes about to be forked."""
-    if find_spec("cvxpy") is not None:
-        modelling()
+    """Import HiGHS and what shapes drives now, not at the first question, for processes to be forked."""
     usual, *_ = SOLVERS.values()
-    if find_spec(usual.module) is not None:
-        import_module(usual.module)
+    for module in (usual.module, "scipy.sparse", "clarabel"):
+        if find_spec(module) is not None:
+            import_module(module)
 
 
 def modelling() -> Any:
