@@ -31,7 +31,7 @@ from tables import read_table
 
 RATE = 1000
 FULL = 0.85 * stepping.G
-CASES = 100_000
+CASES = 20_000
 JOINED = ("replace", "max", "add")
 CHANGED = ({}, {"cc_ramp": Fraction(2)}, {"aeb_braking": Fraction(14), "cc_ramp": Fraction(3, 2)})
 

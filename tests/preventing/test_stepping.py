@@ -26,7 +26,7 @@ from roadproof.evidence.judged import judge_file
 from roadproof.frontends.cli.main import main
 
 RATE = 1000
-CASES = 100_000
+CASES = 20_000
 RAMP_AND_ROUNDING = 1e-6
 
 
