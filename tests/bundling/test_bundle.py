@@ -142,7 +142,9 @@ def unpacked(archive: Path, folder: Path) -> Path:
 
 
 def ask(folder: Path) -> subprocess.CompletedProcess[str]:
-    empty = {"PATH": "/usr/bin:/bin", "HOME": str(folder)}
+    """Run the script of a bundle without this environment, but for compiled theories of Coq."""
+    kept = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    empty = {"PATH": "/usr/bin:/bin", "HOME": str(folder), "XDG_CACHE_HOME": kept}
     command = ["sh", "check.sh", sys.executable]
     return subprocess.run(command, cwd=folder, env=empty, capture_output=True, text=True, check=False)
 

@@ -10,7 +10,7 @@ import os
 import pickle
 import stat
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TypeVar
 
@@ -36,6 +36,19 @@ def private_folder(name: str) -> Path | None:
     except OSError:
         return None
     return home if is_ours(home) and is_ours(home.parent) else None
+
+
+@contextlib.contextmanager
+def one_at_a_time(folder: Path) -> Iterator[None]:
+    """Wait until no other process works in a folder of the cache; the system lets go of it with us."""
+    with contextlib.ExitStack() as held:
+        with contextlib.suppress(ImportError, OSError):  # where there are no locks, two may do the same work
+            import fcntl
+
+            handle = os.open(folder, os.O_RDONLY)
+            held.callback(os.close, handle)
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
 
 
 def is_ours(path: Path) -> bool:

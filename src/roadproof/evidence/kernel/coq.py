@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from roadproof.errors import MissingSolverError, RoadproofError
-from roadproof.runtime.cache import is_ours, private_folder
+from roadproof.runtime.cache import is_ours, one_at_a_time, private_folder
 from roadproof.runtime.package_data import shipped
 
 THEORIES = (
@@ -33,6 +33,7 @@ THEORIES = (
 APT = "apt-get install -y coq"
 PATIENCE = 1800.0  # seconds for one file; a backstop only
 SUMS = "sums.json"
+COMPLAINTS = "complaints.json"  # warnings of each theory
 _LOADED = (".vo", ".vio")  # Coq takes the newer one
 _KEPT = ("PATH", "HOME", "TMPDIR", "USER", "LOGNAME")
 
@@ -102,29 +103,35 @@ def ready() -> Iterator[Coq]:
         return
     place = home / key[:32]
     if not _is_sound(place):
-        making = Path(tempfile.mkdtemp(prefix=".making-", dir=home))
-        try:
-            _compile(coqc, texts, making)
-            if place.exists():
-                shutil.rmtree(place, ignore_errors=True)
-            try:
-                os.rename(making, place)
-            except OSError:
-                if not _is_sound(place):  # another run was faster; otherwise it cannot be kept
-                    yield Coq(coqc, version, making)
-                    return
-        finally:
-            shutil.rmtree(making, ignore_errors=True)
+        with one_at_a_time(home):
+            if not _is_sound(place):
+                _compile_into(place, coqc, texts)
     yield Coq(coqc, version, place)
+
+
+def _compile_into(place: Path, coqc: str, texts: Mapping[str, bytes]) -> None:
+    """Compile into a folder of the cache, which is there whole or not at all."""
+    making = Path(tempfile.mkdtemp(prefix=".making-", dir=place.parent))
+    try:
+        _compile(coqc, texts, making)
+        shutil.rmtree(place, ignore_errors=True)
+        os.rename(making, place)
+    except OSError as error:
+        raise RoadproofError(f"cannot write {place}: {error.strerror}") from None
+    finally:
+        shutil.rmtree(making, ignore_errors=True)
 
 
 def _compile(coqc: str, texts: Mapping[str, bytes], folder: Path) -> None:
     for name, text in texts.items():
         (folder / f"{name}.v").write_bytes(text)
+    complaints = {}
     for name in texts:
         ran = run_program([coqc, *_options(folder), f"{name}.v"], folder)
         if ran.code:
             raise RoadproofError(f"proofs/kernel/{name}.v is not accepted by coqc: {ran.complained[:400]}")
+        complaints[name] = ran.complained
+    (folder / COMPLAINTS).write_text(json.dumps(complaints), encoding="ascii")
     sums = {f"{name}.vo": _sum((folder / f"{name}.vo").read_bytes()) for name in texts}
     (folder / SUMS).write_text(json.dumps(sums), encoding="ascii")
 
@@ -181,7 +188,7 @@ def _is_sound(folder: Path) -> bool:
         sums = json.loads((folder / SUMS).read_text("ascii"))
         expected = {f"{name}.vo" for name in THEORIES}
         loaded = {str(x.relative_to(folder)) for x in folder.rglob("*") if x.suffix in _LOADED}
-        if not set(sums) == loaded == expected:
+        if not set(sums) == loaded == expected or not (folder / COMPLAINTS).is_file():
             return False
         return all(_sum((folder / name).read_bytes()) == sum_ for name, sum_ in sums.items())
     except (OSError, ValueError):
