@@ -19,6 +19,7 @@ from hypothesis import settings
 import roadproof
 from lengthy import COLLECTED, LENGTHY
 from roadproof.runtime.memory import collect_rarely
+from sharing import HOMES
 from studio.browser import browsing
 
 os.environ["ROADPROOF_KNOWN"] = "off"
@@ -44,6 +45,13 @@ def pytest_collection_finish() -> None:
     gc.freeze()
     gc.enable()
     collect_rarely()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def shared(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """The folder of a worker lies in that of the run."""
+    home = tmp_path_factory.getbasetemp()
+    HOMES.append((home.parent if "PYTEST_XDIST_WORKER" in os.environ else home) / "shared")
 
 
 @pytest.fixture(scope="module")

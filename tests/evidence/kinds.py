@@ -1,16 +1,15 @@
-"""A small folder of evidence of each kind that a command writes, made once in a session of tests."""
+"""A small folder of evidence of each kind that a command writes, made once in a run of tests."""
 
 import shutil
 from collections.abc import Callable
-from functools import cache
 from pathlib import Path
-from tempfile import mkdtemp
 from typing import Any
 
 import pytest
 
 import roadproof as rp
 from cli.test_schemas import few_classes
+from sharing import made_once
 
 FORMULA = '[[test]]\nid = "T{n}"\nformula = "scenario_{n}(SV,POV,L)"\n'
 
@@ -59,14 +58,8 @@ MAKE: dict[str, Callable[[Path], Any]] = {
 }
 
 
-@cache
-def _made(kind: str) -> Path:
-    folder = Path(mkdtemp(prefix=f"{kind}-")) / kind
-    MAKE[kind](folder)
-    return folder
-
-
 def copy_of(kind: str, to: Path) -> Path:
     """A folder of that kind below ``to``, to be changed."""
-    shutil.copytree(_made(kind).parent, to, dirs_exist_ok=True)
+    made = made_once(f"kind-{kind}", lambda home: MAKE[kind](home / kind))
+    shutil.copytree(made, to, dirs_exist_ok=True)
     return to / kind
