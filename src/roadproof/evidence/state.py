@@ -8,6 +8,7 @@ from roadproof.evidence.times import constant, rational
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
+from roadproof.logic.node import once
 from roadproof.logic.rewrite import leaves_of, terms_of
 from roadproof.logic.terms import Term
 
@@ -82,15 +83,17 @@ def _ratio(numerator: Term, divisor: Term) -> str:
     return f"|{shown}|"
 
 
-def _ratios(expression: Term) -> Iterable[tuple[Term, Term]]:
+@once
+def _ratios(expression: Term) -> tuple[tuple[Term, Term], ...]:
     """Numerator and divisor of every constant that ``term`` introduces, inner ones first."""
-    for child in t.children(expression):
-        yield from _ratios(child)
+    found = [ratio for child in t.children(expression) for ratio in _ratios(child)]
     if isinstance(expression, t.Quotient):
         numerator, _, divisor = _parted(expression)
         if divisor is not None:
             powered = isinstance(numerator, t.Power) and numerator.exponent > 1
-            yield (numerator.base if powered and isinstance(numerator, t.Power) else numerator), divisor
+            divided = numerator.base if powered and isinstance(numerator, t.Power) else numerator
+            found.append((divided, divisor))
+    return tuple(found)
 
 
 def _extremum(terms: tuple[Term, ...], op: str) -> str:
@@ -139,6 +142,7 @@ def _below_inverse(number: str, y: str, op: str) -> str:
     return f"(or (and (> {y} 0.0) {positive}) (and (< {y} 0.0) {negative}))"
 
 
+@once
 def state(formula: Formula) -> str:
     """A state formula as SMT-LIB; ``occ`` and quantifiers over the road stay opaque constants."""
     match formula:
@@ -198,7 +202,7 @@ def declarations(formulas: Iterable[Formula], bounds: Mapping[str, str]) -> list
                 case t.Own():
                     reals[symbol(leaf)] = ""
                     own[leaf] = None
-        booleans |= set(opaque_symbols(formula))
+        booleans |= opaque_symbols(formula)
     lines = [f"(declare-const {name} Real)" for name in sorted(_ratio(*r) for r in ratios)]
     solved, equations = _solve(list(ratios))
     lines += [f"(declare-const {name} Real)" for name in sorted(reals) if name not in solved]
@@ -246,10 +250,9 @@ def _first_summand(expression: Term) -> tuple[Term, Term]:
             return expression, t.Number(Fraction(0))
 
 
-def opaque_symbols(formula: Formula) -> Iterable[str]:
+@once
+def opaque_symbols(formula: Formula) -> frozenset[str]:
     """The constants of all that only the road decides in a state formula."""
     if isinstance(formula, f.Occupies | f.Some | f.Every):
-        yield opaque(formula)
-        return
-    for child in f.children(formula):
-        yield from opaque_symbols(child)
+        return frozenset({opaque(formula)})
+    return frozenset[str]().union(*map(opaque_symbols, f.children(formula)))

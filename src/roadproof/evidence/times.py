@@ -6,6 +6,7 @@ They are what quantifiers over time are instantiated with, so they must print an
 import re
 from collections.abc import Collection, Iterable, Mapping
 from fractions import Fraction
+from functools import lru_cache
 
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
@@ -73,6 +74,7 @@ def constant(name: str) -> str:
     return f"{name}." if _RESERVED.fullmatch(name) else name
 
 
+@lru_cache(maxsize=4096)
 def at(name: str) -> Moment:
     """The moment called ``name``."""
     return Moment(((name, Fraction(1)),))

@@ -68,8 +68,17 @@ def without_names(formula: f.Formula) -> f.Formula:
     return f.with_children(formula, tuple(map(without_names, f.children(formula))))
 
 
-def terms_of(*formulas: f.Formula) -> Iterator[t.Term]:
+def terms_of(*formulas: f.Formula) -> Iterable[t.Term]:
     """Both sides of every comparison and every interval bound."""
+    return _terms_of(formulas[0]) if len(formulas) == 1 else _all_terms(formulas)
+
+
+@once
+def _terms_of(formula: f.Formula) -> tuple[t.Term, ...]:
+    return tuple(_all_terms([formula]))
+
+
+def _all_terms(formulas: Iterable[f.Formula]) -> Iterator[t.Term]:
     for current in f.subformulas(*formulas):
         if isinstance(current, f.Compare):
             yield current.left

@@ -5,12 +5,12 @@ Semantics*) and stands only alone on one side of a comparison; every other node 
 A ``Quotient`` divides by a term without signals, so each term is a piecewise polynomial of signals.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from fractions import Fraction
 from math import prod
 from typing import TypeAlias, assert_never
 
-from roadproof.logic.node import node
+from roadproof.logic.node import node, once
 from roadproof.world.signals import SIGNAL_DIMENSIONS as SIGNAL_DIMENSIONS
 from roadproof.world.signals import SIZE_DIMENSIONS as SIZE_DIMENSIONS
 from roadproof.world.signals import SignalName as SignalName
@@ -193,13 +193,14 @@ def with_children(term: Term, new: tuple[Term, ...]) -> Term:
             assert_never(term)
 
 
-def leaves(term: Term) -> Iterator[Leaf]:
+def leaves(term: Term) -> tuple[Leaf, ...]:
     """Every leaf of ``term``, from left to right."""
-    if isinstance(term, Leaf):
-        yield term
-        return
-    for child in children(term):
-        yield from leaves(child)
+    return (term,) if isinstance(term, Leaf) else _leaves_inside(term)
+
+
+@once
+def _leaves_inside(term: Term) -> tuple[Leaf, ...]:
+    return tuple(leaf for child in children(term) for leaf in leaves(child))
 
 
 def replace_leaves(term: Term, replace: Callable[[Leaf], Term]) -> Term:

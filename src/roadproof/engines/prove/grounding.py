@@ -105,6 +105,7 @@ class Grounding:
     applied: dict[tuple[str, Moment], str] = field(default_factory=dict)
     origins: dict[str, str] = field(default_factory=dict)
     _known: dict[tuple[Formula, bool, Moment], str] = field(default_factory=dict)
+    _atoms: dict[tuple[str, Moment], str] = field(default_factory=dict)
     _declared: set[str] = field(default_factory=set)
 
     def known_parameters(self) -> list[str]:
@@ -140,6 +141,12 @@ class Grounding:
                 assert_never(formula)
 
     def atom(self, name: str, moment: Moment) -> str:
+        known = self._atoms.get((name, moment))
+        if known is None:
+            known = self._atoms[name, moment] = self._atom(name, moment)
+        return known
+
+    def _atom(self, name: str, moment: Moment) -> str:
         times = compared_times(self.atoms.meaning(name), self.timing)
         if times is not None:
             left, op, right = times

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import field, replace
 from fractions import Fraction
 from functools import lru_cache
@@ -235,7 +236,8 @@ def _is_quickly_proved(
     atoms, names, budget = Atoms(), dict[Site, str](), Effort(VACUITY)
     goal = atoms.abstract(goal)
     states = StateChecker(atoms, dict(bounds), dict(defaults))
-    proof = InstanceSearch(goal, states, lanes, names, True).run(budget.meter())
+    with closing(InstanceSearch(goal, states, lanes, names, True)) as search:
+        proof = search.run(budget.meter())
     if not isinstance(proof, Proof):
         return False
     met = met_sites(goal, atoms, proof.instances, names, states.bounds, lanes)
@@ -279,6 +281,10 @@ class _Attempt:
 
     def _run(self, search: InstanceSearch, meter: Budget) -> Proof | Countermodel | GaveUp:
         """What one search finds, a model of it made into a trace and judged."""
+        with closing(search):
+            return self._found(search, meter)
+
+    def _found(self, search: InstanceSearch, meter: Budget) -> Proof | Countermodel | GaveUp:
         found = search.run(meter)
         while not isinstance(found, Proof | GaveUp):
             countermodel = None if self.moving else self._realised(found)

@@ -154,6 +154,10 @@ class InstanceSearch:
         known = len(self.grounding.applied)
         return self._instantiate(values, meter) or len(self.grounding.applied) > known
 
+    def close(self) -> None:
+        """Give back the solver, which lives as long as the grounding that refers to itself."""
+        self.grounding.session.close()
+
     def widen(self) -> bool:
         """Add moments between and around those known; False where that was done often enough."""
         if self.spread >= 3:

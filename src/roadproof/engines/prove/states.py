@@ -65,6 +65,7 @@ class StateChecker:
         self.bounds = bounds
         self.defaults = defaults
         self.learnt = learnt or Learnt()
+        self._typical: dict[str, tuple[Formula, dict[str, Fraction]]] = {}
 
     @property
     def settled(self) -> set[str]:
@@ -131,6 +132,15 @@ class StateChecker:
         """
         return self.learnt.known[self._key(wanted)]
 
+    def typical(self, name: str) -> tuple[Formula, dict[str, Fraction]]:
+        """What an atom says where parameters and sizes have their usual values, with these by symbol."""
+        if name not in self._typical:
+            numbers: dict[str, Fraction] = {}
+            put_in = _putting_in(self.defaults, numbers)
+            made = map_terms(self.atoms.meaning(name), lambda term: t.replace_leaves(term, put_in))
+            self._typical[name] = made, numbers
+        return self._typical[name]
+
     def _key(self, wanted: Mapping[str, bool]) -> frozenset[tuple[Formula, bool]]:
         return frozenset((self.atoms.meaning(name), true) for name, true in wanted.items())
 
@@ -147,10 +157,9 @@ class _Question:
         self.numbers: dict[str, Fraction] = {}
         self.meanings = {name: checker.atoms.meaning(name) for name in wanted}
         if assumed == "typical":
-            self.meanings = {
-                name: map_terms(meaning, lambda term: t.replace_leaves(term, self._number(checker.defaults)))
-                for name, meaning in self.meanings.items()
-            }
+            usual = {name: checker.typical(name) for name in wanted}
+            self.meanings = {name: meaning for name, (meaning, _) in usual.items()}
+            self.numbers = {symbol: x for _, numbers in usual.values() for symbol, x in numbers.items()}
         self.leaves = _leaves(self.meanings.values())
         self.session.tell("\n".join(state.declarations(self.meanings.values(), checker.bounds)))
         if assumed != "nothing":
@@ -165,20 +174,6 @@ class _Question:
             meaning = self.meanings[name]
             asserted = state.state(meaning if positive else f.negation(meaning))
             self.session.tell(f"(declare-const {switch} Bool)(assert (=> {switch} {asserted}))")
-
-    def _number(self, defaults: Mapping[str, Fraction]) -> Callable[[t.Leaf], t.Term]:
-        def put_in(leaf: t.Leaf) -> t.Term:
-            match leaf:
-                case t.Parameter(name, dimension) if name in defaults:
-                    self.numbers[name] = defaults[name]
-                    return t.Number(defaults[name], dimension)
-                case t.Size(name, _):
-                    self.numbers[state.symbol(leaf)] = TYPICAL_SIZE[name]
-                    return t.Number(TYPICAL_SIZE[name], t.SIZE_DIMENSIONS.get(name, (0, 0)))
-                case _:
-                    return leaf
-
-        return put_in
 
     def _where_boxes_lie(self) -> Iterator[str]:
         """A box around one that is on a lanelet of a domain is so, too; for boxes that are compared."""
@@ -218,6 +213,23 @@ class _Question:
     def core(self) -> list[tuple[str, bool]]:
         """The literals that the last refutation used."""
         return [self.switches[switch] for switch in self.session.core()]
+
+
+def _putting_in(defaults: Mapping[str, Fraction], numbers: dict[str, Fraction]) -> Callable[[t.Leaf], t.Term]:
+    """A function that puts usual values in place of parameters and sizes, and notes them in ``numbers``."""
+
+    def put_in(leaf: t.Leaf) -> t.Term:
+        match leaf:
+            case t.Parameter(name, dimension) if name in defaults:
+                numbers[name] = defaults[name]
+                return t.Number(defaults[name], dimension)
+            case t.Size(name, _):
+                numbers[state.symbol(leaf)] = TYPICAL_SIZE[name]
+                return t.Number(TYPICAL_SIZE[name], t.SIZE_DIMENSIONS.get(name, (0, 0)))
+            case _:
+                return leaf
+
+    return put_in
 
 
 def _leaves(formulas: Iterable[Formula]) -> list[t.Parameter | t.Variable | t.Signal | t.Size | t.Own]:

@@ -59,6 +59,10 @@ class Session:
             raise SolverError(f"z3 refused: {answer.strip()}")
         return answer
 
+    def close(self) -> None:
+        """Give back what z3 holds, where this object itself lives longer. Nothing may be told afterwards."""
+        del self._context
+
     def check(self, assuming: Sequence[str] = (), meter: Budget | None = None) -> Satisfiability:
         """``check-sat`` under Boolean constants or their negations, within what ``meter`` has left."""
         query = f"(check-sat-assuming ({' '.join(assuming)}))" if assuming else "(check-sat)"
@@ -187,7 +191,8 @@ def read_value(value: SExpression) -> Fraction | bool | None:
         case "true" | "false":
             return value == "true"
         case str():
-            return Fraction(value)
+            whole = value.removesuffix(".0")
+            return Fraction(int(whole) if whole.isdecimal() else value)
         case ["-", inner]:
             read = read_value(inner)
             return None if read is None else -Fraction(read)
