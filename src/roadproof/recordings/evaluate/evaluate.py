@@ -194,6 +194,7 @@ def _match_pairs(
 ) -> Iterator[Match]:
     end = np.max(found.end, axis=0, initial=-1)
     chosen = np.flatnonzero(end >= 0)
+    chosen = chosen[np.argsort(found.start[chosen] - end[chosen], kind="stable")]  # the longest first
     if not len(chosen) or not questions.pairs:
         return
     pairs, start = found.pairs.choose(chosen), found.start[chosen]

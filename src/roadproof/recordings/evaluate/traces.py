@@ -173,6 +173,7 @@ def _decide(
     atoms: Mapping[Formula, LaneAtom],
 ) -> Iterator[tuple[Formula, Bools]]:
     occupied = {name: recording.occupancy[at] for name, at in rows.items()}
+    zones: dict[str, Array] = {}
     masks: dict[tuple[str, str], Array] = {}
     own = np.array([1 << k for k in range(len(recording.lanes))] + [0], np.uint32)
     beside = np.array([recording.beside_mask(k) for k in range(len(recording.lanes))] + [0], np.uint32)
@@ -183,6 +184,8 @@ def _decide(
             continue
         if atom.kind == "zone":
             zone = np.uint32(1 << ZONES.index(atom.of))
-            yield formula, (recording.zones[rows[atom.vehicle]] & zone) != 0
+            if atom.vehicle not in zones:
+                zones[atom.vehicle] = recording.zones[rows[atom.vehicle]]
+            yield formula, (zones[atom.vehicle] & zone) != 0
         elif (atom.kind, atom.of) in masks:
             yield formula, (occupied[atom.vehicle] & masks[atom.kind, atom.of]) != 0

@@ -5,8 +5,12 @@ import io
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import BinaryIO
+
+import numpy as np
+import numpy.typing as npt
 
 from roadproof.errors import InputError
 
@@ -40,6 +44,16 @@ def plain_text(path: Path, content: bytes, thousands: bool = False) -> bytes:
 
 _MARK = b"\xef\xbb\xbf"
 """What some programs begin text in UTF-8 with."""
+
+
+@dataclass(frozen=True)
+class ByteCounts:
+    """How many lines and commas there are, and whether there is a quote, and a byte that is no text."""
+
+    lines: int
+    commas: int
+    quoted: bool
+    strange: bool
 
 
 @dataclass(frozen=True)
@@ -78,7 +92,19 @@ class Content:
         first = self.beginning()
         if not first.isascii() or b"\0" in first:
             return False
-        return (b"\r" in first and b"\n" not in first) or any(b'"' in piece for piece in self.pieces())
+        return (b"\r" in first and b"\n" not in first) or self.counts.quoted
+
+    @cached_property
+    def counts(self) -> ByteCounts:
+        """What is counted in all of it, in one pass."""
+        lines, commas, quoted, strange = 0, 0, False, False
+        for piece in self.pieces():
+            found = np.frombuffer(piece, np.uint8)
+            lines += int(np.count_nonzero(found == ord("\n")))
+            commas += int(np.count_nonzero(found == ord(",")))
+            quoted = quoted or b'"' in piece
+            strange = strange or is_strange(found)
+        return ByteCounts(lines, commas, quoted, strange)
 
     def pieces(self, size: int = 1 << 18) -> Iterator[bytes]:
         """All of it, in pieces that by default fit the cache."""
@@ -114,6 +140,11 @@ class Content:
     def require_unchanged(self) -> None:
         """Raise ``InputError`` where the file was written to since it was first looked at."""
         require_unchanged(self.path, self.stamp)
+
+
+def is_strange(piece: npt.NDArray[np.uint8]) -> bool:
+    """Whether a byte of a piece is part of no table of numbers."""
+    return bool(piece.max() > 127 or not piece.min())
 
 
 def require_unchanged(path: Path, stamp: tuple[int, ...]) -> None:

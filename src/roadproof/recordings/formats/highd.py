@@ -136,7 +136,7 @@ def _check_sight(meta: Table, tracks: Table) -> tuple[str, ...]:
     x + width/2 less that distance is one number for short and long vehicles, unless x is not the left edge.
     """
     names = ("id", "x", "width", "frontSightDistance", "backSightDistance")
-    rows = np.array(sample_rows(tracks.path, SAMPLE_COLUMNS, names, 400)).reshape(-1, len(names))
+    rows = np.array(sample_rows(tracks, SAMPLE_COLUMNS, names, 400)).reshape(-1, len(names))
     rows = rows[(rows[:, 3] > 0) & (rows[:, 4] > 0)]
     rows = rows[np.argsort(rows[:, 2], kind="stable")]
     third = len(rows) // 3

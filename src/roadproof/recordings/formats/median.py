@@ -57,9 +57,8 @@ def integrate(rate: Floats, frames_a_second: int, last: tuple[float, float] | No
 
     ``last``: the integral and the rate at the sample before, where there is one.
     """
-    total = np.zeros(len(rate))
-    if last is not None:
-        total[0] = last[0] + (rate[0] + last[1]) / (2 * frames_a_second)
+    total = np.empty(len(rate))
+    total[:1] = 0.0 if last is None else last[0] + (rate[0] + last[1]) / (2 * frames_a_second)
     for part in blocks_of(len(rate), overlap=1):
         values = rate[part]
         steps = values[1:] + values[:-1]
@@ -82,10 +81,9 @@ class Scale:
     vehicles: int = 0
     row: int = 0
 
-    def add(self, recording: Recording, before: int) -> None:
-        """Add vehicles, before which there were so many rows."""
+    def add(self, recording: Recording, before: int, total: Floats) -> None:
+        """Add vehicles, before which there were so many rows; ``total``: the integral of their speeds."""
         first, last = recording.start[:-1], recording.start[1:] - 1
-        total = integrate(recording.v_lon, recording.rate)
         way, integral = recording.s[last] - recording.s[first], total[last] - total[first]
         greater = np.maximum(np.abs(way), np.abs(integral))
         counts = (greater > LEAST) & (np.abs(way - integral) <= SHARE * greater)

@@ -123,22 +123,23 @@ class _Motion:
     factors: list[Floats] = field(default_factory=list)
     last: tuple[float, float] | None = None
 
-    def add(self, recording: Recording, before: int, windows: tuple[Integers, Integers]) -> None:
-        """``before``: how many rows there were already; ``windows``: the first and last rows of seconds."""
+    def add(self, recording: Recording, before: int, seconds: "_Seconds") -> Floats:
+        """Add vehicles, before which there were so many rows, and return the sum of the rate."""
         signal, rate = getattr(recording, self.rule.signal), getattr(recording, self.rule.rate)
         total = integrate(rate, recording.rate, self.last)
         self.last = float(total[-1]), float(rate[-1])
-        begin, end = windows
+        begin, end = seconds.begin, seconds.end
         change, told = signal[end] - signal[begin], total[end] - total[begin]
         greater = np.maximum(np.abs(change), np.abs(told))
-        moved = greater > self.rule.least
-        wrong = moved & (np.abs(change - told) > self.rule.share * greater + self.rule.slack)
-        if wrong.any() and not self.broken:
-            first = int(np.argmax(wrong))
-            self.row = before + _worst(signal, total, int(begin[first]), int(end[first]))
-        self.broken += int(np.count_nonzero(wrong))
+        moved = seconds.whole & (greater > self.rule.least)
+        wrong = np.flatnonzero(moved & (np.abs(change - told) > self.rule.share * greater + self.rule.slack))
+        if len(wrong) and not self.broken:
+            first = begin.start + int(wrong[0]) * begin.step
+            self.row = before + _worst(signal, total, first, first + recording.rate)
+        self.broken += len(wrong)
         self.asked += int(np.count_nonzero(moved))
         self.factors.append(told[wrong] / np.where(change[wrong] == 0, np.inf, change[wrong]))
+        return total
 
     def doubts(self) -> Iterator[Implausible]:
         if self.broken:
@@ -157,13 +158,23 @@ def _hint(factor: float) -> str:
     return f", by a factor of {factor:.3g}{cause}"
 
 
-def _seconds(recording: Recording, before: int) -> tuple[Integers, Integers]:
-    """The first and last sample of windows of a second, every fifth of a second, within one vehicle."""
-    every = max(1, recording.rate // 5)
-    rows = np.arange(-before % every, len(recording.s) - recording.rate, every)
+@dataclass(frozen=True)
+class _Seconds:
+    """The first and last samples of windows of a second, and whether each is ``whole``: of one vehicle."""
+
+    begin: slice
+    end: slice
+    whole: Bools
+
+
+def _seconds(recording: Recording, before: int) -> _Seconds:
+    """Windows every fifth of a second of the whole, in which there are so many rows ``before``."""
+    every, rows = max(1, recording.rate // 5), len(recording.s)
+    first = -before % every
+    begin = slice(first, max(0, rows - recording.rate), every)
+    end = slice(first + recording.rate, rows, every)
     vehicle = recording.row_vehicle
-    rows = rows[vehicle[rows] == vehicle[rows + recording.rate]]
-    return rows, rows + recording.rate
+    return _Seconds(begin, end, vehicle[begin] == vehicle[end])
 
 
 def _worst(signal: Floats, total: Floats, begin: int, end: int) -> int:
@@ -283,20 +294,22 @@ class _Places:
     def add(self, recording: Recording, before: int) -> None:
         if not self.straight:
             return
-        counts = np.diff(recording.start)
-        half, direction = np.repeat(recording.width / 2, counts), np.repeat(recording.direction, counts)
+        half = np.repeat(recording.width / 2, np.diff(recording.start))
         beside = blockwise(
             lambda d, half, lane: (d - half - self.middle[lane]) / half, recording.d, half, recording.lane
         )
+        direction = np.repeat(recording.direction, np.diff(recording.start))
         for way in np.unique(recording.direction).tolist():
-            ours = (direction == way) & (recording.lane >= 0)
-            self.beside.setdefault(way, Median(MOST_SAMPLES)).add(beside[np.flatnonzero(ours)])
-            left, right = ours & (beside > OFF_CENTRE[0]), ours & (beside < -OFF_CENTRE[0])
-            off = left | right
-            if off.any():
-                self.rows.setdefault(way, before + int(np.argmax(off)))
-            counts = np.array([np.count_nonzero(left), np.count_nonzero(right)])
-            self.off[way] = self.off.get(way, np.zeros(2, np.int64)) + counts
+            ours = np.flatnonzero((direction == way) & (recording.lane >= 0))
+            there = beside[ours]
+            self.beside.setdefault(way, Median(MOST_SAMPLES)).add(there)
+            off: list[Integers] = [
+                np.flatnonzero(there > OFF_CENTRE[0]),
+                np.flatnonzero(there < -OFF_CENTRE[0]),
+            ]
+            if first := [int(ours[x[0]]) for x in off if len(x)]:
+                self.rows.setdefault(way, before + min(first))
+            self.off[way] = self.off.get(way, np.zeros(2, np.int64)) + np.array([len(x) for x in off])
 
     def doubts(self, vehicles: _Vehicles) -> Iterator[Implausible]:
         for way, beside in sorted(self.beside.items()):
@@ -333,10 +346,9 @@ class ContradictionChecks:
         """The vehicles that follow those that were added, in the order of the whole."""
         if not len(recording.s):
             return
-        windows = _seconds(recording, self.rows)
-        for rule in self.motion:
-            rule.add(recording, self.rows, windows)
-        self.scale.add(recording, self.rows)
+        seconds = _seconds(recording, self.rows)
+        way, *_ = [rule.add(recording, self.rows, seconds) for rule in self.motion]
+        self.scale.add(recording, self.rows, way)
         inner = np.ones(max(0, len(recording.s) - 1), bool)
         inner[recording.start[1:-1] - 1] = False
         for step in self.steps:

@@ -56,13 +56,15 @@ class CellError(InputError):
 class Table:
     """Columns of equal length by name, and the file that they came from.
 
-    ``places``: for each row its place among the rows of the file, where it is another.
+    ``places``: for each row its place among the rows of the file, where it is another. ``content``: of the
+    file, where it was read as a whole.
     """
 
     path: Path
     columns: Mapping[str, Column]
     rows: int
     places: Column | None = None
+    content: Content | None = None
 
     def __getitem__(self, name: str) -> Column:
         return self.columns[name]
@@ -140,12 +142,13 @@ def read_table(
     _check_header(path, beginning.partition(b"\n")[0], header)
     rows = _check_shape(content, len(header))
     try:
-        return Table(path, _columns(content, content.source(), header, wanted, rows), rows)
+        columns = _columns(content, content.source(), header, wanted, rows)
     except InputError:
-        columns = _read_fast(content.source(), wanted, rows, gaps) if gaps else None
-        if columns is None:
+        found = _read_fast(content.source(), wanted, rows, gaps) if gaps else None
+        if found is None:
             raise
-        return Table(path, columns, rows)
+        columns = found
+    return Table(path, columns, rows, content=content)
 
 
 def read_pieces(path: Path, header: Sequence[str], wanted: Mapping[str, Kind]) -> Iterator[Table]:
@@ -199,11 +202,12 @@ def read_named(path: Path, wanted: Mapping[str, Kind], gaps: Collection[str] = (
     return read_table(path, header if set(wanted) <= set(header) else tuple(wanted), wanted, gaps=gaps)
 
 
-def sample_rows(path: Path, header: Sequence[str], names: Sequence[str], count: int) -> list[list[float]]:
-    """The numbers of ``names`` in about ``count`` rows, evenly over a file that ``read_table`` took."""
+def sample_rows(table: Table, header: Sequence[str], names: Sequence[str], count: int) -> list[list[float]]:
+    """The numbers of ``names`` in about ``count`` rows, evenly over the file that ``read_table`` took."""
     places = [header.index(name) for name in names]
     found = []
-    with Content.of(path).open() as file:
+    content = table.content or Content.of(table.path)
+    with content.open() as file:
         size = file.seek(0, 2)
         for k in range(count):
             file.seek(size * k // count)
@@ -280,18 +284,11 @@ def _check_shape(content: Content, fields: int) -> int:
         raise InputError(
             f"{path}: the last row does not end with a line break; the file was cut off, get it again"
         )
-    lines = commas = 0
-    for found in content.pieces():
-        piece = np.frombuffer(found, np.uint8)
-        if piece.max() > 127 or not piece.min():
-            strange = int(np.argmax((piece > 127) | (piece == 0)))
-            row = lines + found.count(b"\n", 0, strange) + 1
-            raise InputError(
-                f"{path}, row {row}: byte {piece[strange]:#04x} is no part of a table of numbers"
-            )
-        lines += int(np.count_nonzero(piece == ord("\n")))
-        commas += int(np.count_nonzero(piece == ord(",")))
-    if commas != lines * (fields - 1):
+    counts = content.counts
+    if counts.strange:
+        raise _strange_byte(content)
+    lines = counts.lines
+    if counts.commas != lines * (fields - 1):
         for number, line in enumerate(content.all().split(b"\n")[:-1], start=1):
             if line.count(b",") != fields - 1:
                 count = line.count(b",") + 1
@@ -299,6 +296,17 @@ def _check_shape(content: Content, fields: int) -> int:
     if lines < 2:
         raise InputError(f"{path}: the file has a header but no rows; get it again from its source")
     return lines - 1
+
+
+def _strange_byte(content: Content) -> InputError:
+    """The error for the first byte that is part of no table of numbers."""
+    text = content.all()
+    piece = np.frombuffer(text, np.uint8)
+    strange = int(np.argmax((piece > 127) | (piece == 0)))
+    row = text.count(b"\n", 0, strange) + 1
+    return InputError(
+        f"{content.path}, row {row}: byte {piece[strange]:#04x} is no part of a table of numbers"
+    )
 
 
 def _read_fast(

@@ -74,11 +74,12 @@ def check_starts(starts: Integers | None, lengths: Integers) -> None:
         raise InputError("starts must name one sample inside each trace")
 
 
-def read_bits(words: Array, lengths: Integers, when: When, starts: Integers | None) -> NDArray[np.bool_]:
-    """Truth at the start of each trace, or at all samples and false after the end of a trace."""
-    traces = len(lengths)
+def read_bits(
+    words: Array, end: Array | None, traces: int, when: When, starts: Integers | None
+) -> NDArray[np.bool_]:
+    """Truth at the start of each trace, or at all samples and false after the ``end`` (``packed_inside``)."""
     if when == "all":
-        return unpack(words, traces) & inside(lengths, len(words))
+        return unpack(words if end is None else words & end, traces)
     if starts is None:
         first: NDArray[np.bool_] = unpack(words[:1], traces)[0]
         return first

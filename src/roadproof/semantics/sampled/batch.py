@@ -130,6 +130,8 @@ def _check_signal(what: str, values: Array, lengths: Integers, finite: bool) -> 
 def _check_size(what: str, values: Array, lengths: Integers) -> None:
     if values.shape != lengths.shape:
         raise InputError(f"{what} has shape {values.shape}, but there are {len(lengths)} traces")
+    if values.min() > 0 and values.max() < np.inf:
+        return  # neither is so where one is no number
     wrong = np.flatnonzero(~(np.isfinite(values) & (values > 0)))
     if len(wrong):
         raise InputError(f"{what}={values[wrong[0]]} in trace {wrong[0]}: a size must be greater than zero")

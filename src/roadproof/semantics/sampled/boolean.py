@@ -75,11 +75,13 @@ def _observe_block(
 
 
 def _blocks(batch: Batch, samples_in_block: int = 32768) -> Iterator[tuple[slice, slice]]:
-    """Blocks of the batch whose operands fit the cache, those after the end of all traces left out."""
+    """Blocks whose operands fit the cache, without rows and last columns that are after the end of traces."""
     width = min(batch.traces, samples_in_block)  # a multiple of 64, or everything
     height = max(1, samples_in_block // width)
     for start in range(0, batch.traces, width):
         columns = slice(start, min(start + width, batch.traces))
-        end = int(batch.lengths[columns].max())
+        lengths = batch.lengths[columns]
+        end = int(lengths.max())
         for row in range(0, end, height):
-            yield slice(row, min(row + height, end)), columns
+            stop = start + int(np.flatnonzero(lengths > row)[-1]) + 1
+            yield slice(row, min(row + height, end)), slice(start, stop)

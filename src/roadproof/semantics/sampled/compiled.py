@@ -119,8 +119,8 @@ class Monitor(Generic[Key]):
 
         def answer(formula: Formula, when: When) -> TruthArrays:
             strong, weak = (evaluation.value(formula, view) for view in views(semantics))
-            true = read_bits(strong, seen.lengths, when, starts)
-            return TruthArrays(true, read_bits(~weak, seen.lengths, when, starts))
+            true, false = (read_bits(x, end, len(seen.lengths), when, starts) for x in (strong, ~weak))
+            return TruthArrays(true, false)
 
         return Verdicts(
             semantics,
