@@ -440,3 +440,15 @@ def test_the_command_line_assumes_the_same(capsys, tmp_path):
     assert main(["prove", "--assume", "motion", "--vehicle", "SV=car", FAST, "--jobs", "1"]) == 0
     assert capsys.readouterr().out.startswith(f"PROVED  {OF_A_CAR}: {FAST}\n")
     assert main(["prove", "--vehicle", "car", FAST]) == 2
+
+
+def test_a_none_within_is_saved_with_its_tree(tmp_path: Path) -> None:
+    """As ``witness --out`` writes it."""
+    asked = {"horizon": 1.8, "jobs": 1}
+    found = rp.witness("v_lon(SV) > 41 m/s", out=tmp_path / "out", **asked)
+    saved = rp.witness("v_lon(SV) > 41 m/s", **asked).save(tmp_path / "saved", pictures=False)
+    for folder in (tmp_path / "out", saved, found.save(tmp_path / "again")):
+        (tree,) = folder.glob("none-within-*.json")
+        assert tree.read_bytes() == (saved / tree.name).read_bytes()
+    assert str(rp.check(saved, jobs=1)).endswith("1 of 1 accepted by exact integer arithmetic")
+    assert found.check().accepted

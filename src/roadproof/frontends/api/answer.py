@@ -142,7 +142,7 @@ class Answer(Table):
     def check(self, solver: "Solver" = "z3", jobs: int | None = 1) -> "CheckReport":
         """Check the evidence again, as ``roadproof check`` does with a folder of it.
 
-        Raises ``UsageError`` where there is no evidence, as of NONE-WITHIN and UNKNOWN;
+        Raises ``UsageError`` where there is no evidence, as of UNKNOWN, and of a NONE-WITHIN without a tree;
         ``MissingSolverError``.
         """
         import tempfile

@@ -146,12 +146,15 @@ class Witnesses(StudyAnswers[WitnessStudy, Outcome, kept.Record], BuildResult):
 
     def _write(self, folder: Path, pictures: bool) -> None:
         make_folder(folder)
-        if not self.evidence:
-            return
-        if folder != self.folder:
-            put_away(self.study, {name: self.found.answers[name] for name in self.study.named}, folder)
-        for name in self.study.named:
-            DriveFolder(folder, self.library, Views(pictures))(name, self.found.answers[name])
+        answers = {name: self.found.answers[name] for name in self.study.named}
+        searches = self.study.named if folder != self.folder else {}
+        if searches and self.evidence:
+            put_away(self.study, answers, folder)
+        beside = DriveFolder(folder, self.library, Views(pictures), searches)
+        for name, outcome in answers.items():
+            beside(name, outcome)
+        if searches and not self.evidence and any(folder.glob(none_within_file("*"))):
+            put_away(self.study, answers, folder)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         return drive_pictures(((f"drive-{k}", x) for k, x in enumerate(self.drives, 1)), self.library)
