@@ -1,6 +1,7 @@
 """``roadproof coverage``: evidence in files, runs that go on, pictures, and mistakes."""
 
 import json
+import shutil
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -106,8 +107,20 @@ def neither_gap_nor_proof(monkeypatch: pytest.MonkeyPatch, out: Path) -> tuple[i
     return code, data["verdict"]
 
 
-def test_neither_gap_nor_proof_is_unknown(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    assert neither_gap_nor_proof(monkeypatch, tmp_path / "out") == (ExitCode.UNKNOWN, "UNKNOWN")
+@pytest.fixture(scope="module")
+def doubtful(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of that question, whose answers a run with a fault takes up."""
+    out = tmp_path_factory.mktemp("doubtful") / "out"
+    with pytest.MonkeyPatch.context() as patch:
+        assert neither_gap_nor_proof(patch, out) == (ExitCode.UNKNOWN, "UNKNOWN")
+    return out
+
+
+def test_neither_gap_nor_proof_is_unknown(
+    doubtful: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    out = shutil.copytree(doubtful, tmp_path / "out")
+    assert neither_gap_nor_proof(monkeypatch, out) == (ExitCode.UNKNOWN, "UNKNOWN")
 
 
 FAULTS = [
@@ -120,15 +133,19 @@ FAULTS = [
 
 @pytest.mark.parametrize(("name", "right", "wrong"), FAULTS)
 def test_a_doubt_that_passes_for_an_answer_is_noticed(
-    name: str, right: str, wrong: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    name: str, right: str, wrong: str, doubtful: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
+    out = shutil.copytree(doubtful, tmp_path / "out")
     plant(monkeypatch, occurring, name, right, wrong)
-    assert neither_gap_nor_proof(monkeypatch, tmp_path / "out") != (ExitCode.UNKNOWN, "UNKNOWN")
+    assert neither_gap_nor_proof(monkeypatch, out) != (ExitCode.UNKNOWN, "UNKNOWN")
 
 
-def test_an_exit_code_that_hides_a_doubt_is_noticed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_an_exit_code_that_hides_a_doubt_is_noticed(
+    doubtful: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    out = shutil.copytree(doubtful, tmp_path / "out")
     monkeypatch.setitem(covering.CODES, Verdict.UNKNOWN, ExitCode.AS_EXPECTED)
-    assert neither_gap_nor_proof(monkeypatch, tmp_path / "out") != (ExitCode.UNKNOWN, "UNKNOWN")
+    assert neither_gap_nor_proof(monkeypatch, out) != (ExitCode.UNKNOWN, "UNKNOWN")
 
 
 def asked(set_name: str, *wider: str, road: str = "main-2") -> Coverage:
