@@ -2,7 +2,7 @@
 
    A drive file (docs/schema/drive.json) has a road of rectangles and vehicles that are boxes: where they are at
    time 0, how fast, and jerks that are constant in pieces, the last 0 for ever; and signals in steps.  In a trace
-   that refutes a claim all signals are in steps.  `world_of` says what the
+   that refutes a claim all signals are in steps, and may repeat for ever.  `world_of` says what the
    signals, sizes, lanes and parameters of such a drive are, and `shows` when a claim is true of it.  Lengths are
    in m and times in s; s grows along the road, d to the left.  Nothing here is about proofs. *)
 From Coq Require Import Reals QArith Qreals String List Bool Arith.
@@ -39,7 +39,8 @@ Record rectangle := {
 (* `bodies`: the vehicles by name.  The road has at least one rectangle.  `beside`: which lanes are beside each
    other, in any order.  `lanes_named`: the lane that a name in the claim stands for.  `values`: parameters.
    `signals`: those that are in steps, each of a vehicle, in the order of time: a time, the value at it, and the value
-   after it and before the next.  `numbers`: those that the claim speaks of. *)
+   after it and before the next.  `numbers`: those that the claim speaks of.  `repeats`: a start and a period, where
+   from the start on the signals of a trace repeat. *)
 Record drive := {
   bodies : list (vehicle * body);
   first_rectangle : rectangle;
@@ -48,7 +49,8 @@ Record drive := {
   lanes_named : list (string * string);
   values : list (string * Q);
   signals : list (signal * vehicle * list (Q * Q * Q));
-  numbers : list (string * Q) }.
+  numbers : list (string * Q);
+  repeats : option (Q * Q) }.
 
 Definition look_up {A} (x : string) (l : list (string * A)) (otherwise : A) : A :=
   match find (fun entry => String.eqb x (fst entry)) l with Some entry => snd entry | None => otherwise end.
@@ -114,10 +116,17 @@ Section World.
     | Jerk_lon => jerk_ (at_time (along (body_of a)) t)
     | Own n => 0
     end.
+  (* The time in the first round that is like t. *)
+  Definition folded (t : R) : R :=
+    match repeats D with
+    | None => t
+    | Some (start, period) =>
+        if Rlt_dec t (Q2R start) then t else t - IZR (Int_part ((t - Q2R start) / Q2R period)) * Q2R period
+    end.
   Definition value_of (n : signal) (a : vehicle) (t : R) : R :=
     match steps_of n a with
-    | Some steps => Q2R (stepped (first_step steps) steps t)
-    | None => moved_to n a t
+    | Some steps => Q2R (stepped (first_step steps) steps (folded t))
+    | None => moved_to n a (folded t)
     end.
   Definition number_of_sort (k : sort) : Q :=
     match k with car => 1 | truck => 2 | bus => 3 | motorcycle => 4 | other => 5 end.

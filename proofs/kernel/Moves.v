@@ -148,6 +148,7 @@ Section Drive.
   Variable D : drive.
   Hypothesis L : all_last D.
   Hypothesis O : own_in_steps D.
+  Hypothesis once : repeats D = None.
   Lemma not_in_steps n a : ~ is_own n -> steps_of D n a = None.
   Proof.
     intros N. unfold steps_of. match goal with |- context [find ?p ?l] => destruct (find p l) as [entry|] eqn:E end; [|reflexivity].
@@ -175,11 +176,11 @@ Section Drive.
     split.
     - intros n r a E. destruct (body_keeps a) as [A B]. apply course_moves in A as [A1 A2].
       apply course_moves in B as [B1 B2].
-      destruct n; cbn in E; try discriminate; injection E as <-; cbn [value world_of]; unfold value_of;
-        rewrite !not_in_steps by exact (fun H => H); assumption.
+      destruct n; cbn in E; try discriminate; injection E as <-; cbn [value world_of];
+        unfold value_of, folded; rewrite !not_in_steps by exact (fun H => H); rewrite once; assumption.
     - intros a l. destruct (body_keeps a) as [A B]. apply course_moves in A as [A _]. apply course_moves in B as [B _].
-      cbn [occupies world_of]. unfold is_in, value_of. rewrite !not_in_steps by exact (fun H => H).
-      cbn [moved_to]. set (r := rectangle_of D l).
+      cbn [occupies world_of]. unfold is_in, value_of, folded. rewrite !not_in_steps by exact (fun H => H).
+      rewrite once. cbn [moved_to]. set (r := rectangle_of D l).
       apply lingers_and; [|apply lingers_and; [|apply lingers_and]].
       + destruct (from_s r); [apply (below_lingers _ _ _ A)|apply lingers_always].
       + destruct (to_s r) as [b|]; [|apply lingers_always].
@@ -195,8 +196,9 @@ Section Drive.
   Qed.
 End Drive.
 
-Theorem refuted bounds claim D : all_last D -> own_in_steps D -> shows D bounds (Not claim) -> ~ valid_of_motions bounds claim.
-Proof. intros L O [B H] V. apply H. exact (V (world_of D) _ (drives_move D L O) B). Qed.
+Theorem refuted bounds claim D : all_last D -> own_in_steps D -> repeats D = None ->
+  shows D bounds (Not claim) -> ~ valid_of_motions bounds claim.
+Proof. intros L O N [B H] V. apply H. exact (V (world_of D) _ (drives_move D L O N) B). Qed.
 
 (* Where lanelets are any sets of points that stand still, and boxes move, `overlaps` of a motion follows. *)
 Theorem boxes_overlap W (points : element W -> R -> R -> Prop) :

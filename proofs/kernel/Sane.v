@@ -64,7 +64,8 @@ Definition some_drive : drive := {|
   bodies := [("SV", {| is_a := car; long := 4; wide := 2; long_above_0 := eq_refl; wide_above_0 := eq_refl;
     along := {| starts_at := 0; starts_with := 10; pieces := [(2, 0, -2)]%Q; finally := -1 |}; across := still |})];
   first_rectangle := {| lane := "L"; lies_in := main; from_s := None; to_s := Some 50%Q; right_d := -3; left_d := 1 |};
-  other_rectangles := []; Drive.beside := []; lanes_named := []; values := []; signals := []; numbers := [] |}.
+  other_rectangles := []; Drive.beside := []; lanes_named := []; values := []; signals := []; numbers := [];
+  repeats := None |}.
 Lemma some_motion : motion (world_of some_drive).
 Proof. apply drives_move; repeat constructor; cbn; unfold Q2R; simpl; lra. Qed.
 Lemma not_everything_of_motions : ~ valid_of_motions [] (Truth false).

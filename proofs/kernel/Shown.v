@@ -4,7 +4,7 @@
    `accepts` is a program that checks one, and the theorem `shown` at the end says: what it accepts is true of
    the drive, in the sense of Meaning.v and Drive.v.  Derivations are found by roadproof; nothing here relies on
    how. *)
-From Coq Require Import Reals QArith Qreals String List Bool Arith Lra.
+From Coq Require Import Reals QArith Qreals String List Bool Arith Lra Lia.
 From Roadproof Require Import Meaning Signs Drive.
 Import ListNotations.
 Open Scope R_scope.
@@ -28,7 +28,9 @@ Inductive derivation :=
 | Whole (p : derivation)                                  (* G; not U: its right side is never true *)
 | Moment (m : moment) (p : derivation)                    (* F *)
 | Reach (m : moment) (p q : derivation)                   (* U: q for its right side, p for its left until then *)
-| Break (m : moment) (p q : derivation).                  (* not U: q for its right side until its left is false *)
+| Break (m : moment) (p q : derivation)                   (* not U: q for its right side until its left is false *)
+| Earlier (rounds : nat) (p : derivation)                 (* as so many rounds of a repeating trace earlier *)
+| Round (p : derivation).                                 (* as in the first round of the interval *)
 
 (* --- what a drive is, as polynomials -------------------------------------------------------------------- *)
 Record shape := { of_place : list Q; of_speed : list Q; of_acceleration : list Q; of_jerk : list Q }.
@@ -192,11 +194,16 @@ Section Check.
     | Jerk_lon => as_list (shape_on (shaped_along b) I) of_jerk
     | Own n => [[]]
     end.
+  (* I is before the end of the first round *)
+  Definition in_first (I : interval) : bool :=
+    match repeats D with None => true | Some (start, period) => below 0 period && ends_by I (plus start period) end.
   Definition signal_on (n : signal) (a : vehicle) (I : interval) : list (list Q) :=
-    match steps_of D n a with
-    | Some steps => match step_on (first_step steps) steps I with Some x => [[x]] | None => [] end
-    | None => motion_on n a I
-    end.
+    if in_first I then
+      match steps_of D n a with
+      | Some steps => match step_on (first_step steps) steps I with Some x => [[x]] | None => [] end
+      | None => motion_on n a I
+      end
+    else [].
   Definition size_on (n : size) (a : vehicle) : Q :=
     let b := shaped_of a in match n with Length => long_ b | Width => wide_ b | Kind => number_of_sort (sort_ b) end.
 
@@ -297,10 +304,28 @@ Section Check.
     intros H T. pose proof (shapes_right _ _ _ _ _ _ _ _ H T) as A. unfold at_time.
     rewrite zero_R, Rminus_0_r in A. exact A.
   Qed.
+  Lemma first_round start period t : 0 < Q2R period -> t < Q2R start + Q2R period ->
+    repeats D = Some (start, period) -> folded D t = t.
+  Proof.
+    intros P T E. unfold folded. rewrite E. destruct (Rlt_dec t (Q2R start)) as [_|N]; [reflexivity|].
+    destruct (base_Int_part ((t - Q2R start) / Q2R period)) as [A B]. set (n := Int_part _) in *.
+    assert (L : 0 <= (t - Q2R start) / Q2R period) by (apply Rmult_le_pos; [lra|apply Rlt_le, Rinv_0_lt_compat, P]).
+    assert (U : (t - Q2R start) / Q2R period < 1) by (apply (Rmult_lt_reg_r (Q2R period)); [exact P|]; field_simplify; lra).
+    assert (n < 1)%Z by (apply lt_IZR; lra). assert (-1 < n)%Z by (apply lt_IZR; lra).
+    replace n with 0%Z by lia. lra.
+  Qed.
+  Lemma in_first_right I t : in_first I = true -> inside I t -> folded D t = t.
+  Proof.
+    unfold in_first. intros H T. destruct (repeats D) as [[start period]|] eqn:E.
+    - apply andb_prop in H as [P H]. apply below_R in P. rewrite zero_R in P.
+      apply (ends_by_right _ _ t) in H; [|exact T]. rewrite plus_R in H. apply (first_round start period); assumption.
+    - unfold folded. rewrite E. reflexivity.
+  Qed.
   Lemma signal_right n a I t : inside I t -> is_one (signal_on n a I) (value W n a t) t.
   Proof.
     intros T. unfold signal_on. cbn [value world_of]. unfold value_of.
     assert (N : forall x, is_one [] x t) by (intros x H; exfalso; apply H; reflexivity).
+    destruct (in_first I) eqn:R; [|apply N]. rewrite (in_first_right I t R T).
     destruct (steps_of D n a) as [steps|].
     { destruct (step_on _ _ I) as [x|] eqn:E; [|apply N]. apply is_this. rewrite constant_R.
       apply (step_on_right _ _ _ T _ _ E). }
@@ -768,6 +793,142 @@ Section Check.
     - rewrite IHf1, IHf2. tauto.
   Qed.
 
+  (* --- traces that repeat ------------------------------------------------------------------------------- *)
+  (* Each moment that the formula speaks of is the present one, or a later one; from `start` on. *)
+  Definition is_ahead (start : Q) (lo : term) : bool :=
+    match rigid {| from_ := start; after_ := false; to_ := None |} lo with Some a => Qle_bool 0 a | None => false end.
+  Fixpoint looks_ahead (start : Q) (f : formula) : bool :=
+    match f with
+    | Truth _ | Compare _ _ _ | Occupies _ _ => true
+    | Some_ _ _ f | Every _ _ f | Not f => looks_ahead start f
+    | And f g | Or f g => looks_ahead start f && looks_ahead start g
+    | Until f lo _ g => is_ahead start lo && looks_ahead start f && looks_ahead start g
+    | Eventually lo _ f | Always lo _ f => is_ahead start lo && looks_ahead start f
+    end.
+  (* Where the interval is one of a repeating trace, of which the formula speaks alike in each round. *)
+  Definition rounds_of (f : formula) (I : interval) : option Q :=
+    match repeats D with
+    | Some (start, period) =>
+        if below 0 period && Qle_bool start (from_ I) && looks_ahead start f then Some period else None
+    | None => None
+    end.
+  Definition earlier (I : interval) (by_ : Q) : interval :=
+    {| from_ := minus (from_ I) by_; after_ := after_ I; to_ := moved_by (Qopp by_) (to_ I) |}.
+  Definition many (n : nat) (period : Q) : Q := times (inject_Z (Z.of_nat n)) period.
+  Definition first_of_rounds (I : interval) (period : Q) : interval :=
+    {| from_ := from_ I; after_ := false; to_ := Some (plus (from_ I) period, true) |}.
+
+  Section Rounds.
+    Variables start period : Q.
+    Hypothesis repeating : repeats D = Some (start, period).
+    Hypothesis P : 0 < Q2R period.
+    Notation p := (Q2R period).
+    Lemma folded_again t : Q2R start <= t -> folded D (t + p) = folded D t.
+    Proof.
+      intros T. unfold folded. rewrite repeating.
+      destruct (Rlt_dec (t + p) (Q2R start)); [exfalso; lra|]. destruct (Rlt_dec t (Q2R start)); [exfalso; lra|].
+      replace ((t + p - Q2R start) / p) with ((t - Q2R start) / p + 1) by (field; lra).
+      set (r := (t - Q2R start) / p). destruct (base_Int_part r) as [A B]. destruct (base_Int_part (r + 1)) as [A' B'].
+      assert (E : Int_part (r + 1) = (Int_part r + 1)%Z).
+      { assert (Int_part (r + 1) < Int_part r + 2)%Z by (apply lt_IZR; rewrite plus_IZR; lra).
+        assert (Int_part r < Int_part (r + 1))%Z by (apply lt_IZR; lra). lia. }
+      rewrite E, plus_IZR. ring.
+    Qed.
+    Lemma value_again n a t : Q2R start <= t -> value_of D n a (t + p) = value_of D n a t.
+    Proof. intros T. unfold value_of. rewrite (folded_again t T). reflexivity. Qed.
+    Lemma number_again x t : Q2R start <= t -> number W (t + p) x = number W t x.
+    Proof.
+      intros T. induction x; cbn [number]; rewrite ?IHx, ?IHx1, ?IHx2; try reflexivity. apply value_again, T.
+    Qed.
+    Lemma ahead_right lo t : is_ahead start lo = true -> Q2R start <= t -> 0 <= number W t lo.
+    Proof.
+      unfold is_ahead. intros H T. destruct (rigid _ lo) as [a|] eqn:E; [|discriminate].
+      rewrite (rigid_right _ lo a t E); [apply le_R in H; rewrite zero_R in H; exact H|].
+      split; [exact T|exact Logic.I].
+    Qed.
+    Lemma within_again lo hi t u : Q2R start <= t -> within W (t + p) lo hi u <-> within W t lo hi (u - p).
+    Proof.
+      intros T. unfold within. rewrite (number_again lo t T). destruct hi as [hi|]; [rewrite (number_again hi t T)|];
+        split; intros [A B]; (split; [lra|try exact Logic.I; lra]).
+    Qed.
+    Notation same_later f := (forall b t, Q2R start <= t ->
+      Meaning.holds W named b (t + p) f <-> Meaning.holds W named b t f).
+    Lemma earlier_one b t lo hi f : is_ahead start lo = true -> Q2R start <= t -> same_later f ->
+      forall u, within W (t + p) lo hi u -> Meaning.holds W named b u f <-> Meaning.holds W named b (u - p) f.
+    Proof.
+      intros A T S u U. apply (within_again lo hi t u T) in U as [U _]. pose proof (ahead_right lo t A T).
+      rewrite <- (S b (u - p)) by lra. replace (u - p + p) with u by ring. tauto.
+    Qed.
+    Lemma back lo hi t u : Q2R start <= t -> within W t lo hi u -> within W (t + p) lo hi (u + p).
+    Proof. intros T U. apply (within_again lo hi t (u + p) T). replace (u + p - p) with u by ring. exact U. Qed.
+    Lemma again f : looks_ahead start f = true -> same_later f.
+    Proof.
+      induction f; cbn [looks_ahead]; intros H c t T; cbn [Meaning.holds];
+        repeat match goal with H : _ && _ = true |- _ => apply andb_prop in H; destruct H end.
+      - tauto.
+      - assert (E : forall s, extended_number W (t + p) s = extended_number W t s)
+          by (intros [x|x]; cbn [extended_number]; rewrite (number_again x t T); reflexivity).
+        rewrite !E. tauto.
+      - cbn [occupies world_of]. unfold is_in. rewrite !(value_again _ _ t T). tauto.
+      - split; intros [e [M E]]; exists e; (split; [exact M|apply IHf; assumption]).
+      - split; intros E e M; apply IHf; auto.
+      - rewrite (IHf H c t T). tauto.
+      - rewrite (IHf1 H c t T), (IHf2 H0 c t T). tauto.
+      - rewrite (IHf1 H c t T), (IHf2 H0 c t T). tauto.
+      - pose proof (ahead_right lo t H T) as N. split; intros [u [U [G L]]].
+        + exists (u - p). split; [apply within_again; assumption|]. split.
+          * apply (earlier_one c t lo hi f2 H T (IHf2 H0) u U), G.
+          * intros w K. rewrite <- (IHf1 H1 c w) by lra. apply L. rewrite (number_again lo t T). lra.
+        + exists (u + p). split; [apply back; assumption|]. split.
+          * rewrite (IHf2 H0 c u); [exact G|]. destruct U as [U _]. lra.
+          * intros w K. rewrite (number_again lo t T) in K. replace w with (w - p + p) by ring.
+            apply (IHf1 H1 c (w - p)); [lra|]. apply L. lra.
+      - split; intros [u [U G]].
+        + exists (u - p). split; [apply within_again; assumption|].
+          apply (earlier_one c t lo hi f H T (IHf H0) u U), G.
+        + exists (u + p). split; [apply back; assumption|].
+          apply (IHf H0 c u); [destruct U; pose proof (ahead_right lo t H T); lra|exact G].
+      - split; intros G u U.
+        + apply (IHf H0 c u); [destruct U; pose proof (ahead_right lo t H T); lra|]. apply G, back; assumption.
+        + apply (earlier_one c t lo hi f H T (IHf H0) u U), G, within_again; assumption.
+    Qed.
+    Lemma again_and_again f n : looks_ahead start f = true -> forall b t, Q2R start <= t ->
+      Meaning.holds W named b (t + INR n * p) f <-> Meaning.holds W named b t f.
+    Proof.
+      intros H b t T. induction n as [|n IH].
+      - replace (t + INR 0 * p) with t by (simpl; ring). tauto.
+      - rewrite S_INR. replace (t + (INR n + 1) * p) with (t + INR n * p + p) by ring.
+        rewrite (again f H b); [exact IH|]. pose proof (Rmult_le_pos _ _ (pos_INR n) (Rlt_le _ _ P)). lra.
+    Qed.
+    Lemma many_R n : Q2R (many n period) = INR n * p.
+    Proof. unfold many. rewrite times_R. f_equal. unfold Q2R. simpl. rewrite INR_IZR_INZ. field. Qed.
+    (* Which round an instant is in, counted from a. *)
+    Lemma round_of a t : a <= t -> exists n, a <= t - INR n * p < a + p.
+    Proof.
+      intros T. exists (Z.to_nat (Int_part ((t - a) / p))). destruct (base_Int_part ((t - a) / p)) as [A B].
+      set (n := Int_part _) in *.
+      assert (L : 0 <= (t - a) / p) by (apply Rmult_le_pos; [lra|apply Rlt_le, Rinv_0_lt_compat, P]).
+      assert (-1 < n)%Z by (apply lt_IZR; lra). rewrite INR_IZR_INZ, Z2Nat.id by lia.
+      assert (E : (t - a) = (t - a) / p * p) by (field; lra). split.
+      - pose proof (Rmult_le_compat_r p _ _ (Rlt_le _ _ P) A). lra.
+      - assert ((t - a) / p < IZR n + 1) as C by lra. pose proof (Rmult_lt_compat_r p _ _ P C). lra.
+    Qed.
+  End Rounds.
+  Lemma rounds_of_right f I period : rounds_of f I = Some period -> exists start,
+    repeats D = Some (start, period) /\ 0 < Q2R period /\ Q2R start <= Q2R (from_ I) /\ looks_ahead start f = true.
+  Proof.
+    unfold rounds_of. destruct (repeats D) as [[start p]|] eqn:E; [|discriminate]. intros H.
+    destruct (below 0 p && Qle_bool start (from_ I) && looks_ahead start f) eqn:C; [|discriminate].
+    injection H as <-. apply andb_prop in C as [C A]. apply andb_prop in C as [C S].
+    apply below_R in C. rewrite zero_R in C. apply le_R in S. exists start. repeat split; assumption.
+  Qed.
+  Lemma earlier_right I c t : inside I t -> inside (earlier I c) (t - Q2R c).
+  Proof.
+    unfold inside, earlier, moved_by. cbn [from_ after_ to_]. rewrite minus_R. intros [A B].
+    split; [destruct (after_ I); lra|]. destruct (to_ I) as [[b o]|]; simpl in *; [|exact Logic.I].
+    rewrite plus_R, Q2R_opp. destruct o; lra.
+  Qed.
+
   (* --- derivations -------------------------------------------------------------------------------------- *)
   Definition somewhere_in (J : option interval) (check : interval -> bool) : bool :=
     match J with Some J => check J | None => false end.
@@ -805,6 +966,15 @@ Section Check.
     | Break m p q, Until f lo hi g =>
         negb pol && is_late I m lo && check p f env pol (image I m)
         && somewhere_in (until_then I m lo false) (check q g env pol)
+    | Earlier n p, _ =>
+        match repeats D with
+        | Some (_, period) =>
+            let J := earlier I (many n period) in
+            match rounds_of f J with Some _ => check p f env pol J | None => false end
+        | None => false
+        end
+    | Round p, _ =>
+        match rounds_of f I with Some period => check p f env pol (first_of_rounds I period) | None => false end
     | _, _ => false
     end.
 
@@ -837,10 +1007,12 @@ Section Check.
     (forall s p q, P p -> P q -> P (Case s p q)) -> (forall e p, P p -> P (Element e p)) ->
     (forall ps, Forall P ps -> P (Each ps)) -> (forall p, P p -> P (Whole p)) ->
     (forall m p, P p -> P (Moment m p)) -> (forall m p q, P p -> P q -> P (Reach m p q)) ->
-    (forall m p q, P p -> P q -> P (Break m p q)) -> forall p, P p.
+    (forall m p q, P p -> P q -> P (Break m p q)) -> (forall n p, P p -> P (Earlier n p)) ->
+    (forall p, P p -> P (Round p)) -> forall p, P p.
   Proof.
-    intros H1 H2 H3 H4 H5 H6 HC H7 H8 H9 H10 H11 H12. fix IH 1. intros p.
-    destruct p; [apply H1|apply H2|apply H3|apply H4|apply H5|apply H6|apply HC|apply H7|apply H8|apply H9|apply H10|apply H11|apply H12];
+    intros H1 H2 H3 H4 H5 H6 HC H7 H8 H9 H10 H11 H12 HE HR. fix IH 1. intros p.
+    destruct p; [apply H1|apply H2|apply H3|apply H4|apply H5|apply H6|apply HC|apply H7|apply H8|apply H9|apply H10|apply H11|apply H12
+              |apply HE|apply HR];
       try apply IH.
     induction ps as [|p ps IHps]; constructor; [apply IH|exact IHps].
   Qed.
@@ -848,7 +1020,7 @@ Section Check.
   Theorem check_right p : right_for p.
   Proof.
     induction p as [|cuts|p IHp|p q IHp IHq|second p IHp|c after p q IHp IHq|s p q IHp IHq|e p IHp|ps IHps|p IHp|m p IHp
-                   |m p q IHp IHq|m p q IHp IHq] using derivation_ind';
+                   |m p q IHp IHq|m p q IHp IHq|n p IHp|p IHp] using derivation_ind';
       intros f env pol I b t H B T; cbn [check] in H.
     - destruct f; try discriminate. apply Bool.eqb_prop in H. subst. simpl. destruct pol; simpl; congruence.
     - destruct f; try discriminate; rewrite forallb_forall in H; destruct (parts_right cuts t I T) as [J [P J']];
@@ -904,6 +1076,23 @@ Section Check.
       destruct (Rle_lt_dec u (at_ m t)) as [C|C].
       + apply (IHq _ _ _ _ _ _ H2 B (until_then_right I m lo false J t u EJ T A C) G).
       + apply IHp, L. lra.
+    - destruct (repeats D) as [[start period]|] eqn:E; [|discriminate].
+      destruct (rounds_of f (earlier I (many n period))) as [q|] eqn:R; [|discriminate].
+      apply rounds_of_right in R as [s [R [P [S A]]]]. rewrite E in R. injection R as <- <-.
+      pose proof (earlier_right I (many n period) t T) as T'. specialize (IHp _ _ _ _ _ _ H B T').
+      rewrite many_R in *. pose proof (inside_from _ _ T') as F'.
+      pose proof (again_and_again start period E P f n A b (t - INR n * Q2R period)) as G.
+      replace (t - INR n * Q2R period + INR n * Q2R period) with t in G by ring.
+      destruct pol; simpl in *; apply G || (intros N; apply IHp, G); try assumption; lra.
+    - destruct (rounds_of f I) as [period|] eqn:R; [|discriminate].
+      apply rounds_of_right in R as [start [E [P [S A]]]]. pose proof (inside_from _ _ T) as F'.
+      destruct (round_of period P (Q2R (from_ I)) t F') as [n [N1 N2]].
+      assert (T' : inside (first_of_rounds I period) (t - INR n * Q2R period))
+        by (unfold inside, first_of_rounds; cbn [from_ after_ to_]; rewrite plus_R; lra).
+      specialize (IHp _ _ _ _ _ _ H B T').
+      pose proof (again_and_again start period E P f n A b (t - INR n * Q2R period)) as G.
+      replace (t - INR n * Q2R period + INR n * Q2R period) with t in G by ring.
+      destruct pol; simpl in *; apply G || (intros N; apply IHp, G); try assumption; lra.
   Qed.
 End Check.
 

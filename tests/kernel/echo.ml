@@ -77,11 +77,13 @@ let end__ = function None -> "None" | Some x -> q_ x
 let rectangle_ r =
   node [ text r.lane; zone_ r.lies_in; end__ r.from_s; end__ r.to_s; q_ r.right_d; q_ r.left_d ]
 
+let repetition_ = function None -> "None" | Some x -> pair_ q_ q_ x
+
 let drive_ d =
   node
     [ all body_ d.bodies; all rectangle_ (d.first_rectangle :: d.other_rectangles); all (pair_ text text) d.beside;
       all (pair_ text text) d.lanes_named; all (pair_ text q_) d.values0; all steps_ d.signals;
-      all (pair_ text q_) d.numbers ]
+      all (pair_ text q_) d.numbers; repetition_ d.repeats ]
 
 let column_ (k, (low, high)) = node [ z_ (Zpos k); z_ low; z_ high ]
 let product_ (k, (i, j)) = node (List.map (fun n -> z_ (Zpos n)) [ k; i; j ])

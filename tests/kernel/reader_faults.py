@@ -14,6 +14,7 @@ FAULTS = [
     ('"truck" -> Truck', '"truck" -> Car'),
     ("((q time, q x), q after)", "((q time, q after), q x)"),
     ("((signal n, name a), list step l)", "((signal n, name a), List.rev (list step l))"),
+    ("x -> Some (pair q q x)", "x -> Some (let start, period = pair q q x in (period, start))"),
     ("numbers = list (pair name q) numbers", "numbers = list (pair name q) values"),
     ("Own_at_least (name n, name a, q low)", "Own_at_most (name n, name a, q low)"),
     ("Min (term x, term y)", "Max (term x, term y)"),

@@ -236,8 +236,8 @@ UNREAD = [
     '(proof a "" [] [] (Compare (Fin (Num 1)) EQ (Fin (Num 1))) [] [] [] (CloseTruth 0))',
     '(proof a "" [] [] (Compare (Fin (Num (q 1 0))) LE (Fin (Num 1))) [] [] [] (CloseTruth 0))',
     '(proof a "" [] [] (Compare (Fin (Num (q 1 -2))) LE (Fin (Num 1))) [] [] [] (CloseTruth 0))',
-    f'(drive a "" [] [] (Truth true) (["A" car 0 1 {STILL}] [{RECTANGLE}] [] [] [] []) Plain)',
-    f'(drive a "" [] [] (Truth true) (["A" car 1 1 {STILL}] [] [] [] [] []) Plain)',
+    f'(drive a "" [] [] (Truth true) (["A" car 0 1 {STILL}] [{RECTANGLE}] [] [] [] [] None) Plain)',
+    f'(drive a "" [] [] (Truth true) (["A" car 1 1 {STILL}] [] [] [] [] [] None) Plain)',
     "(else a)",
 ]
 BROKEN = ["(proof a", "(proof a))", '(proof a "', "(proof a [1; 2)", "proof", "()"]
@@ -317,7 +317,7 @@ def expected_drive(what):
         f"((Own {text(n)}) {text(a)} {listed(f'({exact(at)} {exact(x)} {exact(x)})' for at, x in steps)})"
         for (n, a), steps in sorted(file.drive.own.items())
     ]
-    return f"({' '.join(map(listed, (bodies, rectangles, pairs, lanes, values, own, [])))})"
+    return f"({' '.join(map(listed, (bodies, rectangles, pairs, lanes, values, own, [])))} None)"
 
 
 BOUNDS = '(bounds [at_least_0 "a"; above_0 "b"; own_at_least "n" "a" (q 1 2); own_at_most "n" "" (3 # 4)])'
@@ -327,13 +327,13 @@ BOUNDS_READ = (
 )
 TRACE = (
     '(drive ([] ["x" main None None 0 1; "y" main None None 1 2] [] [] [] '
-    '[Speed_lon "A" [0 1 2; (1 # 2) 3 4]; Place_lat "B" []] ["v" 5]))'
+    '[Speed_lon "A" [0 1 2; (1 # 2) 3 4]; Place_lat "B" []] ["v" 5] (1 2)))'
 )
 TRACE_READ = (
     '([] [("x"%string main None None (Qmake (0) 1) (Qmake (1) 1)); '
     '("y"%string main None None (Qmake (1) 1) (Qmake (2) 1))] [] [] [] [(Speed_lon "A"%string '
     "[((Qmake (0) 1) (Qmake (1) 1) (Qmake (2) 1)); ((Qmake (1) 2) (Qmake (3) 1) (Qmake (4) 1))]); "
-    '(Place_lat "B"%string [])] [("v"%string (Qmake (5) 1))])'
+    '(Place_lat "B"%string [])] [("v"%string (Qmake (5) 1))] ((Qmake (1) 1) (Qmake (2) 1)))'
 )
 
 PROGRAM = (
@@ -373,7 +373,7 @@ def questions():
             what = replace(what, file=replace(what.file, road=ROAD, drive=varied(what.file.drive)))
         lines = drive("n", what, claim_text(what), derivation).text.splitlines()
         first = next(k for k, line in enumerate(lines) if line.startswith(" (["))
-        asked.append((f"(drive {' '.join(lines[first : first + 7])})", expected_drive(what)))
+        asked.append((f"(drive {' '.join(lines[first : first + 8])})", expected_drive(what)))
     return asked
 
 

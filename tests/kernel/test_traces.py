@@ -19,13 +19,14 @@ from roadproof.evidence.derivations.traces import TraceShapes
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.kernel.accept import Word
 from roadproof.evidence.kernel.coq import ready
-from roadproof.evidence.kernel.derivation import coq_derivation
+from roadproof.evidence.kernel.derivation import Later, Step, coq_derivation, sign, timed
 from roadproof.evidence.kernel.trace import ANYWHERE, Refutation, Refuted, refuted, world_of
 from roadproof.evidence.kernel.world import world_lines
 from roadproof.evidence.refutation import when_true
 from roadproof.frontends.api.checking import check
 from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
+from roadproof.logic import terms as t
 
 FALSE = [
     "v_lon(SV) > 0 -> G v_lon(SV) > 0",
@@ -38,16 +39,23 @@ FALSE = [
     "scenario_1(SV,POV,L) -> scenario_4(SV,POV,L)",
     "given v: m/s: v_lon(SV) > v -> v_lon(POV) > v",
 ]
+REPEATING = [
+    "G F v_lon(SV) > 3 m/s -> F G v_lon(SV) > 3 m/s",
+    "(G F atLane(SV,L)) -> F G atLane(SV,L)",
+    "(G F[0, 2 s] v_lon(SV) > 3 m/s) -> v_lon(SV) > 3 m/s or F G v_lon(SV) > 3 m/s",
+    "G (v_lon(SV) > 3 m/s -> F v_lon(SV) < 2 m/s) -> not G F v_lon(SV) > 3 m/s",
+]
 
 
 @needs_coq
 @needs_ocaml
 def test_refuting_traces_of_proofs_are_accepted(tmp_path):
-    found = rp.prove(*FALSE, drive=False, out=tmp_path, jobs=1)
+    every = FALSE + REPEATING
+    found = rp.prove(*every, drive=False, out=tmp_path, jobs=1)
     assert {str(x) for x in found.verdicts.values()} == {"REFUTED"}
     for kernel in ("coq", "extracted"):
         findings = check(tmp_path, kernel=kernel, jobs=1).findings
-        assert [(x.outcome, x.kernel) for x in findings] == [(Acceptance.ACCEPTED, "accepted")] * len(FALSE)
+        assert [(x.outcome, x.kernel) for x in findings] == [(Acceptance.ACCEPTED, "accepted")] * len(every)
 
 
 # --- random traces -------------------------------------------------------------------------------
@@ -63,16 +71,20 @@ times = st.sets(st.integers(1, 6), max_size=3).map(lambda x: [Fraction(n, 2) for
 
 
 @st.composite
-def traces(draw):
+def traces(draw, repeating=False):
     instants = [Instant(time, draw(states), {}, draw(st.one_of(st.none(), states))) for time in draw(times)]
-    return Countermodel(tuple(instants), {}, draw(st.sampled_from(["before", "after"])))
+    if not repeating:
+        return Countermodel(tuple(instants), {}, draw(st.sampled_from(["before", "after"])))
+    start, more = draw(st.sampled_from([x.time for x in instants])), Fraction(draw(st.integers(1, 4)), 4)
+    loop = Loop(start, instants[-1].time - start + more)
+    return Countermodel(tuple(instants), {}, "before", loop=loop)
 
 
 def is_true(formula, trace):
     return when_true(formula, trace).at(Fraction(0))
 
 
-def cases(count):
+def cases(count, repeating):
     """Triples of a formula, a trace on which it is false, and another one on which it is true, or None."""
     found = []
 
@@ -83,7 +95,11 @@ def cases(count):
         deadline=None,
         suppress_health_check=list(HealthCheck),
     )
-    @given(formulas(comparisons, leaves=5), traces(), st.lists(traces(), min_size=4, max_size=4))
+    @given(
+        formulas(comparisons, leaves=5),
+        traces(repeating),
+        st.lists(traces(repeating), min_size=4, max_size=4),
+    )
     def collect(formula, trace, others):
         formula = f.Not(formula) if is_true(formula, trace) else formula
         found.append((formula, trace, next((x for x in others if is_true(formula, x)), None)))
@@ -112,9 +128,10 @@ def example(name, what, derivation, answer):
 
 
 @needs_coq
-def test_coq_says_of_random_traces_what_the_judge_says():
+@pytest.mark.parametrize("repeating", [False, True])
+def test_coq_says_of_random_traces_what_the_judge_says(repeating):
     """The same derivation is refused on a trace on which the formula is true."""
-    given, out, damaged = cases(60), [HEAD], 0
+    given, out, damaged = cases(60, repeating), [HEAD], 0
     for number, (formula, trace, other) in enumerate(given):
         what = refuted_by(formula, trace)
         derivation = derive_on(TraceShapes({}, what), f.Not(formula), ANYWHERE, {})
@@ -122,8 +139,76 @@ def test_coq_says_of_random_traces_what_the_judge_says():
         if other is not None:
             out.append(example(f"no_{number}", refuted_by(formula, other), derivation, False))
             damaged += 1
+    if repeating:
+        assert min("".join(out).count(rule) for rule in ("(Round", "(Earlier")) >= 15
     assert len(given) >= 50
     assert damaged >= 15
+    with ready() as coq:
+        ran = coq.run("".join(out))
+    assert (ran.code, ran.complained) == (0, "")
+
+
+# --- rounds ----------------------------------------------------------------------------------------
+
+
+def speeds(start, period, *values):
+    """v_lon(A) is each of these for a second; from ``start`` on they repeat."""
+    instants = (Instant(Fraction(k), {"v_lon(A)": Fraction(x)}, {}) for k, x in enumerate(values))
+    return Countermodel(tuple(instants), {}, "before", loop=Loop(Fraction(start), Fraction(period)))
+
+
+def window(low, high, body):
+    return f.Eventually(f.Interval(t.Number(Fraction(low)), t.Number(Fraction(high))), body)
+
+
+def fast(op, value):
+    return f.Compare(t.Signal("v_lon", "A"), op, t.Number(Fraction(value)))
+
+
+def after(seconds, step):
+    return timed("Moment", Later(Fraction(seconds)), step)
+
+
+def earlier(rounds, step):
+    return Step("Earlier", (str(rounds),), (step,))
+
+
+HALF = Fraction(1, 2)
+ALTERNATING = speeds(0, 2, 1, 0)
+SLOW_FOR_EVER = speeds(1, 1, 9, 0)
+# What is asked, on which trace, by which derivation, and whether it is accepted.
+ROUNDS = {
+    "two seconds later": (window(2, 2, fast(">", 0)), ALTERNATING, after(2, earlier(1, sign(()))), True),
+    "three rounds later": (window(7, 7, fast("<=", 0)), ALTERNATING, after(7, earlier(3, sign(()))), True),
+    "too many rounds": (window(7, 7, fast("<=", 0)), ALTERNATING, after(7, earlier(4, sign(()))), False),
+    "steps of the first round": (window(2, 2, fast("<=", 0)), ALTERNATING, after(2, sign(())), False),
+    "before the rounds": (
+        window(3 * HALF, 3 * HALF, fast(">", 3)),
+        SLOW_FOR_EVER,
+        after(3 * HALF, earlier(1, sign(()))),
+        False,
+    ),
+    "looking back": (
+        window(5 * HALF, 5 * HALF, window(-1, -1, fast(">", 3))),
+        SLOW_FOR_EVER,
+        after(5 * HALF, earlier(1, after(-1, sign(())))),
+        False,
+    ),
+    "no rounds": (
+        window(2, 2, fast("<=", 0)),
+        replace(ALTERNATING, loop=None),
+        after(2, earlier(1, sign(()))),
+        False,
+    ),
+}
+
+
+@needs_coq
+def test_rounds_are_counted_within_what_repeats_and_only_ahead():
+    out = [HEAD]
+    for number, (formula, trace, derivation, answer) in enumerate(ROUNDS.values()):
+        turned = Step("Turn", (), (Step("Turn", (), (derivation,)),))
+        out.append(example(f"round_{number}", refuted_by(f.Not(formula), trace), turned, answer))
     with ready() as coq:
         ran = coq.run("".join(out))
     assert (ran.code, ran.complained) == (0, "")
@@ -162,7 +247,7 @@ def test_a_claim_that_is_true_on_its_trace_has_no_module():
     ("claim", "trace", "word", "reason"),
     [
         ("nobody(SV)", jumping(), Word.REFUSED, "it cannot be put to the kernel"),
-        ("G v_lon(SV) > 0", jumping(loop=Loop(Fraction(0), Fraction(3))), Word.UNKNOWN, "repeats itself"),
+        ("G v_lon(SV) > 0", jumping(loop=Loop(Fraction(0), Fraction(2))), Word.REFUSED, "repeats itself"),
         ("given v: m/s: v > 0", jumping(), Word.REFUSED, "does not say what v is"),
         ("G v_lon(SV) > 0", at(Fraction(1)), Word.REFUSED, "must ascend from 0"),
         ("length(SV) > 0", sized(-1), Word.REFUSED, "not greater than 0"),

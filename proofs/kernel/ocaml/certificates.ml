@@ -82,6 +82,8 @@ let rec derivation = function
   | Node [ Word "Moment"; m; p ] -> Moment (moment m, derivation p)
   | Node [ Word "Reach"; m; p; r ] -> Reach (moment m, derivation p, derivation r)
   | Node [ Word "Break"; m; p; r ] -> Break (moment m, derivation p, derivation r)
+  | Node [ Word "Earlier"; n; p ] -> Earlier (nat n, derivation p)
+  | Node [ Word "Round"; p ] -> Round (derivation p)
   | _ -> unread "a derivation"
 
 (* --- Refuted.v ----------------------------------------------------------------------------------------- *)

@@ -623,6 +623,12 @@ module Z =
   | Zneg p -> Zpos p
   | x -> x
 
+  (** val of_nat : nat -> z **)
+
+  let of_nat = function
+  | O -> Z0
+  | S n1 -> Zpos (Coq_Pos.of_succ_nat n1)
+
   (** val to_pos : z -> positive **)
 
   let to_pos = function
@@ -1252,6 +1258,11 @@ let norm =
   norm_aux
 
 type q = { qnum : z; qden : positive }
+
+(** val inject_Z : z -> q **)
+
+let inject_Z x =
+  { qnum = x; qden = XH }
 
 (** val qeq_bool : q -> q -> bool **)
 
@@ -3080,7 +3091,7 @@ type drive = { bodies : (vehicle * body) list; first_rectangle : rectangle;
                lanes_named : (char list * char list) list;
                values0 : (char list * q) list;
                signals : ((signal * vehicle) * ((q * q) * q) list) list;
-               numbers : (char list * q) list }
+               numbers : (char list * q) list; repeats : (q * q) option }
 
 (** val look_up : char list -> (char list * 'a1) list -> 'a1 -> 'a1 **)
 
@@ -3202,6 +3213,8 @@ type derivation =
 | Moment of moment * derivation
 | Reach of moment * derivation * derivation
 | Break of moment * derivation * derivation
+| Earlier of nat * derivation
+| Round of derivation
 
 type shape = { of_place : q list; of_speed : q list;
                of_acceleration : q list; of_jerk : q list }
@@ -3349,16 +3362,28 @@ let motion_on f n0 a i =
    | Jerk_lon -> as_list (shape_on b.shaped_along i) (fun s -> s.of_jerk)
    | Own _ -> [] :: [])
 
+(** val in_first : drive -> interval -> bool **)
+
+let in_first d i =
+  match d.repeats with
+  | Some p ->
+    let (start, period) = p in
+    (&&) (below { qnum = Z0; qden = XH } period)
+      (ends_by i (plus start period))
+  | None -> true
+
 (** val signal_on :
     drive -> fleet -> signal -> vehicle -> interval -> q list list **)
 
 let signal_on d f n0 a i =
-  match steps_of d n0 a with
-  | Some steps ->
-    (match step_on (first_step steps) steps i with
-     | Some x -> (x :: []) :: []
-     | None -> [])
-  | None -> motion_on f n0 a i
+  if in_first d i
+  then (match steps_of d n0 a with
+        | Some steps ->
+          (match step_on (first_step steps) steps i with
+           | Some x -> (x :: []) :: []
+           | None -> [])
+        | None -> motion_on f n0 a i)
+  else []
 
 (** val size_on : fleet -> size -> vehicle -> q **)
 
@@ -3783,6 +3808,60 @@ let rec assume d f i s above3 f0 = match f0 with
 | Or (f1, g) -> Or ((assume d f i s above3 f1), (assume d f i s above3 g))
 | _ -> f0
 
+(** val is_ahead : drive -> fleet -> q -> term -> bool **)
+
+let is_ahead d f start lo =
+  match rigid0 d f { from_ = start; after_ = false; to_ = None } lo with
+  | Some a -> qle_bool { qnum = Z0; qden = XH } a
+  | None -> false
+
+(** val looks_ahead : drive -> fleet -> q -> formula -> bool **)
+
+let rec looks_ahead d f start = function
+| Some_ (_, _, f1) -> looks_ahead d f start f1
+| Every (_, _, f1) -> looks_ahead d f start f1
+| Not f1 -> looks_ahead d f start f1
+| And (f1, g) -> (&&) (looks_ahead d f start f1) (looks_ahead d f start g)
+| Or (f1, g) -> (&&) (looks_ahead d f start f1) (looks_ahead d f start g)
+| Until (f1, lo, _, g) ->
+  (&&) ((&&) (is_ahead d f start lo) (looks_ahead d f start f1))
+    (looks_ahead d f start g)
+| Eventually (lo, _, f1) ->
+  (&&) (is_ahead d f start lo) (looks_ahead d f start f1)
+| Always (lo, _, f1) ->
+  (&&) (is_ahead d f start lo) (looks_ahead d f start f1)
+| _ -> true
+
+(** val rounds_of : drive -> fleet -> formula -> interval -> q option **)
+
+let rounds_of d f f0 i =
+  match d.repeats with
+  | Some p ->
+    let (start, period) = p in
+    if (&&)
+         ((&&) (below { qnum = Z0; qden = XH } period)
+           (qle_bool start i.from_)) (looks_ahead d f start f0)
+    then Some period
+    else None
+  | None -> None
+
+(** val earlier : interval -> q -> interval **)
+
+let earlier i by_ =
+  { from_ = (minus i.from_ by_); after_ = i.after_; to_ =
+    (moved_by (qopp by_) i.to_) }
+
+(** val many : nat -> q -> q **)
+
+let many n0 period =
+  times (inject_Z (Z.of_nat n0)) period
+
+(** val first_of_rounds : interval -> q -> interval **)
+
+let first_of_rounds i period =
+  { from_ = i.from_; after_ = false; to_ = (Some ((plus i.from_ period),
+    true)) }
+
 (** val somewhere_in : interval option -> (interval -> bool) -> bool **)
 
 let somewhere_in j check2 =
@@ -3900,7 +3979,20 @@ let rec check1 d f p f0 env pol0 i =
             (check1 d f p2 f1 env pol0 (image i m)))
           (somewhere_in (until_then d f i m lo false)
             (check1 d f q0 g env pol0))
-      | _ -> false))
+      | _ -> false)
+   | Earlier (n0, p2) ->
+     (match d.repeats with
+      | Some p3 ->
+        let (_, period) = p3 in
+        let j = earlier i (many n0 period) in
+        (match rounds_of d f f0 j with
+         | Some _ -> check1 d f p2 f0 env pol0 j
+         | None -> false)
+      | None -> false)
+   | Round p2 ->
+     (match rounds_of d f f0 i with
+      | Some period -> check1 d f p2 f0 env pol0 (first_of_rounds i period)
+      | None -> false))
 
 (** val all_steps : (q -> bool) -> ((q * q) * q) list option -> bool **)
 

@@ -22,11 +22,12 @@
                 (FORMULA known) for a fact of Known.v
      PARAMETERS a list of strings: those that moments speak of, in the order of their numbers
      VALUES     a list of (NAME NUMBER): values of parameters that the claim demands (Values.v)
-     DRIVE      (BODIES RECTANGLES BESIDE LANES VALUES SIGNALS NUMBERS), the fields of `drive` in Drive.v:
+     DRIVE      (BODIES RECTANGLES BESIDE LANES VALUES SIGNALS NUMBERS REPEATS), the fields of `drive` in Drive.v:
                 a body is (NAME SORT LONG WIDE ALONG ACROSS),
                 a course is (PLACE SPEED [(SECONDS ACCELERATION JERK)] ACCELERATION),
                 a rectangle is (LANE ZONE FROM TO RIGHT LEFT) with None for no end,
-                a signal is (SIGNAL VEHICLE [(TIME VALUE AFTER)])
+                a signal is (SIGNAL VEHICLE [(TIME VALUE AFTER)]),
+                and REPEATS is (START PERIOD) or None
      PROGRAMS   a list of (SCALE COLUMNS PRODUCTS EQUAL ABOVE NODES CONDITION TREE): the fields of `program` in
                 Programs.v, whose entries are written with its functions, such as (a_column 1 0 40), and a tree
                 of Refuted.v *)
@@ -254,12 +255,14 @@ let rectangle = function
 let step = function Node [ time; x; after ] -> ((q time, q x), q after) | _ -> unread "a step"
 let steps = function Node [ n; a; l ] -> ((signal n, name a), list step l) | _ -> unread "a signal in steps"
 
+let repetition = function Word "None" -> None | x -> Some (pair q q x)
+
 let drive = function
-  | Node [ bodies; List (first :: others); beside; lanes; values; own; numbers ] ->
+  | Node [ bodies; List (first :: others); beside; lanes; values; own; numbers; repeats ] ->
       { bodies = list body bodies; first_rectangle = rectangle first; other_rectangles = List.map rectangle others;
         beside = list (pair name name) beside; lanes_named = list (pair name name) lanes;
         values0 = list (pair name q) values; signals = list steps own;
-        numbers = list (pair name q) numbers }
+        numbers = list (pair name q) numbers; repeats = repetition repeats }
   | _ -> unread "a drive"
 
 (* --- Programs.v ---------------------------------------------------------------------------------------- *)

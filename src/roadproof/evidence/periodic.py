@@ -8,7 +8,7 @@ a whole round later than it is asked for, also came one round earlier.
 from collections.abc import Mapping
 from fractions import Fraction
 from math import ceil
-from typing import assert_never
+from typing import TypeAlias, assert_never
 
 from roadproof.errors import InputError
 from roadproof.evidence.countermodel import Loop
@@ -21,6 +21,7 @@ from roadproof.semantics.exact.exact import Judge, seconds
 from roadproof.semantics.exact.signals import AbstractSignals, Courses
 
 MOST_ROUNDS = 2000
+Window: TypeAlias = tuple[Fraction, Fraction | None]
 
 
 def judge_periodic(formula: Formula, given: Mapping[Formula, sets.TruthSet], loop: Loop) -> sets.TruthSet:
@@ -29,32 +30,40 @@ def judge_periodic(formula: Formula, given: Mapping[Formula, sets.TruthSet], loo
     ``given``: the truth of its comparisons there. Raises ``InputError`` for one that is not given, and for
     intervals that reach over too many rounds.
     """
-    return _PeriodicJudge(Courses(AbstractSignals({}, {})), given, loop=loop).visit(formula)
+    return PeriodicJudge(Courses(AbstractSignals({}, {})), given, loop=loop).visit(formula)
 
 
 @dataclass(frozen=True, kw_only=True)
-class _PeriodicJudge(Judge):
-    """A judge who says of each part when it is true before the end of the first round."""
+class PeriodicJudge(Judge):
+    """A judge who says of each part when it is true before the end of the first round.
 
-    loop: Loop
+    Where there is no ``loop``: when it is true at all.
+    """
+
+    loop: Loop | None
 
     def visit(self, formula: Formula) -> sets.TruthSet:
+        if self.loop is None:
+            return Judge.visit(self, formula)
         if formula not in self.truths:
-            self.truths[formula] = self._inside(Judge.visit(self, formula))
+            self.truths[formula] = first_round(Judge.visit(self, formula), self.loop)
         return self.truths[formula]
 
     def _visit(self, formula: Formula) -> sets.TruthSet:
+        loop = self.loop
+        if loop is None:
+            return Judge._visit(self, formula)
         match formula:
             case f.Eventually(window, body):
-                low, high = _within(window, self.loop)
-                return sets.eventually(low, high, self._ahead(self.visit(body), low))
+                low, high = clipped(seconds(window), loop)
+                return sets.eventually(low, high, ahead(self.visit(body), low, loop))
             case f.Always(window, body):
-                low, high = _within(window, self.loop)
-                failing = self._inside(sets.complement(self.visit(body)))
-                return sets.complement(sets.eventually(low, high, self._ahead(failing, low)))
+                low, high = clipped(seconds(window), loop)
+                failing = first_round(sets.complement(self.visit(body)), loop)
+                return sets.complement(sets.eventually(low, high, ahead(failing, low, loop)))
             case f.Until(left, window, right):
-                low, high = _within(window, self.loop)
-                held, reached = (self._ahead(self.visit(x), low) for x in (left, right))
+                low, high = clipped(seconds(window), loop)
+                held, reached = (ahead(self.visit(x), low, loop) for x in (left, right))
                 return sets.until(held, low, high, reached)
             case f.Truth() | f.Not() | f.And() | f.Or() | f.Application():
                 return Judge._visit(self, formula)
@@ -63,11 +72,15 @@ class _PeriodicJudge(Judge):
             case _:
                 assert_never(formula)
 
-    def _inside(self, truth: sets.TruthSet) -> sets.TruthSet:
-        return sets.intersection([truth, sets.interval(Fraction(0), self.loop.end, "[)")])
 
-    def _ahead(self, truth: sets.TruthSet, low: Fraction) -> sets.TruthSet:
-        return unrolled(truth, self.loop, low + 2 * self.loop.end + self.loop.period)
+def first_round(truth: sets.TruthSet, loop: Loop) -> sets.TruthSet:
+    """The part of a truth set before the end of the first round."""
+    return sets.intersection([truth, sets.interval(Fraction(0), loop.end, "[)")])
+
+
+def ahead(truth: sets.TruthSet, low: Fraction, loop: Loop) -> sets.TruthSet:
+    """A truth set of the first round in as many rounds as matter to intervals from ``low`` on."""
+    return unrolled(truth, loop, low + 2 * loop.end + loop.period)
 
 
 def unrolled(truth: sets.TruthSet, loop: Loop, horizon: Fraction) -> sets.TruthSet:
@@ -75,7 +88,7 @@ def unrolled(truth: sets.TruthSet, loop: Loop, horizon: Fraction) -> sets.TruthS
     rounds = max(1, ceil((horizon - loop.start) / loop.period))
     if rounds > MOST_ROUNDS:
         raise InputError(f"an interval reaches over {rounds} rounds of the trace; at most {MOST_ROUNDS}")
-    parts = [sets.intersection([truth, sets.interval(Fraction(0), loop.end, "[)")])]
+    parts = [first_round(truth, loop)]
     again = sets.intersection([truth, sets.interval(loop.start, loop.end, "[)")])
     for k in range(1, rounds):
         later = (sets.Cut(moved(cut.point, k * loop.period), cut.after) for cut in again.cuts)
@@ -83,7 +96,7 @@ def unrolled(truth: sets.TruthSet, loop: Loop, horizon: Fraction) -> sets.TruthS
     return sets.union(parts)
 
 
-def _within(window: f.Interval, loop: Loop) -> tuple[Fraction, Fraction]:
+def clipped(window: Window, loop: Loop) -> tuple[Fraction, Fraction]:
     """An interval without what lies so late in it that it came before."""
-    low, high = seconds(window)
+    low, high = window
     return low, low + loop.end if high is None else min(high, low + loop.end)

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TypeAlias, assert_never
 
+from roadproof.evidence import periodic
 from roadproof.evidence.derivations.parts import (
     NoDerivationError,
     at_once,
@@ -24,6 +25,7 @@ from roadproof.evidence.derivations.parts import (
     run,
     widened,
 )
+from roadproof.evidence.derivations.rounds import in_rounds, is_first, ruled
 from roadproof.evidence.derivations.signs import (
     DriveShapes,
     Part,
@@ -35,13 +37,14 @@ from roadproof.evidence.derivations.signs import (
     splits,
 )
 from roadproof.evidence.kernel.derivation import Step, case, element, sign, timed
+from roadproof.evidence.periodic import PeriodicJudge, Window
 from roadproof.library.bind import occupies as occupies_formula
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import leaves_of, with_values, without_names
 from roadproof.semantics.exact.algebraic import Root
-from roadproof.semantics.exact.exact import NOTHING_GIVEN, Judge, seconds
+from roadproof.semantics.exact.exact import NOTHING_GIVEN, seconds
 from roadproof.semantics.exact.polynomial import Polynomial, polynomial
 from roadproof.semantics.exact.signals import AbstractSignals, Courses
 from roadproof.semantics.exact.truth import (
@@ -91,9 +94,23 @@ class _Finding:
     def when(self, formula: Formula, scope: Scope, positive: bool = True) -> TruthSet:
         key = tuple(sorted(scope.items()))
         if key not in self.judges:
-            self.judges[key] = _ScopedJudge(NOTHING, NOTHING_GIVEN, finding=self, scope=scope)
+            loop = self.shapes.loop
+            self.judges[key] = _ScopedJudge(NOTHING, NOTHING_GIVEN, loop=loop, finding=self, scope=scope)
         truth = self.judges[key].visit(formula)
-        return truth if positive else complement(truth)
+        return truth if positive else self._first_round(complement(truth))
+
+    def ahead(self, formula: Formula, scope: Scope, low: Fraction, positive: bool = True) -> TruthSet:
+        """The same, in as many rounds as matter to windows from ``low`` on."""
+        found, loop = self.when(formula, scope, positive), self.shapes.loop
+        return found if loop is None else periodic.ahead(found, low, loop)
+
+    def _first_round(self, truth: TruthSet) -> TruthSet:
+        loop = self.shapes.loop
+        return truth if loop is None else periodic.first_round(truth, loop)
+
+    def _searched(self, window: Window) -> Window:
+        """A window without what lies so late in it that it came before."""
+        return window if self.shapes.loop is None else periodic.clipped(window, self.shapes.loop)
 
     def number(self, name: str, scope: Scope) -> int:
         """Which lanelet a name stands for; a lane by its first one."""
@@ -123,6 +140,10 @@ class _Finding:
         self.steps += 1
         if self.steps > MOST_STEPS:
             raise NoDerivationError(f"it would have more than {MOST_STEPS} steps")
+        loop = self.shapes.loop
+        if loop is not None and not is_first(part, loop):
+            pieces = in_rounds(part, loop)
+            return put_together([(x, ruled(r, self.why(formula, scope, positive, y))) for x, y, r in pieces])
         if not contains(self.when(formula, scope, positive), part):
             raise NoDerivationError("the formula is not what it should be at some instant")
         match formula:
@@ -263,14 +284,14 @@ class _Finding:
         scope: Scope,
         positive: bool,
         part: Part,
-        window: tuple[Fraction, Fraction | None],
+        window: Window,
         once: bool,
     ) -> Step:
         if not once:
             return Step("Whole", (), (self.why(body, scope, positive, widened(part, window)),))
         found: list[tuple[Part, Step]] = []
-        when = self.when(body, scope, positive)
-        for piece, moment in moments(part, window, when, ALWAYS):
+        when = self.ahead(body, scope, window[0], positive)
+        for piece, moment in moments(part, self._searched(window), when, ALWAYS):
             step = self.why(body, scope, positive, image(piece, moment))
             found.append((piece, timed("Moment", moment, step)))
         return put_together(found)
@@ -281,10 +302,11 @@ class _Finding:
         right: Formula,
         scope: Scope,
         part: Part,
-        window: tuple[Fraction, Fraction | None],
+        window: Window,
     ) -> Step:
         found: list[tuple[Part, Step]] = []
-        for piece, moment in moments(part, window, self.when(right, scope), self.when(left, scope)):
+        comes, kept = (self.ahead(x, scope, window[0]) for x in (right, left))
+        for piece, moment in moments(part, self._searched(window), comes, kept):
             before = Step("Plain")
             if not at_once(piece, moment, window[0]):
                 before = self.why(left, scope, True, run(piece, moment, window[0], out=True))
@@ -298,11 +320,11 @@ class _Finding:
         right: Formula,
         scope: Scope,
         part: Part,
-        window: tuple[Fraction, Fraction | None],
+        window: Window,
     ) -> Step:
-        never, failing = self.when(right, scope, False), self.when(left, scope, False)
+        never, failing = (self.ahead(x, scope, window[0], False) for x in (right, left))
         found: list[tuple[Part, Step]] = []
-        for piece, moment in breaks(part, window, never, failing):
+        for piece, moment in breaks(part, self._searched(window), never, failing):
             if moment is None:
                 step = Step("Whole", (), (self.why(right, scope, False, widened(piece, window)),))
             else:
@@ -317,7 +339,7 @@ class _Finding:
 
 
 @dataclass(frozen=True, kw_only=True)
-class _ScopedJudge(Judge):
+class _ScopedJudge(PeriodicJudge):
     """Judges formulas on the drive, and on its road with what bound variables stand for."""
 
     finding: _Finding
@@ -335,7 +357,7 @@ class _ScopedJudge(Judge):
                 truths = [self.finding.when(body, scope) for scope in scopes]
                 return union(truths) if isinstance(formula, f.Some) else intersection(truths)
             case _:
-                return Judge._visit(self, formula)
+                return PeriodicJudge._visit(self, formula)
 
 
 def _cuts(is_seen: Callable[[Part, Signs], bool], part: Part, deeper: int) -> list[Fraction]:

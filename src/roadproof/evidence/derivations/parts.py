@@ -100,24 +100,24 @@ def _around(change: Root, begin: Cut, limit: Cut | None, end: Cut | None) -> tup
 
 def widened(part: Part, window: tuple[Fraction, Fraction | None]) -> Part:
     low, high = window
-    end = None if part.end is None or high is None else _moved(part.end, high)
-    return Part(_moved(part.begin, low), end)
+    end = None if part.end is None or high is None else moved(part.end, high)
+    return Part(moved(part.begin, low), end)
 
 
 def image(part: Part, moment: Moment) -> Part:
     if isinstance(moment, Fixed):
         return Part(Cut(moment.time, False), Cut(moment.time, True))
-    return Part(_moved(part.begin, moment.time), None if part.end is None else _moved(part.end, moment.time))
+    return Part(moved(part.begin, moment.time), None if part.end is None else moved(part.end, moment.time))
 
 
 def run(part: Part, moment: Moment, low: Fraction, out: bool) -> Part:
     """From the begin of windows to the moment, without it where ``out``."""
-    begin = _moved(part.begin, low)
+    begin = moved(part.begin, low)
     if isinstance(moment, Fixed):
         return Part(begin, Cut(moment.time, not out))
     if part.end is None:
         return Part(begin, None)
-    end = _moved(part.end, moment.time)
+    end = moved(part.end, moment.time)
     return Part(begin, Cut(end.point, end.after and not out))
 
 
@@ -125,7 +125,8 @@ def at_once(part: Part, moment: Moment, low: Fraction) -> bool:
     return moment.time <= (low if isinstance(moment, Later) else part.start + low)
 
 
-def _moved(cut: Cut, by: Fraction) -> Cut:
+def moved(cut: Cut, by: Fraction) -> Cut:
+    """A cut so many seconds later."""
     if isinstance(cut.point, Root):
         raise NoDerivationError("an instant is irrational")
     return Cut(cut.point + by, cut.after)
@@ -154,7 +155,7 @@ def moments(
     low, high = window
 
     def serve(cut: Cut) -> tuple[Cut | None, Moment]:
-        here = _span_at(right, _moved(cut, low))
+        here = _span_at(right, moved(cut, low))
         if here is None:
             return _later(part, cut, low, high, right, left)
         return _before(here.end, low, part.end, cut), Later(low)
@@ -167,11 +168,11 @@ def _before(limit: Cut | None, low: Fraction, wanted: Cut | None, cut: Cut) -> C
     if limit is None:
         return wanted
     if not isinstance(limit.point, Root):
-        last = _moved(limit, -low)
+        last = moved(limit, -low)
         return last if wanted is None or last < wanted else wanted
-    if wanted is not None and _moved(wanted, low) < limit:
+    if wanted is not None and moved(wanted, low) < limit:
         return wanted
-    return Cut(between(_moved(cut, low).point, limit.point) - low, False)
+    return Cut(between(moved(cut, low).point, limit.point) - low, False)
 
 
 def _later(
@@ -179,7 +180,7 @@ def _later(
 ) -> tuple[Cut | None, Moment]:
     """A moment after ``cut`` and the begin of its window, and how far it serves."""
     start = Part(cut, None).start
-    first = _moved(cut, low)
+    first = moved(cut, low)
     kept = _span_at(left, first)
     if kept is None:
         raise NoDerivationError("no rational instant was found at which it comes")
@@ -229,12 +230,12 @@ def breaks(
     stuck = "both sides of an until change exactly at an irrational instant"
 
     def serve(cut: Cut) -> tuple[Cut | None, Moment | None]:
-        first = _moved(cut, low)
+        first = moved(cut, low)
         free = _span_at(never, first)
         if free is None:
             raise NoDerivationError(stuck)
         over = None if free.end is None or high is None else free.end
-        if free.end is None or (over is not None and _moved(cut, high or Fraction(0)) < over):
+        if free.end is None or (over is not None and moved(cut, high or Fraction(0)) < over):
             return _before(free.end, high or Fraction(0), part.end, cut), None
         broken = _span_at(failing, first)
         if broken is not None:

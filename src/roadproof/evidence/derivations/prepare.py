@@ -50,8 +50,6 @@ def prepare_trace(
         what = refuted(asked, library)
     except RoadproofError as error:
         return without_question(error)
-    if what.trace.loop is not None:
-        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, "its trace repeats itself for ever"))
     world = what.world
     try:
         printed = trace_claim(what)

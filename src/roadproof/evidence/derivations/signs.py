@@ -11,6 +11,7 @@ from fractions import Fraction
 from functools import cached_property, reduce
 from itertools import pairwise, product
 
+from roadproof.evidence.countermodel import Loop
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare, Comparison
 from roadproof.logic.terms import Term
@@ -148,6 +149,11 @@ class Shapes(ABC):
     """Signals as polynomials of time; ``values``: of parameters."""
 
     values: Mapping[str, Fraction]
+
+    @property
+    def loop(self) -> Loop | None:
+        """How signals repeat for ever, where they do; then all that is asked lies in the first round."""
+        return None
 
     @abstractmethod
     def knots(self, leaf: t.Leaf) -> list[Fraction]:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 from fractions import Fraction
 
+from roadproof.evidence.countermodel import Loop
 from roadproof.evidence.derivations.signs import Part, Shapes
 from roadproof.evidence.kernel.trace import Refuted, steps_of
 from roadproof.evidence.kernel.world import Steps
@@ -20,6 +21,10 @@ class TraceShapes(Shapes):
 
     refuted: Refuted
     _steps: dict[t.Leaf, Steps] = field(default_factory=dict)
+
+    @property
+    def loop(self) -> Loop | None:
+        return self.refuted.trace.loop
 
     def when(self, compared: Compare) -> TruthSet:
         return when_true(compared, self.refuted.trace)

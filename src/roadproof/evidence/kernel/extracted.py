@@ -92,7 +92,9 @@ def _world(world: World) -> Iterator[str]:
     yield f"  {_list(f'{literal(a)} {quoted(b)}' for a, b in sorted(world.lanes.items()))}"
     yield f"  {_list(f'{literal(a)} {q(x)}' for a, x in sorted(world.values.items()))}"
     yield f"  {_list(_signal(*x) for x in world.steps.items())}"
-    yield f"  {_list(f'{literal(a)} {q(x)}' for a, x in sorted(world.numbers.items()))})"
+    yield f"  {_list(f'{literal(a)} {q(x)}' for a, x in sorted(world.numbers.items()))}"
+    loop = world.repeats
+    yield f"  {'None' if loop is None else f'({q(loop.start)} {q(loop.period)})'})"
 
 
 def _signal(signal: Varying, steps: Steps) -> str:

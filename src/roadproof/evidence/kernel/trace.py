@@ -90,7 +90,7 @@ def world_of(
     """The world of a trace, without names of lanes and numbers that a claim speaks of."""
     first = trace.instants[0].values
     bodies = {name: _vehicle(name, first) for name in vehicles}
-    return World(bodies, road, {}, values, dict(_signals(trace, vehicles, own)))
+    return World(bodies, road, {}, values, dict(_signals(trace, vehicles, own)), repeats=trace.loop)
 
 
 def _vehicle(name: str, values: Mapping[str, Fraction]) -> Motion:

@@ -6,6 +6,7 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from roadproof.errors import InputError
+from roadproof.evidence.countermodel import Loop
 from roadproof.evidence.kernel.derivation import rational
 from roadproof.evidence.kernel.names import literal, quoted
 from roadproof.logic import terms as t
@@ -40,7 +41,7 @@ class World:
     """Vehicles on a road, and signals in steps; all others are those of the motions.
 
     ``lanes``: the lane of the road that a name of the claim stands for. ``values``: of parameters;
-    ``numbers``: of those that the claim speaks of.
+    ``numbers``: of those that the claim speaks of. ``repeats``: from when on signals repeat, and how often.
     """
 
     vehicles: Mapping[str, Motion]
@@ -49,6 +50,7 @@ class World:
     values: Mapping[str, Fraction]
     steps: Mapping[t.Varying, Steps]
     numbers: Mapping[str, Fraction] = field(default_factory=dict)
+    repeats: Loop | None = None
 
 
 def world_lines(world: World) -> Iterator[str]:
@@ -64,22 +66,27 @@ def world_lines(world: World) -> Iterator[str]:
     yield from _field("lanes_named", [_pair(literal(a), quoted(b)) for a, b in sorted(world.lanes.items())])
     yield from _field("values", _numbers(world.values))
     yield from _field("signals", [_signal(*x) for x in world.steps.items()])
-    yield from _field("numbers", _numbers(world.numbers), "")
+    yield from _field("numbers", _numbers(world.numbers))
+    yield f"  repeats := {_repetition(world.repeats)}"
     yield "|}"
+
+
+def _repetition(loop: Loop | None) -> str:
+    return "None" if loop is None else f"Some {_pair(rational(loop.start), rational(loop.period))}"
 
 
 def _numbers(values: Mapping[str, Fraction]) -> list[str]:
     return [_pair(literal(name), rational(x)) for name, x in sorted(values.items())]
 
 
-def _field(name: str, items: Sequence[str], end: str = ";") -> Iterator[str]:
+def _field(name: str, items: Sequence[str]) -> Iterator[str]:
     if not items:
-        yield f"  {name} := []{end}"
+        yield f"  {name} := [];"
         return
     yield f"  {name} := ["
     for place, item in enumerate(items):
         yield f"    {item}{';' if place + 1 < len(items) else ''}"
-    yield f"  ]{end}"
+    yield "  ];"
 
 
 def _pair(one: str, other: str) -> str:
