@@ -18,11 +18,14 @@ from hypothesis import settings
 
 import roadproof
 from lengthy import COLLECTED, LENGTHY
+from once import ask_once
+from one_process import work_here
 from roadproof.runtime.memory import collect_rarely
 from sharing import HOMES
 from studio.browser import browsing
 
 os.environ["ROADPROOF_KNOWN"] = "off"
+work_here()
 gc.disable()  # until all tests are collected: what is imported stays
 settings.register_profile("same", derandomize=True, deadline=None)
 settings.load_profile("same")
@@ -52,6 +55,13 @@ def shared(tmp_path_factory: pytest.TempPathFactory) -> None:
     """The folder of a worker lies in that of the run."""
     home = tmp_path_factory.getbasetemp()
     HOMES.append((home.parent if "PYTEST_XDIST_WORKER" in os.environ else home) / "shared")
+
+
+@pytest.fixture(scope="module")
+def searched_once() -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("roadproof.engines.search.ask._ask", ask_once)
+        yield
 
 
 @pytest.fixture(scope="module")

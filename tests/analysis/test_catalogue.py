@@ -35,6 +35,8 @@ from roadproof.library.specification import Query
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.exact import judge
 
+pytestmark = pytest.mark.usefixtures("searched_once")
+
 HOME = rp.load()
 EXAMPLE = Path(__file__).parents[2] / "examples" / "catalogue" / "tests"
 CLASSES = {

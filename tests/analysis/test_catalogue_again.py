@@ -31,6 +31,8 @@ from roadproof.frontends.settings.flags import command_line
 from roadproof.recordings.evaluate.one_trace import read_pair, read_samples
 from roadproof.verdict import ExitCode
 
+pytestmark = pytest.mark.usefixtures("searched_once")
+
 EXAMPLE = Path(__file__).parents[2] / "examples" / "catalogue" / "tests"
 TOML = """\
 [[test]]

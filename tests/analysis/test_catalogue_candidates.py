@@ -19,6 +19,8 @@ from roadproof.library.scenarios import name_of
 from roadproof.verdict import Verdict
 from roadproof.world.models import load_road, load_vehicle
 
+pytestmark = pytest.mark.usefixtures("searched_once")
+
 HOME = rp.load()
 BASIS = Basis(HOME.alone)
 NUMBERS = (1, 4, 6, 8)

@@ -50,6 +50,8 @@ from roadproof.semantics.exact.signals import DriveSignals
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive, Piece
 
+pytestmark = pytest.mark.usefixtures("searched_once")
+
 HOME = rp.load()
 DRIVES = Path(__file__).parents[2] / "examples" / "catalogue" / "tests" / "drives"
 CUT_IN, BRAKING, SEVEN = (DRIVES / f"{name}.json" for name in ("cut-in", "braking", "seven"))

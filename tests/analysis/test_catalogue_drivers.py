@@ -48,6 +48,8 @@ from roadproof.world.drive import Drive, Piece
 from tables import read_table
 from traffic.test_drivers import EACH, drives, questions_with
 
+pytestmark = pytest.mark.usefixtures("searched_once")
+
 DELAYS = {"careful": "cc_delay", "r157": "r157_delay", "eu1426": "eu1426_delay", "rss": "rho"}
 _NEAR = Fraction("0.02")  # m, s
 EXAMPLE = Path(__file__).parents[2] / "examples" / "catalogue" / "tests"

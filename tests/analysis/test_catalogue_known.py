@@ -24,6 +24,8 @@ from roadproof.analysis.study.known import SWITCH
 from roadproof.evidence.codec import read, write
 from roadproof.frontends.api.cataloguing import CatalogueAnswer
 
+pytestmark = pytest.mark.usefixtures("searched_once")
+
 EXAMPLE = Path(__file__).parents[2] / "examples" / "catalogue" / "tests"
 DRIVES = ("braking", "from-behind", "torn")
 TOML = """\

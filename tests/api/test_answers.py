@@ -23,6 +23,8 @@ from roadproof.frontends.cli.main import main
 from roadproof.library.loading import bundled_library
 from roadproof.verdict import Verdict
 
+pytestmark = pytest.mark.usefixtures("searched_once")
+
 # What each answer says and shows, in order.
 SHOWS = {
     "prove": ("PROVED REFUTED", (Certificate, JudgedDrive)),

@@ -21,6 +21,8 @@ from roadproof.frontends.api.recordings import Evaluation
 from roadproof.frontends.api.simulating import Simulation
 from roadproof.frontends.api.traces import MonitorAnswer
 
+pytestmark = pytest.mark.usefixtures("searched_once")
+
 MARGIN = "s(POV) - s(SV) > 10 m"
 
 

@@ -33,6 +33,8 @@ from roadproof.recordings.simulate.simulate import simulate
 from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.verdict import Verdict
 
+pytestmark = pytest.mark.usefixtures("searched_once")
+
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "docs" / "schema"
 SCHEMAS: Mapping[str, Any] = {x.name: json.loads(x.read_text("utf-8")) for x in sorted(FOLDER.glob("*.json"))}
@@ -204,9 +206,11 @@ def of_list(run: Run, out: Path, traffic: Path) -> None:
 def of_show(run: Run, out: Path, traffic: Path) -> None:
     for what in (
         "fasterThan(SV, POV)",
-        "every l in lanelets(L): some x in {SV, POV}: occ(x, l)",
-        "true U[0, 2 s] (G v_lon(SV) > 1 m/s or false)",
-        "-v_lon(SV) + 1/2 * rho * 2 m/s^2 > 2 m/s -> F[1 s, inf] not v_lon(SV) ^ 2 != v_lat(SV) ^ 2",
+        "every l in lanelets(L): occ(SV, l)",
+        "some x in {SV, POV}: v_lon(x) > 1 m/s",
+        "true U[0, 2 s] (G false or false)",
+        "-v_lon(SV) + 1/2 * rho * 2 m/s^2 > 2 m/s",
+        "true -> F[1 s, inf] not v_lon(SV) ^ 2 != v_lat(SV) ^ 2",
     ):
         examine(run("show", what, js=("--format", "json")))
     for what in ("7", "cutIn"):

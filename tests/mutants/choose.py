@@ -1,5 +1,6 @@
 """Which faults are tried: a number of them, by a seed, spread over files by size and over operators."""
 
+from functools import cache
 from hashlib import sha256
 from itertools import zip_longest
 from math import sqrt
@@ -42,6 +43,7 @@ def targets(package: Path) -> list[Path]:
     return [path.relative_to(package) for path in (*python, *specs)]
 
 
+@cache
 def faults_of(package: Path, file: Path) -> list[Edit]:
     text = (package / file).read_text("utf-8")
     return spec_edits_of(str(file), text) if file.suffix == ".spec" else edits_of(str(file), text)

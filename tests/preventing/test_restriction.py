@@ -33,6 +33,8 @@ from roadproof.semantics.exact.truth import complement, intersection
 from roadproof.verdict import Verdict
 from roadproof.world.road import Road
 
+pytestmark = pytest.mark.usefixtures("searched_once")
+
 EXAMPLE = Path(__file__).parents[2] / "examples" / "catalogue" / "tests"
 Heard: TypeAlias = pytest.CaptureFixture[str]
 WITH_FORMULA = [x.name for x in MODELS.values() if not x.is_stepped]

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 import roadproof as rp
+from api.doors import MINE
 from roadproof.analysis.overlap import Overlap
 from roadproof.analysis.study import known
 from roadproof.analysis.study.known import SWITCH, KnownAnswers
@@ -68,7 +69,11 @@ def test_the_second_run_takes_what_the_first_has_found(home: Path) -> None:
     assert claims(fresh=True).found.known == ()
 
 
-@pytest.mark.parametrize("ask", [claims, pair, drive, lambda **more: rp.redundancy("4", jobs=1, **more)])
+def needs(**more: Any) -> Answers:
+    return rp.redundancy(90, rp.load(specs=[MINE]), effort=1, jobs=1, **more)
+
+
+@pytest.mark.parametrize("ask", [claims, pair, drive, needs])
 def test_known_answers_say_and_write_the_same(ask: Callable[..., Answers], tmp_path: Path) -> None:
     first = ask(out=tmp_path / "first")
     second = ask(out=tmp_path / "second")

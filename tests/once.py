@@ -1,0 +1,22 @@
+"""Searches that tests ask again and again: each is made once, for all modules that say so.
+
+For tests of what is done with answers; tests of searches make theirs. A search is the same when all that is
+handed over is. A module says ``pytestmark = pytest.mark.usefixtures("searched_once")``.
+"""
+
+from collections.abc import Hashable
+
+from roadproof.engines.search.ask import Outcome, Search, _ask
+
+_KNOWN: dict[Hashable, Outcome] = {}
+
+
+def ask_once(search: Search) -> Outcome:
+    """As ``engines.search.ask._ask``, of which it takes the place."""
+    home, query = search.specification, search.query
+    definitions = (home.library.fingerprint, home.set_name, *home.options.items())
+    rest = repr((search.setting, search.search_options, search.count, search.scenario))
+    key = (definitions, query.formula, query.text, query.written, query.vehicles, query.lanes, rest)
+    if key not in _KNOWN:
+        _KNOWN[key] = _ask(search)
+    return _KNOWN[key]
