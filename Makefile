@@ -22,7 +22,7 @@ unit: $(READY)
 
 # The tests that take long (tests/lengthy.txt), which make test leaves out; CI runs both.
 long: $(READY)
-	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal --maxfail 5 -q -rs -m long
+	ROADPROOF_EXAMPLES=full $(BIN)/python -m pytest -n $(JOBS) --dist worksteal --maxfail 5 -q -rs -m long
 
 # Proofs, drives, a matrix, an evaluated recording, and one page about all of it; at most 3 minutes.
 DEMO := out/demo
@@ -83,7 +83,7 @@ release: $(READY)
 # Small faults in the source, each tried against the tests that run its line (docs/explanation/tests.md); hours, taken
 # up again where it stopped. ARGS='--only semantics/exact/ --most 20' asks for less.
 mutants: $(READY)
-	PYTHONPATH=tests $(BIN)/python -m mutants record --jobs $(JOBS)
+	PYTHONPATH=tests ROADPROOF_EXAMPLES=full $(BIN)/python -m mutants record --jobs $(JOBS)
 	PYTHONPATH=tests nice $(BIN)/python -m mutants run --jobs $(JOBS) $(ARGS)
 	PYTHONPATH=tests $(BIN)/python -m mutants report
 	PYTHONPATH=tests $(BIN)/python -m tally

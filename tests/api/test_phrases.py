@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import roadproof as rp
+from examples import some
 from roadproof.frontends.api.phrases import Phrase
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
@@ -126,7 +127,7 @@ def level(formula: Formula) -> Formula:
     return f.transform(formula, change)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=some(100), deadline=None)
 @given(FORMULAS)
 def test_operators_and_text_are_one_formula(pair: Pair) -> None:
     built, written = pair

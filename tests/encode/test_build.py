@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from encode import cases
+from examples import some
 from planting import plant
 from roadproof.engines.encode import along
 from roadproof.engines.encode.build import NONE, Assumptions, encode_formula, frame, ground
@@ -291,7 +292,7 @@ def fact_holds(inequality, at):
     return found > 0 if inequality.strict else found >= 0
 
 
-@settings(quiet, max_examples=500)
+@settings(quiet, max_examples=some(500))
 @given(sides, st.sampled_from(["<", "<=", ">", ">="]), sides, values)
 def test_facts_are_true_where_the_comparison_is(left, op, right, at):
     a, b = value(left, at), value(right, at)
@@ -300,7 +301,7 @@ def test_facts_are_true_where_the_comparison_is(left, op, right, at):
     assert evaluate(circuit, lambda inequality: fact_holds(inequality, at)) == expected
 
 
-@settings(quiet, max_examples=150)
+@settings(quiet, max_examples=some(150))
 @given(terms, terms, values)
 def test_an_implicant_is_true_and_suffices(left, right, at):
     circuit = inequalities_of(f.Compare(left, ">=", right), SIZES)
@@ -325,7 +326,7 @@ def circuit_holds(formula, trace):
     return evaluate(unroll(formula, cases.GRID), lambda at: cases.holds(at.atom, trace, at.step))
 
 
-@settings(quiet, max_examples=400)
+@settings(quiet, max_examples=some(400))
 @given(cases.formulas(), cases.traces)
 def test_circuit_and_definition_and_judge_agree(formula, trace):
     expected = cases.holds(formula, trace)
@@ -333,7 +334,7 @@ def test_circuit_and_definition_and_judge_agree(formula, trace):
     assert judge(formula, cases.as_drive(trace)).holds == expected
 
 
-@settings(quiet, max_examples=150)
+@settings(quiet, max_examples=some(150))
 @given(cases.formulas(cases.bounded), cases.traces)
 def test_monitor_agrees_where_windows_are_bounded(formula, trace):
     samples = cases.STEPS + 40
@@ -348,7 +349,7 @@ def test_monitor_agrees_where_windows_are_bounded(formula, trace):
     assert bool(answer.false[0]) != expected
 
 
-@settings(quiet, max_examples=100)
+@settings(quiet, max_examples=some(100))
 @given(cases.formulas())
 def test_negation_disappears(formula):
     plain, negated = unroll(formula, cases.GRID), unroll(f.Not(formula), cases.GRID)

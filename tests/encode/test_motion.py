@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from examples import some
 from roadproof.engines.encode.build import Assumptions, inequality_at, inequality_for_ever
 from roadproof.engines.encode.motion import Layout, encode_motions
 from roadproof.engines.encode.place import move_one_way, rectangles, stay_apart, stay_on_road
@@ -66,7 +67,7 @@ def test_a_column_stands_where_the_layout_says_and_knows_what_it_stands_for():
         made.layout.column("A", "a_lon", 0)
 
 
-@settings(quiet, max_examples=200)
+@settings(quiet, max_examples=some(200))
 @given(accelerations)
 def test_rows_hold_exactly_for_motions_within_the_limits(made):
     values = columns_of(made) + columns_of([(Fraction(0), Fraction(0))] * 4)
@@ -127,7 +128,7 @@ def test_an_acceleration_is_that_of_the_piece_which_begins():
     assert found == [1, 2, 3, -1, 0]
 
 
-@settings(quiet, max_examples=200)
+@settings(quiet, max_examples=some(200))
 @given(st.integers(-3, 3), st.integers(-3, 3), st.integers(-2, 2), st.integers(-40, 40), st.booleans())
 def test_a_fact_for_ever_stays_true(factor, square, constant, start, strict):
     layout = Layout(("A",), GRID)
@@ -163,7 +164,7 @@ def test_rectangles_of_a_merge_cover_the_road_and_nothing_else():
     assert len(found) == 2
 
 
-@settings(quiet, max_examples=200)
+@settings(quiet, max_examples=some(200))
 @given(st.integers(-8, 8), st.integers(-8, 8))
 def test_boxes_apart_are_those_that_do_not_overlap(ds, dd):
     layout = Layout(("A", "B"), GRID)

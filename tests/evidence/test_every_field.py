@@ -156,7 +156,7 @@ def changed_paths(content: Any) -> list[str]:
 
 
 def test_check_lists_what_it_does_not_check(tmp_path: Path) -> None:
-    found = rp.explore(4, vary={"POV.a_lon.min": (-6, -1)}, steps=2, out=tmp_path, jobs=1)
+    found = rp.explore("v_lon(SV) > 30 m/s", vary={"SV.a_lon.min": (-3, -1)}, steps=2, out=tmp_path, jobs=1)
     found.add_files(False)
     (tmp_path / "notes.txt").write_text("mine")
     checked = rp.check(tmp_path)

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, find, given, settings
 from hypothesis import strategies as st
 
+from examples import some
 from proving.claims import holds, specification
 from roadproof.engines.solve.smt import ask
 from roadproof.errors import InputError
@@ -94,7 +95,7 @@ def test_smt_text_says_what_the_formula_says(formula, at):
     assert text_agrees(formula, at)
 
 
-@settings(quickly, max_examples=200)
+@settings(quickly, max_examples=some(200))
 @given(st.lists(formulas, min_size=1, max_size=2), values)
 def test_cases_cover_what_they_come_from_and_no_more(parts, at):
     assert cases_agree(parts, at)

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, assume, find, given, settings
 from hypothesis import strategies as st
 
+from examples import some
 from judge.cases import (
     comparisons,
     drives,
@@ -322,13 +323,13 @@ def test_operators_on_all_small_truth_sets():
     assert [case for case in every_small_case() if disagreement_on_sets(*case) is not None] == []
 
 
-@settings(quiet, max_examples=120)
+@settings(quiet, max_examples=some(120))
 @given(opaque_cases())
 def test_operators_on_truth_sets(case):
     assert disagreement_on_sets(*case) is None
 
 
-@settings(quiet, max_examples=250)
+@settings(quiet, max_examples=some(250))
 @given(comparisons, drives)
 def test_comparisons_on_drives(comparison, drive):
     found = disagreement_on_drive(comparison, drive)
@@ -336,7 +337,7 @@ def test_comparisons_on_drives(comparison, drive):
     assert found is None
 
 
-@settings(quiet, max_examples=150)
+@settings(quiet, max_examples=some(150))
 @given(formulas(comparisons, leaves=4), drives)
 def test_formulas_on_drives(formula, drive):
     found = disagreement_on_drive(formula, drive)
@@ -344,7 +345,7 @@ def test_formulas_on_drives(formula, drive):
     assert found is None
 
 
-@settings(quiet, max_examples=120)
+@settings(quiet, max_examples=some(120))
 @given(jerk_comparisons, jerk_drives)
 def test_comparisons_on_drives_with_jerk(comparison, drive):
     found = disagreement_on_drive(comparison, drive)
@@ -388,7 +389,7 @@ def shared_disagreement(wanted, drive):
     return None
 
 
-@settings(quiet, max_examples=150)
+@settings(quiet, max_examples=some(150))
 @given(several, jerk_drives)
 def test_parts_that_are_shared_or_left_out_change_no_verdict(wanted, drive):
     assert shared_disagreement(wanted, drive) is None
@@ -419,7 +420,7 @@ cases = st.recursive(
 ends = st.tuples(st.integers(0, 8), st.integers(0, 16)).map(
     lambda pair: (Fraction(pair[0], 2), Fraction(pair[0] + pair[1], 2))
 )
-many = settings(max_examples=300, deadline=None, derandomize=True)
+many = settings(max_examples=some(300), deadline=None, derandomize=True)
 
 
 def both(formula, drive, pair):

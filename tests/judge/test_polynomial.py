@@ -9,6 +9,7 @@ import sympy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from examples import some
 from planting import plant
 from roadproof.semantics.exact import polynomial as module
 from roadproof.semantics.exact.algebraic import Root, approximate, bounds, compare, decimal, moved, real_roots
@@ -39,7 +40,7 @@ from roadproof.semantics.exact.truth import (
 )
 from tables import read_table
 
-quiet = settings(max_examples=150, deadline=None, derandomize=True)
+quiet = settings(max_examples=some(150), deadline=None, derandomize=True)
 fractions = st.builds(Fraction, st.integers(-6, 6), st.integers(1, 4))
 polynomials = st.lists(fractions, max_size=4).map(lambda found: polynomial(*found))
 numerators = (
@@ -106,7 +107,7 @@ def roots_within(found: tuple[int, ...], low: Fraction, high: Fraction | None) -
     return int(p.count_roots(sympy.Rational(low), None if high is None else sympy.Rational(high)))
 
 
-@settings(max_examples=600, deadline=None, derandomize=True)
+@settings(max_examples=some(600), deadline=None, derandomize=True)
 @given(longer, ends)
 def test_what_is_called_rootless_has_no_root(found: tuple[int, ...], pair: tuple[Fraction, None]) -> None:
     assert not (is_rootless(found, *pair) and roots_within(found, *pair))
@@ -177,7 +178,7 @@ def as_sympy(numerators):
     return sympy.Poly(list(reversed(numerators)), x)
 
 
-@settings(max_examples=150, deadline=None, derandomize=True)
+@settings(max_examples=some(150), deadline=None, derandomize=True)
 @given(st.lists(small, min_size=1, max_size=5).filter(lambda c: c[-1] != 0))
 def test_roots_are_all_there_with_their_multiplicities(numerators):
     found = real_roots(tuple(numerators))
@@ -198,7 +199,7 @@ def square_root(n, sign=1):
     return roots[1] if sign > 0 else roots[0]
 
 
-@settings(max_examples=200, deadline=None, derandomize=True)
+@settings(max_examples=some(200), deadline=None, derandomize=True)
 @given(rationals, st.integers(2, 12), rationals, st.integers(2, 12), st.sampled_from([1, -1]))
 def test_order_of_shifted_square_roots(a, m, b, n, sign):
     left, right = moved(square_root(m, sign), a), moved(square_root(n), b)
@@ -210,7 +211,7 @@ def test_order_of_shifted_square_roots(a, m, b, n, sign):
     assert (left == right, left < right, left <= right) == (expected == 0, expected < 0, expected <= 0)
 
 
-@settings(max_examples=200, deadline=None, derandomize=True)
+@settings(max_examples=some(200), deadline=None, derandomize=True)
 @given(rationals, st.integers(2, 12), rationals)
 def test_order_against_rationals(a, n, x):
     point = moved(square_root(n), a)

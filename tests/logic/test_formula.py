@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from examples import some
 from judge.cases import comparisons_of, drives, formulas
 from roadproof.library.bind import default_values
 from roadproof.library.elaborate import read_claim
@@ -303,7 +304,7 @@ NOW = f.Interval(t.number(0), t.number(2))
 LATER = f.Interval(t.number(1), t.number(2))
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=some(300), deadline=None)
 @given(formulas(ATOMS), drives)
 def test_what_is_demanded_is_so_where_the_formula_is(formula, drive):
     demanded = demands(formula)
@@ -312,7 +313,7 @@ def test_what_is_demanded_is_so_where_the_formula_is(formula, drive):
         assert judge(demanded, drive).holds
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=some(100), deadline=None)
 @given(formulas(ATOMS).filter(f.is_state), drives)
 def test_all_of_a_formula_about_one_instant_is_demanded(formula, drive):
     assert judge(demands(formula), drive).holds == judge(formula, drive).holds
@@ -329,7 +330,7 @@ def test_no_more_than_the_first_instant_is_read():
     assert demands(f.And((f.Application("x", (), P), f.Eventually(NOW, Q)))) == P
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=some(100), deadline=None)
 @given(st.booleans(), formulas(ATOMS), drives)
 def test_parts_together_are_the_formula(positive, formula, drive):
     whole = f.conjunction(*conjuncts(formula, positive))

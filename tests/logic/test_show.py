@@ -6,6 +6,7 @@ from fractions import Fraction
 import pytest
 from hypothesis import given, settings
 
+from examples import some
 from logic import strategies
 from planting import plant
 from roadproof.evidence.answers.tree import claim_node
@@ -28,7 +29,7 @@ LIBRARY = bundled_library()
 
 
 @given(strategies.expressions())
-@settings(max_examples=250, deadline=None, derandomize=True)
+@settings(max_examples=some(250), deadline=None, derandomize=True)
 def test_text_of_a_tree_parses_to_the_tree(tree: syntax.Expression) -> None:
     for width in (None, 40):
         assert parse_claim(text(tree, width)).body == tree

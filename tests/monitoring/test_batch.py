@@ -11,6 +11,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from definition import Definition
+from examples import some
 from monitoring.cases import DT, IN_LANE, ON_MAIN, formulas, interval, intervals, random_batch, trace_of
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
@@ -233,7 +234,7 @@ def _continued(batch: Batch, seed: int) -> list[Trace]:
     return made
 
 
-@settings(max_examples=300, deadline=None, derandomize=True)
+@settings(max_examples=some(300), deadline=None, derandomize=True)
 @given(formulas, st.integers(0, 10**6))
 def test_decided_answers_hold_for_every_continuation(formula: Formula, seed: int) -> None:
     batch = random_batch(seed, 4, 6)
@@ -309,7 +310,7 @@ def _sampled(accelerations: Sequence[Sequence[int]], samples: int) -> Batch:
     return Batch(DT, np.array([samples]), signals)
 
 
-@settings(max_examples=200, deadline=None, derandomize=True)
+@settings(max_examples=some(200), deadline=None, derandomize=True)
 @given(
     acceleration_formulas,
     st.lists(st.tuples(*[st.integers(-1, 1)] * 4), min_size=1, max_size=6),
@@ -325,7 +326,7 @@ def test_decided_answers_are_those_of_the_judge(
     assert not (found.false[0] and holds)
 
 
-@settings(max_examples=200, deadline=None, derandomize=True)
+@settings(max_examples=some(200), deadline=None, derandomize=True)
 @given(acceleration_formulas, st.lists(st.tuples(*[st.integers(-1, 1)] * 4), min_size=1, max_size=6))
 def test_bounded_formulas_inside_a_trace_are_decided_as_the_judge_does(
     formula: Formula, accelerations: list[tuple[int, ...]]

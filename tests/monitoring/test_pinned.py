@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from examples import some
 from monitoring.cases import (
     boolean_differences,
     formulas,
@@ -28,7 +29,7 @@ from roadproof.semantics.sampled.answers import Convention
 from roadproof.semantics.sampled.recursive import TraceReader, answer
 
 conventions = st.sampled_from(["truncated", "clip"])
-quick = settings(max_examples=400, deadline=None, derandomize=True)
+quick = settings(max_examples=some(400), deadline=None, derandomize=True)
 
 
 @quick

@@ -125,7 +125,8 @@ def run_tests(folder: Path, tests: list[str], seconds: float) -> tuple[int | Non
     listed = folder / f"tests-{threading.get_ident()}.txt"
     listed.write_text("\n".join(tests), "utf-8")
     options = ["-x", "-q", "-p", "no:xdist", "-p", "no:cacheprovider", "--tb=no", "-rfE", "--no-header"]
-    environment = {**os.environ, "PYTHONPATH": f"{folder / 'src'}{os.pathsep}{folder / 'tests'}"}
+    path = f"{folder / 'src'}{os.pathsep}{folder / 'tests'}"
+    environment = {**os.environ, "PYTHONPATH": path, "ROADPROOF_EXAMPLES": "full"}
     process = subprocess.Popen(
         [sys.executable, "-m", "pytest", *options, f"@{listed.name}"],
         cwd=folder,

@@ -270,7 +270,7 @@ def test_equal_settings_are_compiled_once(folder: Path, monkeypatch: pytest.Monk
     asked, ask = [], module.ask
     monkeypatch.setattr(module, "ask", lambda settings, *on: asked.append(on) or ask(settings, *on))
     monkeypatch.setattr(module, "_asked", {})
-    settings = default_settings()
+    settings = replace(default_settings(), scenarios=(3,))
     question = results.question_mark(settings)
     recording = read_highd(folder, "01")
     for _ in range(3):

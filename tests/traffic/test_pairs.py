@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import roadproof as rp
+from examples import some
 from roadproof.errors import InputError
 from roadproof.recordings.formats import large
 from roadproof.recordings.formats import pairs as module
@@ -105,7 +106,7 @@ def recordings(draw: st.DrawFn) -> Recording:
     return make_recording(tracks)
 
 
-@settings(max_examples=150, deadline=None, derandomize=True)
+@settings(max_examples=some(150), deadline=None, derandomize=True)
 @given(recordings(), st.integers(0, 2**20))
 def test_pairs_and_filter_against_brute_force(r: Recording, seed: int) -> None:
     random = np.random.default_rng(seed)

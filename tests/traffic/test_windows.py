@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import roadproof as rp
+from examples import some
 from roadproof.errors import InputError
 from roadproof.frontends.cli.main import main
 from roadproof.recordings.evaluate import evaluate as evaluating
@@ -48,7 +49,7 @@ def cut(recording: Recording, samples: int) -> list[Window]:
     ]
 
 
-@settings(max_examples=100, deadline=None, derandomize=True)
+@settings(max_examples=some(100), deadline=None, derandomize=True)
 @given(
     st.lists(st.tuples(st.integers(0, 30), st.integers(1, 20)), min_size=1, max_size=30), st.integers(1, 200)
 )

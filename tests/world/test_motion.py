@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from examples import some
 from planting import plant
 from roadproof.errors import UsageError
 from roadproof.world import drive as pieces
@@ -31,7 +32,7 @@ def before(motion, time):
     return advance(begun, time - begun.time)
 
 
-@settings(max_examples=100, deadline=None, derandomize=True)
+@settings(max_examples=some(100), deadline=None, derandomize=True)
 @given(motions(), st.fractions(0, 10, max_denominator=8), st.fractions(0, 10, max_denominator=8))
 def test_within_a_piece_positions_are_areas_under_speeds(motion, one, other):
     knots = [state.time for state in starts_of(motion)]
@@ -126,7 +127,7 @@ def disagreement(along, across, time):
     return (state.a_lon, state.j_lon, state.a_lat) != (*said(along, time), said(across, time)[0])
 
 
-@settings(max_examples=200, deadline=None, derandomize=True)
+@settings(max_examples=some(200), deadline=None, derandomize=True)
 @given(entries, st.fractions(0, 12, max_denominator=6))
 def test_accelerations_are_those_of_the_entries(entries, time):
     assert not disagreement(*entries, time)
