@@ -12,9 +12,7 @@ from roadproof.evidence.codec import read, write
 from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.reasons import NO_REASON, Why, joined
 
-SOURCES = [
-    ast.parse(path.read_text("utf-8")) for path in sorted(Path(roadproof.__file__).parent.rglob("*.py"))
-]
+PACKAGE = Path(roadproof.__file__).parent
 
 
 def kinds_in(tree: ast.AST) -> Iterator[tuple[str, ast.expr | None]]:
@@ -27,7 +25,7 @@ def kinds_in(tree: ast.AST) -> Iterator[tuple[str, ast.expr | None]]:
 
 
 def test_every_kind_is_used_and_only_that_of_other_words_takes_whole_sentences() -> None:
-    found = [x for tree in SOURCES for x in kinds_in(tree)]
+    found = [x for path in PACKAGE.rglob("*.py") for x in kinds_in(ast.parse(path.read_text("utf-8")))]
     assert {name for name, _ in found} == {x.name for x in Why}
     texts = [x for name, x in found if name == "TOLD" and isinstance(x, ast.JoinedStr | ast.Constant)]
     assert not texts, ast.unparse(texts[0])
