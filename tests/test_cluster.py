@@ -3,7 +3,7 @@
 import os
 import signal
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -18,6 +18,18 @@ pytest.importorskip("distributed", reason="dask is not installed: pip install 'r
 
 TOLD: list[str] = []
 HERE = Executor(cluster=Cluster("local:2", tell=TOLD.append))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def ended() -> Iterator[None]:
+    """End the cluster after these tests: later ones fork this process, whose threads could hold locks."""
+    yield
+    assert HERE.cluster is not None
+    client = dask_executor._client(HERE.cluster)
+    cluster = client.cluster
+    client.close()
+    cluster.close()
+    dask_executor._client.cache_clear()
 
 
 def square(job: int) -> int:
