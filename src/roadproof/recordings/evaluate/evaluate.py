@@ -294,13 +294,15 @@ def _traces(recording: Recording, questions: Questions, found: Disturbances) -> 
     pairs, start = found.pairs.choose(known), found.start[known]
     sectors = _sectors_at(recording, questions, pairs, start)
     lanes = [_lane_at(recording, vehicle, start) for vehicle in (pairs.first, pairs.second)]
-    for p in range(len(pairs)):
-        first, second = (int(recording.vehicle_id[x[p]]) for x in (pairs.first, pairs.second))
-        one, other = (_lane_name(recording, lane[p]) for lane in lanes)
+    columns = (recording.vehicle_id[pairs.first], recording.vehicle_id[pairs.second], start, *lanes)
+    ends = zip(*(x[known].tolist() for x in found.end), strict=True)
+    for p, (row, each) in enumerate(zip(zip(*(x.tolist() for x in columns), strict=True), ends, strict=True)):
+        first, second, frame, *at = row
+        one, other = (_lane_name(recording, lane) for lane in at)
         within = tuple(name for name, there in sectors.items() if there[p])
-        for k, end in enumerate(int(x[known[p]]) for x in found.end):
+        for k, end in enumerate(each):
             if end >= 0:
-                yield Trace(first, second, k, int(start[p]), end, one, other, within)
+                yield Trace(first, second, k, frame, end, one, other, within)
 
 
 def _sectors_at(

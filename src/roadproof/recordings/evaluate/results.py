@@ -97,9 +97,9 @@ def _seal_of(mark: str, texts: Mapping[str, str]) -> str:
 
 
 def _saved(row: Match | Trace | Detection | FramePair) -> list[object]:
-    """The fields of a row; those about driver models where there are any."""
-    without = ("begun", "labels") if isinstance(row, Match) and not row.labels else ()
-    return [value for name, value in vars(row).items() if name not in without]
+    """The fields of a row; those about driver models, its last two, where there are any."""
+    values = [*vars(row).values()]
+    return values[:-2] if isinstance(row, Match) and not row.labels else values
 
 
 def seal(mark: str, found: Mapping[str, object]) -> str:

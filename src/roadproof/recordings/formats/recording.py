@@ -304,5 +304,5 @@ def occupy_bands(
             low, high = band.d
             ours = way == band.direction
             occupancy[part] |= (ours & (left > low) & (right < high)).astype(np.uint32) << np.uint32(k)
-            lane[part][ours & (low <= centre) & (centre < high)] = k
+            np.putmask(lane[part], ours & (low <= centre) & (centre < high), k)
     return occupancy, lane
