@@ -7,6 +7,7 @@ flags are made of, and ``add_arguments(parser)`` for others. Only the one that i
 
 import contextlib
 import errno
+import gc
 import os
 import sys
 from collections.abc import Sequence
@@ -36,8 +37,16 @@ def main(argv: Sequence[str] | None = None) -> int:
             from roadproof.frontends.cli.completion import complete
 
             complete()
-        return supervise(lambda: answer(sys.argv[1:]))
+        return supervise(lambda: _answer_last(sys.argv[1:]))
     return answer(list(argv))
+
+
+def _answer_last(arguments: list[str]) -> int:
+    """As ``answer``, where this process then ends: Python need not look through all objects for cycles."""
+    try:
+        return answer(arguments)
+    finally:
+        gc.freeze()
 
 
 def answer(arguments: list[str]) -> int:
