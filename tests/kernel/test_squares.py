@@ -10,7 +10,7 @@ import roadproof as rp
 from kernel.needs import needs_coq
 from kernel.test_products import asked
 from planting import plant
-from roadproof.evidence.kernel import squares
+from roadproof.evidence.kernel import cone, squares
 from roadproof.evidence.kernel.accept import prepare
 from roadproof.evidence.kernel.cone import Constraint
 from roadproof.evidence.kernel.coq import ready
@@ -120,3 +120,24 @@ def test_linear_inequalities_that_follow_are_left_out(strict, left):
 def test_no_sum_of_squares_is_found_for_what_has_a_solution():
     x = _polynomial(x1=1)
     assert squares.contradiction([Constraint("at least", x), Constraint("above", x * x - x)]) is None
+
+
+def test_cases_that_share_products_find_what_each_finds_alone():
+    """Also where the constraint at a place is another one in another case."""
+    x, y = (Polynomial({(k,): Fraction(1)}) for k in (1, 2))
+    common = (Constraint("above", x), Constraint("above", y))
+    known: cone.Products = {}
+    for last in (x * y + y, (x * y).scaled(Fraction(-1)), x.scaled(Fraction(-2))):
+        case = (*common, Constraint("above", last))
+        for level in (1, 2, 3):
+            alone, shared = cone.contradiction(case, level), cone.contradiction(case, level, known)
+            assert alone[1] == shared[1]
+            assert (alone[0] and alone[0].written()) == (shared[0] and shared[0].written())
+    assert alone[0] is not None
+
+
+def test_programs_that_are_too_large_are_not_built():
+    many = [Constraint("above", Polynomial({(k,): Fraction(1)})) for k in range(1, 200)]
+    known: cone.Products = {}
+    assert cone.contradiction(many, 2, known) == (None, cone.MOST_COLUMNS + 1)
+    assert not known

@@ -8,9 +8,9 @@ there, and their multipliers are computed exactly. Not trusted: Coq adds the pro
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from functools import reduce
+from functools import cached_property, lru_cache, reduce
 from itertools import combinations, combinations_with_replacement, islice
-from math import gcd, lcm, prod
+from math import comb, gcd, lcm, prod
 from typing import Literal, TypeAlias
 
 from roadproof.evidence.kernel.linear import add_to
@@ -65,9 +65,14 @@ class Column:
     places: tuple[int, ...]
     written: Callable[[Fraction, Callable[[int], str]], str]
 
+    @cached_property
+    def floats(self) -> tuple[tuple[Monomial, float], ...]:
+        """The terms of the polynomial, rounded."""
+        return tuple((monomial, float(factor)) for monomial, factor in self.polynomial.terms.items())
 
-# Constraints by their places, their product, and whether it is above 0.
-_Product: TypeAlias = tuple[tuple[int, ...], Polynomial[int], bool]
+
+# Products of constraints that were made before, by places and identities; the constraints stay with them.
+Products: TypeAlias = dict[tuple[tuple[int, int], ...], tuple[Constraint, Column]]
 Parts: TypeAlias = tuple[tuple[Column, Fraction], ...]
 
 
@@ -106,11 +111,18 @@ def number(value: Fraction) -> str:
     return f"(number_ {value.numerator} {value.denominator})"
 
 
-def contradiction(constraints: Sequence[Constraint], level: int) -> tuple[Sum | None, int]:
+def contradiction(
+    constraints: Sequence[Constraint], level: int, known: Products | None = None
+) -> tuple[Sum | None, int]:
     """A sum of products of at most ``level`` constraints that is absurd, None where none is found; and the
     number of products that were looked at, which is the work that it took.
+
+    ``known``: products that cases of one question share; new ones are added.
     """
-    columns = list(islice(_columns(constraints, level), MOST_COLUMNS + 1))
+    signed = sum(x.kind != "zero" for x in constraints)
+    if sum(comb(signed + count - 1, count) for count in range(1, level + 1)) >= MOST_COLUMNS:
+        return None, MOST_COLUMNS + 1
+    columns = list(islice(_columns(constraints, level, {} if known is None else known), MOST_COLUMNS + 1))
     if len(columns) > MOST_COLUMNS:
         return None, len(columns)
     try:
@@ -121,18 +133,25 @@ def contradiction(constraints: Sequence[Constraint], level: int) -> tuple[Sum | 
     return Sum(parts, scales) if parts is not None else None, len(columns)
 
 
-def _columns(constraints: Sequence[Constraint], level: int) -> Iterator[Column]:
-    yield Column(constant(Fraction(1)), True, False, (), lambda q, _: number(q))
+def _columns(constraints: Sequence[Constraint], level: int, known: Products) -> Iterator[Column]:
+    one = Column(constant(Fraction(1)), True, False, (), lambda q, _: number(q))
+    yield one
     signed = [(place, x) for place, x in enumerate(constraints) if x.kind != "zero"]
-    made: list[_Product] = [((), constant(Fraction(1)), True)]
+    keys = {place: (place, id(x)) for place, x in signed}
+    made = [one]
     for _ in range(level):
-        made = [
-            ((*places, place), polynomial * x.polynomial, strict and x.kind == "above")
-            for places, polynomial, strict in made
-            for place, x in signed
-            if not places or place >= places[-1]
-        ]
-        yield from map(_product, made)
+        longer: list[Column] = []
+        for column in made:
+            before = tuple(keys[place] for place in column.places)
+            for place, x in signed:
+                if column.places and place < column.places[-1]:
+                    continue
+                key = (*before, keys[place])
+                if key not in known:
+                    known[key] = x, _product(column, place, x)
+                longer.append(known[key][1])
+        yield from longer
+        made = longer
     variables = sorted({v for x in constraints for v in x.polynomial.variables})
     for place, x in enumerate(constraints):
         if x.kind == "zero":
@@ -140,20 +159,24 @@ def _columns(constraints: Sequence[Constraint], level: int) -> Iterator[Column]:
                 yield _equation(place, x.polynomial * Polynomial({monomial: Fraction(1)}), monomial)
     if level > 1:
         degree = 2 if level > 2 and len(variables) <= FEW_VARIABLES else 1
-        roots = [Polynomial({m: Fraction(1)}) for m in monomials(variables, degree)]
-        yield from map(_square, roots)
-        for one, other in combinations(roots, 2):
-            yield _square(one - other)
-            yield _square(one + other)
+        yield from _squares(tuple(variables), degree)
 
 
-def _product(made: _Product) -> Column:
-    places, polynomial, strict = made
+@lru_cache(maxsize=32)
+def _squares(variables: tuple[int, ...], degree: int) -> tuple[Column, ...]:
+    """Squares of monomials of at most that degree, of their differences and sums."""
+    roots = [Polynomial({m: Fraction(1)}) for m in monomials(variables, degree)]
+    of_two = ((one - other, one + other) for one, other in combinations(roots, 2))
+    return tuple(map(_square, (*roots, *(x for both in of_two for x in both))))
+
+
+def _product(column: Column, place: int, times: Constraint) -> Column:
+    places, strict = (*column.places, place), column.strict and times.kind == "above"
 
     def written(q: Fraction, given: Callable[[int], str]) -> str:
         return f"(product_ {number(q)} {joined('product_', map(given, places))})"
 
-    return Column(polynomial, strict, False, places, written)
+    return Column(column.polynomial * times.polynomial, strict, False, places, written)
 
 
 def _equation(place: int, product: Polynomial[int], factor: Monomial) -> Column:
@@ -187,8 +210,8 @@ def solved(columns: Sequence[Column]) -> Parts | None:
     rows: dict[Monomial, int] = {}
     entries: list[tuple[int, int, float]] = []
     for place, x in enumerate(columns):
-        for monomial, factor in x.polynomial.terms.items():
-            entries.append((rows.setdefault(monomial, len(rows) + 1), place, float(factor)))
+        for monomial, factor in x.floats:
+            entries.append((rows.setdefault(monomial, len(rows) + 1), place, factor))
         if x.strict:
             entries.append((0, place, 1.0))
     shape = (len(rows) + 1, len(columns))

@@ -86,6 +86,7 @@ class _Search:
     left: int = MOST_CASES
     work: int = MOST_WORK
     sums: int = MOST_SUMS
+    products: cone.Products = field(default_factory=dict)
 
     def run(self) -> str:
         for x in comparisons(self.fact):
@@ -137,7 +138,7 @@ class _Search:
         return None
 
     def _contradiction(self, constraints: Sequence[cone.Constraint], level: int) -> cone.Sum | None:
-        found, work = cone.contradiction(constraints, level)
+        found, work = cone.contradiction(constraints, level, self.products)
         self.work -= work
         if found is None and self.work < 0:
             raise NoReasonError
