@@ -1,6 +1,7 @@
 """``roadproof coverage``: evidence in files, runs that go on, pictures, and mistakes."""
 
 import json
+import re
 import shutil
 from collections.abc import Callable
 from dataclasses import replace
@@ -363,7 +364,8 @@ def test_comparisons_come_with_evidence(capsys, tmp_path, arguments, relation):
 
 # --- Work limits and the backstop on the command line: one meaning everywhere, and doubt where they end
 
-CLOCK = "cut off by the clock after 0.0001 s, not by the count of work"
+# What is left of the time when a search begins depends on the machine.
+CLOCK = re.compile(r"cut off by the clock after \S+ s, not by the count of work")
 PROOF = str(Path(__file__).parents[2] / "proofs/P1-scenario-04-base.json")
 # Every command that searches, with the least that it has to be asked.
 SEARCHING = {
@@ -397,7 +399,7 @@ CUT_OFF = [
 def test_what_the_clock_cuts_off_is_in_doubt_and_says_so(line, capfd):
     assert main([*line, "--timeout", "0.0001"]) == 20
     printed = capfd.readouterr()
-    assert CLOCK in printed.out + printed.err
+    assert CLOCK.search(printed.out + printed.err)
 
 
 @pytest.mark.parametrize(
