@@ -1,7 +1,6 @@
 """Overlap: verdicts against the known list, and the evidence behind each checked apart."""
 
 import json
-from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 
@@ -12,10 +11,9 @@ from planting import plant
 from report.edges import cut_off
 from roadproof.analysis import overlap
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.overlap import Core, Meeting, Overlap, PairVerdict, conjunctions, name_of, pairs_of
+from roadproof.analysis.overlap import Core, Meeting, Overlap, PairVerdict, conjunctions, pairs_of
 from roadproof.analysis.placing import placed
 from roadproof.analysis.study.frame import conduct
-from roadproof.engines.search.ask import Outcome, Search, answer
 from roadproof.engines.solve.smt import ask
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.certificate import refusal
@@ -37,7 +35,6 @@ from roadproof.library.scenario_references import read_numbers
 from roadproof.library.scenarios import Scenario, without_sectors
 from roadproof.library.specification import Query
 from roadproof.library.words import Words, called
-from roadproof.reasons import NO_REASON
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 
@@ -170,52 +167,12 @@ def test_a_drive_is_not_taken_for_what_it_does_not_show(entries: dict[tuple[int,
 
 def test_groups_leave_no_pair_out_and_solve_36() -> None:
     pairs = pairs_of(BASIS)
-    study = Overlap(BASIS, pairs)
-    first = study.pieces({})
-    known = {name: x for group in first for name, x in study.doubt(group, NO_REASON).items()}
-    last = study.pieces(known)
-    groups = [*first, *last]
+    groups = Overlap(BASIS, pairs).pieces({})
     assert len(pairs) == 276
-    assert (len(first), len(last)) == (28, 8)
+    assert len(groups) == 36
     grouped = [frozenset(pair) for group in groups for pair in group.pairs]
     assert len(grouped) == 276
     assert set(grouped) == {frozenset(pair) for pair in pairs}
-
-
-def test_a_scenario_on_two_sectors_takes_a_drive_of_it_with_another_one(
-    entries: dict[tuple[int, int], PairVerdict], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    study = Overlap(BASIS, ((node(4), node(8)), (node(4), node(12)), (node(9), node(17))))
-    assert [group.seed for group in study.pieces({})] == [(node(4), node(8))]
-    first = entries[4, 8]
-    known = {name_of(first.a, first.b): first}
-    four, one = study.pieces(known)
-    assert first.drive is not None
-    assert (four.offer, one.offer) == (first.drive.file, None)
-    monkeypatch.setattr(overlap, "ask", lambda *_: pytest.fail("a solver is asked"))
-    (found,) = study.settle(four).values()
-    assert (found.a, found.b, found.verdict) == (node(4), node(12), Verdict.WITNESSED)
-    assert found.drive is not None
-    assert found.drive.file.drive == first.drive.file.drive
-    assert judge_file(found.drive.file, bundled_library()).accepted
-
-
-def test_an_offer_that_is_no_drive_of_the_pair_is_not_taken(
-    entries: dict[tuple[int, int], PairVerdict], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    study = Overlap(BASIS, ((node(3), node(11)),))
-    (group,) = study.pieces({})
-    drive = entries[4, 8].drive
-    assert drive is not None
-    asked: list[Search] = []
-
-    def hear(search: Search) -> Outcome:
-        asked.append(search)
-        return answer(search)
-
-    monkeypatch.setattr(overlap, "ask", hear)
-    (found,) = study.settle(replace(group, offer=drive.file)).values()
-    assert (found.verdict, len(asked)) == (Verdict.WITNESSED, 1)
 
 
 def test_rows_that_differ_in_more_than_their_sector_are_kept_apart() -> None:

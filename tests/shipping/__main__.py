@@ -75,7 +75,7 @@ def _same(content: Any) -> Any:
             return {name: _same(value) for name, value in content.items() if name != "seconds"}
         case list() | tuple():
             return [_same(item) for item in content]
-        case str() if content.startswith("{"):
+        case str() if content.startswith(("{\n", '{"')):  # a file, not a set of times
             return _same(json.loads(content))
         case _:
             return content

@@ -20,7 +20,6 @@ from roadproof.engines.search.impossible import explain, parts, told_parts
 from roadproof.engines.solve.milp import prepare
 from roadproof.evidence.answers import overlap as kept_answers
 from roadproof.evidence.answers.overlap import SCHEMA
-from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.settled import Settled
 from roadproof.library import scenarios as s
 from roadproof.library.compose import both, either, eventually, negation
@@ -117,14 +116,10 @@ Pair = tuple[s.Scenario, s.Scenario]
 
 @dataclass(frozen=True)
 class Group:
-    """Pairs that differ in road sectors only, with the one that is solved for all.
-
-    ``offer``: a drive that is judged before any solver is asked.
-    """
+    """Pairs that differ in road sectors only, with the one that is solved for all."""
 
     seed: Pair
     pairs: tuple[Pair, ...]
-    offer: DriveFile | None = None
 
 
 def pairs_of(basis: Basis, numbers: Sequence[int] | None = None) -> tuple[Pair, ...]:
@@ -158,34 +153,16 @@ class Overlap:
         return Question(SCHEMA, said, self.basis.models, self.basis.library)
 
     def pieces(self, known: Mapping[str, PairVerdict]) -> Sequence[Group]:
-        """Groups of the pairs that are left. Within one set a pair may be turned around.
-
-        Pairs of one scenario on different road sectors come last: a drive of it with another one is theirs.
-        """
+        """Groups of the pairs that are left. Within one set a pair may be turned around."""
         groups: dict[Pair, list[Pair]] = {}
         for a, b in self.pairs:
             if name_of(a, b) in known:
                 continue
-            first, second = self._like(a), self._like(b)
+            first, second = self._likes[a.set_name][a.number], self._likes[b.set_name][b.number]
             turned = a.set_name == b.set_name and second < first
             seed = (s.Scenario(first, a.set_name), s.Scenario(second, b.set_name))
             groups.setdefault(seed[::-1] if turned else seed, []).append((b, a) if turned else (a, b))
-        every = [Group(seed, tuple(pairs)) for seed, pairs in groups.items()]
-        others = [group for group in every if len(set(group.seed)) > 1]
-        return others or [replace(group, offer=self._offer(group.seed[0], known)) for group in every]
-
-    def _offer(self, scenario: s.Scenario, known: Mapping[str, PairVerdict]) -> DriveFile | None:
-        """The first drive among the answers on which ``scenario`` holds, in this sector or another."""
-        wanted = set(s.vehicles_of(self.basis.specification, scenario))
-        for pair in self.pairs:
-            drive = known[name_of(*pair)].drive if name_of(*pair) in known else None
-            alike = (x.set_name == scenario.set_name and self._like(x) == scenario.number for x in pair)
-            if drive is not None and any(alike) and wanted <= set(drive.file.drive.vehicles):
-                return drive.file
-        return None
-
-    def _like(self, scenario: s.Scenario) -> int:
-        return self._likes[scenario.set_name][scenario.number]
+        return [Group(seed, tuple(pairs)) for seed, pairs in groups.items()]
 
     @cached_property
     def _likes(self) -> dict[str, dict[int, int]]:
@@ -195,7 +172,7 @@ class Overlap:
         """The seed is solved, and the others are answered with its help."""
         deciding = _DecisionJobs(self.basis, self.meeting)
         begun = now()
-        first = deciding.answer(piece.seed, offer=piece.offer)
+        first = deciding.answer(piece.seed)
         found: dict[str, PairVerdict] = {}
         for pair in piece.pairs:
             verdict = first if pair == piece.seed else deciding.answer(pair, piece.seed, first)
@@ -297,18 +274,11 @@ class _DecisionJobs:
     def queries(self, pair: Pair) -> tuple[Query, ...]:
         return conjunctions(self.basis.specification, *pair, self.meeting)
 
-    def answer(
-        self,
-        pair: Pair,
-        seed: Pair | None = None,
-        first: PairVerdict | None = None,
-        offer: DriveFile | None = None,
-    ) -> PairVerdict:
+    def answer(self, pair: Pair, seed: Pair | None = None, first: PairVerdict | None = None) -> PairVerdict:
         """The answer for a pair, with the help of that for its group's seed; a doubt where it is late."""
         try:
             followed = None if seed is None or first is None else self.follow(pair, seed, first)
-            offered = None if offer is None else self._placed(pair, offer, self.queries(pair)[0])
-            return followed or offered or self.decide(pair)
+            return followed or self.decide(pair)
         except BudgetExceeded as late:
             return _doubt(pair, self.queries(pair), late.reason)
 
@@ -336,12 +306,9 @@ class _DecisionJobs:
             return self._impossible(pair, queries, tuple(cores))
         if first.drive is None or first.query is None:
             return None
-        return self._placed(pair, first.drive.file, queries[self.queries(seed).index(first.query)])
-
-    def _placed(self, pair: Pair, file: DriveFile, query: Query) -> PairVerdict | None:
-        """That the motions of a drive satisfy ``query`` on some road; None where they do not."""
-        shown = placed(file, query, self.basis.library)
-        return None if shown is None else PairVerdict(*pair, query, verdict=Verdict.WITNESSED, drive=shown)
+        chosen = queries[self.queries(seed).index(first.query)]
+        shown = placed(first.drive.file, chosen, self.basis.library)
+        return None if shown is None else PairVerdict(*pair, chosen, verdict=Verdict.WITNESSED, drive=shown)
 
     def _impossible(
         self, pair: Pair, queries: Sequence[Query], cores: tuple[Core, ...], known: Result | None = None
