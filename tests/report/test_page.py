@@ -62,13 +62,13 @@ def test_every_text_is_escaped_wherever_it_is_put():
 
 
 HEAD = Overview("Evidence", "", "evidence")
-EVIDENCE = {"page": None, "solver": "z3", "count": 1, "head": HEAD, "accepted": [], "wrong": []}
+EVIDENCE = {"page": None, "checkers": "z3", "count": 1, "head": HEAD, "accepted": [], "wrong": []}
 
 
 def test_a_value_that_a_template_lacks_is_an_error():
     """A name that is misspelt in a template is found by the first page that is made with it."""
-    with pytest.raises(jinja2.UndefinedError, match="'solver' is undefined"):
-        render("evidence.html", **{name: x for name, x in EVIDENCE.items() if name != "solver"})
+    with pytest.raises(jinja2.UndefinedError, match="'checkers' is undefined"):
+        render("evidence.html", **{name: x for name, x in EVIDENCE.items() if name != "checkers"})
 
 
 def test_only_a_page_imports_the_engine_of_templates():

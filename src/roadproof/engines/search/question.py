@@ -295,7 +295,8 @@ def assignments(query: Query, road: Road, chosen: Mapping[str, str]) -> tuple[di
     if ways > MOST_ASSIGNMENTS:
         raise UsageError(
             f"the formula mentions {len(options)} lanes, which can be those of road '{road.name}' in "
-            f"{ways:,} ways (limit {MOST_ASSIGNMENTS:,}): fix some with --lane {query.lanes[0]}=NAME"
+            f"{ways:,} ways (limit {MOST_ASSIGNMENTS:,}): fix some, such as lane "
+            f"{query.lanes[0]}={road.lanes[0]}"
         )
     return tuple(dict(zip(query.lanes, lanes, strict=True)) for lanes in product(*options))
 
