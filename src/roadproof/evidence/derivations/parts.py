@@ -227,7 +227,7 @@ def breaks(
     None: the right side never comes. ``never`` is when the right side is false, ``failing`` the left.
     """
     low, high = window
-    stuck = "both sides of an until change exactly at an irrational instant"
+    stuck = "both sides of an until change at one instant, or at an irrational one"
 
     def serve(cut: Cut) -> tuple[Cut | None, Moment | None]:
         first = moved(cut, low)
