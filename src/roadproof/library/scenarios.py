@@ -230,14 +230,6 @@ def likes_of(specification: Specification) -> dict[int, int]:
     return likes
 
 
-def sibling(specification: Specification, number: int, query: Query) -> Query | None:
-    """The first scenario before ``number`` that differs from ``query`` in the road sector only."""
-    wanted = without_sectors(query.formula)
-    before = (x for x in numbers_of(specification) if x < number)
-    others = (applied(specification, Scenario(x, specification.set_name)) for x in before)
-    return next((x for x in others if without_sectors(x.formula) == wanted), None)
-
-
 # --- safety, danger, lanes ----------------------------------------------------------------------
 
 

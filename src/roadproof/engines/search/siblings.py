@@ -19,7 +19,7 @@ from roadproof.engines.search.question import (
 )
 from roadproof.engines.search.search import Attempt, find_witness
 from roadproof.engines.solve.bounds import value_of
-from roadproof.library.scenarios import sibling
+from roadproof.library.scenarios import Scenario, applied, numbers_of, without_sectors
 from roadproof.library.specification import Query, Specification
 from roadproof.semantics.exact.exact import judge
 from roadproof.world.motion import states_at
@@ -78,7 +78,10 @@ def _first(specification: Specification, number: int, query: Query, setting: Set
     """The scenario that is asked first; None on the main road, and where road or lanes are chosen."""
     if setting.road is not None or setting.lanes or zones_of(query.formula) <= {"main"}:
         return None
-    return sibling(specification, number, query)
+    wanted = without_sectors(query.formula)
+    before = (x for x in numbers_of(specification) if x < number)
+    others = (applied(specification, Scenario(x, specification.set_name)) for x in before)
+    return next((x for x in others if without_sectors(x.formula) == wanted), None)
 
 
 def put_on(question: SearchProblem, found: FoundDrive) -> FoundDrive | None:
