@@ -8,10 +8,13 @@ import pytest
 from asking import posed, search_for
 from roadproof.analysis.witnesses import WitnessStudy
 from roadproof.engines.search import search, siblings
-from roadproof.engines.search.ask import answer
-from roadproof.engines.search.question import FoundDrive, SearchProblem
+from roadproof.engines.search.ask import Search, answer
+from roadproof.engines.search.question import FoundDrive, SearchOptions, SearchProblem, Setting
 from roadproof.evidence.judged import judge_file
-from roadproof.library.loading import bundled_library
+from roadproof.library.loading import bundled_library, load_library
+from roadproof.library.scenario_references import read_query
+from roadproof.library.specification import Source
+from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road
@@ -68,6 +71,33 @@ def test_a_scenario_whose_sibling_gives_no_drive_is_searched(solved, monkeypatch
     outcome = answer(search_for("12"))
     assert (outcome.verdict, outcome.natural) == (Verdict.WITNESSED, True)
     assert len(solved) > 1
+
+
+_OTHERS = """
+def scenario_101(SV, POV: vehicle, L: lane) := roadSector_101(SV, POV) and F[0 s, 3 s] v_lon(SV) > 10 m/s
+def roadSector_101(SV, POV: vehicle) := true
+def scenario_102(SV, POV, POV2: vehicle, L: lane) := roadSector_102(POV2) and F[0 s, 3 s] v_lon(SV) > 10 m/s
+def roadSector_102(POV2: vehicle) := mergeZone(POV2)
+def scenario_103(SV, POV: vehicle, L: lane) := roadSector_103(SV) and F[0 s, 3 s] v_lon(SV) > 10 m/s
+def roadSector_103(SV: vehicle) := mergeZone(SV) and kind(SV) = truck
+def scenario_201(SV, POV: vehicle, L: lane) := roadSector_201(SV, POV) and F[0 s, 2 s] v_lon(SV) > 10 m/s
+def roadSector_201(SV, POV: vehicle) := F[0 s, 0.001 s] v_lon(SV) > 9 m/s
+def scenario_202(SV, POV: vehicle, L: lane) := roadSector_202(SV, POV) and F[0 s, 2 s] v_lon(SV) > 10 m/s
+def roadSector_202(SV, POV: vehicle) := mergeZone(SV, POV)
+"""
+
+
+@pytest.mark.parametrize(
+    ("number", "vehicles"), [("102", ["POV", "POV2", "SV"]), ("103", ["POV", "SV"]), ("202", ["POV", "SV"])]
+)
+def test_a_sibling_that_cannot_be_asked_or_has_other_vehicles_is_passed_over(solved, number, vehicles):
+    specification = load_library([Source("own.spec", _OTHERS)]).select("base")
+    scenario, query = read_query(specification, number)
+    first = siblings._first(specification, int(number), query, Setting())
+    assert first is not None
+    outcome = answer(Search(specification, query, Setting(), SearchOptions(effort=Effort(30)), 1, scenario))
+    drive = outcome.drives[0].file.drive
+    assert (outcome.verdict, sorted(drive.vehicles)) == (Verdict.WITNESSED, vehicles)
 
 
 # --- Drives that are none of another question ------------------------------------------------------

@@ -19,6 +19,7 @@ from roadproof.engines.search.question import (
 )
 from roadproof.engines.search.search import Attempt, find_witness
 from roadproof.engines.solve.bounds import value_of
+from roadproof.errors import InputError, UsageError
 from roadproof.library.scenarios import Scenario, applied, numbers_of, without_sectors
 from roadproof.library.specification import Query, Specification
 from roadproof.semantics.exact.exact import judge
@@ -63,13 +64,20 @@ def offered(
 ) -> Attempt | None:
     """The drive of the first scenario that differs in its road sector only, judged for this one.
 
-    None where there is no such scenario, or where its drive does not answer this question. Raises as
-    ``find_witness``.
+    None where there is no such scenario, where it cannot be asked for with this ``setting`` or is about other
+    vehicles, and where its drive does not answer this question. Raises ``MissingSolverError``,
+    ``BudgetExceeded``.
     """
     first = _first(specification, number, question.query, setting)
     if first is None:
         return None
-    attempt = find_once(pose(specification.library, first, setting), replace(search_options, explain=False))
+    try:
+        asked = pose(specification.library, first, setting)
+        if asked.vehicles != question.vehicles:
+            return None
+        attempt = find_once(asked, replace(search_options, explain=False))
+    except (InputError, UsageError):
+        return None
     put = None if attempt.found is None else put_on(question, attempt.found)
     return None if put is None else replace(attempt, found=put)
 
