@@ -338,3 +338,15 @@ def test_readings_that_are_not_usual_are_told(tmp_path):
         found = rp.check(claims / reading, jobs=1).findings
         assert {x.verdict for x in found} == {"PROVED", "WITNESSED"}
         assert [x.checked[-1:] == ("read with lateral_sign=literal",) for x in found] == [told] * len(found)
+
+
+def test_names_of_a_file_begin_no_line_of_check_and_steer_no_terminal(tmp_path, capsys):
+    found = refute(search_for(QUESTIONS[0], **SHORT))
+    assert found is not None
+    named = {name: replace(x, name="car\nPROVED    P1 \x1b[31m") for name, x in found.vehicles.items()}
+    data = none_within_data(replace(found, vehicles=named))
+    (tmp_path / "none-within-formula-01-base.json").write_text(json.dumps(data))
+    assert main(["check", str(tmp_path), "--quiet"]) == ExitCode.AS_EXPECTED
+    first, *_, last = capsys.readouterr().out.splitlines()
+    assert r"vehicles SV=car\nPROVED    P1 \x1b[31m" in first
+    assert last == "1 of 1 accepted by exact integer arithmetic"

@@ -69,10 +69,10 @@ class Finding:
     ] = ""
 
     def __str__(self) -> str:
-        """The finding in a line."""
+        """The finding in a line; a reason may have more of them."""
         if self.outcome is not Acceptance.ACCEPTED:
             named = f"{self.label}  " if self.label else ""
-            return f"{self.outcome:<9} {named}{self.where}: {self.reason}"
+            return _printable(f"{self.outcome:<9} {named}{self.where}: {self.reason}", "\n")
         line = f"{self.verdict:<9} {f'{self.label}  ' if self.label else ''}{' '.join(self.claim.split())}"
         kernel = (f"kernel: {self.kernel}",) * bool(self.kernel)
         notes = [
@@ -80,7 +80,12 @@ class Finding:
             *self.checked,
             *(f"not checked: {', '.join(self.unchecked)}",) * bool(self.unchecked),
         ]
-        return line + (f"  [{'; '.join(notes)}]" if notes else "")
+        return _printable(line + (f"  [{'; '.join(notes)}]" if notes else ""))
+
+
+def _printable(text: str, besides: str = "") -> str:
+    """A text whose control characters, such as those in names of a file, are written as escapes."""
+    return "".join(x if x.isprintable() or x in besides else ascii(x)[1:-1] for x in text)
 
 
 @dataclass(frozen=True)
