@@ -329,6 +329,8 @@ NAMED = Drive(
     {"SV": motion_from((None, "0", "0")), "a b": motion_from((None, "0", "0"), start=("90", "2", "30", "0"))}
 )
 
+ALONE = Drive({"SV": motion_from((None, "0", "0"))})
+
 
 @pytest.mark.parametrize(
     ("ask", "error", "message"),
@@ -347,6 +349,16 @@ NAMED = Drive(
             lambda: rp.export(spoiled(formula="true", horizon=Fraction(1, 100)), "csv", "no"),
             rp.UsageError,
             "less than a step; write a greater rate",
+        ),
+        (
+            lambda: rp.export(spoiled(formula="true", drive=ALONE, horizon=Fraction(10**12)), "csv", "no"),
+            rp.UsageError,
+            "rate=25: scenario-04-base lasts 1000000000000 s, which makes more than 1,000,000 samples",
+        ),
+        (
+            lambda: rp.monitor("true", spoiled(formula="true", horizon=Fraction(10**12))),
+            rp.InputError,
+            "lasts 1000000000000 s, which makes more than 1,000,000 samples",
         ),
         (
             lambda: rp.export(spoiled(formula="true", drive=Drive({})), "csv", "no"),

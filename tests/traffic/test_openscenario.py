@@ -157,6 +157,7 @@ def exchanged(old: str, new: str) -> Callable[[str], str]:
         (lambda text: text.replace("WorldPosition", "GeoPosition"), "GeoPosition: this kind of position"),
         (exchanged('<Vertex time="0"', '<Vertex time="100"'), "each later than the one before"),
         (exchanged('<Vertex time="0"', '<Vertex time="nan"'), "a finite number is needed"),
+        (exchanged('scale="1"', 'scale="1e9"'), "s; at most 40,000 s are read"),
         (without("RoutingAction"), "PrivateAction: it has 0 elements"),
         (exchanged("<OpenSCENARIO>", "<!DOCTYPE x><OpenSCENARIO>"), "document type"),
         (lambda text: text[:900], "no well-formed XML"),

@@ -27,6 +27,7 @@ from roadproof.recordings.formats.reliable import LEFT_OUT
 from roadproof.recordings.formats.source import beside
 from roadproof.recordings.formats.sources import find_source
 from roadproof.recordings.formats.straight import of_road, whole
+from roadproof.semantics.exact.robust import MOST_SAMPLES
 from roadproof.semantics.sampled.batch import Array, Batch
 from roadproof.world.drive import Drive, value_at
 from roadproof.world.models import load_recorded_road, load_road
@@ -192,9 +193,16 @@ def _road_of(recording: Recording, way: int) -> Road:
 
 
 def sample_drive(drive: Drive, road: Road, horizon: Fraction, dt: Fraction, source: str) -> OneTrace:
-    """A drive as a recording of it would have it: samples every ``dt`` s from 0 up to ``horizon``."""
+    """A drive as a recording of it would have it: samples every ``dt`` s from 0 up to ``horizon``.
+
+    Raises ``InputError`` for samples that are too many, or no time apart.
+    """
     if dt <= 0:
         raise InputError(f"dt={dt}: the time between samples must be greater than zero")
+    if horizon / dt >= MOST_SAMPLES:
+        raise InputError(
+            f"dt={dt}: {source} lasts {horizon} s, which makes more than {MOST_SAMPLES:,} samples"
+        )
     times = [k * dt for k in range(int(horizon / dt) + 1)]
     columns: dict[tuple[str, str], Sequence[float]] = {}
     for name, motion in drive.vehicles.items():

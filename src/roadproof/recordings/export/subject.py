@@ -14,6 +14,7 @@ from math import ceil, floor
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.library.roles import vehicle_order
+from roadproof.semantics.exact.robust import MOST_SAMPLES
 from roadproof.world.drive import Motion
 from roadproof.world.motion import State, advance, monotone_starts, states_at
 from roadproof.world.road import Lanelet, Road
@@ -189,7 +190,7 @@ def subject_of(name: str, number: int, file: DriveFile, rate: int) -> Subject:
     """A subject that every format can have.
 
     Raises ``InputError`` where there is no vehicle, or one whose name is no plain word, ``UsageError`` for a
-    rate whose steps are no decimals or longer than the drive.
+    rate whose steps are no decimals or longer than the drive, or that makes too many samples.
     """
     if not file.drive.vehicles:
         raise InputError(f"{name}: the drive has no vehicle, so there is nothing to export")
@@ -201,6 +202,10 @@ def subject_of(name: str, number: int, file: DriveFile, rate: int) -> Subject:
     if file.horizon * rate < 1:
         raise UsageError(
             f"rate={rate}: {name} lasts {file.horizon} s, less than a step; write a greater rate"
+        )
+    if file.horizon * rate >= MOST_SAMPLES:
+        raise UsageError(
+            f"rate={rate}: {name} lasts {file.horizon} s, which makes more than {MOST_SAMPLES:,} samples"
         )
     return Subject(name, number, file, rate)
 

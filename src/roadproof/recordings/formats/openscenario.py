@@ -29,6 +29,7 @@ from roadproof.recordings.formats.storyboard.stage import number_of, open_stage,
 from roadproof.recordings.formats.straight import of_road
 from roadproof.recordings.formats.table import Column, Table
 from roadproof.runtime.xml_reader import Element
+from roadproof.semantics.exact.robust import MOST_SAMPLES
 from roadproof.world.road import Road
 from roadproof.world.signals import RECORDED, SIZES
 
@@ -210,6 +211,11 @@ def _sampled(path: Path, boxes: Mapping[str, Box], ways: dict[str, CentreLine]) 
     tables = []
     for name, way in ways.items():
         first, last = math.ceil(way.time[0] * RATE - 1e-6), math.floor(way.time[-1] * RATE + 1e-6)
+        if last - first >= MOST_SAMPLES:
+            raise InputError(
+                f"{path}: the trajectory of {name} lasts {way.time[-1] - way.time[0]:g} s; at most "
+                f"{MOST_SAMPLES // RATE:,} s are read"
+            )
         times = np.clip(np.arange(first, last + 1) / RATE, way.time[0], way.time[-1])
         s, v_lon, a_lon = curve(way.time, way.s, times)
         d, v_lat, a_lat = curve(way.time, way.d, times)
