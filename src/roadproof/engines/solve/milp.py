@@ -84,6 +84,7 @@ SOLVERS: Mapping[str, SolverFacts] = {
             # Both solve the root again, which takes longer than the tree below it: for 72 scenarios a third.
             "mip_heuristic_run_rens": False,
             "mip_allow_restart": False,
+            # mip_lifting_for_probing stays off: with it HiGHS 1.15.1 calls feasible problems infeasible.
             "random_seed": 1,
             "threads": 1,
             "parallel": "off",
