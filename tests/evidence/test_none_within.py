@@ -19,7 +19,7 @@ from roadproof.engines.solve.relaxation import NotRefutedError
 from roadproof.errors import InputError
 from roadproof.evidence import program as program_module
 from roadproof.evidence.checking import Checker
-from roadproof.evidence.finding import Acceptance
+from roadproof.evidence.finding import Acceptance, checkers
 from roadproof.evidence.none_within import (
     first_fault,
     lines_of,
@@ -323,6 +323,12 @@ def test_witness_writes_it_and_check_accepts_it(tmp_path, capsys):
     rp.prove("true", jobs=1, out=tmp_path / "proof")
     both = str(rp.check(tmp_path, jobs=1)).splitlines()[-1]
     assert both == "2 of 2 accepted by z3, the exact judge and exact integer arithmetic"
+    findings = rp.check(tmp_path, jobs=1).findings
+    asked = [replace(x, kernel="accepted") for x in findings]
+    tree = [x for x in asked if x.verdict == "NONE-WITHIN"]
+    assert checkers(tree, "coq") == "coq and exact integer arithmetic"
+    assert checkers(asked, "coq") == "coq, the exact judge and exact integer arithmetic"
+    assert checkers([x for x in asked if x not in tree], "coq") == "coq and the exact judge"
     page = rp.page(out, out=tmp_path / "page.html", jobs=1)
     assert page.checked is not None
     assert [x.verdict for x in page.checked.findings] == ["NONE-WITHIN"]

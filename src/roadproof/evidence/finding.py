@@ -125,8 +125,9 @@ def summary(findings: Sequence[Finding], solver: str) -> str:
 
 
 def checkers(findings: Sequence[Finding], solver: str) -> str:
-    """What checked these, in words: trees of a NONE-WITHIN are added up, where no kernel was asked."""
-    trees = [x.verdict == Verdict.NONE_WITHIN and not x.kernel for x in findings]
-    if trees and all(trees):
-        return ARITHMETIC
-    return f"{solver}, the exact judge and {ARITHMETIC}" if any(trees) else f"{solver} and the exact judge"
+    """What checked these, in words: trees of a NONE-WITHIN are added up, and a kernel checks them too."""
+    trees = [x for x in findings if x.verdict == Verdict.NONE_WITHIN]
+    names = [solver] if len(trees) < len(findings) or any(x.kernel for x in trees) or not findings else []
+    names += ["the exact judge"] if len(trees) < len(findings) or not findings else []
+    names += [ARITHMETIC] if trees else []
+    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
