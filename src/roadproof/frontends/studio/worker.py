@@ -85,7 +85,23 @@ def _answered(job: Job) -> dict[str, object]:
     except RecursionError:
         return {"error": "the formula is nested too deep: give its parts names"}
     except Exception as error:
-        return {"error": f"this is our fault: {type(error).__name__}: {error}", "exit_code": 70}
+        fault = f"{type(error).__name__}: {error}"
+        if _came_near_the_limit():
+            return {
+                "error": f"the job failed at the limit of the memory that a job may take ({fault}): "
+                "ask for less, or on the command line"
+            }
+        return {"error": f"this is our fault: {fault}", "exit_code": 70}
+
+
+def _came_near_the_limit() -> bool:
+    """Whether this process has had less than 64 MiB left; there, libraries fail in ways of their own."""
+    most = resource.getrlimit(resource.RLIMIT_AS)[0]
+    if sys.platform != "linux" or most == resource.RLIM_INFINITY:
+        return False
+    with open("/proc/self/status", encoding="ascii") as file:
+        peak = next(int(line.split()[1]) * 1024 for line in file if line.startswith("VmPeak"))
+    return peak > most - 64 * 2**20
 
 
 def _limit_memory(memory: int) -> None:
