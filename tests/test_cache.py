@@ -67,6 +67,17 @@ def test_nothing_is_kept_where_others_may_write(home: Path, monkeypatch: pytest.
     assert make() == ("made", 1)
 
 
+@pytest.mark.parametrize("umask", [0o002, 0o077])
+def test_it_is_kept_whatever_others_may_do_with_new_files(umask: int, home: Path) -> None:
+    """Many systems let the group of a user write by default."""
+    before = os.umask(umask)
+    try:
+        assert [make(), make()] == [("made", 1), ("made", 0)]
+    finally:
+        os.umask(before)
+    assert [x.stat().st_mode & 0o777 for x in (home.parent, home)] == [0o700, 0o700]
+
+
 def test_old_ones_are_forgotten(home: Path) -> None:
     make()
     [path] = home.iterdir()

@@ -32,7 +32,8 @@ def private_folder(name: str) -> Path | None:
         return None
     home = Path(base) / "roadproof" / name
     try:
-        home.mkdir(parents=True, exist_ok=True, mode=0o700)
+        for folder in (home.parent, home):  # a mode is that of the last folder, others follow the umask
+            folder.mkdir(parents=True, exist_ok=True, mode=0o700)
     except OSError:
         return None
     return home if is_ours(home) and is_ours(home.parent) else None
