@@ -3,6 +3,8 @@
 import asyncio
 import os
 import signal
+import subprocess
+import sys
 from collections.abc import AsyncIterator, Callable, Coroutine
 from contextlib import aclosing, asynccontextmanager
 from typing import Any
@@ -106,6 +108,24 @@ async def test_a_job_that_takes_too_much_memory_is_told_so() -> None:
     async with crew(Limits(workers=1, memory=1)) as made:
         told = await answer(made, LONG)
         assert "memory" in told["error"] or "its process ended" in told["error"]
+
+
+LIMITED = """
+import resource
+from roadproof.frontends.studio.worker import _limit_memory
+resource.setrlimit(resource.RLIMIT_AS, (2**40, 2**40))
+_limit_memory({memory})
+print(resource.getrlimit(resource.RLIMIT_AS)[0])
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
+@pytest.mark.parametrize(("memory", "is_lower"), [(2**30, False), (1, True)])
+def test_a_worker_keeps_to_the_limit_that_the_studio_was_started_with(memory: int, is_lower: bool) -> None:
+    """Such as that of ``ulimit -v``; no process may raise it."""
+    script = [sys.executable, "-c", LIMITED.format(memory=memory)]
+    limit = int(subprocess.run(script, capture_output=True, text=True, check=True).stdout)
+    assert limit < 2**40 if is_lower else limit == 2**40
 
 
 @conducted
