@@ -376,7 +376,7 @@ def started(script: str, folder: Path, seconds: float) -> subprocess.Popen[str]:
 
 
 def waiting(monkeypatch: pytest.MonkeyPatch, wait: Callable[[], None]) -> list[float]:
-    """The seconds that are asked for when a folder is waited for; ``wait`` is done then, and no time passes."""
+    """The seconds that a run which waits for a folder sleeps, without doing so; it does ``wait`` then."""
     asked: list[float] = []
 
     def sleep(seconds: float) -> None:
