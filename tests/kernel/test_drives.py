@@ -29,6 +29,7 @@ from roadproof.frontends.api.checking import check
 from roadproof.library.bind import bind
 from roadproof.library.loading import bundled_library
 from roadproof.logic.rewrite import without_names
+from roadproof.reasons import Why
 from roadproof.semantics.exact import judge
 from roadproof.semantics.exact.algebraic import Root
 from roadproof.world.drive import Drive
@@ -329,7 +330,7 @@ def test_batches_have_each_certificate_once(count: int) -> None:
 
 
 def test_what_was_not_prepared_keeps_its_refusal() -> None:
-    refusal = Ruling(Word.REFUSED, "it cannot be put to the kernel")
+    refusal = Ruling(Word.REFUSED, Why.NOT_PUT(""))
     made = {"a": CoqModule(None, 0, refusal), "b": certificate("b", "good"), "c": certificate("c", "bad")}
     player = Player()
     found = accept_judge(player, made).rulings  # type: ignore[arg-type]

@@ -25,6 +25,7 @@ from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.rewrite import without_names
+from roadproof.reasons import Why
 from roadproof.runtime.cache import private_folder
 
 UNUSED = ("Sane", "Steps", "Recorded", "Monitor", "Extract")
@@ -263,7 +264,7 @@ def test_a_formula_that_cannot_be_read_is_refused() -> None:
 @pytest.mark.parametrize(
     ("error", "reason"),
     [
-        (NoDerivationError("too hard"), "no derivation was found: too hard"),
+        (NoDerivationError(Why.TOO_NEAR()), "no derivation was found: two instants are too near"),
         (InputError("too long"), "it is not printed for the kernel: too long"),
     ],
 )
@@ -274,7 +275,9 @@ def test_a_drive_without_a_derivation_is_unknown(
         raise error
 
     monkeypatch.setattr(module, "derive", fail)
-    assert prepare("one", FILE, bundled_library()) == CoqModule(None, refusal=Ruling(Word.UNKNOWN, reason))
+    assert prepare("one", FILE, bundled_library()) == CoqModule(
+        None, refusal=Ruling(Word.UNKNOWN, Why.TOLD(reason))
+    )
 
 
 # --- docs/explanation/trust.md: the files that it names are there, and as long as it says, within a tenth

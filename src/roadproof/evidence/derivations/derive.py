@@ -43,6 +43,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import leaves_of, with_values, without_names
+from roadproof.reasons import Why
 from roadproof.semantics.exact.algebraic import Root
 from roadproof.semantics.exact.exact import NOTHING_GIVEN, seconds
 from roadproof.semantics.exact.polynomial import Polynomial, polynomial
@@ -120,7 +121,7 @@ class _Finding:
         for number, lanelet in enumerate(self.road.lanelets):
             if lanelet.lane == lane:
                 return number
-        raise NoDerivationError(f"the road has no lane for {name}")
+        raise NoDerivationError(Why.NO_LANE(name))
 
     def members(self, domain: f.Domain, scope: Scope) -> list[int]:
         lanelets = list(enumerate(self.road.lanelets))
@@ -139,13 +140,13 @@ class _Finding:
         """Why ``formula`` is true (or false) at every instant of ``part``."""
         self.steps += 1
         if self.steps > MOST_STEPS:
-            raise NoDerivationError(f"it would have more than {MOST_STEPS} steps")
+            raise NoDerivationError(Why.TOO_MANY_STEPS(MOST_STEPS))
         loop = self.shapes.loop
         if loop is not None and not is_first(part, loop):
             pieces = in_rounds(part, loop)
             return put_together([(x, ruled(r, self.why(formula, scope, positive, y))) for x, y, r in pieces])
         if not contains(self.when(formula, scope, positive), part):
-            raise NoDerivationError("the formula is not what it should be at some instant")
+            raise NoDerivationError(Why.NOT_SO())
         match formula:
             case f.Truth():
                 return Step("Plain")
@@ -254,7 +255,7 @@ class _Finding:
         changing = polynomial(*change.polynomial)
         above, not_above = (self._assuming(formula, part, changing, x) for x in (True, False))
         if formula in (above, not_above):
-            raise NoDerivationError("what holds changes exactly at an irrational instant")
+            raise NoDerivationError(Why.IRRATIONAL_CHANGE())
         return case(
             changing.coefficients,
             self.why(above, scope, positive, part),
@@ -366,7 +367,7 @@ def _cuts(is_seen: Callable[[Part, Signs], bool], part: Part, deeper: int) -> li
     if is_seen(part, signs):
         return []
     if not deeper:
-        raise NoDerivationError("a sign is not seen between rational instants, so one may be irrational")
+        raise NoDerivationError(Why.IRRATIONAL_SIGN())
     inside = splits(signs.tested, part)
     if inside:
         cut = inside[len(inside) // 2]
@@ -376,6 +377,6 @@ def _cuts(is_seen: Callable[[Part, Signs], bool], part: Part, deeper: int) -> li
         third = (part.stop - part.start) / 3
         cut = between(part.start + third, part.stop - third)
     if not part.has_inside(cut):
-        raise NoDerivationError("a sign is not seen at a rational instant")
+        raise NoDerivationError(Why.SIGN_UNSEEN())
     before, after = part.cut([cut])
     return [*_cuts(is_seen, before, deeper - 1), cut, *_cuts(is_seen, after, deeper - 1)]

@@ -7,6 +7,7 @@ from typing import TypeVar
 from roadproof.errors import RoadproofError
 from roadproof.evidence.derivations.signs import Part
 from roadproof.evidence.kernel.derivation import Fixed, Later, Moment, Step, split
+from roadproof.reasons import Reason, Why
 from roadproof.semantics.exact.algebraic import Point, Root, bounds
 from roadproof.semantics.exact.truth import START, Cut, Span, TruthSet
 
@@ -17,6 +18,10 @@ MOST_PARTS = 300
 
 class NoDerivationError(RoadproofError):
     """None was found, for this reason; there may be one."""
+
+    def __init__(self, reason: Reason) -> None:
+        super().__init__(reason)
+        self.reason = reason
 
 
 def contains(truth: TruthSet, part: Part) -> bool:
@@ -52,7 +57,7 @@ def covered(part: Part, sets: Sequence[TruthSet]) -> Iterator[tuple[Part, int | 
     for _ in range(MOST_PARTS):
         reaching = [(span, k) for k, x in enumerate(sets) if (span := _span_at(x, cut)) is not None]
         if not reaching:
-            raise NoDerivationError("what holds changes exactly at an irrational instant")
+            raise NoDerivationError(Why.IRRATIONAL_CHANGE())
         whole = next(((span, k) for span, k in reaching if _ends_by(part.end, span.end)), None)
         if whole is not None:
             yield Part(cut, part.end), whole[1]
@@ -65,7 +70,7 @@ def covered(part: Part, sets: Sequence[TruthSet]) -> Iterator[tuple[Part, int | 
             others = [y for x in sets for y in x.spans() if y.begin <= end and (y.end is None or end < y.end)]
             first = min((y.begin for y in others), default=None)
             if first is None:
-                raise NoDerivationError("what holds changes exactly at an irrational instant")
+                raise NoDerivationError(Why.IRRATIONAL_CHANGE())
             if first.point == end.point:
                 change = end.point
                 following = max((y for x in sets for y in x.spans() if y.begin == first), key=_by_end)
@@ -80,7 +85,7 @@ def covered(part: Part, sets: Sequence[TruthSet]) -> Iterator[tuple[Part, int | 
             end = Cut(between(max(first, cut).point, end.point), False)
         yield Part(cut, end), place
         cut = end
-    raise NoDerivationError("what holds changes at an irrational instant, which rational ones only approach")
+    raise NoDerivationError(Why.IRRATIONAL_LIMIT())
 
 
 def _by_end(span: Span) -> tuple[bool, Cut]:
@@ -93,7 +98,7 @@ def _around(change: Root, begin: Cut, limit: Cut | None, end: Cut | None) -> tup
     while (limit is not None and not Cut(high, False) <= limit) or not begin <= Cut(low, False):
         low, high = bounds(change, (high - low) / 8)
         if high - low < Fraction(1, 2**400):
-            raise NoDerivationError("what holds changes twice at nearly one instant")
+            raise NoDerivationError(Why.CHANGE_TWICE())
     after = Cut(high, False)
     return Cut(low, False), after if end is None or after <= end else end
 
@@ -128,12 +133,12 @@ def at_once(part: Part, moment: Moment, low: Fraction) -> bool:
 def moved(cut: Cut, by: Fraction) -> Cut:
     """A cut so many seconds later."""
     if isinstance(cut.point, Root):
-        raise NoDerivationError("an instant is irrational")
+        raise NoDerivationError(Why.IRRATIONAL())
     return Cut(cut.point + by, cut.after)
 
 
 def _in_turn(
-    part: Part, serve: Callable[[Cut], tuple[Cut | None, Served]], stuck: str
+    part: Part, serve: Callable[[Cut], tuple[Cut | None, Served]], stuck: Reason
 ) -> Iterator[tuple[Part, Served]]:
     """Parts in turn. ``serve``: what serves after a cut, and how far; ``stuck``: why it may not."""
     cut = part.begin
@@ -145,7 +150,7 @@ def _in_turn(
         if end is None or end <= cut:
             raise NoDerivationError(stuck)
         cut = end
-    raise NoDerivationError("what holds changes at an irrational instant, which rational ones only approach")
+    raise NoDerivationError(Why.IRRATIONAL_LIMIT())
 
 
 def moments(
@@ -160,7 +165,7 @@ def moments(
             return _later(part, cut, low, high, right, left)
         return _before(here.end, low, part.end, cut), Later(low)
 
-    return _in_turn(part, serve, "no rational instant was found at which it comes")
+    return _in_turn(part, serve, Why.NO_INSTANT())
 
 
 def _before(limit: Cut | None, low: Fraction, wanted: Cut | None, cut: Cut) -> Cut | None:
@@ -183,7 +188,7 @@ def _later(
     first = moved(cut, low)
     kept = _span_at(left, first)
     if kept is None:
-        raise NoDerivationError("no rational instant was found at which it comes")
+        raise NoDerivationError(Why.NO_INSTANT())
     last = None if high is None else start + high
     for span in right.spans():
         if span.begin < first:
@@ -200,7 +205,7 @@ def _later(
         if time is not None:
             end = Cut(time - low, True)
             return (part.end if part.end is not None and part.end <= end else end), Fixed(time)
-    raise NoDerivationError("no rational instant was found at which it comes")
+    raise NoDerivationError(Why.NO_INSTANT())
 
 
 def _instant(span: Span, stop: Point | None, wanted: Fraction | None) -> Fraction | None:
@@ -227,7 +232,7 @@ def breaks(
     None: the right side never comes. ``never`` is when the right side is false, ``failing`` the left.
     """
     low, high = window
-    stuck = "both sides of an until change at one instant, or at an irrational one"
+    stuck = Why.CHANGE_TOGETHER()
 
     def serve(cut: Cut) -> tuple[Cut | None, Moment | None]:
         first = moved(cut, low)
@@ -267,7 +272,7 @@ def _apart(low: Point, high: Point) -> tuple[Fraction, Fraction]:
             return near, far
         width /= 8
         if width < Fraction(1, 2**400):
-            raise NoDerivationError("two instants are too near")
+            raise NoDerivationError(Why.TOO_NEAR())
 
 
 def between(low: Point, high: Point | None) -> Fraction:

@@ -16,6 +16,7 @@ from roadproof.evidence.refutation import numbered
 from roadproof.library.specification import Library
 from roadproof.logic import formula as f
 from roadproof.logic.rewrite import with_values
+from roadproof.reasons import Why
 
 
 def prepare(
@@ -34,7 +35,7 @@ def prepare(
         derivation = derive(what.formula, file.drive, file.road, file.lanes, what.values)
         return CoqModule(written(name, what, printed, derivation))
     except NoDerivationError as error:
-        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, f"no derivation was found: {error}"))
+        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, Why.NO_DERIVATION(error)))
     except RoadproofError as error:
         return without_text(error)
 
@@ -57,6 +58,6 @@ def prepare_trace(
         derivation = derive_on(TraceShapes(world.values, what), f.Not(formula), world.road, world.lanes)
         return CoqModule(written(name, what, printed, derivation))
     except NoDerivationError as error:
-        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, f"no derivation was found: {error}"))
+        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, Why.NO_DERIVATION(error)))
     except RoadproofError as error:
         return without_text(error)

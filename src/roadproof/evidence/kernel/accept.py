@@ -18,6 +18,7 @@ from roadproof.evidence.kernel.source import Module, UnreasonedError, file, modu
 from roadproof.evidence.kernel.statement import Statement, counted, state
 from roadproof.evidence.kernel.tableau import Tableau, lines, read_lines
 from roadproof.library.specification import Library
+from roadproof.reasons import NO_REASON, Reason, Why
 
 # Those of Coq's real numbers and of classical logic; nothing else may be relied on.
 AXIOMS = frozenset(
@@ -47,7 +48,7 @@ class Ruling:
     """
 
     word: Word
-    reason: str = ""
+    reason: Reason = NO_REASON
     lemma: int | None = None
     limits: int = 0
     axioms: tuple[str, ...] = ()
@@ -72,12 +73,12 @@ class CoqModule:
 
 def without_question(error: RoadproofError) -> CoqModule:
     """Evidence that says nothing that a kernel could be asked."""
-    return CoqModule(None, refusal=Ruling(Word.REFUSED, f"it cannot be put to the kernel: {error}"))
+    return CoqModule(None, refusal=Ruling(Word.REFUSED, Why.NOT_PUT(error)))
 
 
 def without_text(error: RoadproofError) -> CoqModule:
     """Evidence whose claim or proof has no words in a kernel."""
-    return CoqModule(None, refusal=Ruling(Word.UNKNOWN, f"it is not printed for the kernel: {error}"))
+    return CoqModule(None, refusal=Ruling(Word.UNKNOWN, Why.NOT_PRINTED(error)))
 
 
 @dataclass
@@ -108,13 +109,13 @@ def prepare(
         statement = state(certificate, library)
         tableau = _tableau(certificate, statement)
     except NotFoundError as error:
-        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, f"no tableau was found: {error}"))
+        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, Why.NO_TABLEAU(error)))
     except RoadproofError as error:
         return without_question(error)
     try:
         return CoqModule(written(name, statement, tableau), statement.limits)
     except UnreasonedError as error:
-        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, str(error), error.number))
+        return CoqModule(None, refusal=Ruling(Word.UNKNOWN, error.reason, error.number))
     except RoadproofError as error:
         return without_text(error)
 
@@ -148,7 +149,7 @@ def _settle(
         _settle(coq, modules[:half], prepared, judged)
         _settle(coq, modules[half:], prepared, judged)
         return
-    place, ruling = blamed or (0, Ruling(Word.UNKNOWN, f"coqc ended without an answer: {_first(ran)}"))
+    place, ruling = blamed or (0, Ruling(Word.UNKNOWN, Why.COQ_ENDED(_first(ran))))
     judged.rulings[modules[place].name] = ruling
     _settle(coq, modules[:place], prepared, judged)
     _settle(coq, modules[place + 1 :], prepared, judged)
@@ -176,11 +177,11 @@ def _conclude(
     for x in modules:
         limits = prepared[x.name].limits
         if axioms is None:
-            ruling = Ruling(Word.UNKNOWN, "coqc did not say on which axioms it stands")
+            ruling = Ruling(Word.UNKNOWN, Why.AXIOMS_UNSAID())
         elif set(axioms) - AXIOMS:
-            ruling = Ruling(Word.REFUSED, f"it stands on {', '.join(sorted(set(axioms) - AXIOMS))}")
+            ruling = Ruling(Word.REFUSED, Why.AXIOMS(", ".join(sorted(set(axioms) - AXIOMS))))
         else:
-            ruling = Ruling(Word.ACCEPTED, "", None, limits, axioms)
+            ruling = Ruling(Word.ACCEPTED, NO_REASON, None, limits, axioms)
         judged.rulings[x.name] = ruling
 
 
@@ -208,14 +209,14 @@ def _blamed(modules: Sequence[Module], ran: CoqRun) -> tuple[int, Ruling] | None
 def _why(module: Module, line: int, said: str) -> Ruling:
     if line >= module.theorem:
         if '"true = true"' in said:
-            return Ruling(Word.REFUSED, "the proved checker does not accept it")
+            return Ruling(Word.REFUSED, Why.NOT_BY_COQ())
         if 'Unable to unify "true" with "false"' in said:
-            return Ruling(Word.REFUSED, "what it supposes of motion is no instance of a schema")
-        return Ruling(Word.UNKNOWN, f"coqc says: {said[:200]}")
+            return Ruling(Word.REFUSED, Why.NO_SCHEMA())
+        return Ruling(Word.UNKNOWN, Why.COQ_SAYS(said))
     lemma = sum(line >= begins for begins in module.lemmas)
     if lemma:
-        return Ruling(Word.UNKNOWN, f"lemma {lemma}, a fact about one instant, is not proved", lemma)
-    return Ruling(Word.UNKNOWN, f"coqc does not read the claim: {said[:200]}")
+        return Ruling(Word.UNKNOWN, Why.LEMMA(lemma), lemma)
+    return Ruling(Word.UNKNOWN, Why.COQ_DOES_NOT_READ(said))
 
 
 def _head_lines() -> int:

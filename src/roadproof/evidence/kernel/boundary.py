@@ -16,6 +16,7 @@ from roadproof.evidence.kernel.statement import bounds_of, formals_of
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Specification
 from roadproof.logic.rewrite import parameters_of
+from roadproof.reasons import NO_REASON, Reason, Why
 
 _HEAD = """\
 From Coq Require Import Reals QArith String List.
@@ -88,7 +89,7 @@ class BoundaryRuling:
     model: str
     word: Word
     theorem: BoundaryTheorem | None = None
-    reason: str = ""
+    reason: Reason = NO_REASON
     axioms: tuple[str, ...] = ()
     seconds: float = 0.0
 
@@ -148,17 +149,17 @@ def settle(coq: Coq, specification: Specification, boundary: Boundary) -> Bounda
         return BoundaryRuling(model, Word.UNKNOWN, reason=_no_theorem(boundary, specification))
     ran = coq.run(theorem.source)
     if ran.code:
-        reason = f"coqc says: {' '.join(ran.complained.split())[:200]}"
+        reason = Why.COQ_SAYS(" ".join(ran.complained.split()))
         return BoundaryRuling(model, Word.REFUSED, theorem, reason, seconds=ran.seconds)
     axioms = axioms_of(ran.said)
     if axioms is None or set(axioms) - AXIOMS:
-        reason = f"it stands on {', '.join(axioms or ('unknown axioms',))}"
+        reason = Why.AXIOMS(", ".join(axioms or ("unknown axioms",)))
         return BoundaryRuling(model, Word.REFUSED, theorem, reason, seconds=ran.seconds)
-    return BoundaryRuling(model, Word.ACCEPTED, theorem, "", axioms, ran.seconds)
+    return BoundaryRuling(model, Word.ACCEPTED, theorem, NO_REASON, axioms, ran.seconds)
 
 
-def _no_theorem(boundary: Boundary, specification: Specification) -> str:
-    return f"no theorem for {boundary.course} ({_said(specification.options)})"
+def _no_theorem(boundary: Boundary, specification: Specification) -> Reason:
+    return Why.NO_THEOREM(boundary.course, _said(specification.options))
 
 
 def _entry(course: str, model: str, options: Mapping[str, str]) -> _Entry | None:

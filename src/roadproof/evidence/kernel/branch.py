@@ -16,11 +16,16 @@ from roadproof.evidence.sites import Site
 from roadproof.evidence.times import Moment, read_moment
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
+from roadproof.reasons import Reason
 from roadproof.runtime.records import dataclass
 
 
 class NotFoundError(Exception):
-    """No tableau was found; the message says why."""
+    """No tableau was found, for this reason."""
+
+    def __init__(self, reason: Reason) -> None:
+        super().__init__(reason)
+        self.reason = reason
 
 
 @dataclass(frozen=True)

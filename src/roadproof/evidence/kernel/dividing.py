@@ -15,6 +15,7 @@ from roadproof.evidence.times import ZERO, Moment, at, moment_of
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import rename
+from roadproof.reasons import Why
 
 # How many sides are open, and what divides: a disjunction by its number, or an instance.
 _Choice: TypeAlias = tuple[int, int | tuple[b.Universal, Moment | str]]
@@ -100,7 +101,7 @@ def _divide(means: b.Means, branch: b.Branch) -> b.Move:
     if best is None:
         cut = _open_guard(means, branch) or _open_equality(means, branch)
         if cut is None:
-            raise b.NotFoundError("the instances of the certificate are used up")
+            raise b.NotFoundError(Why.INSTANCES_USED())
         return b.Move("Cut", (cut,), (), [([], [(False, cut)]), ([], [(True, ZERO - cut)])])
     chosen = best[1]
     if isinstance(chosen, int):

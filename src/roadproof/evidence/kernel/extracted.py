@@ -21,6 +21,7 @@ from roadproof.evidence.kernel.trace import Refuted
 from roadproof.evidence.kernel.world import WORDS_OF_SIGNALS, Course, Steps, World, beside, courses
 from roadproof.logic.rewrite import without_names
 from roadproof.logic.terms import Own, Term, Varying
+from roadproof.reasons import NO_REASON, Why
 from roadproof.world.drive import Motion
 from roadproof.world.road import Lanelet
 
@@ -139,7 +140,7 @@ def judge(program: Program, prepared: Mapping[str, CoqModule]) -> KernelRulings:
             judged.seconds += alone.seconds
     else:
         why = " ".join(ran.complained.split())[:200] or f"exit code {ran.code}"
-        failed = Ruling(Word.UNKNOWN, f"the program ended without an answer: {why}")
+        failed = Ruling(Word.UNKNOWN, Why.PROGRAM_ENDED(why))
         judged.rulings |= dict.fromkeys(asked, failed)
     return judged
 
@@ -147,14 +148,13 @@ def judge(program: Program, prepared: Mapping[str, CoqModule]) -> KernelRulings:
 def _ruling(said: str, limits: int) -> Ruling:
     match said.partition(" "):
         case "accepted", "", "":
-            return Ruling(Word.ACCEPTED, "", None, limits)
+            return Ruling(Word.ACCEPTED, NO_REASON, None, limits)
         case "refused", "", "":
-            return Ruling(Word.REFUSED, "the checker does not accept its certificate")
+            return Ruling(Word.REFUSED, Why.NOT_BY_PROGRAM())
         case "lemma", _, number:
-            why = f"lemma {number}, a fact about one instant, is not proved: --kernel coq tries tactics, too"
-            return Ruling(Word.UNKNOWN, why, int(number))
+            return Ruling(Word.UNKNOWN, Why.LEMMA_TACTICS(number), int(number))
         case _:
-            return Ruling(Word.UNKNOWN, f"the program does not read it: {said[:200]}")
+            return Ruling(Word.UNKNOWN, Why.PROGRAM_DOES_NOT_READ(said))
 
 
 def _why(found: Reason | None) -> str:

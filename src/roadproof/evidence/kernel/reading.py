@@ -8,6 +8,7 @@ from roadproof.evidence.sites import Site, prefix_form
 from roadproof.evidence.times import ZERO, Moment, at, compared_times, moment_of
 from roadproof.logic import formula as f
 from roadproof.logic.rewrite import rename
+from roadproof.reasons import Why
 
 
 def read(means: b.Means, branch: b.Branch, number: int) -> b.Proof | b.Move | None:
@@ -90,7 +91,7 @@ def _expand(means: b.Means, branch: b.Branch, number: int, fact: b.At) -> b.Move
             if isinstance(formula, f.Some) == sign:
                 name = means.named(site, "M")
                 if name in branch.elements:
-                    raise b.NotFoundError(f"the certificate calls two elements {name}")
+                    raise b.NotFoundError(Why.TWO_ELEMENTS(name))
                 branch.elements.add(name)
                 inside = means.goal.atoms.abstract(rename(body, variable, name))
                 met: list[b.Fact] = [b.Belongs(True, domain, name), b.At(sign, moment, inside)]
@@ -98,7 +99,7 @@ def _expand(means: b.Means, branch: b.Branch, number: int, fact: b.At) -> b.Move
             branch.universals.append(b.Universal("road", number, site, means.listed(site, str)))
             return None
         case _:
-            raise b.NotFoundError(f"no rule is for {type(formula).__name__}")
+            raise b.NotFoundError(Why.NO_RULE(type(formula).__name__))
 
 
 def _one(rule: str, number: int, facts: Sequence[b.Fact]) -> b.Move:

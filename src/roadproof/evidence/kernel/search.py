@@ -13,6 +13,7 @@ from roadproof.evidence.kernel.dividing import next_move
 from roadproof.evidence.kernel.reading import read
 from roadproof.evidence.kernel.tableau import Tableau
 from roadproof.evidence.times import ZERO, at, read_moment
+from roadproof.reasons import Why
 
 MOST_STEPS = 20_000
 _DEEPEST = 200_000
@@ -59,7 +60,7 @@ class _Search:
     def _prove(self, branch: b.Branch) -> b.Proof:
         self.left -= 1
         if self.left < 0:
-            raise b.NotFoundError("the search for a tableau came to its limit")
+            raise b.NotFoundError(Why.TABLEAU_LIMIT())
         found: b.Proof | b.Move | None = None
         while branch.agenda and found is None:
             found = read(self.means, branch, branch.agenda.pop(0))

@@ -19,6 +19,7 @@ from roadproof.logic.custom_names import own_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
 from roadproof.logic.terms import Term
+from roadproof.reasons import Why
 
 MOST_COMPARISONS = 8  # of a fact that Coq's own tactics are asked about; with more they do not end
 HEAD = """\
@@ -37,11 +38,8 @@ class UnreasonedError(RoadproofError):
     """A fact about one instant has no reason, and is too large for Coq's own tactics; ``number`` from 1."""
 
     def __init__(self, number: int) -> None:
-        super().__init__(
-            f"lemma {number}, a fact about one instant, has no reason that was found, and more than "
-            f"{MOST_COMPARISONS} comparisons: Coq's own tactics are not asked"
-        )
-        self.number = number
+        self.number, self.reason = number, Why.LEMMA_TOO_LARGE(number, MOST_COMPARISONS)
+        super().__init__(self.reason)
 
 
 @dataclass(frozen=True)

@@ -32,7 +32,7 @@ from roadproof.evidence.strict import read_json
 from roadproof.frontends.settings.value_types import KernelName
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library
-from roadproof.reasons import Why
+from roadproof.reasons import NO_REASON, Reason
 from roadproof.runtime.executors import Jobs
 from roadproof.runtime.files import make_folder, write_whole
 from roadproof.runtime.package_data import shipped
@@ -142,7 +142,7 @@ def put(
 
 def write(
     asked: Sequence[KernelQuestion], folder: Path, jobs: Jobs, kernel: KernelName = "coq"
-) -> dict[str, str]:
+) -> dict[str, Reason]:
     """A file for each certificate and drive, with the sources of the kernel below; it is not asked.
 
     Comes back with why there is no file, by name, where there is none.
@@ -151,10 +151,10 @@ def write(
     for source in _sources(kernel):
         make_folder(folder / _FOLDER[kernel])
         write_whole(folder / _FOLDER[kernel] / source.name, (home / source).read_bytes())
-    reasons: dict[str, str] = {}
+    reasons: dict[str, Reason] = {}
     for name, x in prepare_all(asked, jobs, None, kernel).items():
         if x.module is None:
-            reasons[name] = x.refusal.reason if x.refusal else ""
+            reasons[name] = x.refusal.reason if x.refusal else NO_REASON
         elif kernel == "coq":
             content = file([x.module]) + accept.closing([x.module])
             write_whole(folder / f"{name}.v", content.encode("ascii"))
@@ -252,11 +252,11 @@ def _read(path: Path) -> Certificate | DriveFile | NoneWithinFile | None:
     return read_certificate_data(content, str(path)) if schema in SCHEMAS_READ else None
 
 
-def _unprepared(asked: KernelQuestion, reason: str) -> CoqModule:
+def _unprepared(asked: KernelQuestion, reason: Reason) -> CoqModule:
     return CoqModule(None, refusal=Ruling(Word.UNKNOWN, reason))
 
 
-def _lost(part: Mapping[str, CoqModule], reason: str) -> KernelRulings:
+def _lost(part: Mapping[str, CoqModule], reason: Reason) -> KernelRulings:
     return KernelRulings({name: Ruling(Word.UNKNOWN, reason) for name in part})
 
 
@@ -264,5 +264,5 @@ def ruled(ruling: Ruling) -> OtherVerdict:
     """What Coq says, for a finding."""
     words = "that is a premise" if ruling.limits == 1 else "that are premises"
     said = (f"under {counted(ruling.limits)} {words}",) if ruling.limits else ()
-    why, unchecked = Why.TOLD(ruling.reason), ("queries for solvers",)
+    why, unchecked = ruling.reason, ("queries for solvers",)
     return OtherVerdict(_OUTCOMES[ruling.word], why, str(ruling), said, unchecked)

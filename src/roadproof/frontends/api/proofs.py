@@ -34,7 +34,6 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import MOTION, AssumedClaim, at_values, is_moving, limits_of, split, statement
 from roadproof.library.scenario_references import names_scenarios, read_numbers
 from roadproof.library.specification import Specification
-from roadproof.reasons import Why
 from roadproof.runtime.executors import Jobs, hands_of
 from roadproof.runtime.files import hold_folder
 from roadproof.runtime.progress import Listener, listening
@@ -249,7 +248,7 @@ def claims_asked(
 
 
 def _said(ruling: "Ruling") -> KernelSays:
-    return KernelSays(says=str(ruling), reason=Why.TOLD(ruling.reason), premises=ruling.limits)
+    return KernelSays(says=str(ruling), reason=ruling.reason, premises=ruling.limits)
 
 
 @dataclass(frozen=True)
