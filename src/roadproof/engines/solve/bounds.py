@@ -8,7 +8,7 @@ Programming 10, 1976). All in floating point: solutions are judged exactly elsew
 the outer side are loosened by more than rounding and a solver's tolerance can take away.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise, product
 from math import prod
@@ -169,30 +169,3 @@ def value_of(inequality: ColumnInequality, values: Sequence[float]) -> float:
     for monomial, coefficient in inequality.polynomial.terms.items():
         total += prod((values[column] for column in monomial), start=float(coefficient))
     return total
-
-
-class Triplets:
-    """The entries of a sparse matrix, row by row, and a number beside each row."""
-
-    def __init__(self) -> None:
-        self.rows: list[int] = []
-        self.columns: list[int] = []
-        self.values: list[float] = []
-        self.right: list[float] = []
-
-    def add(self, terms: Iterable[tuple[int, float]], right: float) -> None:
-        for column, factor in terms:
-            self.rows.append(len(self.right))
-            self.columns.append(column)
-            self.values.append(factor)
-        self.right.append(right)
-
-    def stacked(self, other: "Triplets", count: int):  # type: ignore[no-untyped-def]
-        from scipy.sparse import coo_array
-
-        shift = len(self.right)
-        rows = self.rows + [r + shift for r in other.rows]
-        shape = (shift + len(other.right), count)
-        return coo_array(
-            (self.values + other.values, (rows, self.columns + other.columns)), shape=shape
-        ).tocsc()

@@ -6,15 +6,19 @@ from typing import Any
 
 import numpy as np
 
+from roadproof.engines.solve.sparse import Columns, by_columns
+
 
 @dataclass(frozen=True)
 class Program:
     """``low <= matrix · x <= high`` with x in ``box``, a bound pair a column; ``binaries`` are 0 or 1.
 
-    ``matrix`` is sparse, by rows. Any solution will do.
+    ``rows``, ``columns`` and ``values`` are the entries of the matrix. Any solution will do.
     """
 
-    matrix: Any
+    rows: Any
+    columns: Any
+    values: Any
     low: Any
     high: Any
     box: Any
@@ -79,10 +83,8 @@ def solve(program: Program, options: Mapping[str, object]) -> Answer:
 
 def _model(program: Program, highspy: Any) -> Any:
     """Equations first, then rows bounded from below as ones from above, then those bounded from above."""
-    from scipy.sparse import vstack
-
     equal, above, below = program.equal, program.above, program.below
-    matrix = vstack([program.matrix[equal], -program.matrix[above], program.matrix[below]]).tocsc()
+    matrix = _matrix(program, [(equal, 1.0), (above, -1.0), (below, 1.0)])
     right = np.concatenate([program.low[equal], -program.low[above], program.high[below]])
     left = np.full(len(right), -np.inf)
     left[: int(equal.sum())] = program.low[equal]
@@ -99,3 +101,17 @@ def _model(program: Program, highspy: Any) -> Any:
             kinds[column] = highspy.HighsVarType.kInteger
         lp.integrality_ = kinds
     return lp
+
+
+def _matrix(program: Program, parts: Sequence[tuple[Any, float]]) -> Columns:
+    """The rows that each part chooses, times its factor, one part below the other."""
+    rows, columns, values, total = [], [], [], 0
+    for chosen, factor in parts:
+        inside = chosen[program.rows]
+        places = np.cumsum(chosen) - 1 + total
+        rows.append(places[program.rows[inside]])
+        columns.append(program.columns[inside])
+        values.append(factor * program.values[inside])
+        total += int(chosen.sum())
+    entries = np.concatenate(rows), np.concatenate(columns), np.concatenate(values)
+    return by_columns(*entries, (total, len(program.box)))

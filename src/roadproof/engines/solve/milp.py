@@ -30,8 +30,9 @@ from roadproof.engines.encode.problem import (
     replace_leaves,
 )
 from roadproof.engines.solve import highs
-from roadproof.engines.solve.bounds import Affine, Bound, Box, Side, Triplets, approximate, loosened
+from roadproof.engines.solve.bounds import Affine, Bound, Box, Side, approximate, loosened
 from roadproof.engines.solve.highs import Answer, Program
+from roadproof.engines.solve.sparse import Triplets
 from roadproof.errors import MissingSolverError, UsageError
 from roadproof.runtime.budget import Budget, Effort
 
@@ -248,14 +249,10 @@ class _Tableau:
 
 
 def _run(tableau: _Tableau, wanted: int, known: SolverFacts, meter: Budget) -> Solution:
-    from scipy.sparse import csr_array
-
-    entries = tableau.entries
-    shape = len(tableau.high), len(tableau.box)
-    matrix = csr_array((entries.values, (entries.rows, entries.columns)), shape=shape)
-    low, high, box = np.array(entries.right), np.array(tableau.high), np.array(tableau.box)
+    low, high, box = np.array(tableau.entries.right), np.array(tableau.high), np.array(tableau.box)
+    program = Program(*tableau.entries.arrays(), low, high, box, tableau.binaries)
     allowed = Limits(meter.left(), meter.seconds_left(), GAP)
-    answer = _solve(Program(matrix, low, high, box, tableau.binaries), known, allowed)
+    answer = _solve(program, known, allowed)
     meter.spend(_spent(answer, allowed))
     if answer.status in INFEASIBLE:
         return Solution("infeasible")
@@ -263,7 +260,7 @@ def _run(tableau: _Tableau, wanted: int, known: SolverFacts, meter: Budget) -> S
         # What is there when the clock ends the search depends on the machine, so nobody may see it.
         meter.seconds_left()
     values = answer.values
-    if values is None or not _fits(values, box, matrix, low, high):
+    if values is None or not _fits(values, program):
         return Solution("unknown")
     return Solution("found", tuple(float(v) for v in values[:wanted]))
 
@@ -277,16 +274,20 @@ def _solve(program: Program, known: SolverFacts, allowed: Limits) -> Answer:
 
 
 def _through_cvxpy(program: Program, solver: str, options: Mapping[str, object]) -> Answer:
+    from scipy.sparse import csr_array
+
     cvxpy = modelling()
     box, count = program.box, len(program.box)
+    shape = len(program.low), count
+    matrix = csr_array((program.values, (program.rows, program.columns)), shape=shape)
     boolean = [np.array(program.binaries)] if program.binaries else False
     x = cvxpy.Variable(count, bounds=[box[:, 0], box[:, 1]], boolean=boolean)
     equal, above, below = program.equal, program.above, program.below
-    constraints = [program.matrix[equal] @ x == program.low[equal]] if equal.any() else []
+    constraints = [matrix[equal] @ x == program.low[equal]] if equal.any() else []
     if above.any():
-        constraints.append(program.matrix[above] @ x >= program.low[above])
+        constraints.append(matrix[above] @ x >= program.low[above])
     if below.any():
-        constraints.append(program.matrix[below] @ x <= program.high[below])
+        constraints.append(matrix[below] @ x <= program.high[below])
     asked = cvxpy.Problem(cvxpy.Minimize(np.zeros(count) @ x), constraints)
     try:
         with warnings.catch_warnings():
@@ -310,9 +311,10 @@ def _spent(answer: Answer, allowed: Limits) -> float:
     return max(answer.iterations / ITERATIONS_A_UNIT, answer.nodes / NODES_A_UNIT)
 
 
-def _fits(x: Any, limits: Any, matrix: Any, low: Any, high: Any) -> bool:
+def _fits(x: Any, program: Program) -> bool:
     """Whether ``x`` is a solution at all: solvers that reach a limit may hand out what they have."""
-    rows = matrix @ x
+    low, high, limits = program.low, program.high, program.box
+    rows = np.bincount(program.rows, weights=program.values * x[program.columns], minlength=len(low))
     within = np.concatenate([x - limits[:, 0], limits[:, 1] - x, rows - low, high - rows])
     size = np.concatenate([np.abs(limits).T.ravel(), np.abs(low), np.abs(high)])
     return bool(np.all(within >= -TOLERANCE * (1 + np.where(np.isfinite(size), size, 0))))
@@ -321,7 +323,7 @@ def _fits(x: Any, limits: Any, matrix: Any, low: Any, high: Any) -> bool:
 def prepare() -> None:
     """Import HiGHS and what shapes drives now, not at the first question, for processes to be forked."""
     usual, *_ = SOLVERS.values()
-    for module in (usual.module, "scipy.sparse", "clarabel"):
+    for module in (usual.module, "clarabel"):
         if find_spec(module) is not None:
             import_module(module)
 

@@ -11,7 +11,8 @@ from importlib.util import find_spec
 import numpy as np
 
 from roadproof.engines.encode.problem import ColumnInequality, Row
-from roadproof.engines.solve.bounds import Affine, Bound, Box, Triplets, split_squares
+from roadproof.engines.solve.bounds import Affine, Bound, Box, split_squares
+from roadproof.engines.solve.sparse import Triplets
 from roadproof.errors import MissingSolverError
 
 
@@ -61,7 +62,6 @@ def minimise(
             "solver=clarabel is not installed: install clarabel, or ask for another objective"
         )
     import clarabel
-    from scipy.sparse import coo_array, csc_matrix, diags_array
 
     count = len(box)
     equal, below = Triplets(), Triplets()
@@ -86,10 +86,8 @@ def minimise(
     forms = Triplets()
     for square in kept:
         forms.add(square.affine.terms, square.affine.constant)
-    m = coo_array((forms.values, (forms.rows, forms.columns)), shape=(len(kept), count)).tocsc()
-    w = diags_array(np.array([s.weight for s in kept]))
-    quadratic = csc_matrix(2 * (m.T @ w @ m))
-    linear = 2 * (m.T @ (w @ np.array(forms.right))) if kept else np.zeros(count)
+    weights = np.array([s.weight for s in kept])
+    quadratic, linear = forms.squared(2 * weights, count), 2 * forms.weighted(weights, count)
     for column, factor in cost.terms if cost else ():
         linear[column] += factor
     both = equal.stacked(below, count)
@@ -99,7 +97,7 @@ def minimise(
     settings.max_threads = 1
     settings.direct_solve_method = "qdldl"
     right = np.array(equal.right + below.right)
-    solver = clarabel.DefaultSolver(quadratic, linear, csc_matrix(both), right, cones, settings)
+    solver = clarabel.DefaultSolver(quadratic, linear, both, right, cones, settings)
     result = solver.solve()
     if str(result.status) not in ("Solved", "AlmostSolved"):
         return None
