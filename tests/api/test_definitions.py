@@ -6,6 +6,7 @@ from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import roadproof as rp
@@ -360,6 +361,25 @@ def test_the_same_words_through_both_doors(
     assert (code, printed) == (raised.value.exit_code, "")
 
 
+@pytest.mark.parametrize(("claim", "sort"), [("SV", "vehicle"), ("F POV2", "vehicle"), ("L or true", "lane")])
+def test_a_vehicle_or_lane_is_no_formula(claim: str, sort: str) -> None:
+    with pytest.raises(rp.TextError, match=f"is a {sort}; a formula or number is expected here"):
+        rp.prove(claim)
+
+
+def test_numbers_of_numpy_are_those_of_python() -> None:
+    """A float is the decimal that is printed, whatever bits it has."""
+    for number in (np.float64(3.1), np.float32(3.1)):
+        assert rp.load(params={"rho": number}).values["rho"] == Fraction(31, 10)
+        assert str(rp.SV.v_lon < number) == str(rp.SV.v_lon < 3.1)
+    assert rp.motion(np.int64(2**40), 2, 30).s * 2**30 == 2**70
+    home = rp.load()
+    assert home.among(np.int64(3)) == (3,)
+    assert home.numbered(np.int64(4)) == home.numbered(4)
+    with pytest.raises(rp.InputError, match="the number must be finite"):
+        rp.load(params={"rho": np.float64("nan")})
+
+
 def test_a_caret_shows_where() -> None:
     with pytest.raises(rp.TextError) as raised:
         rp.witness("F danger(SV, POV) and dangr(SV, POV)")
@@ -380,10 +400,18 @@ def test_a_caret_shows_where() -> None:
         (lambda: rp.prove(4, expect="x"), "expect='x': write 'PROVED' or 'REFUTED'"),
         (lambda: rp.prove("P4", engine="smt"), "engine='smt' requires claims of your own"),
         (lambda: rp.prove(4, effort=0), "effort=0: write a number greater than 0"),
-        (lambda: rp.prove("P4", jobs=0), "--jobs 0 must be greater than 0"),
+        (lambda: rp.prove("P4", jobs=0), "jobs=0: write a whole number greater than 0"),
         (lambda: rp.witness(4, engine="x"), "engine='x': write 'milp' or 'smt'"),
         (lambda: rp.witness(4, objective="x"), "objective='x': write 'any' or 'smooth'"),
         (lambda: rp.witness(4, count=0), "count=0: write a whole number greater than 0"),
+        (lambda: rp.witness(4, count="2"), "count='2': write a whole number greater than 0"),
+        (lambda: rp.witness(4, count=1.5), "count=1.5: write a whole number greater than 0"),
+        (lambda: rp.witness(4, jobs="2"), "jobs='2': write a whole number greater than 0"),
+        (lambda: rp.witness(4, using="ext"), "using='ext': write what rp.load returns"),
+        (lambda: rp.load(specs="driver"), "specs='driver': write a list, such as specs=['driver']"),
+        (lambda: rp.F(rp.SV.v_lon > 3, within="3 s"), "within='3 s': write two bounds, such as (0, '4 s')"),
+        (lambda: rp.F(rp.SV.v_lon > 3, within=(3,)), "within=(3,): write two bounds"),
+        (lambda: rp.check(), "check() needs at least one file or folder of evidence"),
         (lambda: rp.witness(4, horizon=-1), "horizon=-1: write a number greater than 0"),
         (lambda: rp.compare(3, 4, timeout=-1), "timeout=-1: write a number greater than 0"),
         (lambda: rp.compare(3, 4, rp.load("base", "extA", "ext")), "two formulas have at most two"),

@@ -188,8 +188,17 @@ def test_a_function_shows_its_options(question: type) -> None:
             assert shown[name].default == getattr(question, name)
 
 
+@pytest.mark.parametrize("command", ["witness 4", "prove P4", "overlap", "simulate", "evaluate x"])
+def test_an_empty_folder_is_not_the_current_one(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """Such as ``--out "$DIR"`` where DIR is not set."""
+    assert main([*command.split(), "--out", ""]) == 2
+    assert "--out '': write the path of a folder" in capsys.readouterr().err
+    with pytest.raises(UsageError, match="out='': write the path of a folder"):
+        rp.witness(4, out="")
+
+
 def test_an_unknown_keyword_is_a_type_error() -> None:
-    with pytest.raises(TypeError, match="unexpected keyword argument 'horizn'"):
+    with pytest.raises(TypeError, match="unexpected keyword argument 'horizn'; did you mean 'horizon'"):
         rp.witness(4, horizn=6)
     with pytest.raises(TypeError, match="unexpected keyword argument 'tls_ca'"):
         rp.witness(4, tls_ca="x")

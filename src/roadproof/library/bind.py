@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
+from numbers import Integral, Real
 from typing import TypeAlias
 
 from roadproof.errors import InputError
@@ -147,16 +148,25 @@ _VALUE = re.compile(r"([+-]?\d{1,30}(?:\.\d{1,30})?(?:/\d{1,30})?)\s*([A-Za-z][A
 def exact(name: str, value: Number, unit: str) -> Fraction:
     """A value in SI units; a bare number is in ``unit``, a float is the decimal that Python shows.
 
-    Raises ``InputError`` that names ``name``.
+    Numbers of numpy are read as those of Python. Raises ``InputError`` that names ``name``.
     """
     if isinstance(value, str):
         return read_value(name, value, unit)
-    if isinstance(value, bool) or not isinstance(value, int | float | Fraction | Decimal):
+    if isinstance(value, bool) or not isinstance(value, Real | Decimal):
         raise InputError(f"{name}={value!r}: this is no number; write 3, 0.6, Fraction(3, 5) or '600 ms'")
     if not math.isfinite(value):
         raise InputError(f"{name}={value}: the number must be finite")
-    number = Fraction(repr(value)) if isinstance(value, float) else Fraction(value)
-    return number * UNITS[unit][0]
+    return _fraction(value) * UNITS[unit][0]
+
+
+def _fraction(value: Real | Decimal) -> Fraction:
+    match value:
+        case Fraction() | Decimal():
+            return Fraction(value)
+        case Integral():  # that of numpy has 64 bits, and so had the parts of a fraction
+            return Fraction(int(value))
+        case _:
+            return Fraction(str(value))
 
 
 def read_value(name: str, text: str, unit: str) -> Fraction:

@@ -288,10 +288,11 @@ class Elaborator:
         value = scope.get(name)
         if isinstance(value, Quantity):
             return value
-        if value is not None:
-            raise TextError(
-                f"'{name}' is a {scopes.sort_of(value)}; a formula or number is expected here", at
-            )
+        sort = (
+            scopes.sort_of(value) if value is not None else scopes.sort_of_free(name) if self._open else None
+        )
+        if sort is not None:
+            raise TextError(f"'{name}' is a {sort}; a formula or number is expected here", at)
         declared = self.specification.library.parameters.get(name)
         if declared is not None:
             dimension = UNITS[declared.unit][1]

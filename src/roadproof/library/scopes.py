@@ -18,6 +18,11 @@ SORTS = ("vehicle", "vehicles", "lane", "lanelet")
 _FREE = {"vehicle": re.compile(r"SV|POV[0-9]?"), "lane": re.compile(r"L[0-9]?")}  # library.ROLE
 
 
+def sort_of_free(name: str) -> str | None:
+    """The sort of a name that a claim need not declare, such as SV."""
+    return next((sort for sort, pattern in _FREE.items() if pattern.fullmatch(name)), None)
+
+
 @dataclass(frozen=True)
 class Ref:
     """A vehicle, lane or lanelet that a name stands for."""

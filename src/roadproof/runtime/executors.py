@@ -102,8 +102,8 @@ Jobs: TypeAlias = int | Executor | None
 def hands_of(jobs: Jobs) -> Executor:
     """Who does the work, in one form. Raises ``UsageError`` where no process would be left."""
     hands = jobs if isinstance(jobs, Executor) else Executor(jobs)
-    if hands.processes is not None and hands.processes < 1:
-        raise UsageError(f"--jobs {hands.processes} must be greater than 0")
+    if hands.processes is not None and not (isinstance(hands.processes, int) and hands.processes > 0):
+        raise UsageError(f"jobs={hands.processes!r}: write a whole number greater than 0")
     return hands
 
 

@@ -24,7 +24,7 @@ from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.completing import CompletionAnswer, write_completions
-from roadproof.frontends.api.definitions import Definitions, load
+from roadproof.frontends.api.definitions import Definitions, definitions_of
 from roadproof.frontends.api.restricting import drivers_of, restricted
 from roadproof.frontends.api.settings import basis_of, one_of
 from roadproof.frontends.api.studied import StudyAnswers, drawn
@@ -211,7 +211,7 @@ def catalogue(
     """
     begun = time.monotonic()
     given = settings.Catalogue.of(options)
-    plain = using or load()
+    plain = definitions_of(using)
     wanted = restricted(plain, given, given.among)
     models = tuple(MODELS if given.drivers is None else given.drivers)
     request = Request(

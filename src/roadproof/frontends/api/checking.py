@@ -11,6 +11,7 @@ from roadproof.analysis.study import pool
 from roadproof.engines.prove.properties import find_label
 from roadproof.engines.solve.smt import Satisfiability as SolverAnswer
 from roadproof.engines.solve.smt import ask
+from roadproof.errors import UsageError
 from roadproof.evidence.answers import check as kept
 from roadproof.evidence.answers.catalogue_index import SCHEMA as CATALOGUE
 from roadproof.evidence.checking import Checker
@@ -71,8 +72,8 @@ class CheckReport(Table, BuildResult):
 
     @property
     def accepted(self) -> bool:
-        """Whether every claim is accepted."""
-        return all(x.outcome is Acceptance.ACCEPTED for x in self.findings)
+        """Whether there are claims, and every one is accepted."""
+        return bool(self.findings) and all(x.outcome is Acceptance.ACCEPTED for x in self.findings)
 
     @property
     def counts(self) -> dict[Acceptance, int]:
@@ -134,6 +135,8 @@ def check(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
     ``InputError`` for a path that holds nothing, ``MissingSolverError``.
     """
     asked = Check.of(options)
+    if not paths:
+        raise UsageError("check() needs at least one file or folder of evidence")
     if asked.kernel is None:
         # A solver that is missing is said once, before any work.
         ask("(set-logic QF_UF)(check-sat)", asked.solver)

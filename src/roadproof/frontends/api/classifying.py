@@ -24,7 +24,7 @@ from roadproof.analysis.study.frame import StudyResult
 from roadproof.evidence.answers import classify as kept
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
-from roadproof.frontends.api.definitions import Among, Definitions, load
+from roadproof.frontends.api.definitions import Among, Definitions, definitions_of
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.api.studied import StudyAnswers, drawn
@@ -134,7 +134,7 @@ def classify(
     """
     begun = time.monotonic()
     given = settings.Classify.of(options)
-    home = restricted(using or load(), given, among)
+    home = restricted(definitions_of(using), given, among)
     basis = basis_of(home, given, given.vehicles)
     plan = plan_of(home.alone, home.among(among) or numbers_of(home.alone))
     folder = None if given.out is None else Path(given.out)

@@ -21,7 +21,7 @@ from roadproof.evidence.heading import heading
 from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Answer, Picture
-from roadproof.frontends.api.definitions import Definitions, What, load
+from roadproof.frontends.api.definitions import Definitions, What, definitions_of
 from roadproof.frontends.api.settings import setting, work_of
 from roadproof.frontends.api.studied import drive_pictures
 from roadproof.frontends.report import compare as compare_report
@@ -126,7 +126,7 @@ def compare(
     apart are looked for as by ``witness``. Raises as that does.
     """
     given = Compare.of(options)
-    home = using or load()
+    home = definitions_of(using)
     if len(home.sets) > 2:
         raise UsageError(f"{len(home.sets)} spec sets are given: two formulas have at most two")
     other = home.sets[-1]

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Literal, TypeAlias, Unpack
 
 from roadproof.errors import UsageError
-from roadproof.frontends.api.definitions import Definitions, What, load
+from roadproof.frontends.api.definitions import Definitions, What, definitions_of
 from roadproof.frontends.api.settings import as_road, positive
 from roadproof.frontends.api.table import Row, Table
 from roadproof.frontends.report.sheet import aligned
@@ -87,7 +87,7 @@ def compile(
     ``out``. ``memory``: how many bytes the state of a monitor may take. Raises ``InputError`` for formulas
     that need more, ``TextError``, ``UsageError``.
     """
-    given, home = Compile.of(options), using or load()
+    given, home = Compile.of(options), definitions_of(using)
     if to != "c":
         raise UsageError(unknown("target", to, ("c",)))
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,40}", given.name):

@@ -19,7 +19,7 @@ from roadproof.evidence.answers import coverage as kept
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.ci import BuildResult
-from roadproof.frontends.api.definitions import Definitions, load
+from roadproof.frontends.api.definitions import Definitions, definitions_of
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import as_road, basis_of
 from roadproof.frontends.api.studied import StudyAnswers
@@ -154,7 +154,7 @@ def coverage(
     begun = time.monotonic()
     given = settings.Coverage.of(options)
     wider = given.wider
-    home = restricted(using or load(), given, about="drives")
+    home = restricted(definitions_of(using), given, about="drives")
     check_drives(home.specification.options)
     basis = basis_of(home, given, given.vehicles)
     name = home.alone.set_name

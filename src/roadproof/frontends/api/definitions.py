@@ -3,6 +3,7 @@
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import field
 from fractions import Fraction
+from numbers import Integral
 from pathlib import Path
 from typing import TypeAlias
 
@@ -104,7 +105,7 @@ class Definitions:
                 return None, what
             case Phrase():
                 return None, read_claim(self.specification, str(what))
-            case _ if isinstance(what, int | str) and not isinstance(what, bool):
+            case _ if isinstance(what, Integral | str) and not isinstance(what, bool):
                 return read_query(self.specification, str(what))
             case _:
                 raise UsageError(
@@ -123,9 +124,18 @@ class Definitions:
         """Scenarios by number: ``"1-8,12"``, 4, or a sequence; None for all. Raises ``InputError``."""
         if numbers is None:
             return None
-        if isinstance(numbers, str | int):
+        if isinstance(numbers, str | int | Integral):
             return read_numbers(self.specification, str(numbers))
         return read_numbers(self.specification, ",".join(map(str, numbers)))
+
+
+def definitions_of(using: Definitions | None) -> Definitions:
+    """What a question is asked of: base where None. Raises ``UsageError`` for anything but definitions."""
+    if using is None:
+        return load()
+    if not isinstance(using, Definitions):
+        raise UsageError(f"using={using!r}: write what rp.load returns, such as using=rp.load('ext')")
+    return using
 
 
 def load(
@@ -145,6 +155,8 @@ def load(
     Fraction(3, 10)
     """
     chosen = sets or ("base",)
+    if isinstance(specs, str):
+        raise UsageError(f"specs={specs!r}: write a list, such as specs=[{specs!r}]")
     if len(set(chosen)) < len(chosen):
         raise UsageError(f"load({', '.join(map(repr, chosen))}): name different spec sets")
     library = checked_library(_source(k, spec) for k, spec in enumerate(specs, 1))
@@ -197,7 +209,7 @@ def diagnose(text: str, using: Definitions | None = None, formula: bool = False)
     >>> [(x.line, x.column, x.message) for x in diagnose("v_lon(SV) > 3", formula=True)]
     [(1, 1, 'm/s and no unit cannot be compared')]
     """
-    home = using or load()
+    home = definitions_of(using)
     if formula:
         return texts.diagnose_claim(text, home.specification)
     return texts.diagnose(text, home.library).diagnostics

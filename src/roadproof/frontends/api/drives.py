@@ -24,7 +24,7 @@ from roadproof.evidence.none_within import none_within_data
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.ci import BuildResult
-from roadproof.frontends.api.definitions import Definitions, What, load
+from roadproof.frontends.api.definitions import Definitions, What, definitions_of
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import searches_of, setting, work_of
 from roadproof.frontends.api.studied import StudyAnswers, drive_pictures
@@ -195,7 +195,7 @@ def witness(
     <Verdict.WITNESSED: 'WITNESSED'>
     """
     given = Witness.of(options)
-    searches = searches_for(what, using or load(), given)
+    searches = searches_for(what, definitions_of(using), given)
     with listening(stage):
         return witness_all(searches, given)
 

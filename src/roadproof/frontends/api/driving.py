@@ -7,7 +7,7 @@ from typing import Unpack
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, RejectedError
-from roadproof.frontends.api.definitions import Definitions, What, load
+from roadproof.frontends.api.definitions import Definitions, What, definitions_of
 from roadproof.frontends.api.settings import as_road, positive
 from roadproof.frontends.settings import recordings as settings
 from roadproof.frontends.settings.keywords import MotionKeywords
@@ -95,7 +95,7 @@ def drive(
     from roadproof.engines.search.ask import telling_values
     from roadproof.engines.search.question import assignments, usual_road
 
-    home = using or load()
+    home = definitions_of(using)
     scenario, query = home.numbered(what, vehicles)
     if scenario is not None and not {*query.vehicles} <= {*vehicles}:
         roles = cast_of([*vehicles], query.vehicles, {}, "drive: vehicles")

@@ -13,7 +13,7 @@ from roadproof.errors import UsageError
 from roadproof.evidence.answers import explore as kept
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
-from roadproof.frontends.api.definitions import Definitions, What, load
+from roadproof.frontends.api.definitions import Definitions, What, definitions_of
 from roadproof.frontends.api.phrases import Term
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import searches_of, setting, work_of
@@ -97,7 +97,7 @@ def explore(
     each; ``precision``: width of a bracket, SI units. The rest as for ``witness``. Raises as that does.
     """
     given = Explore.of(options)
-    plain = using or load()
+    plain = definitions_of(using)
     each = plain.each(what)
     home = restricted(plain, given, what=each)
     vary = given.vary or {}

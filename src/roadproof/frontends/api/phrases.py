@@ -10,6 +10,7 @@ import re
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
+from numbers import Real
 from typing import Any, TypeAlias
 
 from roadproof.errors import InputError, UsageError
@@ -185,7 +186,7 @@ def _lift(value: Term) -> Phrase:
             return Phrase(syntax.Literal_(value))
         case str():
             return _number(*_with_unit(value))
-        case int() | float() | Fraction() | Decimal():
+        case Real() | Decimal():
             return _number(exact("number", value, "unitless"))
         case _:
             raise UsageError(f"{value!r} {_NO_TERM}")
@@ -224,13 +225,19 @@ def _chain(op: Any, left: Term, right: Term) -> Phrase:
     return Phrase(syntax.Chain(op, tuple(flat)), _given(parts))
 
 
+def _two_bounds(within: tuple[Number, Number | None]) -> tuple[Number, Number | None]:
+    if not isinstance(within, tuple | list) or len(within) != 2:
+        raise UsageError(f"within={within!r}: write two bounds, such as (0, '4 s'), or (2, None) without end")
+    return within[0], within[1]
+
+
 def _temporal(
     op: syntax.TemporalOperator, left: Term | None, right: Term, within: tuple[Number, Number | None] | None
 ) -> Phrase:
     parts = [_lift(x) for x in (left, right) if x is not None]
     bounds = None
     if within is not None:
-        low, high = within
+        low, high = _two_bounds(within)
         bounds = syntax.Bounds(_lift(low).expression, None if high is None else _lift(high).expression)
     first = None if left is None else parts[0].expression
     return Phrase(syntax.Temporal(op, bounds, first, parts[-1].expression), _given(parts))

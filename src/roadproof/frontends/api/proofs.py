@@ -19,7 +19,7 @@ from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.ci import BuildResult
-from roadproof.frontends.api.definitions import Definitions, What, load
+from roadproof.frontends.api.definitions import Definitions, What, definitions_of
 from roadproof.frontends.api.settings import models_of, setting, work_of
 from roadproof.frontends.api.studied import StudyAnswers, drive_pictures
 from roadproof.frontends.report import claims as claims_text
@@ -215,7 +215,7 @@ def prove(
     <Verdict.PROVED: 'PROVED'>
     """
     given = Prove.of(options)
-    asked = claims_asked(using or load(), what, using.alone.set_name if using else None, given)
+    asked = claims_asked(definitions_of(using), what, using.alone.set_name if using else None, given)
     with listening(stage):
         found = Proofs.asked(asked, given)
     return found if given.kernel is None else found.put_to_kernel(given.kernel, given.jobs, given.progress)

@@ -16,7 +16,7 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Answer, Picture, picture
-from roadproof.frontends.api.definitions import Among, Definitions, load
+from roadproof.frontends.api.definitions import Among, Definitions, definitions_of
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.frontends.settings.groups import Run
@@ -219,7 +219,7 @@ def ask(
     Raises ``InputError``, ``UsageError``.
     """
     given = Ask.of(options)
-    home = using or load()
+    home = definitions_of(using)
     numbers = home.among(among) or numbers_of(home.specification)
     study = about(basis_of(home, given, given.vehicles), numbers)
     if not study.names:

@@ -15,7 +15,7 @@ from roadproof.evidence.answers import overlap as overlap_answers
 from roadproof.evidence.answers import redundancy as redundancy_answers
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
-from roadproof.frontends.api.definitions import Among, Definitions, load
+from roadproof.frontends.api.definitions import Among, Definitions, definitions_of, load
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import basis_of, positive
 from roadproof.frontends.api.studied import StudyAnswers, drawn
@@ -100,7 +100,7 @@ def overlap(
     ``InputError``, ``UsageError``.
     """
     given = settings.Overlap.of(options)
-    home = restricted(using or load(), given, among)
+    home = restricted(definitions_of(using), given, among)
     if len(home.sets) > 2:
         raise UsageError(f"{', '.join(home.sets)}: name one spec set, or two different ones")
     # What happens one after the other takes longer than what happens at once.
@@ -218,7 +218,7 @@ def redundancy(
     Raises as ``overlap``.
     """
     given = settings.Redundancy.of(options)
-    home = using or load()
+    home = definitions_of(using)
     every = numbers_of(home.alone)
     basis = basis_of(home, given, given.vehicles)
     study = Redundancy(basis, home.among(among) or every, given.whole)

@@ -16,7 +16,7 @@ from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Picture, picture
-from roadproof.frontends.api.definitions import Definitions, What, load
+from roadproof.frontends.api.definitions import Definitions, What, definitions_of, load
 from roadproof.frontends.api.settings import as_road, positive
 from roadproof.frontends.api.table import Row, Table
 from roadproof.frontends.report.one_trace import as_text, draw_strips
@@ -175,10 +175,10 @@ def monitor(
     if isinstance(on, JudgedDrive | DriveFile):
         return _on_drive(what, on.file if isinstance(on, JudgedDrive) else on, "drive", using, given)
     if given.view == "dense" and str(on).endswith(".xosc"):
-        return _on_storyboard(what, Path(str(on)), using or load(), given)
+        return _on_storyboard(what, Path(str(on)), definitions_of(using), given)
     if given.view == "dense":
         raise UsageError("--view dense requires a drive or OpenSCENARIO file: others have samples only")
-    home = using or load()
+    home = definitions_of(using)
     return _on_trace(what, _read(on, given), home, home.all_values(), {}, given)
 
 

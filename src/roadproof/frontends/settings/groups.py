@@ -11,6 +11,7 @@ from roadproof.frontends.settings.readers import (
     assignment,
     decimal,
     file_name,
+    folder,
     named,
     seconds,
     set_names,
@@ -43,7 +44,7 @@ def effort_for(what: str, units: float) -> Any:
 def folder_for(what: str, command_line_only: bool = False, required: bool = False) -> Any:
     """``out`` of a question that writes ``what``."""
     keyword = not command_line_only
-    return output(None, "--out DIR", f"write {what}", read=Path, keyword=keyword, required=required)
+    return output(None, "--out DIR", f"write {what}", read=folder, keyword=keyword, required=required)
 
 
 def specifications_of(what: str) -> Any:

@@ -3,7 +3,9 @@
 import dataclasses
 import inspect
 from collections.abc import Callable, Mapping
+from difflib import get_close_matches
 from functools import partial
+from numbers import Integral
 from typing import Any, Literal, Self, TypeAlias, TypeVar
 
 from roadproof.errors import UsageError
@@ -40,8 +42,10 @@ class Option:
         """Raises ``UsageError`` where a Python caller gives a value that is not allowed."""
         if self.checked and self.choices is not None and value not in self.choices:
             raise UsageError(f"{name}={value!r}: write {' or '.join(map(repr, self.choices))}")
-        if self.least is not None and isinstance(value, int) and value < self.least:
-            raise UsageError(f"{name}={value}: write a whole number greater than {self.least - 1}")
+        if self.metavar == "DIR" and isinstance(value, str) and not value:
+            raise UsageError(f"{name}='': write the path of a folder, such as . for the current one")
+        if self.least is not None and not (isinstance(value, Integral) and int(value) >= self.least):
+            raise UsageError(f"{name}={value!r}: write a whole number greater than {self.least - 1}")
 
 
 def option(default: object, flag: str = "", help: str = "", **rules: Any) -> Any:
@@ -76,7 +80,9 @@ class Settings:
         known = cls.options()
         for name, value in given.items():
             if name not in known or not known[name].keyword:
-                raise TypeError(f"{cls.__name__.lower()}() got an unexpected keyword argument {name!r}")
+                near = get_close_matches(name, [x for x in known if known[x].keyword], n=1)
+                hint = f"; did you mean {near[0]!r}?" if near else ""
+                raise TypeError(f"{cls.__name__.lower()}() got an unexpected keyword argument {name!r}{hint}")
             if value is not getattr(cls, name):
                 known[name].check(name, value)
         return cls(**given)

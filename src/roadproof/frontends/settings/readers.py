@@ -84,6 +84,13 @@ def mapping_of(example: str) -> Callable[[str], dict[str, str]]:
     return read
 
 
+def folder(text: str) -> Path:
+    """The path of a folder; an empty one, as of a variable that is not set, would be the current folder."""
+    if not text:
+        raise UsageError("'': write the path of a folder, such as . for the current one")
+    return Path(text)
+
+
 def file_name(text: str) -> str:
     """The name of a file, or - for stdout."""
     if not Path(text).name:
