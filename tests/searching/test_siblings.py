@@ -14,6 +14,7 @@ from roadproof.evidence.judged import judge_file
 from roadproof.library.loading import bundled_library, load_library
 from roadproof.library.scenario_references import read_query
 from roadproof.library.specification import Source
+from roadproof.reasons import Why
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
@@ -100,6 +101,21 @@ def test_a_sibling_that_cannot_be_asked_or_has_other_vehicles_is_passed_over(sol
     assert (outcome.verdict, sorted(drive.vehicles)) == (Verdict.WITNESSED, vehicles)
 
 
+@pytest.mark.parametrize("numbers", [("4", "12", "20"), ("20", "12", "4")])
+def test_a_first_scenario_without_a_drive_is_searched_once_for_all(solved, monkeypatch, numbers):
+    searched = []
+
+    def search_in_vain(question, search_options):
+        searched.append(question.query.text.replace(" ", ""))
+        return search.Attempt(Verdict.UNKNOWN, None, Why.NONE_FOUND())
+
+    monkeypatch.setattr(siblings, "find_witness", search_in_vain)
+    monkeypatch.setattr("roadproof.engines.search.impossible.show_impossible", lambda *_: None)
+    outcomes = [answer(search_for(number)) for number in numbers]
+    assert [outcome.verdict for outcome in outcomes] == [Verdict.UNKNOWN] * 3
+    assert sorted(searched) == [f"scenario_{number}(SV,POV,L)" for number in ("12", "20", "4")]
+
+
 # --- Drives that are none of another question ------------------------------------------------------
 
 
@@ -152,6 +168,8 @@ def test_scenarios_alike_are_one_piece_whatever_their_set():
     study = WitnessStudy(tuple(search_for(text, set_name=name) for text, name in asked))
     alike = ("scenario-04-base", "scenario-12-base", "scenario-04-ext", "scenario-20-ext")
     assert study.pieces({}) == [alike, ("scenario-05-base",), ("formula-06-base",)]
+    turned = [("12", "base"), ("4", "ext"), ("4", "base"), ("12", "ext")]
+    assert len(WitnessStudy(tuple(search_for(text, set_name=name) for text, name in turned)).pieces({})) == 1
     known = answer(search_for("true and v_lon(SV) > 20 m/s", horizon=Fraction(6, 5)))
     assert study.pieces({"scenario-12-base": known, "formula-06-base": known}) == [
         ("scenario-04-base", "scenario-04-ext", "scenario-20-ext"),

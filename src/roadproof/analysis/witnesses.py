@@ -16,8 +16,7 @@ from roadproof.evidence.answers.drives import SCHEMA
 from roadproof.library.bind import values_with
 from roadproof.library.dependence import digest_of
 from roadproof.library.elaborate import StatedQuery, read_claim
-from roadproof.library.scenarios import without_sectors
-from roadproof.logic.formula import Formula
+from roadproof.library.scenarios import like_of
 from roadproof.logic.show import declared
 from roadproof.reasons import Reason
 from roadproof.runtime.budget import Effort
@@ -55,12 +54,10 @@ class WitnessStudy:
     def pieces(self, known: Mapping[str, Outcome]) -> Sequence[tuple[str, ...]]:
         """The names that are left; those of which one search may answer several are in one piece."""
         groups: dict[object, list[str]] = {}
-        first: dict[tuple[str, Formula], int] = {}
         for name, search in self.named.items():
             if name not in known:
-                alike = search.specification.set_name, without_sectors(search.query.formula)
                 number = search.scenario
-                group = name if number is None else first.setdefault(alike, number)
+                group = name if number is None else like_of(search.specification, number)
                 groups.setdefault(group, []).append(name)
         return [tuple(names) for names in groups.values()]
 
@@ -71,6 +68,9 @@ class WitnessStudy:
             if self.finish is not None:
                 self.finish(name, found[name])
         return found
+
+    def parts(self, piece: tuple[str, ...]) -> Sequence[tuple[str, ...]]:
+        return [(name,) for name in piece]
 
     def doubt(self, piece: tuple[str, ...], reason: Reason) -> dict[str, Outcome]:
         return {name: ask.undecided(self.named[name], reason) for name in piece}

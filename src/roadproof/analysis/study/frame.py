@@ -25,6 +25,7 @@ Piece = TypeVar("Piece")
 Answer = TypeVar("Answer")
 Record = TypeVar("Record")
 Given = TypeVar("Given", contravariant=True)
+Group = TypeVar("Group")
 
 
 class Study(Protocol[Piece, Answer, Record]):
@@ -84,6 +85,14 @@ class DoubtKeeper(Protocol[Given]):
 
     def is_lasting(self, answer: Given) -> bool:
         """Whether an answer is kept for later runs."""
+
+
+@runtime_checkable
+class GroupedStudy(Protocol[Group]):
+    """A study some of whose pieces are groups of questions that can be asked alone, too."""
+
+    def parts(self, piece: Group) -> Sequence[Group]:
+        """The pieces that are asked instead where the process of a group ended; one where it is no group."""
 
 
 class Unprepared:
@@ -159,21 +168,18 @@ def conduct(
     if say is not None:
         for line in told_known(run.origins, len(study.wanted(run.known))):
             say(line)
+    is_ours = _share(study, shard)
     while pieces := study.pieces(run.known):
         if run.look_up():
             continue
-        ours = [piece for piece in pieces if shard is None or shard.has(_name(study, piece))]
+        ours = [piece for piece in pieces if is_ours(piece)]
         if not ours:
             if run.take_over():
                 continue
             unsure = sum(not study.is_sure(answer) for answer in run.known.values())
             raise SharedError(_told(shard, len(run.known) - unsure, unsure, len(pieces), what))
-        if pool.are_forked(ours, hands):
-            study.prepare()
-        with closing(pool.work(study.settle, ours, hands, study.doubt, progress, what)) as answered:
-            for _, answers in answered:
-                for name, answer in answers.items():
-                    run.keep(name, answer)
+        while ours:
+            ours = list(run.settle(ours, hands, progress, what))
     if run.has_remembered:
         run.known_before.make_room()
     return StudyResult(run.known, run.records, run.shelf, tuple(run.origins))
@@ -233,6 +239,27 @@ class _Run(Generic[Piece, Answer, Record]):
     def _unseen(self) -> list[str]:
         wanted = self.study.wanted(self.known)
         return [x for x in wanted if x not in self.known and x not in self._looked_up]
+
+    def settle(
+        self, pieces: Sequence[Piece], hands: Jobs, progress: Progress | None, what: str
+    ) -> Sequence[Piece]:
+        """Keep the answers to ``pieces``. The result is still to be asked: parts of groups that ended."""
+        study, parts = self.study, list[Piece]()
+
+        def lose(piece: Piece, reason: Reason) -> Mapping[str, Answer]:
+            alone = study.parts(piece) if isinstance(study, GroupedStudy) else ()
+            if len(alone) < 2:
+                return study.doubt(piece, reason)
+            parts.extend(alone)
+            return {}
+
+        if pool.are_forked(pieces, hands):
+            study.prepare()
+        with closing(pool.work(study.settle, pieces, hands, lose, progress, what)) as answered:
+            for _, answers in answered:
+                for name, answer in answers.items():
+                    self.keep(name, answer)
+        return parts
 
     def keep(self, name: str, answer: Answer) -> None:
         """Keep an answer that was computed, for this run and, where it stands, for later ones."""
@@ -294,6 +321,25 @@ def _kept(
                 say(f"a stored answer is invalid and is computed again: {error}")
             continue
         yield name, record, answer
+
+
+def _share(study: Study[Piece, Answer, Record], shard: Shard | None) -> Callable[[Piece], bool]:
+    """Whether a piece is one of a shard's, whatever each of the runs knows by now.
+
+    The pieces that are asked first are dealt out in turn, so shards differ by one at most. Later ones go by
+    their names.
+    """
+    if shard is None:
+        return lambda piece: True
+    first = study.pieces({})
+    dealt = {name for piece in first for name in study.doubt(piece, NO_REASON)}
+    ours = {name for piece in shard.among(first) for name in study.doubt(piece, NO_REASON)}
+
+    def is_ours(piece: Piece) -> bool:
+        name = _name(study, piece)
+        return name in ours if name in dealt else shard.has(name)
+
+    return is_ours
 
 
 def _name(study: Study[Piece, Answer, Record], piece: Piece) -> str:

@@ -20,14 +20,15 @@ from roadproof.engines.search.question import (
 from roadproof.engines.search.search import Attempt, find_witness
 from roadproof.engines.solve.bounds import value_of
 from roadproof.errors import InputError, UsageError
-from roadproof.library.scenarios import Scenario, applied, numbers_of, without_sectors
+from roadproof.library.scenarios import Scenario, applied, like_of
 from roadproof.library.specification import Query, Specification
+from roadproof.logic.rewrite import parameters_of
 from roadproof.semantics.exact.exact import judge
 from roadproof.world.motion import states_at
 from roadproof.world.signals import STARTING
 
 ROUNDED = 0.01  # m and m/s; by how much a drive of rounded numbers may miss what it was looked for under
-MOST = 64  # of the searches whose drive a process remembers
+MOST = 64  # of the searches whose outcome a process remembers
 
 _remembered: dict[object, Attempt] = {}
 
@@ -41,18 +42,18 @@ def find_once(question: SearchProblem, search_options: SearchOptions) -> Attempt
     if key in _remembered:
         return _remembered[key]
     attempt = find_witness(question, search_options)
-    if attempt.found is not None:
-        if len(_remembered) >= MOST:
-            _remembered.clear()
-        _remembered[key] = replace(attempt, seconds={})
+    if len(_remembered) >= MOST:
+        _remembered.clear()
+    _remembered[key] = replace(attempt, seconds={})
     return attempt
 
 
 def _key(question: SearchProblem, search_options: SearchOptions) -> object:
-    """All that a drive depends on which ``find_witness`` finds."""
+    """All that an outcome of ``find_witness`` depends on."""
     bound = tuple((tuple(lanes.items()), question.bound(lanes)) for lanes in question.lanes)
     place = question.road, tuple(question.vehicles.items()), question.grid, question.assumptions
-    return bound, place, replace(search_options, explain=False)
+    spoken = {name: question.values[name] for name in sorted(parameters_of(question.query.formula))}
+    return bound, place, tuple(spoken.items()), search_options
 
 
 def offered(
@@ -72,24 +73,22 @@ def offered(
     if first is None:
         return None
     try:
-        asked = pose(specification.library, first, setting)
+        asked = pose(specification.library, applied(specification, first), setting)
         if asked.vehicles != question.vehicles:
             return None
-        attempt = find_once(asked, replace(search_options, explain=False))
+        attempt = find_once(asked, search_options)
     except (InputError, UsageError):
         return None
     put = None if attempt.found is None else put_on(question, attempt.found)
     return None if put is None else replace(attempt, found=put)
 
 
-def _first(specification: Specification, number: int, query: Query, setting: Setting) -> Query | None:
+def _first(specification: Specification, number: int, query: Query, setting: Setting) -> Scenario | None:
     """The scenario that is asked first; None on the main road, and where road or lanes are chosen."""
     if setting.road is not None or setting.lanes or zones_of(query.formula) <= {"main"}:
         return None
-    wanted = without_sectors(query.formula)
-    before = (x for x in numbers_of(specification) if x < number)
-    others = (applied(specification, Scenario(x, specification.set_name)) for x in before)
-    return next((x for x in others if without_sectors(x.formula) == wanted), None)
+    first = like_of(specification, number)
+    return None if first == number else Scenario(first, specification.set_name)
 
 
 def put_on(question: SearchProblem, found: FoundDrive) -> FoundDrive | None:
