@@ -3,12 +3,14 @@
 Tests that take long (``lengthy.txt``) are marked ``long``.
 
 A module that is imported while a test has replaced something would keep the replacement for good. New
-random cases are for ``make fuzz``. Answers are computed, not taken from those that are known.
+random cases are for ``make fuzz``. Answers are computed, not taken from those that are known. Compiled files
+are kept, whatever the shell says: tests start hundreds of commands.
 """
 
 import gc
 import os
 import pkgutil
+import sys
 from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
@@ -25,6 +27,8 @@ from sharing import HOMES
 from studio.browser import browsing
 
 os.environ["ROADPROOF_KNOWN"] = "off"
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 work_here()
 gc.disable()  # until all tests are collected: what is imported stays
 settings.register_profile("same", derandomize=True, deadline=None)
