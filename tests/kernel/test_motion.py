@@ -6,17 +6,19 @@ from functools import cache
 import pytest
 
 import roadproof as rp
+from examples import some
 from exporting.kept import kept
 from kernel.needs import needs_coq, needs_ocaml
 from kernel.reading import answers
 from kernel.test_accept import ruling
-from roadproof.evidence.derivations.prepare import prepare as prepare_drive
 from roadproof.evidence.kernel import extracted, ocaml
 from roadproof.evidence.kernel.accept import CoqModule, Word, find_tableau, judge, prepare
 from roadproof.evidence.kernel.coq import ready
+from roadproof.evidence.kernel.drive import shown
 from roadproof.evidence.kernel.printer import CLOSE, Printer
-from roadproof.evidence.kernel.source import HEAD, Module, file, instance_text
+from roadproof.evidence.kernel.source import HEAD, Module, instance_text
 from roadproof.evidence.kernel.statement import SCHEMAS, Instance, bounds_of
+from roadproof.evidence.kernel.world import world_lines
 from roadproof.library.loading import bundled_library
 from roadproof.library.motion import ALL_SCHEMAS, INDUCTIONS, axiom_arguments, axiom_formula
 from roadproof.logic import formula as f
@@ -33,16 +35,23 @@ def test_every_schema_has_a_name_in_coq():
     assert {*SCHEMAS} == {*ALL_SCHEMAS} == {x for schemas, _ in PROVED for x in schemas.split()}
 
 
+@cache
+def proved():
+    """The claims, proved and put to Coq in one file."""
+    return rp.prove(*(claim for _, claim in PROVED), kernel="coq", drive=False, jobs=1)
+
+
 @needs_coq
-@pytest.mark.parametrize(("schemas", "claim"), PROVED)
-def test_a_claim_about_motions_is_accepted_and_rests_on_no_fact(schemas, claim):
-    proved = rp.prove(claim, kernel="coq", drive=False, jobs=1)
-    certificate = proved.answers[0].settled.result.certificate
+@pytest.mark.parametrize("number", range(len(PROVED)))
+def test_a_claim_about_motions_is_accepted_and_rests_on_no_fact(number):
+    schemas, claim = PROVED[number]
+    certificate = proved().answers[number].settled.result.certificate
     assert " ".join(sorted({x.schema for x in certificate.assumed.axioms})) == schemas
-    (entry,) = proved.as_data()["verdicts"]
+    entry = proved().as_data()["verdicts"][number]
     limits = len(certificate.assumed.limits)
     assert entry["kernel"] == {"says": "accepted", "reason": "", "premises": limits}
-    assert ("  assuming motion" in proved.kernel_text()) == claim.startswith("assuming motion")
+    told = proved().kernel_text().splitlines()[number]
+    assert ("  assuming motion" in told) == claim.startswith("assuming motion")
     text = prepare("one", certificate, bundled_library()).module.text
     read, _, proof = text.partition("(* From here on it is proof")
     assert "motion_" not in read
@@ -82,18 +91,22 @@ def test_instances_are_those_of_the_library_and_no_false_formula_is_one():
 
 
 @needs_coq
-@pytest.mark.parametrize(("schema", "says"), read_table(__file__, "instances"))
-def test_what_is_no_fact_is_no_instance(schema, says):
-    asked = f"Eval vm_compute in match says [] ({schema}) with Some _ => true | None => false end."
-    assert answers(f'{FILE}Definition a : vehicle := "a".\n{asked}\n') == [says]
+def test_what_is_no_fact_is_no_instance():
+    schemas, expected = zip(*read_table(__file__, "instances"), strict=True)
+    asked = "; ".join(f"match says [] ({x}) with Some _ => true | None => false end" for x in schemas)
+    said = answers(f'{FILE}Definition a : vehicle := "a".\nEval vm_compute in [{asked}].\n')
+    assert dict(zip(schemas, said, strict=True)) == dict(zip(schemas, expected, strict=True))
+
+
+@cache
+def strict_certificate():
+    claim = "G v_lon(SV) <= v_lon(POV) and s(SV) < s(POV) -> G s(SV) < s(POV)"
+    return rp.prove(claim, assume="motion", drive=False, jobs=1).answers[0].settled.result.certificate
 
 
 @needs_coq
 def test_a_module_with_another_fact_claim_or_theorem_is_not_accepted():
-    claim = "G v_lon(SV) <= v_lon(POV) and s(SV) < s(POV) -> G s(SV) < s(POV)"
-    answer = rp.prove(claim, assume="motion", drive=False, jobs=1).answers[0]
-    certificate = answer.settled.result.certificate
-    made = prepare("one", certificate, bundled_library()).module
+    made = prepare("one", strict_certificate(), bundled_library()).module
     changes = read_table(__file__, "changes")
     modules = {"kept": CoqModule(made)}
     for number, (before, after, _) in enumerate(changes):
@@ -136,8 +149,7 @@ def test_the_extracted_program_accepts_all_and_nothing_that_is_changed():
 
 @needs_coq
 def test_a_false_claim_is_refused_with_the_tableau_of_a_true_one():
-    claim = "assuming motion: G v_lon(SV) <= v_lon(POV) and s(SV) < s(POV) -> G s(SV) < s(POV)"
-    certificate = rp.prove(claim, drive=False, jobs=1).answers[0].settled.result.certificate
+    certificate = strict_certificate()
     tableau = find_tableau(certificate, bundled_library())
     assert ruling(replace(certificate, tableau=tableau)).word is Word.ACCEPTED
     false = replace(certificate, claim="s(SV) < s(POV) -> G s(SV) < s(POV)", tableau=tableau)
@@ -149,17 +161,28 @@ def test_a_false_claim_is_refused_with_the_tableau_of_a_true_one():
 
 @needs_coq
 def test_kept_drives_are_motions():
-    """Of each drive file that Coq accepts, the printed drive is proved to be one."""
+    """Of each drive file, the printed drive is proved to be one."""
     library = bundled_library()
-    modules = [prepare_drive(f"n{k}", x, library).module for k, x in enumerate(kept().values())]
-    printed = [x for x in modules if x is not None]
-    goals = [
-        f"Lemma moves_{x.name} : Roadproof.Motion.motion (Roadproof.Drive.world_of {x.name}.the_drive).\n"
-        "Proof. apply Roadproof.Moves.drives_move; repeat constructor; unfold Q2R; simpl; lra. Qed.\n"
-        for x in printed
-    ]
-    head = "From Coq Require Import Reals Qreals Lra.\nFrom Roadproof Require Moves.\n"
+    printed = [world_lines(shown(x, library).world) for x in [*kept().values()][: some(72)]]
+    modules, goals = [], []
+    for k, drive in enumerate(printed):
+        lines = [
+            f"Module n{k}.",
+            "Definition the_drive : Roadproof.Drive.drive :=",
+            *drive,
+            f".\nEnd n{k}.\n",
+        ]
+        modules.append("\n".join(lines))
+        goals.append(
+            f"Lemma moves_{k} : Roadproof.Motion.motion (Roadproof.Drive.world_of n{k}.the_drive).\n"
+            "Proof. apply Roadproof.Moves.drives_move; repeat constructor; unfold Q2R; simpl; lra. Qed.\n"
+        )
+    head = (
+        "From Coq Require Import Reals Qreals Lra.\nFrom Roadproof Require Moves.\nImport Roadproof.Drive.\n"
+    )
     with ready() as coq:
-        ran = coq.run(file(printed) + head + "".join(goals))
+        ran = coq.run(
+            "".join([HEAD, head, "Open Scope Q_scope.\n", *modules, "Close Scope Q_scope.\n", *goals])
+        )
     assert ran.code == 0, ran.complained[:500]
-    assert len(goals) >= 3
+    assert len(goals) >= 24

@@ -46,11 +46,11 @@ def asked():
 
 @pytest.mark.parametrize("kernel", KERNELS)
 def test_trees_are_accepted_or_refused_as_python_says(kernel):
-    every = RIGHT | WRONG
+    every = WRONG | RIGHT  # Coq stops at the first that it refuses, and is asked again for those behind it
     found = rulings(kernel, [(told, [pair]) for told, pair in every.items()])
     for told, ruling in zip(every, found, strict=True):
         assert ruling.word is (Word.ACCEPTED if told in RIGHT else Word.REFUSED), (told, ruling)
-    assert set(found[0].axioms) <= AXIOMS
+    assert set(found[-1].axioms) <= AXIOMS
 
 
 @pytest.mark.parametrize("kernel", KERNELS)
