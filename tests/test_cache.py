@@ -102,6 +102,23 @@ def test_trees_are_those_of_their_text(home: Path, monkeypatch: pytest.MonkeyPat
     assert len({*home.iterdir()} - before) == 1
 
 
+def test_the_library_is_that_of_its_texts(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(SWITCH, "off")
+    anew = loading.bundled_library.__wrapped__()
+    monkeypatch.delenv(SWITCH)
+    first = loading.bundled_library.__wrapped__()
+    monkeypatch.setattr(loading, "build_library", lambda *_, **__: pytest.fail("it was remembered"))
+    found = loading.bundled_library.__wrapped__()
+    assert found == first == anew
+    assert found.fingerprint == anew.fingerprint
+    monkeypatch.undo()
+    monkeypatch.setenv("XDG_CACHE_HOME", str(home.parent.parent))
+    before = {*home.iterdir()}
+    monkeypatch.setattr(loading, "version", lambda: "another")
+    assert loading.bundled_library.__wrapped__() == anew
+    assert [x.name.partition("-")[0] for x in {*home.iterdir()} - before] == ["library"]
+
+
 def test_files_of_roadproof_are_parsed_once_and_others_are_read_as_they_stand(
     home: Path, tmp_path: Path
 ) -> None:

@@ -1,7 +1,6 @@
 """One file of evidence, checked by what its schema says that it is, without what made it."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
@@ -25,6 +24,7 @@ from roadproof.logic.parse import parse_claim
 from roadproof.logic.rewrite import parameters_of
 from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.runtime.budget import BudgetExceeded
+from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.exact import Judgement
 from roadproof.semantics.exact.replay import first_overlap
 

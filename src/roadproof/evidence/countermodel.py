@@ -1,7 +1,6 @@
 """Traces over points in time on a road of rectangles, which refute claims, as plain data."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
 
@@ -9,6 +8,7 @@ from roadproof.evidence.answers import drive as kept
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.drive_file import road_of, road_said
 from roadproof.evidence.strict import JsonObject
+from roadproof.runtime.records import dataclass
 from roadproof.world.road import Road
 from roadproof.world.signals import FIXED
 

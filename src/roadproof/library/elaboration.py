@@ -5,7 +5,7 @@ are names from the start, so what comes out speaks of SV, POV and L and nothing 
 """
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
 from fractions import Fraction
 from typing import TypeAlias, TypeVar
 
@@ -20,6 +20,7 @@ from roadproof.logic import terms as t
 from roadproof.logic.foreign_syntax import instead_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.syntax import Bounds, Definition, Expression, SignalDeclaration
+from roadproof.runtime.records import dataclass
 from roadproof.world.signals import KINDS
 from roadproof.world.units import UNITS
 

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache, lru_cache
 from importlib import resources
 from pathlib import Path
@@ -22,20 +22,25 @@ from roadproof.library.specification import (
     unknown,
 )
 from roadproof.logic import syntax
+from roadproof.logic.grammar import version
 from roadproof.logic.instances import instances
 from roadproof.logic.parse import parse_bundled, parse_library
 from roadproof.logic.recover import ParseResult, parse_pieces
+from roadproof.runtime.cache import remembered
+from roadproof.runtime.records import dataclass
 
 Parse: TypeAlias = Callable[[str, str], tuple[syntax.Statement, ...]]
 
 
 @cache
 def bundled_library() -> Library:
-    """The library that comes with roadproof: ``library/sets/*.spec``."""
+    """The library that comes with roadproof (``library/sets/*.spec``), remembered from run to run."""
     folder = resources.files("roadproof.library").joinpath("sets")
     files = sorted((f for f in folder.iterdir() if f.name.endswith(".spec")), key=lambda f: f.name)
     sources = [Source(f.name, f.read_text("utf-8")) for f in files]
-    return build_library(sources, parse=parse_bundled)
+    code = (Path(__file__).with_name(name).read_text("utf-8") for name in ("loading.py", "specification.py"))
+    made_of = "\0".join((version(), *code, *(text for x in sources for text in (x.name, x.text))))
+    return remembered("library", made_of.encode(), lambda: build_library(sources, parse=parse_library))
 
 
 def load_library(files: Iterable[Path | Source] = ()) -> Library:

@@ -6,7 +6,7 @@ would never end, so it is refused as soon as it is made.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TypeAlias, cast, get_args
 
 from roadproof.errors import Position, TextError
@@ -14,6 +14,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.terms import Term
+from roadproof.runtime.records import dataclass
 from roadproof.world.units import SI, Dimension
 
 SECONDS: Dimension = (0, 1)

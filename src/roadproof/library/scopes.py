@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
 from typing import TypeAlias
 
 from roadproof.errors import Position, TextError
@@ -12,6 +11,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import syntax
 from roadproof.logic import terms as t
 from roadproof.logic.syntax import Binding, Definition, Expression
+from roadproof.runtime.records import dataclass
 from roadproof.world.units import UNITS
 
 SORTS = ("vehicle", "vehicles", "lane", "lanelet")

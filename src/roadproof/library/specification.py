@@ -7,7 +7,7 @@ definitions in force for a choice of set and options are a ``Specification``.
 import hashlib
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from difflib import get_close_matches
 from fractions import Fraction
 from functools import cached_property
@@ -20,6 +20,7 @@ from roadproof.logic.custom_names import freedom_of, own_signal
 from roadproof.logic.formula import Formula
 from roadproof.logic.show import text
 from roadproof.runtime.files import read_limited
+from roadproof.runtime.records import dataclass
 from roadproof.world.signals import FIXED, SIGNALS
 
 LARGEST_FILE = 1_000_000

@@ -5,9 +5,11 @@ Formulas share sub-trees, so without the remembered hash every look-up would wal
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import wraps
+from operator import attrgetter
 from typing import Any, TypeVar, dataclass_transform
+
+from roadproof.runtime.records import dataclass
 
 T = TypeVar("T")
 N = TypeVar("N")
@@ -19,15 +21,14 @@ _UNKNOWN, _ITSELF = object(), object()
 @dataclass_transform(frozen_default=True)
 def node(cls: type[T]) -> type[T]:
     """Make ``cls`` a frozen dataclass whose hash is computed once per object."""
-    made = dataclass(frozen=True)(cls)
-    structural: Callable[[Any], int] = made.__hash__
-    same: Callable[[Any, object], bool] = made.__eq__
+    made = dataclass(frozen=True, eq=False)(cls)
+    fields = _fields(cls)
 
     def remembered(self: Any) -> int:
         try:
             known: int = self._hash
         except AttributeError:
-            known = structural(self)
+            known = hash(fields(self))
             object.__setattr__(self, "_hash", known)
         return known
 
@@ -41,12 +42,20 @@ def node(cls: type[T]) -> type[T]:
             return True
         if type(self) is not type(other) or hash(self) != hash(other):
             return False
-        return bool(same(self, other))
+        return bool(fields(self) == fields(other))
 
     made.__eq__ = equals  # type: ignore[method-assign]
     made.__getstate__ = state  # type: ignore[method-assign]
     made.__hash__ = remembered  # type: ignore[method-assign]
     return made
+
+
+def _fields(cls: type) -> Callable[[Any], object]:
+    """A function that gives the values of all fields of an instance, as a tuple."""
+    names = tuple(cls.__annotations__)
+    if len(names) < 2:  # attrgetter gives one value as it is, and does not take none
+        return lambda of: tuple([getattr(of, name) for name in names])
+    return attrgetter(*names)
 
 
 def once(fact: Callable[[N], T]) -> Callable[[N], T]:

@@ -13,11 +13,11 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from roadproof.runtime.memory import collect_rarely
 from roadproof.runtime.progress import Stage, listening
+from roadproof.runtime.records import dataclass
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection

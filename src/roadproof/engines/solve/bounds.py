@@ -9,12 +9,12 @@ the outer side are loosened by more than rounding and a solver's tolerance can t
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise, product
 from math import prod
 from typing import Literal, TypeAlias
 
 from roadproof.engines.encode.problem import All, AnyOf, Circuit, ColumnInequality, Leaf, all_of, any_of
+from roadproof.runtime.records import dataclass
 
 Side: TypeAlias = Literal["inner", "outer"]
 # Lower and upper bound of each column.

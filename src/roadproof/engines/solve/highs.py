@@ -1,12 +1,12 @@
 """Mixed-integer programs for HiGHS, without a modelling layer between."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from roadproof.engines.solve.sparse import Columns, by_columns
+from roadproof.runtime.records import dataclass
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,6 @@ import re
 import sys
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import find_spec
 from types import ModuleType
@@ -35,6 +34,7 @@ from roadproof.engines.solve.highs import Answer, Program
 from roadproof.engines.solve.sparse import Triplets
 from roadproof.errors import MissingSolverError, UsageError
 from roadproof.runtime.budget import Budget, Effort
+from roadproof.runtime.records import dataclass
 
 # A unit of work, about a second: HiGHS does 3,000 to 8,000 iterations a second, and 100 to 500 nodes once
 # it branches. Iterations are the better measure, but only nodes can be limited.

@@ -5,7 +5,6 @@ there, and secants on a narrow window around it.
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from importlib.util import find_spec
 
 import numpy as np
@@ -14,6 +13,7 @@ from roadproof.engines.encode.problem import ColumnInequality, Row
 from roadproof.engines.solve.bounds import Affine, Bound, Box, split_squares
 from roadproof.engines.solve.sparse import Triplets
 from roadproof.errors import MissingSolverError
+from roadproof.runtime.records import dataclass
 
 
 @dataclass(frozen=True)

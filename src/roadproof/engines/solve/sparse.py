@@ -4,10 +4,11 @@
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
+from roadproof.runtime.records import dataclass
 
 Numbers = NDArray[np.float64]
 Places = NDArray[np.intp]
