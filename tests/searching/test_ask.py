@@ -153,7 +153,7 @@ def test_drives_that_were_found_stand_where_a_later_search_is_cut_off(monkeypatc
 
 
 def test_durations_without_a_common_step_are_named():
-    wrong = "3000 steps of dt=1/500 s, .* multiples \\(71/500 s, 3/5 s\\); at most 400"
+    wrong = "3000 steps of dt=1/500 s, and at most 400 .* multiples of dt \\(71/500 s, 3/5 s\\)"
     with pytest.raises(UsageError, match=wrong):
         posed(search_for("F[0, 0.142 s] danger(SV,POV) and F[0, 0.6 s] danger(SV,POV)"))
 

@@ -257,6 +257,16 @@ def test_trucks_only_on_request(questions: Questions) -> None:
     assert len(evaluate_recording(r, questions).violating) == 0
     wide = ask(replace(questions.settings, classes=("Car", "Truck")), 25)
     assert len(evaluate_recording(r, wide).violating) == 1
+    assert evaluate_recording(r, wide).notes == evaluate_recording(r, questions).notes == ()
+
+
+def test_classes_that_no_vehicle_has_are_told(questions: Questions) -> None:
+    """They are found nowhere, and a table of zeros looks like an answer."""
+    r = make_recording([Track(2, 1, cruise(0.0, 30.0, 50)), Track(2, 1, cruise(9.0, 30.0, 50), kind="Truck")])
+    wrong = ask(replace(questions.settings, classes=("car", "Bike")), 25)
+    assert evaluate_recording(r, wrong).notes == (
+        "no vehicle of class car, Bike: its classes are Car, Truck",
+    )
 
 
 def test_prefilter_is_dropped_for_other_dangers(questions: Questions) -> None:

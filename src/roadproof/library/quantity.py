@@ -34,11 +34,13 @@ def same_dimension(left: Quantity, right: Quantity, what: str, at: Position) -> 
         return right.dimension if left.dimension is None else left.dimension
     plain = t.constant_value(right.term) is not None or t.constant_value(left.term) is not None
     missing = plain and (0, 0) in (left.dimension, right.dimension)
-    other = left.dimension if right.dimension == (0, 0) else right.dimension
+    unit = unit_name(left.dimension if right.dimension == (0, 0) else right.dimension)
+    hint = f"The number has no unit: write it with {unit}." if missing else ""
+    if plain and right.dimension == (-left.dimension[0], -left.dimension[1]):
+        unit = unit_name(left.dimension if t.constant_value(left.term) is None else right.dimension)
+        hint = f"3/4 {unit} is 3 divided by 4 {unit}: write a decimal, such as 0.75 {unit}."
     raise TextError(
-        f"{unit_name(left.dimension)} and {unit_name(right.dimension)} cannot be {what}",
-        at,
-        f"The number has no unit: write it with {unit_name(other)}." if missing else "",
+        f"{unit_name(left.dimension)} and {unit_name(right.dimension)} cannot be {what}", at, hint
     )
 
 

@@ -80,7 +80,7 @@ _READABLE = {
 
 def _readable(names: set[str]) -> str:
     shown = sorted({_READABLE.get(n, n.lower() if n.isalpha() and len(n) > 1 else n) for n in names})
-    shown = [s for s in shown if not s.startswith("__")]
+    shown = [s if s[0].isalnum() else f"'{s}'" for s in shown if not s.startswith("__")]
     many = len(shown) > 8
     return ", ".join(shown[:8]) + (", …" if many else "")
 

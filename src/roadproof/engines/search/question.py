@@ -103,10 +103,9 @@ def fitting_grid(horizon: Fraction, formula: Formula, values: Mapping[str, Fract
         horizon, with_horizon = ceil(horizon / dt) * dt, dt
     if horizon / with_horizon > MOST_STEPS:
         raise UsageError(
-            f"horizon={horizon} s is {horizon / with_horizon} steps of dt={with_horizon} s, the coarsest of "
-            f"which all durations of the formula are multiples ({_some(found)}); at most {MOST_STEPS} are "
-            "allowed: give parameters and windows durations that are multiples of a longer time, or choose a "
-            "shorter horizon"
+            f"horizon={horizon} s has {horizon / with_horizon} steps of dt={with_horizon} s, and at most "
+            f"{MOST_STEPS} are allowed. The formula's durations must be multiples of dt ({_some(found)}): "
+            "choose a shorter horizon, or durations that are multiples of a longer time"
         )
     return make_grid(horizon, with_horizon)
 

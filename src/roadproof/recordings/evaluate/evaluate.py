@@ -83,8 +83,9 @@ def evaluate_windows(windows: Iterable[Window], questions: Questions) -> Finding
 
     A pair or triple is looked at where the last of its vehicles comes in, on all of its common frames.
     """
-    parts, overlaps = list[Findings](), list[Overlap]()
+    parts, overlaps, kinds = list[Findings](), list[Overlap](), set[str]()
     for window in windows:
+        kinds |= {*map(str, np.unique(window.recording.kind))}
         part, overlapping = _evaluate(window, questions)
         parts.append(part)
         overlaps += overlapping
@@ -94,8 +95,15 @@ def evaluate_windows(windows: Iterable[Window], questions: Questions) -> Finding
         for name, order in _ORDERS.items()
     }
     told = map(told_overlap, sorted(overlaps, key=lambda x: x[:2]))
-    notes = (*parts[-1].notes, *told, *_say_uncertain([x for part in parts for x in part.matches]))
+    none = _say_missing(questions.settings.classes, kinds)
+    notes = (*parts[-1].notes, *none, *told, *_say_uncertain([x for part in parts for x in part.matches]))
     return replace(parts[-1], **added, **rows, notes=notes)  # type: ignore[arg-type]
+
+
+def _say_missing(classes: tuple[str, ...], kinds: set[str]) -> Iterator[str]:
+    """A note where nothing is evaluated, since no vehicle is of the classes that were asked for."""
+    if kinds and not kinds & {*classes}:
+        yield f"no vehicle of class {', '.join(classes)}: its classes are {', '.join(sorted(kinds))}"
 
 
 def _evaluate(window: Window, questions: Questions) -> tuple[Findings, Iterable[Overlap]]:
