@@ -13,7 +13,8 @@ from fractions import Fraction
 
 from roadproof.engines.encode.build import NONE, encode_formula, frame
 from roadproof.engines.encode.motion import Layout, own_columns
-from roadproof.engines.search.ask import Outcome, Search, ask
+from roadproof.engines.search.ask import ask
+from roadproof.engines.search.outcome import Outcome, Search
 from roadproof.engines.search.question import pose
 from roadproof.engines.solve.exact import solve_exactly
 from roadproof.engines.solve.milp import prepare

@@ -2,7 +2,7 @@
 
 from roadproof.engines.prove import prover
 from roadproof.engines.prove.prover import Result
-from roadproof.engines.search.ask import Search
+from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.question import SearchOptions, SearchProblem, Setting, pose
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library

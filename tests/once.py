@@ -6,7 +6,8 @@ handed over is. A module says ``pytestmark = pytest.mark.usefixtures("searched_o
 
 from collections.abc import Hashable
 
-from roadproof.engines.search.ask import Outcome, Search, _ask
+from roadproof.engines.search.ask import _ask
+from roadproof.engines.search.outcome import Outcome, Search
 
 _KNOWN: dict[Hashable, Outcome] = {}
 

@@ -41,7 +41,7 @@ from roadproof.analysis.explore.study import Exploration
 from roadproof.analysis.explore.values import explore
 from roadproof.analysis.study.frame import conduct
 from roadproof.engines.encode.unroll import common_step
-from roadproof.engines.search.ask import Search
+from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.question import SearchOptions, Setting, durations, pose
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.journal import seal_of

@@ -26,8 +26,9 @@ from roadproof.analysis.order.deciding import (
 )
 from roadproof.analysis.order.study import Order, reachable, transitive_reduction
 from roadproof.analysis.redundancy import Change, ChangeFinding, SharedFindings, _ExaminationJobs, changes_of
-from roadproof.engines.search.ask import Outcome, Search, ask
+from roadproof.engines.search.ask import ask
 from roadproof.engines.search.ask import ask as ask_for_drive
+from roadproof.engines.search.outcome import Outcome, Search
 from roadproof.engines.solve.smt import ask as ask_solver
 from roadproof.evidence.certificate import refusal
 from roadproof.evidence.judged import judge_file

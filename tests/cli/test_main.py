@@ -123,6 +123,7 @@ PROOF = Path(__file__).parents[2] / "proofs" / "P4-scenario-03-base.json"
 _SOLVERS = ("z3", "cvc5", "cvxpy", "highspy", "clarabel")
 _DRAWING = ("matplotlib", "PIL", "sympy", "polars", "roadproof.recordings.export", "roadproof.world.maps")
 _OTHERS = ("roadproof.analysis.catalogue", "roadproof.recordings.formats", "roadproof.evidence.kernel.accept")
+_SEARCHER = ("scipy", "roadproof.semantics.sampled", "roadproof.engines.solve.refuting")
 _PROVER = ("z3", "roadproof.engines.prove.prover", "roadproof.engines.prove.countermodel")
 
 
@@ -136,9 +137,9 @@ _PROVER = ("z3", "roadproof.engines.prove.prover", "roadproof.engines.prove.coun
         ),
         (
             "prove true --jobs 1",
-            [*_DRAWING, *_OTHERS, "numpy", "cvc5", "cvxpy", "roadproof.semantics.sampled"],
+            [*_DRAWING, *_OTHERS, "numpy", "cvc5", "cvxpy", "tomllib", "roadproof.semantics.sampled"],
         ),
-        ("witness 4 --jobs 1", [*_DRAWING, *_OTHERS, *_PROVER, "scipy"]),
+        ("witness 4 --jobs 1", [*_DRAWING, *_OTHERS, *_PROVER, *_SEARCHER]),
         (f"check {PROOF} --jobs 1", [*_DRAWING, *_OTHERS, "numpy", "cvxpy"]),
     ],
 )

@@ -27,7 +27,7 @@ from roadproof.analysis.explore.answer import (
     Variable,
     read_measure,
 )
-from roadproof.engines.search.ask import Search
+from roadproof.engines.search.outcome import Search
 from roadproof.errors import InputError
 from roadproof.evidence.answers.classify import Doubt
 from roadproof.frontends.report.answers import answer_questions

@@ -9,8 +9,8 @@ from asking import posed, search_for
 from planting import plant
 from roadproof.engines.encode import build
 from roadproof.engines.search import bounded, search
-from roadproof.engines.search.ask import Outcome
 from roadproof.engines.search.impossible import Impossibility
+from roadproof.engines.search.outcome import Outcome
 from roadproof.engines.search.question import SearchOptions
 from roadproof.engines.solve import bounds
 from roadproof.runtime.budget import Effort

@@ -8,7 +8,8 @@ import pytest
 from asking import posed, search_for
 from roadproof.analysis.witnesses import WitnessStudy
 from roadproof.engines.search import search, siblings
-from roadproof.engines.search.ask import Search, answer
+from roadproof.engines.search.ask import answer
+from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.question import FoundDrive, SearchOptions, SearchProblem, Setting
 from roadproof.evidence.judged import judge_file
 from roadproof.library.loading import bundled_library, load_library

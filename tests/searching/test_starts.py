@@ -10,8 +10,9 @@ import pytest
 import roadproof as rp
 from planting import plant
 from roadproof.engines.search import initial_candidates, refute, sampling, search, settle
-from roadproof.engines.search.ask import Search, answer, reads_all
+from roadproof.engines.search.ask import answer, reads_all
 from roadproof.engines.search.initial_candidates import space_of, unread
+from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.question import SearchOptions, Setting, pose
 from roadproof.engines.search.refute import sampled_drive
 from roadproof.engines.search.sampling import Space, holds, states

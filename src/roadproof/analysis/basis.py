@@ -20,7 +20,7 @@ from roadproof.world.road import Road
 from roadproof.world.vehicle import Vehicle
 
 if TYPE_CHECKING:
-    from roadproof.engines.search.ask import Search
+    from roadproof.engines.search.outcome import Search
     from roadproof.engines.search.question import Objective
 
 Claim = TypeVar("Claim")
@@ -85,7 +85,7 @@ class Basis:
         self, query: Query, road: Road | None = None, effort: Effort | None = None, explain: bool = False
     ) -> "Search":
         """A search for a drive on which ``query`` holds."""
-        from roadproof.engines.search.ask import Search  # here: proofs need not wait for numpy
+        from roadproof.engines.search.outcome import Search  # here: proofs need not wait for numpy
         from roadproof.engines.search.question import SearchOptions, Setting
 
         vehicles = {name: x for name, x in self.vehicles.items() if not name or name in query.vehicles}

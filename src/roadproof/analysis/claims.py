@@ -146,7 +146,7 @@ class Claims(Unprepared):
         specification = self.specification_of(piece)
         query = read_claim(specification, piece.claim)
         if self.within is not None:
-            from roadproof.engines.search.ask import Search
+            from roadproof.engines.search.outcome import Search
 
             settled = settle_bounded(Search(specification, query, *self.within))
         else:

@@ -7,9 +7,7 @@ from functools import cached_property
 from typing import ClassVar
 
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question, readings
-from roadproof.engines.search import ask
-from roadproof.engines.search.ask import Outcome, Search
-from roadproof.engines.solve.milp import prepare
+from roadproof.engines.search.outcome import Outcome, Search, undecided
 from roadproof.errors import InputError
 from roadproof.evidence.answers import drives as kept
 from roadproof.evidence.answers.drives import SCHEMA
@@ -53,18 +51,22 @@ class WitnessStudy:
 
     def pieces(self, known: Mapping[str, Outcome]) -> Sequence[tuple[str, ...]]:
         """The names that are left; those of which one search may answer several are in one piece."""
+        left = {name: search for name, search in self.named.items() if name not in known}
+        if len(left) == 1:
+            return [tuple(left)]
         groups: dict[object, list[str]] = {}
-        for name, search in self.named.items():
-            if name not in known:
-                number = search.scenario
-                group = name if number is None else like_of(search.specification, number)
-                groups.setdefault(group, []).append(name)
+        for name, search in left.items():
+            number = search.scenario
+            group = name if number is None else like_of(search.specification, number)
+            groups.setdefault(group, []).append(name)
         return [tuple(names) for names in groups.values()]
 
     def settle(self, piece: tuple[str, ...]) -> dict[str, Outcome]:
+        from roadproof.engines.search.ask import answer  # here: known answers need not wait for numpy
+
         found: dict[str, Outcome] = {}
         for name in piece:
-            found[name] = ask.answer(self.named[name])
+            found[name] = answer(self.named[name])
             if self.finish is not None:
                 self.finish(name, found[name])
         return found
@@ -73,7 +75,7 @@ class WitnessStudy:
         return [(name,) for name in piece]
 
     def doubt(self, piece: tuple[str, ...], reason: Reason) -> dict[str, Outcome]:
-        return {name: ask.undecided(self.named[name], reason) for name in piece}
+        return {name: undecided(self.named[name], reason) for name in piece}
 
     def is_sure(self, answer: Outcome) -> bool:
         """Whether all drives that were asked for are there, or a proof that there is none."""
@@ -89,6 +91,9 @@ class WitnessStudy:
         return f"{used} {_asked(search)} {search.search_options.effort!r}"
 
     def prepare(self) -> None:
+        from roadproof.engines.search import ask as ask  # for all processes that are forked
+        from roadproof.engines.solve.milp import prepare
+
         prepare()
 
     def record(self, name: str, answer: Outcome, shelf: EvidenceStore) -> kept.Record:

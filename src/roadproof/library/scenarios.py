@@ -13,7 +13,7 @@ from typing import Literal, TypeAlias
 
 from roadproof.errors import InputError
 from roadproof.library.compose import both, either, eventually
-from roadproof.library.elaborate import apply_definition, elaborate, read_claim, signature
+from roadproof.library.elaborate import apply_definition, elaborate, read_claim, signature, walk_of
 from roadproof.library.elaboration import Elaborator
 from roadproof.library.specification import Query, Specification, source_of
 from roadproof.logic import formula as f
@@ -96,7 +96,8 @@ def vehicles_of(specification: Specification, scenario: Scenario) -> tuple[str, 
     if known is not None:
         return known
     name = name_of(scenario.number)
-    *vehicles, lane = signature(specification.in_set(scenario.set_name), name)
+    home = specification.in_set(scenario.set_name)
+    *vehicles, lane = signature(home, name, walk_of(home))
     if lane != LANE or not vehicles or vehicles[0] != SUBJECT:
         raise InputError(f"{name} takes {', '.join((*vehicles, lane))}: a scenario takes SV, POVs and L")
     specification.worked_out["vehicles", scenario] = tuple(vehicles)
@@ -112,14 +113,14 @@ def applied(
 ) -> Query:
     """A scenario applied to vehicles (its own where none are given) and a lane.
 
-    ``walk`` as for ``elaborate``.
+    ``walk`` as for ``elaborate``; that of the specification where none is given.
     """
     roles = tuple(vehicles) or vehicles_of(specification, scenario)
     known: Query | None = specification.worked_out.get(("applied", scenario, roles, lane))
     if known is None:
         is_here = scenario.set_name == specification.set_name
         name = name_of(scenario.number) if is_here else definition_of(scenario)
-        known = apply_definition(specification, name, (*roles, lane), walk)
+        known = apply_definition(specification, name, (*roles, lane), walk or walk_of(specification))
         specification.worked_out["applied", scenario, roles, lane] = known
     return known
 

@@ -3,7 +3,6 @@
 import errno
 import json
 import os
-import tempfile
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -27,6 +26,8 @@ def whole_file(path: Path) -> Iterator[BinaryIO]:
             with path.open("ab") as file:
                 yield file
             return
+        import tempfile  # here: most commands write nothing
+
         handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
         try:
             with os.fdopen(handle, "wb") as file:

@@ -6,7 +6,6 @@ road: ``id``, ``lane``, ``zone``, ``attribute``, ``s = [from, to]`` (``-inf``, `
 """
 
 import dataclasses
-import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
@@ -112,6 +111,8 @@ def load_vehicle(name_or_path: str | Path) -> Vehicle:
 
 def read_toml(path: Path) -> Content:
     """The content of a file, its numbers exact. Raises ``InputError``."""
+    import tomllib
+
     try:
         with path.open("rb") as file:
             data = file.read(LARGEST_MODEL + 1)

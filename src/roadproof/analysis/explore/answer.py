@@ -6,7 +6,7 @@ from fractions import Fraction
 from itertools import product
 from typing import Literal, TypeAlias
 
-from roadproof.engines.search.ask import Search
+from roadproof.engines.search.outcome import Search
 from roadproof.errors import UsageError
 from roadproof.evidence.settled import Settled
 from roadproof.library.compose import always, both, comparison, eventually

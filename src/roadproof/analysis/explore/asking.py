@@ -10,7 +10,7 @@ from itertools import product
 from typing import TypeAlias
 
 from roadproof.analysis.explore.answer import Explorable, Sense, Variable, read_measure
-from roadproof.engines.search.ask import Search
+from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.question import Setting
 from roadproof.errors import UsageError
 from roadproof.library.bind import Number, exact

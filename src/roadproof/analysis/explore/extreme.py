@@ -43,8 +43,8 @@ from roadproof.analysis.explore.search import (
 from roadproof.analysis.explore.values import PROOF, QUICK_PROOF
 from roadproof.analysis.study.pool import Say
 from roadproof.engines.encode.along import names_places
-from roadproof.engines.search.ask import Search
 from roadproof.engines.search.impossible import show_impossible
+from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.question import pose
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile

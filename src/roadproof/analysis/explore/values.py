@@ -37,8 +37,8 @@ from roadproof.analysis.explore.search import (
     stages_for,
 )
 from roadproof.analysis.study.pool import Say
-from roadproof.engines.search.ask import Search
 from roadproof.engines.search.impossible import Impossibility, show_impossible
+from roadproof.engines.search.outcome import Search
 from roadproof.logic.rewrite import is_cubic_state
 from roadproof.reasons import Why
 from roadproof.runtime.budget import BudgetExceeded

@@ -13,7 +13,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from roadproof.drivers.restriction import told
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.answers.reader import FindLabel, without_labels
 from roadproof.evidence.certificate import (
@@ -59,6 +58,8 @@ class Question:
     @property
     def beginning(self) -> dict[str, Any]:
         """How every answer begins: its kind, the version, the library, what begins so that is asked about."""
+        from roadproof.drivers.restriction import told
+
         return {**heading(self.schema, self.library), **told(self.options)}
 
     @property

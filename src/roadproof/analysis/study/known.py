@@ -138,10 +138,10 @@ def _read(path: Path) -> Mapping[str, object]:
 @cache
 def _sources() -> str:
     """A digest that changes when the program or a model does, so that no state of it answers for another."""
-    files = [
-        x for place in (Path(__file__).parents[2], shipped("models")) for x in sorted(place.rglob("*.*"))
-    ]
-    stats = [(str(x), x.stat()) for x in files if x.suffix != ".pyc"]
+    places = Path(__file__).parents[2], shipped("models")
+    walked = (x for place in places for x in os.walk(place))
+    files = sorted(os.path.join(folder, x) for folder, _, names in walked for x in names if x[-4:] != ".pyc")
+    stats = [(name, os.stat(name)) for name in files]
     return _digest([(name, said.st_size, said.st_mtime_ns) for name, said in stats])
 
 

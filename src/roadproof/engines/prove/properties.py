@@ -2,7 +2,6 @@
 
 import hashlib
 import re
-import tomllib
 from collections.abc import Iterator, Sequence
 from functools import cache
 from importlib import resources
@@ -60,6 +59,8 @@ def digest(asked: str) -> str:
 
 def template_properties() -> list[Task]:
     """P1 to P9 and the negative controls, in order."""
+    import tomllib
+
     text = resources.files("roadproof.engines.prove").joinpath("properties.toml").read_text("utf-8")
     entries = (_Property(**entry) for said in tomllib.loads(text).values() for entry in said)
     tasks = [task for entry in entries for task in entry.tasks]

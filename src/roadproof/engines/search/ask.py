@@ -1,102 +1,37 @@
 """A search for drives of values, and its typed outcome."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from roadproof.engines.search.initial_candidates import is_read
-from roadproof.engines.search.limits import Limits
+from roadproof.engines.search.outcome import Outcome, Search, undecided
 from roadproof.engines.search.question import (
     FoundDrive,
-    SearchOptions,
     SearchProblem,
-    Setting,
     pose,
-    usual_road,
 )
 from roadproof.engines.search.search import Attempt, find_witness
 from roadproof.engines.search.siblings import find_once, offered
-from roadproof.evidence.answers import drives as kept
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.bind import default_values
-from roadproof.library.specification import Library, Query, Specification
+from roadproof.library.specification import Library
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import parameters_of
 from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.runtime.progress import about, begin
-from roadproof.runtime.records import dataclass
 from roadproof.runtime.timing import now, since
-from roadproof.verdict import DriveVerdict, Verdict
+from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
 
 if TYPE_CHECKING:
-    from roadproof.engines.search.impossible import Impossibility
+    pass
 
 # Units of work for a proof that there is none; and where no engine reads all, which is hard to prove, too.
 NEVER, NEVER_UNREAD = 10.0, 2.0
-
-
-@dataclass(frozen=True)
-class Search:
-    """For ``count`` clearly different drives on which ``query`` holds; ``scenario``: whose number it is."""
-
-    specification: Specification
-    query: Query
-    setting: Setting = field(default_factory=Setting)
-    search_options: SearchOptions = field(default_factory=SearchOptions)
-    count: int = 1
-    scenario: int | None = None
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """The verdict on a search, with judged drives, a proof that there is none, or the limits it was for.
-
-    ``seconds`` by stage; ``sizes`` of the last problem that was solved. ``exhausted``: the same work finds no
-    more.
-    """
-
-    scenario: int | None
-    set_name: str
-    query: Query
-    road: str
-    verdict: DriveVerdict
-    reason: Reason
-    drives: tuple[JudgedDrive, ...] = ()
-    natural: bool = False
-    seconds: Mapping[str, float] = field(default_factory=dict)
-    sizes: Mapping[str, int] = field(default_factory=dict)
-    impossibility: "Impossibility | None" = None
-    limits: Limits | None = None
-    exhausted: bool = False
-
-    def told(self, options: Sequence[str]) -> Reason:
-        """The reason, with those ``options`` that a command has to widen the limits of a NONE-WITHIN."""
-        return self.reason if self.limits is None else Why.TOLD(self.limits.text(options))
-
-    @property
-    def kept(self) -> kept.Outcome:
-        """As the answer has it."""
-        shown = self.impossibility
-        return kept.Outcome(
-            scenario=self.scenario,
-            set=self.set_name,
-            formula=self.query.text,
-            road=self.road,
-            verdict=self.verdict,
-            view="dense" if self.limits is None else "grid",
-            reason=self.reason,
-            natural=self.natural,
-            drives=tuple(judged.as_data() for judged in self.drives),
-            limits=None if self.limits is None else self.limits.as_json(),
-            core=() if shown is None else shown.told,
-            certificate=None if shown is None else shown.plain,
-            seconds={stage: round(value, 4) for stage, value in self.seconds.items()},
-            sizes=dict(self.sizes),
-        )
 
 
 def answer(search: Search) -> Outcome:
@@ -106,13 +41,6 @@ def answer(search: Search) -> Outcome:
         return ask(search)
     except BudgetExceeded as late:
         return undecided(search, late.reason, since(begun))
-
-
-def undecided(search: Search, reason: Reason, seconds: float = 0.0) -> Outcome:
-    """What is said of a search that nothing is known of."""
-    road = search.setting.road or usual_road(search.query.formula)
-    told = (search.scenario, search.specification.set_name, search.query, road.name)
-    return Outcome(*told, Verdict.UNKNOWN, reason, seconds={"all": seconds})
 
 
 def reads_all(search: Search) -> bool:

@@ -2,8 +2,9 @@
 
 from dataclasses import replace
 
-from roadproof.engines.search.ask import Search, ask
+from roadproof.engines.search.ask import ask
 from roadproof.engines.search.limits import PROVE_OPTIONS, Limits
+from roadproof.engines.search.outcome import Search
 from roadproof.evidence.settled import Settled
 from roadproof.library.compose import negation
 from roadproof.runtime.records import dataclass

@@ -5,8 +5,9 @@ from contextlib import closing
 from dataclasses import replace
 
 from roadproof.engines.prove.prover import prove
-from roadproof.engines.search.ask import Search, ask, reads_all
+from roadproof.engines.search.ask import ask, reads_all
 from roadproof.engines.search.constant_motion import steady_drive
+from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.refute import sampled_drive
 from roadproof.evidence.answers import compare as kept
 from roadproof.evidence.answers.compare import Relation

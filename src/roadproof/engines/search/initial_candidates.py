@@ -8,6 +8,7 @@ says that the part holds. So a start implies the parts; what is found from it is
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import combinations
+from typing import TYPE_CHECKING
 
 from roadproof.engines.encode.along import Place, names_places
 from roadproof.engines.encode.build import inequality_at
@@ -17,7 +18,6 @@ from roadproof.engines.encode.place import span
 from roadproof.engines.encode.problem import Leaf, nodes
 from roadproof.engines.search.initial_conditions import Condition, Start
 from roadproof.engines.search.question import SearchProblem
-from roadproof.engines.search.sampling import Space, State, signals_in, states
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import own_of
@@ -32,6 +32,9 @@ from roadproof.semantics.exact.signals import LineSignals, unknown_at_instant
 from roadproof.semantics.exact.truth import Span
 from roadproof.world.signals import FIXED
 from roadproof.world.vehicle import Range
+
+if TYPE_CHECKING:
+    from roadproof.engines.search.sampling import Space, State
 
 READABLE = 2  # the highest degree that the engine milp bounds
 _PLACES: tuple[Place, Place] = ("s", "d")
@@ -89,6 +92,8 @@ def starts(
     if not parts:
         yield Start(lanes, (), frozenset(), let_go)
         return
+    from roadproof.engines.search.sampling import signals_in, states  # here: few questions need numpy for it
+
     together = f.conjunction(*parts)
     formula = f.conjunction(demands(question.bound(lanes)), *_surroundings(question))
     space = space_of(question)
@@ -99,8 +104,10 @@ def starts(
         yield Start(lanes, found, frozenset(parts), let_go)
 
 
-def space_of(question: SearchProblem) -> Space:
+def space_of(question: SearchProblem) -> "Space":
     """Where vehicles can be at time 0, and how fast, within their limits."""
+    from roadproof.engines.search.sampling import Space
+
     right, left = span(question.road)
     inside = question.assumptions.inside
     reach = question.assumptions.reach
@@ -150,7 +157,7 @@ def _surroundings(question: SearchProblem) -> Iterator[Formula]:
 
 
 def conditions(
-    parts: Formula, state: State, spoken: Sequence[Signal], beside: Mapping[Signal, Signal], space: Space
+    parts: Formula, state: "State", spoken: Sequence[Signal], beside: Mapping[Signal, Signal], space: "Space"
 ) -> tuple[Condition, ...]:
     """What implies ``parts``, which hold in ``state``: values of what is spoken of, a place in a range.
 
@@ -179,7 +186,7 @@ def _beside(parts: Formula, spoken: Sequence[Signal], question: SearchProblem) -
     return beside
 
 
-def _free(parts: Formula, signal: Signal, state: State, space: Space) -> Range:
+def _free(parts: Formula, signal: Signal, state: "State", space: "Space") -> Range:
     """Around its value in ``state``, where the signal may be with the others as they are: ends on a grid."""
     low, high = space.ranges[signal]
     value = state[signal]

@@ -7,7 +7,8 @@ from math import prod
 from roadproof.engines.encode.build import Assumptions, encode_formula, frame
 from roadproof.engines.encode.motion import Layout, own_columns
 from roadproof.engines.encode.program import program_of
-from roadproof.engines.search.ask import Search, telling_values
+from roadproof.engines.search.ask import telling_values
+from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.question import SearchProblem, make_grid, pose
 from roadproof.engines.solve.refuting import find_tree
 from roadproof.engines.solve.relaxation import NotRefutedError

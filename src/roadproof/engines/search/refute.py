@@ -4,10 +4,11 @@ from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 
-from roadproof.engines.search.ask import Search, ask, reads_all
+from roadproof.engines.search.ask import ask, reads_all
 from roadproof.engines.search.constant_motion import steady_drive
 from roadproof.engines.search.enumeration import Within, small_drive
 from roadproof.engines.search.initial_candidates import space_of
+from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.question import SearchOptions, Setting, pose, usual_model
 from roadproof.engines.search.sampling import Space, states
 from roadproof.evidence.countermodel import Countermodel, Instant

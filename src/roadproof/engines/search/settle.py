@@ -27,7 +27,7 @@ from roadproof.runtime.timing import now, since
 from roadproof.verdict import ClaimVerdict, Verdict
 
 if TYPE_CHECKING:
-    from roadproof.engines.search.ask import Search
+    from roadproof.engines.search.outcome import Search
 
 # Units of work for a proof, before short drives are looked at, and before a solver looks for a drive.
 BRIEF, BEFORE = 0.4, 5.0

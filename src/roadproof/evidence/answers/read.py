@@ -8,7 +8,6 @@ from functools import cache
 from importlib import import_module
 from pkgutil import iter_modules
 
-from roadproof.drivers import restriction
 from roadproof.errors import InputError
 from roadproof.evidence import answers
 from roadproof.evidence.answers.entry import Entry
@@ -50,6 +49,8 @@ def read_index(data: Fields, library: Library, find_label: FindLabel) -> list[En
 
 def faults_of(data: Fields, library: Library, formulas: Mapping[str, str]) -> Iterator[str]:
     """What an index says as a whole and its entries do not show; ``formulas``: of its drives, by file."""
+    from roadproof.drivers import restriction
+
     background = Background(data, library, data.where)
     told = dict(data.mapping("signals")) if data.has("signals") else {}
     if library_of(data) == library.fingerprint and told != library.freedom:

@@ -1,6 +1,5 @@
 """What every answer can do: say its verdicts, show its evidence, be kept, be checked, be looked at."""
 
-import html
 from abc import abstractmethod
 from collections import Counter
 from collections.abc import Iterator, Mapping
@@ -158,6 +157,8 @@ class Answer(Table):
             return check(folder, solver=solver, specs=self._specs(folder), jobs=jobs)
 
     def _repr_html_(self) -> str:
+        import html
+
         rows = self.rows()
         heading = "".join(f"<th>{html.escape(name)}</th>" for name in (rows[0] if rows else ()))
         lines = ["".join(f"<td>{html.escape(_shown(x))}</td>" for x in row.values()) for row in rows[:_MOST]]

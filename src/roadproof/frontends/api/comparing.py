@@ -7,9 +7,9 @@ from typing import Unpack
 
 from roadproof.analysis.study.evidence_store import keep_specifications, specification_names
 from roadproof.analysis.study.pool import count_workers
-from roadproof.engines.search.ask import Search
 from roadproof.engines.search.compare import DIRECTIONS, Comparison, Direction
 from roadproof.engines.search.compare import compare as compare_queries
+from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.question import SearchOptions
 from roadproof.engines.solve.milp import prepare
 from roadproof.errors import UsageError

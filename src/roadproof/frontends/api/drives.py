@@ -11,8 +11,7 @@ from typing import ClassVar, Unpack
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.frame import StudyResult, look_up, put_away
 from roadproof.analysis.witnesses import WitnessStudy, evidence_files, none_within_file, stems
-from roadproof.engines.search.ask import Outcome, Search
-from roadproof.engines.search.none_within import refute
+from roadproof.engines.search.outcome import Outcome, Search
 from roadproof.engines.search.question import SearchOptions
 from roadproof.errors import UsageError
 from roadproof.evidence.answers import drives as kept
@@ -20,7 +19,6 @@ from roadproof.evidence.answers.drives import Answer
 from roadproof.evidence.codec import write
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.kinds import Evidence
-from roadproof.evidence.none_within import none_within_data
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.ci import BuildResult
@@ -71,6 +69,9 @@ class DriveFolder:
         path = self.folder / none_within_file(name)
         path.unlink(missing_ok=True)
         if outcome.verdict is Verdict.NONE_WITHIN:
+            from roadproof.engines.search.none_within import refute
+            from roadproof.evidence.none_within import none_within_data
+
             found = refute(self.searches[name])
             if found is not None:
                 write_whole(path, json_bytes(none_within_data(found)))

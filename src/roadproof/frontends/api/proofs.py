@@ -313,8 +313,10 @@ def claims_of(
         raise UsageError(
             "assume=motion requires claims of your own: template properties are about all traces"
         )
-    listed = [x for x in template_properties() if not (assumed.values and x.of_all_values)]
-    tasks = _own(home, own, expected) or choose(listed, named, set_name, sorted(numbers))
+    tasks = _own(home, own, expected)
+    if not tasks:
+        listed = [x for x in template_properties() if not (assumed.values and x.of_all_values)]
+        tasks = choose(listed, named, set_name, sorted(numbers))
     if not tasks:
         words = ", ".join(map(str, what))
         raise UsageError(f"no claim of {words} is stated for set={set_name or 'any'}: ask for others")

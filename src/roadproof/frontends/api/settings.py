@@ -18,7 +18,7 @@ from roadproof.world.vehicle import Vehicle
 
 if TYPE_CHECKING:
     from roadproof.analysis.basis import Basis
-    from roadproof.engines.search.ask import Search
+    from roadproof.engines.search.outcome import Search
     from roadproof.engines.search.question import SearchOptions, Setting
 
 
@@ -51,7 +51,7 @@ def searches_of(
 
     Raises ``TextError``, ``InputError``, ``UsageError``.
     """
-    from roadproof.engines.search.ask import Search
+    from roadproof.engines.search.outcome import Search
 
     for name in home.sets:
         here = replace(home, specification=home.specification.in_set(name))

@@ -1,6 +1,5 @@
 """Answers as tables: rows, frames, and what a notebook shows."""
 
-import html
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -27,4 +26,6 @@ class Table(ABC):
         return frame_of(self.rows())
 
     def _repr_html_(self) -> str:
+        import html
+
         return f"<pre>{html.escape(str(self))}</pre>"

@@ -6,7 +6,6 @@ they come also while a solver keeps this one busy.
 
 import contextlib
 import os
-import shutil
 import sys
 import time
 from typing import TYPE_CHECKING
@@ -47,6 +46,8 @@ def tell(text: str, last: bool = False) -> None:
         return
     _report(text)
     if _is_terminal():
+        import shutil
+
         columns = shutil.get_terminal_size().columns
         print(f"\r\033[K{text[: columns - 1]}", end="\n" if last else "", file=sys.stderr, flush=True)
 

@@ -93,7 +93,8 @@ def _found(text: str, set_name: str) -> "Iterator[DriveFile]":
     A recorded trace ends with its last danger, so whatever else the scenario needs has happened then;
     L is the lane of one vehicle's centre at the start, so that vehicle begins in L alone (semantics §7).
     """
-    from roadproof.engines.search.ask import Search, ask
+    from roadproof.engines.search.ask import ask
+    from roadproof.engines.search.outcome import Search
     from roadproof.engines.search.question import Setting
     from roadproof.library import scenarios as s
     from roadproof.library.bind import default_values

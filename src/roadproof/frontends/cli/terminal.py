@@ -2,9 +2,7 @@
 
 import os
 import re
-import shutil
 import sys
-import textwrap
 from typing import Any, TextIO, cast
 
 from roadproof.verdict import Verdict
@@ -37,6 +35,8 @@ def width_of_terminal() -> int | None:
     """The columns of the terminal that stdout is; None where it is none."""
     if sys.stdout is None or not sys.stdout.isatty():
         return None
+    import shutil
+
     return max(20, shutil.get_terminal_size().columns)
 
 
@@ -70,6 +70,8 @@ def fit(line: str, width: int) -> str:
     columns = [end for end in gaps if end <= width * 2 // 3]
     hang = columns[-1] if columns else len(line) - len(line.lstrip()) + 2
     indent = "# " if line.startswith("# ") else " " * hang
+    import textwrap
+
     return textwrap.fill(
         line, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
     )

@@ -12,7 +12,7 @@ from roadproof.frontends.settings.questions import Witness
 from roadproof.runtime.progress import listening
 
 if TYPE_CHECKING:
-    from roadproof.engines.search.ask import Outcome
+    from roadproof.engines.search.outcome import Outcome
 
 SUMMARY = "find a drive on which a scenario or a formula holds"
 

@@ -3,7 +3,6 @@
 CSV files, data frames, tables on terminals and tables of pages are made of it.
 """
 
-import csv
 import io
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fractions import Fraction
@@ -159,6 +158,8 @@ def aligned(rows: Sequence[Sequence[str]], right: Sequence[bool] = ()) -> list[s
 
 def csv_text(header: Iterable[object], rows: Iterable[Iterable[object]]) -> str:
     """Header and rows as CSV."""
+    import csv
+
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(header)

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import TypeAlias
 
-from roadproof.engines.search.ask import Outcome
+from roadproof.engines.search.outcome import Outcome
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.report.animation import ENDINGS, draw_animation
 from roadproof.frontends.report.sheet import Column, Sheet

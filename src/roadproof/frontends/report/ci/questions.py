@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from roadproof.analysis.claims import ClaimResult, Claims
     from roadproof.analysis.coverage.answers import Survey
     from roadproof.analysis.preventable.study import LemmaResult, Plate
-    from roadproof.engines.search.ask import Outcome
+    from roadproof.engines.search.outcome import Outcome
     from roadproof.evidence.answers.catalogue_index import Remark
 
 

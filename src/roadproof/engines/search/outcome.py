@@ -1,0 +1,84 @@
+"""A search for drives as values, and its typed outcome, without solvers: a known answer needs none."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import field
+from typing import TYPE_CHECKING
+
+from roadproof.engines.search.limits import Limits
+from roadproof.engines.search.question import SearchOptions, Setting, usual_road
+from roadproof.evidence.answers import drives as kept
+from roadproof.evidence.judged import JudgedDrive
+from roadproof.library.specification import Query, Specification
+from roadproof.reasons import Reason, Why
+from roadproof.runtime.records import dataclass
+from roadproof.verdict import DriveVerdict, Verdict
+
+if TYPE_CHECKING:
+    from roadproof.engines.search.impossible import Impossibility
+
+
+@dataclass(frozen=True)
+class Search:
+    """For ``count`` clearly different drives on which ``query`` holds; ``scenario``: whose number it is."""
+
+    specification: Specification
+    query: Query
+    setting: Setting = field(default_factory=Setting)
+    search_options: SearchOptions = field(default_factory=SearchOptions)
+    count: int = 1
+    scenario: int | None = None
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The verdict on a search, with judged drives, a proof that there is none, or the limits it was for.
+
+    ``seconds`` by stage; ``sizes`` of the last problem that was solved. ``exhausted``: the same work finds no
+    more.
+    """
+
+    scenario: int | None
+    set_name: str
+    query: Query
+    road: str
+    verdict: DriveVerdict
+    reason: Reason
+    drives: tuple[JudgedDrive, ...] = ()
+    natural: bool = False
+    seconds: Mapping[str, float] = field(default_factory=dict)
+    sizes: Mapping[str, int] = field(default_factory=dict)
+    impossibility: "Impossibility | None" = None
+    limits: Limits | None = None
+    exhausted: bool = False
+
+    def told(self, options: Sequence[str]) -> Reason:
+        """The reason, with those ``options`` that a command has to widen the limits of a NONE-WITHIN."""
+        return self.reason if self.limits is None else Why.TOLD(self.limits.text(options))
+
+    @property
+    def kept(self) -> kept.Outcome:
+        """As the answer has it."""
+        shown = self.impossibility
+        return kept.Outcome(
+            scenario=self.scenario,
+            set=self.set_name,
+            formula=self.query.text,
+            road=self.road,
+            verdict=self.verdict,
+            view="dense" if self.limits is None else "grid",
+            reason=self.reason,
+            natural=self.natural,
+            drives=tuple(judged.as_data() for judged in self.drives),
+            limits=None if self.limits is None else self.limits.as_json(),
+            core=() if shown is None else shown.told,
+            certificate=None if shown is None else shown.plain,
+            seconds={stage: round(value, 4) for stage, value in self.seconds.items()},
+            sizes=dict(self.sizes),
+        )
+
+
+def undecided(search: Search, reason: Reason, seconds: float = 0.0) -> Outcome:
+    """What is said of a search that nothing is known of."""
+    road = search.setting.road or usual_road(search.query.formula)
+    told = (search.scenario, search.specification.set_name, search.query, road.name)
+    return Outcome(*told, Verdict.UNKNOWN, reason, seconds={"all": seconds})
