@@ -19,6 +19,7 @@ from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula, subformulas
 from roadproof.logic.rewrite import bounds_of
 from roadproof.semantics.sampled import Batch, boolean, compile
+from roadproof.semantics.sampled.answers import Convention
 from roadproof.semantics.sampled.arithmetic import Program
 from roadproof.semantics.sampled.batch import Array, steps_of
 from roadproof.semantics.sampled.recursive import Trace, TraceReader
@@ -50,6 +51,21 @@ def test_a_bound_that_is_no_multiple_names_both() -> None:
         compile({"it": formula}).evaluate(random_batch(1, 3, 4))
     with pytest.raises(InputError, match="no multiple"):
         compile({"it": formula}).measure(random_batch(1, 3, 4))
+
+
+@settings(max_examples=some(300), deadline=None)
+@given(formulas, st.integers(0, 2**32), st.integers(1, 9), st.integers(1, 130), st.booleans())
+def test_what_is_asked_at_the_start_alone_is_the_first_of_all_samples(
+    formula: Formula, seed: int, samples: int, traces: int, clip: bool
+) -> None:
+    monitor, batch = compile({"it": formula}), random_batch(seed, traces, samples)
+    convention: Convention = "clip" if clip else "truncated"
+    first, everywhere = (monitor.evaluate(batch, convention, at).answers["it"] for at in ("start", "all"))
+    assert np.array_equal(first.true, everywhere.true[0])
+    assert np.array_equal(first.false, everywhere.false[0])
+    low, lows = (monitor.measure(batch, convention, at).margins["it"] for at in ("start", "all"))
+    assert np.array_equal(low.low, lows.low[0], equal_nan=True)
+    assert np.array_equal(low.high, lows.high[0], equal_nan=True)
 
 
 @pytest.mark.parametrize("wrong", [np.nan, np.inf, -np.inf])

@@ -192,16 +192,16 @@ def test_a_filter_that_forgets_a_case_is_caught(monkeypatch: pytest.MonkeyPatch)
     """Planted faults: the test above must see each of them."""
     true_bound = module._bound_along
     for fault in (
-        lambda reach, rear, front: true_bound(reach, rear, front) - 0.2,
-        lambda reach, rear, front: true_bound(reach, front, rear),
-        lambda reach, rear, front: true_bound(reach, rear, front) * 0,
+        lambda pieces, rear, front: true_bound(pieces, rear, front) - 0.2,
+        lambda pieces, rear, front: true_bound(pieces, front, rear),
+        lambda pieces, rear, front: true_bound(pieces, rear, front) * 0,
     ):
         monkeypatch.setattr(module, "_bound_along", fault)
         with pytest.raises(AssertionError):
             test_filter_is_sharp_at_constant_speeds(False)
     monkeypatch.setattr(module, "_bound_along", true_bound)
     across = module._bound_across
-    monkeypatch.setattr(module, "_bound_across", lambda reach, speed: across(reach, speed) - 0.2)
+    monkeypatch.setattr(module, "_bound_across", lambda pieces, one, other: across(pieces, one, other) - 0.2)
     with pytest.raises(AssertionError):
         test_filter_is_sharp_across()
 

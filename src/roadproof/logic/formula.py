@@ -281,12 +281,17 @@ def is_state(formula: Formula) -> bool:
     return not isinstance(formula, Temporal) and all(map(is_state, children(formula)))
 
 
-def share(formulas: Iterable[Formula], change: Callable[[Formula], Formula]) -> list[Formula]:
+def share(
+    formulas: Iterable[Formula],
+    change: Callable[[Formula], Formula],
+    known: dict[Formula, Formula] | None = None,
+) -> list[Formula]:
     """As ``transform`` of each, with one object for all sub-formulas that are equal.
 
-    Whatever compares them has then no need to look inside.
+    Whatever compares them has then no need to look inside. ``known``: the objects of earlier calls, which
+    takes those of this one.
     """
-    pool: dict[Formula, Formula] = {}
+    pool: dict[Formula, Formula] = {} if known is None else known
     done: dict[int, tuple[Formula, Formula]] = {}  # an object keeps its id while it is held
 
     def visit(current: Formula) -> Formula:

@@ -97,13 +97,14 @@ def _violations(recording: Recording, questions: Questions, meeting: Pairs) -> t
     for moments in found:
         if not len(moments):
             continue
-        vehicles = dict(zip(PAIR, (meeting.first[moments.pair], meeting.second[moments.pair]), strict=True))
+        of_pair = (x.take(moments.pair) for x in (meeting.first, meeting.second))
+        vehicles = dict(zip(PAIR, of_pair, strict=True))
         rows = dict(zip(PAIR, (moments.first[None], moments.second[None]), strict=True))
         lengths = np.ones(len(moments), np.int64)
         batch = gather_rows(recording, vehicles, rows, lengths, questions.violation.signals)
         true = np.flatnonzero(questions.violation.evaluate(batch).answers[VIOLATION].true)
-        pairs.append(moments.pair[true])
-        frames.append(moments.frame[true])
+        pairs.append(moments.pair.take(true))
+        frames.append(moments.frame.take(true))
     return np.concatenate(pairs), np.concatenate(frames)
 
 

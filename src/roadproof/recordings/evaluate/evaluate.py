@@ -2,12 +2,14 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import repeat
 from operator import attrgetter
 from typing import Any
 
 import numpy as np
 
 from roadproof.library.scenarios import LANE
+from roadproof.logic.formula import Formula
 from roadproof.recordings.evaluate.boundary import TraceQuestion, uncertain
 from roadproof.recordings.evaluate.detectors import Detection, find_detections, order_of_detections
 from roadproof.recordings.evaluate.disturbances import (
@@ -114,7 +116,7 @@ def _evaluate(window: Window, questions: Questions) -> tuple[Findings, Iterable[
     everything = find_disturbances(recording, questions)
     found = everything.choose(window.has(everything.pairs.first, everything.pairs.second))
     tally = _Tally(questions)
-    matches = list(_match_pairs(recording, questions, found, tally))
+    matches = _match_pairs(recording, questions, found, tally)
     cut = None
     if questions.triple_start is not None:
         cut = _candidates(window, questions, everything)
@@ -199,18 +201,18 @@ class _Tally:
 
 def _match_pairs(
     recording: Recording, questions: Questions, found: Disturbances, tally: _Tally
-) -> Iterator[Match]:
+) -> list[Match]:
     end = np.max(found.end, axis=0, initial=-1)
     chosen = np.flatnonzero(end >= 0)
     chosen = chosen[np.argsort(found.start[chosen] - end[chosen], kind="stable")]  # the longest first
     if not len(chosen) or not questions.pairs:
-        return
+        return []
     pairs, start = found.pairs.choose(chosen), found.start[chosen]
     vehicles = pairs.vehicles
     at = zip((LANE, OTHER_LANE), vehicles.values(), strict=True)
     lanes = {lane: _lane_at(recording, vehicle, start) for lane, vehicle in at}
     ends = tuple(x[chosen] for x in found.end)
-    yield from _ask_all(recording, questions, questions.pairs, vehicles, start, ends, lanes, tally)
+    return _ask_all(recording, questions, questions.pairs, vehicles, start, ends, lanes, tally)
 
 
 def _candidates(window: Window, questions: Questions, found: Disturbances) -> CutTriples:
@@ -228,12 +230,10 @@ def _candidates(window: Window, questions: Questions, found: Disturbances) -> Cu
     return cut.choose(questions.triple_start.evaluate(batch).answers[START].true)
 
 
-def _match_triples(
-    recording: Recording, questions: Questions, cut: CutTriples, tally: _Tally
-) -> Iterator[Match]:
+def _match_triples(recording: Recording, questions: Questions, cut: CutTriples, tally: _Tally) -> list[Match]:
     triples = cut.triples
     if not len(triples):
-        return iter(())
+        return []
     lanes = {LANE: _lane_at(recording, triples.sv, cut.start)}
     vehicles = triples.vehicles
     return _ask_all(recording, questions, questions.triples, vehicles, cut.start, cut.end, lanes, tally)
@@ -248,11 +248,14 @@ def _ask_all(
     ends: tuple[Integers, ...],
     lanes: Mapping[str, Integers],
     tally: _Tally,
-) -> Iterator[Match]:
+) -> list[Match]:
     """For each minDanger and question the traces that satisfy it, each cut at its own end."""
+    matches = list[Match]()
     last = np.max(ends, axis=0)
     signals = [signal for monitor in monitors for signal in monitor.signals]
-    batch = gather(recording, vehicles, start, last, signals, lanes, questions.lane_atoms)
+    asked_of = frozenset[Formula]().union(*(monitor.states for monitor in monitors))
+    atoms = {formula: atom for formula, atom in questions.lane_atoms.items() if formula in asked_of}
+    batch = gather(recording, vehicles, start, last, signals, lanes, atoms)
     seen: Observation | None = None
     for k, (monitor, end) in enumerate(zip(monitors, ends, strict=True)):
         seen = monitor.observe(batch, known=seen)
@@ -269,22 +272,22 @@ def _ask_all(
                 questions.lane_atoms,
                 questions.settings.convention,
             )
-            yield from _matches_of(recording, asked, there, k)
+            matches += _matches_of(recording, asked, there, k)
+    return matches
 
 
 def _matches_of(
     recording: Recording, asked: MonitorKey, there: TraceQuestion, min_danger: int
 ) -> Iterator[Match]:
     """A match for each trace."""
-    sv, pov, *more = (recording.vehicle_id[index].tolist() for index in there.vehicles.values())
-    if asked.sv == "second":
-        sv, pov = pov, sv
-    (pov2,) = more or [[None] * len(sv)]
-    lanes = (_lane_name(recording, lane) for lane in there.lanes[asked.lane].tolist())
+    vehicles = [recording.vehicle_id[index].tolist() for index in there.vehicles.values()]
+    sv, pov = vehicles[:2] if asked.sv == "first" else vehicles[1::-1]
+    pov2 = vehicles[2] if len(vehicles) > 2 else repeat(None)
+    names = _lane_names(recording)
+    lanes = [names[lane] for lane in there.lanes[asked.lane].tolist()]
     frames = there.low.tolist(), there.high.tolist()
-    unsure = uncertain(recording, there).tolist()
-    for a, b, c, lane, low, high, doubt in zip(sv, pov, pov2, lanes, *frames, unsure, strict=True):
-        yield Match(a, b, c, lane, low, high, min_danger, asked.set_name, asked.number, doubt)
+    question = map(repeat, (min_danger, asked.set_name, asked.number))
+    return map(Match, sv, pov, pov2, lanes, *frames, *question, uncertain(recording, there).tolist())
 
 
 def _lane_at(recording: Recording, vehicle: Integers, frame: Integers) -> Integers:
@@ -292,21 +295,22 @@ def _lane_at(recording: Recording, vehicle: Integers, frame: Integers) -> Intege
     return lane
 
 
-def _lane_name(recording: Recording, index: int) -> str:
-    """Empty for the centre of a box that is on no lane."""
-    return recording.lanes[index].name if index >= 0 else ""
+def _lane_names(recording: Recording) -> list[str]:
+    """The names of the lanes by their indices, the last that of -1: empty, of a box that is on no lane."""
+    return [*(lane.name for lane in recording.lanes), ""]
 
 
 def _traces(recording: Recording, questions: Questions, found: Disturbances) -> Iterator[Trace]:
     known = np.flatnonzero(found.start != NEVER)
     pairs, start = found.pairs.choose(known), found.start[known]
     sectors = _sectors_at(recording, questions, pairs, start)
+    names = _lane_names(recording)
     lanes = [_lane_at(recording, vehicle, start) for vehicle in (pairs.first, pairs.second)]
     columns = (recording.vehicle_id[pairs.first], recording.vehicle_id[pairs.second], start, *lanes)
     ends = zip(*(x[known].tolist() for x in found.end), strict=True)
     for p, (row, each) in enumerate(zip(zip(*(x.tolist() for x in columns), strict=True), ends, strict=True)):
         first, second, frame, *at = row
-        one, other = (_lane_name(recording, lane) for lane in at)
+        one, other = (names[lane] for lane in at)
         within = tuple(name for name, there in sectors.items() if there[p])
         for k, end in enumerate(each):
             if end >= 0:

@@ -19,7 +19,7 @@ from roadproof.library.elaborate import apply_definition
 from roadproof.library.elaboration import Elaborator
 from roadproof.library.loading import bundled_library
 from roadproof.library.specification import Library, Query, Specification, unknown
-from roadproof.logic.formula import Formula, disjunction, is_state
+from roadproof.logic.formula import Formula, disjunction, is_state, share
 from roadproof.logic.rewrite import all_with_values, horizon, with_values, without_names
 from roadproof.recordings.evaluate.courses import Course, courses_of
 from roadproof.recordings.evaluate.sectors import Sector, is_possible, sectors_of
@@ -174,20 +174,22 @@ def ask(settings: Settings, rate: int, zones: Iterable[str] = ZONES) -> Question
     two, three = _by_vehicles(first, (number for each in sectors for number in each.scenarios))
     detectors = _of_detectors(settings, first)
     violated = _with_values(settings, near.formula)
+    shared: dict[Formula, Formula] = {}
+    atoms = dict(lane_atoms(first))
     return Questions(
         settings=settings,
         rate=rate,
-        violation=compile({VIOLATION: violated}),
+        violation=compile({VIOLATION: violated}, shared),
         violation_is_state=is_state(violated),
-        danger=compile({VIOLATION: violated, SAFE: safely, **dangers}),
+        danger=compile({VIOLATION: violated, SAFE: safely, **dangers}, shared),
         safe_steps=_steps(safely, dt, starts_safe),
         danger_steps=tuple(_steps(formula, dt, endangers) for formula in dangers.values()),
         sectors=sectors,
         where=compile(_all_with_values(settings, {x: x.where for x in sectors if x.where is not None})),
-        pairs=_monitors(settings, _of_pairs(sets.values(), two)),
+        pairs=_monitors(settings, _of_pairs(sets.values(), two), shared),
         triple_start=_start_of_triples(settings, sets.values(), three) if three else None,
-        triples=_monitors(settings, _of_triples(sets.values(), three)),
-        lane_atoms=dict(lane_atoms(first)),
+        triples=_monitors(settings, _of_triples(sets.values(), three), shared),
+        lane_atoms=dict(zip(share(atoms, without_names, shared), atoms.values(), strict=True)),
         reach=_reach(settings, near),
         detectors=compile(_all_with_values(settings, detectors)) if detectors else None,
         sight=_sight(settings, detectors),
@@ -206,9 +208,12 @@ def _all_with_values(
     return dict(zip(queries, all_with_values((x.formula for x in queries.values()), values), strict=True))
 
 
-def _monitors(settings: Settings, asked: Mapping[MonitorKey, Query]) -> tuple[Monitor[MonitorKey], ...]:
-    """One for each minDanger; none where nothing is asked."""
-    return tuple(compile(_all_with_values(settings, asked, m)) for m in settings.min_danger if asked)
+def _monitors(
+    settings: Settings, asked: Mapping[MonitorKey, Query], shared: dict[Formula, Formula]
+) -> tuple[Monitor[MonitorKey], ...]:
+    """One for each minDanger; none where nothing is asked. ``shared``: see ``compile``."""
+    each = (_all_with_values(settings, asked, m) for m in settings.min_danger if asked)
+    return tuple(compile(formulas, shared) for formulas in each)
 
 
 def askable(spec: Specification) -> tuple[int, ...]:

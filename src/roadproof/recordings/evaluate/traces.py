@@ -94,7 +94,7 @@ def gather_rows(
         if signal not in RECORDED:
             raise InputError(f"no recording has the signal {signal}, which a formula needs")
     columns = {name: recording.own[name] for name in (x.name for x in own) if name in recording.own}
-    own_signals = dict(by_vehicle({x: {v: c[at] for v, at in rows.items()} for x, c in columns.items()}))
+    own_signals = dict(by_vehicle({x: {v: c.take(at) for v, at in rows.items()} for x, c in columns.items()}))
     for x in own:
         whose = rows if x.vehicle else ("",)
         refuse_missing([(x.name, v) for v in whose], own_signals, f"recording {recording.name}")
@@ -102,12 +102,12 @@ def gather_rows(
         dt=Fraction(1, recording.rate),
         lengths=lengths,
         signals={
-            **{(x, name): getattr(recording, x)[at] for name, at in rows.items() for x in wanted},
+            **{(x, name): getattr(recording, x).take(at) for name, at in rows.items() for x in wanted},
             **own_signals,
         },
         sizes={
-            **{(x, name): getattr(recording, x)[index] for name, index in vehicles.items() for x in SIZES},
-            **{(KIND, name): recording.kind_code[index] for name, index in vehicles.items()},
+            **{(x, v): getattr(recording, x).take(index) for v, index in vehicles.items() for x in SIZES},
+            **{(KIND, v): recording.kind_code.take(index) for v, index in vehicles.items()},
         },
         given=dict(_decide(recording, rows, lanes or {}, atoms or {})),
         source=f"recording {recording.name}",
@@ -172,7 +172,7 @@ def _decide(
     lanes: Mapping[str, Integers],
     atoms: Mapping[Formula, LaneAtom],
 ) -> Iterator[tuple[Formula, Bools]]:
-    occupied = {name: recording.occupancy[at] for name, at in rows.items()}
+    occupied = {name: recording.occupancy.take(at) for name, at in rows.items()}
     zones: dict[str, Array] = {}
     masks: dict[tuple[str, str], Array] = {}
     own = np.array([1 << k for k in range(len(recording.lanes))] + [0], np.uint32)
@@ -185,7 +185,7 @@ def _decide(
         if atom.kind == "zone":
             zone = np.uint32(1 << ZONES.index(atom.of))
             if atom.vehicle not in zones:
-                zones[atom.vehicle] = recording.zones[rows[atom.vehicle]]
+                zones[atom.vehicle] = recording.zones.take(rows[atom.vehicle])
             yield formula, (zones[atom.vehicle] & zone) != 0
         elif (atom.kind, atom.of) in masks:
             yield formula, (occupied[atom.vehicle] & masks[atom.kind, atom.of]) != 0

@@ -23,7 +23,9 @@ class _Columns:
         """The rows at ``wanted``: a mask, indices or a slice."""
         if isinstance(wanted, np.ndarray) and wanted.dtype == np.bool_:
             wanted = np.flatnonzero(wanted)  # several times as fast as the mask
-        return type(self)(*(column[wanted] for column in vars(self).values()))
+        if isinstance(wanted, slice):
+            return type(self)(*(column[wanted] for column in vars(self).values()))
+        return type(self)(*(column.take(wanted) for column in vars(self).values()))
 
 
 @dataclass(frozen=True)
@@ -139,30 +141,31 @@ def near_moments(
     ):
         raise ValueError("the bound holds for rho, a_max >= 0 and b_min, b_max > 0, lateral ones alike")
     if len(pairs):
-        pieces = _pieces_of(recording, max(1, recording.rate))
+        pieces = _pieces_of(recording, max(1, recording.rate), reach)
         for part in _parts(pairs, samples):
-            yield _near(recording, pieces, pairs, part, reach)
+            yield _near(recording, pieces, pairs, part)
 
 
 @dataclass(frozen=True)
 class _Pieces:
     """Extremes of each vehicle in pieces of ``frames`` frames, one after the other, vehicle by vehicle.
 
-    Frame f of vehicle v is in the piece at ``shift[v] + f // frames``.
+    Frame f of vehicle v is in the piece at ``shift[v] + f // frames``. Bounds on RSS distances are the sum of
+    ``stopping`` of the one behind and ``braking`` of the one in front, and the greater ``aside`` of both.
     """
 
     frames: int
     shift: Integers
     s: tuple[Floats, Floats]
     d: tuple[Floats, Floats]
-    fastest: Floats
-    slowest: Floats
-    drift: Floats
+    stopping: Floats
+    braking: Floats
+    aside: Floats
     length: Floats
     width: Floats
 
 
-def _pieces_of(recording: Recording, frames: int) -> _Pieces:
+def _pieces_of(recording: Recording, frames: int, reach: Reach) -> _Pieces:
     begin, end = recording.first_frame // frames, recording.last_frame // frames
     counts = end - begin + 1
     shift = offsets(counts)[:-1] - begin
@@ -180,33 +183,33 @@ def _pieces_of(recording: Recording, frames: int) -> _Pieces:
         shift,
         extremes(recording.s),
         extremes(recording.d),
-        fastest=np.maximum(-least, most),
-        slowest=np.maximum(0, np.maximum(least, -most)),
-        drift=np.maximum(-right, left),
+        stopping=_stopping(reach, np.maximum(-least, most)),
+        braking=-(np.maximum(0, np.maximum(least, -most)) ** 2 / (2 * reach.b_max)),
+        aside=_aside(reach, np.maximum(-right, left)),
         length=recording.length[vehicle],
         width=recording.width[vehicle],
     )
 
 
-def _near(recording: Recording, pieces: _Pieces, pairs: Pairs, part: slice, reach: Reach) -> Moments:
+def _near(recording: Recording, pieces: _Pieces, pairs: Pairs, part: slice) -> Moments:
     """The near moments of the pairs of a slice: first piece by piece, then frame by frame."""
     chosen = pairs.choose(part)
     begin, end = chosen.low // pieces.frames, chosen.high // pieces.frames
     pair, piece = _spread(begin, end)
-    first, second = (pieces.shift[x][pair] + piece for x in (chosen.first, chosen.second))
+    first, second = (pieces.shift.take(x).take(pair) + piece for x in (chosen.first, chosen.second))
     for (least, most), bounds in ((pieces.s, _along), (pieces.d, _across)):
-        below, above = bounds(pieces, reach, first, second)
-        ahead, behind = least[second] - most[first], least[first] - most[second]
+        below, above = bounds(pieces, first, second)
+        ahead, behind = least.take(second) - most.take(first), least.take(first) - most.take(second)
         near = np.flatnonzero((ahead <= above) & (behind <= below))
-        pair, piece, first, second = (x[near] for x in (pair, piece, first, second))
-    low = np.maximum(chosen.low[pair], piece * pieces.frames)
-    high = np.minimum(chosen.high[pair], piece * pieces.frames + (pieces.frames - 1))
+        pair, piece, first, second = (x.take(near) for x in (pair, piece, first, second))
+    low = np.maximum(chosen.low.take(pair), piece * pieces.frames)
+    high = np.minimum(chosen.high.take(pair), piece * pieces.frames + (pieces.frames - 1))
     found = _moments(recording, pairs, part.start + pair, low, high)
     counts = high - low + 1
     inside = np.ones(len(found), bool)
     for position, bounds in ((recording.s, _along), (recording.d, _across)):
-        below, above = bounds(pieces, reach, first, second)
-        apart = position[found.second] - position[found.first]
+        below, above = bounds(pieces, first, second)
+        apart = position.take(found.second) - position.take(found.first)
         inside &= apart <= np.repeat(above, counts)
         inside &= apart >= np.repeat(-below, counts)
     return found.choose(inside)
@@ -223,8 +226,8 @@ def _moments(recording: Recording, pairs: Pairs, pair: Integers, low: Integers, 
     """The moments ``low`` … ``high`` of the pairs at ``pair``."""
     place, frame = _spread(low, high)
     shift = recording.start[:-1] - recording.first_frame
-    first, second = (frame + np.repeat(shift[x[pair]], high - low + 1) for x in (pairs.first, pairs.second))
-    return Moments(pair[place], frame, first, second)
+    first, second = (frame + shift.take(x.take(pair)).take(place) for x in (pairs.first, pairs.second))
+    return Moments(pair.take(place), frame, first, second)
 
 
 def pairs_in_sight(recording: Recording, pairs: Pairs, sight: DetectionRange) -> tuple[Pairs, Masks]:
@@ -259,26 +262,35 @@ class DistanceBounds:
     above: Floats
 
 
-def _along(pieces: _Pieces, reach: Reach, first: Integers, second: Integers) -> tuple[Floats, Floats]:
+def _along(pieces: _Pieces, first: Integers, second: Integers) -> tuple[Floats, Floats]:
     """How far ``second`` may be behind ``first`` for a longitudinal violation, and how far ahead of it."""
-    below = _bound_along(reach, pieces.fastest[second], pieces.slowest[first]) + pieces.length[first]
-    above = _bound_along(reach, pieces.fastest[first], pieces.slowest[second]) + pieces.length[second]
-    return below, above
+    return _bound_along(pieces, second, first), _bound_along(pieces, first, second)
 
 
-def _across(pieces: _Pieces, reach: Reach, first: Integers, second: Integers) -> tuple[Floats, Floats]:
+def _across(pieces: _Pieces, first: Integers, second: Integers) -> tuple[Floats, Floats]:
     """The same across, to the right and to the left."""
-    bound = _bound_across(reach, np.maximum(pieces.drift[first], pieces.drift[second]))
-    return bound + pieces.width[first], bound + pieces.width[second]
+    bound = _bound_across(pieces, first, second)
+    return bound + pieces.width.take(first), bound + pieces.width.take(second)
 
 
-def _bound_along(reach: Reach, greatest_rear: Floats, least_front: Floats) -> Floats:
-    braking = (greatest_rear + reach.a_max * reach.rho) ** 2 / (2 * reach.b_min)
-    way = greatest_rear * reach.rho + reach.a_max * reach.rho**2 / 2
-    return np.maximum(0, way + braking - least_front**2 / (2 * reach.b_max)) + 0.001
+def _bound_along(pieces: _Pieces, rear: Integers, front: Integers) -> Floats:
+    distance = np.maximum(0, pieces.stopping.take(rear) + pieces.braking.take(front))
+    total: Floats = distance + 0.001 + pieces.length.take(front)
+    return total
 
 
-def _bound_across(reach: Reach, greatest: Floats) -> Floats:
+def _bound_across(pieces: _Pieces, first: Integers, second: Integers) -> Floats:
+    bound: Floats = np.maximum(pieces.aside.take(first), pieces.aside.take(second))
+    return bound
+
+
+def _stopping(reach: Reach, greatest: Floats) -> Floats:
+    braking = (greatest + reach.a_max * reach.rho) ** 2 / (2 * reach.b_min)
+    way: Floats = greatest * reach.rho + reach.a_max * reach.rho**2 / 2
+    return way + braking
+
+
+def _aside(reach: Reach, greatest: Floats) -> Floats:
     braking = 2 * (greatest + reach.rho * reach.a_max_lat) ** 2 / (2 * reach.b_min_lat)
     return 2 * greatest * reach.rho + reach.a_max_lat * reach.rho**2 + braking + 0.001
 
@@ -301,7 +313,7 @@ def ever_within(
         second = rows + np.repeat(row_of(recording, chosen.second, chosen.low) - begin, counts)
         inside = np.ones(len(rows), bool)
         for test in tests:
-            apart = test.position[second] - test.position[first]
+            apart = test.position.take(second) - test.position.take(first)
             inside &= apart <= np.repeat(test.above[part], counts)
             inside &= apart >= np.repeat(-test.below[part], counts)
         if shared is not None:

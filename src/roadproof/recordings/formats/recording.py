@@ -293,16 +293,20 @@ def occupy_bands(
     if any(band.d is None for band in lanes):
         name = next(band.name for band in lanes if band.d is None)
         raise ValueError(f"lane {name} is no straight band")
-    occupancy = np.zeros(len(d), np.uint32)
-    lane = np.full(len(d), -1, np.int64)
+    occupancy, lane = np.empty(len(d), np.uint32), np.empty(len(d), np.int64)
+    unsigned = np.uint8 if len(lanes) <= 8 else np.uint32
     for part in blocks_of(len(d)):
-        way, left = direction[part], d[part]
-        right = np.round(left - width[part], 6)
-        centre = np.round(left - width[part] / 2, 6)
+        left, right = d[part], np.round(d[part] - width[part], 6)
+        centre = np.round(d[part] - width[part] / 2, 6)
+        ours = {way: direction[part] == way for way in {band.direction for band in lanes}}
+        occupied, held = np.zeros(len(left), unsigned), np.zeros(len(left), np.uint8)
         for k, band in enumerate(lanes):
             assert band.d is not None
             low, high = band.d
-            ours = way == band.direction
-            occupancy[part] |= (ours & (left > low) & (right < high)).astype(np.uint32) << np.uint32(k)
-            np.putmask(lane[part], ours & (low <= centre) & (centre < high), k)
+            there = ours[band.direction] & (left > low) & (right < high)
+            np.bitwise_or(occupied, there.view(np.uint8) * unsigned(1 << k), out=occupied)
+            inside = ours[band.direction] & (low <= centre) & (centre < high)
+            np.maximum(held, inside.view(np.uint8) * np.uint8(k + 1), out=held)
+        occupancy[part], lane[part] = occupied, held
+    lane -= 1
     return occupancy, lane

@@ -85,9 +85,10 @@ def reliable(
     out = len(found.lost)
     if out > MOST_LEFT_OUT * recording.vehicles:
         return with_notes(recording, _rejecting(recording, rows, out, doubts))
-    kept = np.repeat(~np.isin(recording.vehicle_id, found.lost), np.diff(recording.start))
+    if found.lost:
+        rows = rows[np.repeat(~np.isin(recording.vehicle_id, found.lost), np.diff(recording.start))]
     part = with_notes(found.of(recording), found.notes)
-    return with_notes(part, doubts(found.checks or check(part), rows[kept]))
+    return with_notes(part, doubts(found.checks or check(part), rows))
 
 
 def _rejecting(

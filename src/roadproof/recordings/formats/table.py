@@ -87,12 +87,15 @@ class Table:
         places = order if self.places is None else self.places[order]
         return replace(self, columns=columns, rows=len(order), places=places)
 
+    def is_within(self, most: Mapping[str, float]) -> bool:
+        """Whether no cell of these columns is greater than the most, less than its negative, or no number."""
+        return all(_reaches(self[column]) <= limit for column, limit in most.items())
+
     def require_within(self, most: float, *columns: str) -> None:
         """Raise for the first cell of the columns that is greater than ``most`` or less than -``most``."""
         for column in columns:
-            values = self[column]
-            if not max(-values.min(), values.max()) <= most:
-                self.require(np.abs(values) <= most, column, f"must lie between {-most:g} and {most:g}")
+            if not self.is_within({column: most}):
+                self.require(np.abs(self[column]) <= most, column, f"must lie between {-most:g} and {most:g}")
 
     def require_numbers(self, *columns: str) -> None:
         """Raise for the first cell of the columns that is no finite number."""
@@ -103,6 +106,12 @@ class Table:
         """Raise for the first row where ``holds`` is false."""
         if not holds.all():
             raise self.refuse(int(np.argmin(holds)), column, rule)
+
+
+def _reaches(values: Column) -> float:
+    """The greatest magnitude, NaN where there is one."""
+    least, greatest = float(values.min()), float(values.max())
+    return max(-least, greatest) if least <= greatest else math.nan
 
 
 def names_in(*lines: str) -> tuple[str, ...]:
@@ -190,10 +199,16 @@ def _columns(
         _blame(path, text.partition(b"\n")[2], header, wanted, before)
         raise InputError(f"{path}: the file is no table of numbers with the columns {', '.join(header)}")
     for name, kind in wanted.items():
-        if kind == "number" and not np.isfinite(columns[name]).all():
+        if kind == "number" and not is_finite(columns[name]):
             row = int(np.argmin(np.isfinite(columns[name])))
             raise cell_error(path, before + row, name, columns[name][row], "a number must be finite")
     return columns
+
+
+def is_finite(values: Column) -> bool:
+    """Whether all numbers are finite; their sum is, but for numbers that no format has."""
+    with np.errstate(invalid="ignore", over="ignore"):
+        return bool(math.isfinite(values.sum()) or np.isfinite(values).all())
 
 
 def read_named(path: Path, wanted: Mapping[str, Kind], gaps: Collection[str] = ()) -> Table:

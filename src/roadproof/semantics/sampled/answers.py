@@ -74,15 +74,10 @@ def check_starts(starts: Integers | None, lengths: Integers) -> None:
         raise InputError("starts must name one sample inside each trace")
 
 
-def read_bits(
-    words: Array, end: Array | None, traces: int, when: When, starts: Integers | None
-) -> NDArray[np.bool_]:
-    """Truth at the start of each trace, or at all samples and false after the ``end`` (``packed_inside``)."""
-    if when == "all":
-        return unpack(words if end is None else words & end, traces)
+def read_bits(words: Array, end: Array | None, traces: int, starts: Integers | None) -> NDArray[np.bool_]:
+    """Truth at the ``starts`` of traces, or at all samples, false after the ``end`` (``packed_inside``)."""
     if starts is None:
-        first: NDArray[np.bool_] = unpack(words[:1], traces)[0]
-        return first
+        return unpack(words if end is None else words & end, traces)
     index = np.arange(traces)
     bits = words[starts, index // BITS] >> (index % BITS).astype(np.uint64)
     return np.asarray(bits & np.uint64(1), dtype=np.bool_)
@@ -106,11 +101,12 @@ def store_margin(
 ) -> None:
     """Write the margins of the traces in ``columns`` where they belong."""
     for view, made in zip(views(convention), (margin.low, margin.high), strict=True):
+        if when == "start" and starts is None:
+            made[columns] = evaluation.first(formula, view)
+            continue
         values = evaluation.value(formula, view)
-        if when == "all":
+        if starts is None or when == "all":
             belongs = inside(batch.lengths[columns], len(values))
             made[: len(values), columns] = np.where(belongs, values, np.nan)
-        elif starts is None:
-            made[columns] = values[0]
         else:
             made[columns] = values[starts, np.arange(values.shape[1])]

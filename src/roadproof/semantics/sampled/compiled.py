@@ -35,7 +35,7 @@ from roadproof.semantics.sampled.answers import (
 )
 from roadproof.semantics.sampled.arithmetic import Program, margin_program, truth_program
 from roadproof.semantics.sampled.batch import Array, Batch, Integers
-from roadproof.semantics.sampled.boolean import BITS, TRUTH, observe_truth, pack, packed_inside
+from roadproof.semantics.sampled.boolean import BITS, TRUTH, observe_truth, pack, packed_inside, unpack
 from roadproof.semantics.sampled.robustness import (
     MARGIN,
     as_margin,
@@ -49,12 +49,16 @@ from roadproof.world.signals import SignalName
 
 @dataclass(frozen=True)
 class Observation:
-    """Packed truth of state formulas over a batch: all that Boolean evaluation needs of it."""
+    """Packed truth of state formulas over a batch: all that Boolean evaluation needs of it.
+
+    ``composites`` takes the truth of those that are made of ``leaves``, once an evaluation has needed it.
+    """
 
     dt: Fraction
     lengths: Integers
     samples: int
     leaves: Mapping[Formula, Array]
+    composites: dict[Formula, Array] = field(default_factory=dict, repr=False, compare=False)
 
     def cut(self, lengths: Integers) -> "Observation":
         """The same traces, each ending after its first ``lengths`` samples."""
@@ -85,16 +89,20 @@ class Monitor(Generic[Key]):
     def observe(self, batch: Batch, known: Observation | None = None, threads: int = 1) -> Observation:
         """The truth of all state formulas at all samples, ``known`` taken over where it has them."""
         leaves: dict[Formula, Array] = {}
+        composites: dict[Formula, Array] = {}
         if known is not None:
             if known.dt != batch.dt or not np.array_equal(known.lengths, batch.lengths):
                 raise InputError("an observation is only taken over for traces of the same dt and lengths")
             leaves |= known.leaves
-        leaves |= {g: pack(values[: batch.samples]) for g, values in _given(batch).items()}
+        given = {g: values for g, values in _given(batch).items() if g not in leaves}
+        if known is not None and not given:
+            composites = known.composites
+        leaves |= {g: pack(values[: batch.samples]) for g, values in given.items()}
         comparisons = tuple(self._comparisons(leaves))
         if comparisons not in self.programs:
             self.programs[comparisons] = truth_program(comparisons)
         leaves |= observe_truth(comparisons, self.programs[comparisons], batch, threads)
-        return Observation(batch.dt, batch.lengths, batch.samples, leaves)
+        return Observation(batch.dt, batch.lengths, batch.samples, leaves, composites)
 
     def evaluate(
         self,
@@ -115,17 +123,23 @@ class Monitor(Generic[Key]):
         check_starts(starts, seen.lengths)
         shape = (seen.samples, -(-len(seen.lengths) // BITS))
         end = packed_inside(seen.lengths, seen.samples)
-        evaluation = Evaluation(TRUTH, seen.leaves, end, seen.dt, shape, self.states)
+        evaluation = Evaluation(TRUTH, seen.leaves, end, seen.dt, shape, self.states, seen.composites)
+        traces = len(seen.lengths)
 
-        def answer(formula: Formula, when: When) -> TruthArrays:
+        def answer(formula: Formula, starts: Integers | None) -> TruthArrays:
             strong, weak = (evaluation.value(formula, view) for view in views(semantics))
-            true, false = (read_bits(x, end, len(seen.lengths), when, starts) for x in (strong, ~weak))
-            return TruthArrays(true, false)
+            return TruthArrays(*(read_bits(x, end, traces, starts) for x in (strong, ~weak)))
 
+        if at == "start" and starts is None:
+            asked = [(formula, view) for formula in self.plain.values() for view in views(semantics)]
+            known = unpack(np.array([evaluation.first(*x) for x in asked]).reshape(len(asked), -1), traces)
+            answers = [*map(TruthArrays, known[::2], ~known[1::2])]
+        else:
+            answers = [answer(x, starts if at == "start" else None) for x in self.plain.values()]
         return Verdicts(
             semantics,
-            {name: answer(formula, at) for name, formula in self.plain.items()},
-            {name: answer(body, "all") for name, body in self.named.items()} if named else {},
+            dict(zip(self.plain, answers, strict=True)),
+            {name: answer(body, None) for name, body in self.named.items()} if named else {},
         )
 
     def measure(
@@ -198,14 +212,15 @@ class Monitor(Generic[Key]):
                     waiting.extend(f.children(current))
 
 
-def compile(formulas: Mapping[Key, Formula]) -> Monitor[Key]:
+def compile(formulas: Mapping[Key, Formula], shared: dict[Formula, Formula] | None = None) -> Monitor[Key]:
     """A monitor for some formulas, by names or values of the caller's choice; mistakes show them as text.
 
     Every parameter must have its value (``with_values``); lanes may be open where the batch gives
-    the truth of the formulas that speak of them. Raises ``InputError``.
+    the truth of the formulas that speak of them. ``shared``: sub-formulas of other monitors of the same
+    batches, which takes those of this one: then looking one up compares objects alone. Raises ``InputError``.
     """
     _check_closed(formulas)
-    plain = dict(zip(formulas, f.share(formulas.values(), _unnamed), strict=True))
+    plain = dict(zip(formulas, f.share(formulas.values(), _unnamed, shared), strict=True))
     own = {(x.name, not x.vehicle): x for x in own_of(formulas.values())}.values()
     states = frozenset(x for x in f.subformulas(*plain.values()) if f.is_state(x))
     return Monitor(dict(formulas), plain, states, (*signals_of(formulas.values()), *own))

@@ -14,6 +14,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any, TypeAlias, assert_never
 
 import numpy as np
@@ -54,7 +55,8 @@ class Evaluation:
 
     ``leaves`` holds the values of atoms and of given state formulas, shape (time, …); ``inside`` is
     top at the samples of a trace and bottom after its end, or None where all traces fill all rows.
-    ``states`` are the formulas without temporal operators, whose values no view changes.
+    ``states`` are the formulas without temporal operators, whose values no view changes; ``composites``
+    takes those that are no leaves, and may be shared by evaluations of the same leaves.
     """
 
     lattice: Lattice
@@ -63,16 +65,38 @@ class Evaluation:
     dt: Fraction
     shape: tuple[int, int]
     states: frozenset[Formula]
+    composites: dict[Formula, Array] = field(default_factory=dict)
     known: dict[Key, Array] = field(default_factory=dict)
+    firsts: dict[Key, Array] = field(default_factory=dict)
+    padded: dict[tuple[Formula, View, bool], Array] = field(default_factory=dict)
 
     def value(self, formula: Formula, view: View) -> Array:
         """Values of ``formula`` at every sample; those after the end of a trace mean nothing."""
         found = self.leaves.get(formula)
-        if found is None:
-            key = (formula, View.CLIP if formula in self.states else view)
-            found = self.known.get(key)
+        if found is not None:
+            return found
+        if formula in self.states:
+            found = self.composites.get(formula)
             if found is None:
-                found = self.known[key] = self._value(formula, view)
+                found = self.composites[formula] = self._value(formula, view)
+            return found
+        found = self.known.get((formula, view))
+        if found is None:
+            found = self.known[formula, view] = self._value(formula, view)
+        return found
+
+    def first(self, formula: Formula, view: View) -> Array:
+        """Values of ``formula`` at the first sample: the first row of ``value``, in fewer steps.
+
+        What is asked of the first sample alone has no value at the others.
+        """
+        if formula in self.leaves:
+            leaf: Array = self.leaves[formula][0]
+            return leaf
+        key = (formula, View.CLIP if formula in self.states else view)
+        found = self.firsts.get(key)
+        if found is None:
+            found = self.firsts[key] = self._first(formula, view)
         return found
 
     def _value(self, formula: Formula, view: View) -> Array:
@@ -107,6 +131,34 @@ class Evaluation:
             case _:
                 assert_never(formula)
 
+    def _first(self, formula: Formula, view: View) -> Array:
+        match formula:
+            case f.Truth(value):
+                return np.full(self.shape[1], self.lattice.top if value else self.lattice.bottom)
+            case f.Application(_, _, body):
+                return self.first(body, view)
+            case f.Not(body):
+                made: Array = self.lattice.complement(self.first(body, OPPOSITE[view]))
+                return made
+            case f.And(parts) | f.Or(parts):
+                operation = self.lattice.meet if isinstance(formula, f.And) else self.lattice.join
+                total = self.first(parts[0], view)
+                for part in parts[1:]:
+                    total = operation(total, self.first(part, view))
+                return total
+            case f.Eventually(interval, body) | f.Always(interval, body):
+                universal = isinstance(formula, f.Always)
+                operation = self.lattice.meet if universal else self.lattice.join
+                padding = self._padding(view, universal)
+                values = self._padded(body, view, padding)
+                return first_extremum(operation, values, *self._steps(interval), padding)
+            case f.Until(left, interval, right):
+                padding = self._padding(view, universal=False)
+                held, reached = self._padded(left, view, padding), self._padded(right, view, padding)
+                return first_until(self.lattice, held, reached, *self._steps(interval), padding)
+            case _:
+                raise AssertionError(f"{type(formula).__name__} is a leaf: compile() collects them")
+
     def _fold(self, operation: np.ufunc, parts: tuple[Formula, ...], view: View) -> Array:
         total = self.value(parts[0], view)
         for part in parts[1:]:
@@ -126,14 +178,18 @@ class Evaluation:
 
     def _padded(self, formula: Formula, view: View, padding: Any) -> Array:
         """Values with ``padding`` after the end of each trace."""
-        values = self.value(formula, view)
         if self.inside is None:
-            return values
-        made: Array
-        if padding == self.lattice.bottom:
-            made = self.lattice.meet(values, self.inside)
-        else:
-            made = self.lattice.join(values, self.lattice.complement(self.inside))
+            return self.value(formula, view)
+        low = bool(padding == self.lattice.bottom)
+        made = self.padded.get((formula, view, low))
+        if made is None:
+            values = self.value(formula, view)
+            made = (
+                self.lattice.meet(values, self.inside)
+                if low
+                else self.lattice.join(values, self.lattice.complement(self.inside))
+            )
+            self.padded[formula, view, low] = made
         return made
 
     def _steps(self, interval: f.Interval) -> tuple[int, int | None]:
@@ -142,8 +198,13 @@ class Evaluation:
 
 def interval_steps(interval: f.Interval, dt: Fraction) -> tuple[int, int | None]:
     """Both bounds in steps; None is unbounded. Raises ``InputError`` where they are no multiple of dt."""
+    return _interval_steps(interval, dt.numerator, dt.denominator)
+
+
+@lru_cache(1000)
+def _interval_steps(interval: f.Interval, *dt: int) -> tuple[int, int | None]:
     low, high = bounds_of(interval)
-    return steps_of(low, dt), None if high is None else steps_of(high, dt)
+    return steps_of(low, Fraction(*dt)), None if high is None else steps_of(high, Fraction(*dt))
 
 
 def shift(values: Array, steps: int, padding: Any) -> Array:
@@ -180,6 +241,30 @@ def extremum(operation: np.ufunc, values: Array, low: int, high: int | None, pad
         window = join_shifted(operation, window, window, step, padding)
         width += step
     return shift(window, low, padding)
+
+
+def first_extremum(operation: np.ufunc, values: Array, low: int, high: int | None, padding: Any) -> Array:
+    """The first row of ``extremum``."""
+    end = len(values) + 1 if high is None else high + 1
+    window = values[low:end]
+    if not len(window):
+        return np.full_like(values[0], padding)
+    found: Array = operation.reduce(window, axis=0)
+    return found if end <= len(values) else operation(found, padding, out=found)
+
+
+def first_until(
+    lattice: Lattice, held: Array, reached: Array, low: int, high: int | None, padding: Any
+) -> Array:
+    """The first row of ``until``."""
+    end = len(held) + 1 if high is None else high + 1
+    beyond = end > len(held)
+    found, kept = reached[low:end].copy(), lattice.meet.accumulate(held[low:end], axis=0)
+    if not len(found):
+        return np.full_like(held[0], padding)
+    lattice.meet(kept[:-1], found[1:], out=found[1:])
+    first: Array = lattice.join.reduce(found, axis=0)
+    return lattice.join(first, lattice.meet(kept[-1], padding), out=first) if beyond else first
 
 
 def until(lattice: Lattice, held: Array, reached: Array, low: int, high: int | None, padding: Any) -> Array:
