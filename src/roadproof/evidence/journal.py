@@ -42,12 +42,11 @@ class Line:
 
 @dataclass(frozen=True)
 class Journal:
-    """``head`` says what was asked; ``torn``: the last line was cut short, as when a run is killed."""
+    """The answers of a folder; ``head`` says what was asked."""
 
     path: Path
     head: Fields
     lines: tuple[Line, ...]
-    torn: bool
 
 
 def head_of(schema: str, question: str, said: Mapping[str, Json]) -> JsonObject:
@@ -80,23 +79,22 @@ def read_kept(folder: Path, but: Container[str] = ()) -> Journal | None:
         _line(path.stem, path, partial(read_json, path, LARGEST_INDEX), str(path), fields, head)
         for path in paths
     ]
-    return Journal(folder / HEAD, head, tuple(read), False)
+    return Journal(folder / HEAD, head, tuple(read))
 
 
 def read_journal(path: Path) -> Journal:
     """A journal, each line with its seal checked. Raises ``InputError`` where it is none."""
     first, *lines = read_text(path, LARGEST_INDEX, "roadproof reads no larger journals").split("\n")
     head, fields = _head(parse_json(first, f"{path}, line 1"), path, str(path))
-    torn = bool(lines) and lines[-1] != ""
     read = [
         _line(str(number), path, partial(parse_json, text, where), where, fields, head)
         for number, text in enumerate(lines, 2)
         for where in (f"{path}, line {number}",)
         if text
     ]
-    if torn and read[-1].record is None:
+    if lines and lines[-1] and read[-1].record is None:  # cut short, as when a run is killed
         read.pop()
-    return Journal(path, head, tuple(read), torn)
+    return Journal(path, head, tuple(read))
 
 
 def _head(content: object, path: Path, where: str) -> tuple[Fields, tuple[str, ...]]:

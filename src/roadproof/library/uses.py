@@ -65,8 +65,8 @@ class Place:
     formula: Formula
 
 
-def places_of(specification: Specification, query: Query, source: str = "formula") -> list[Place]:
-    """Every formula in the text of ``query``, called ``source``, and of the definitions that it uses.
+def places_of(specification: Specification, query: Query) -> list[Place]:
+    """Every formula in the text of ``query``, called "formula", and of the definitions that it uses.
 
     What has no place, as in a query that was put together, is left out. Raises ``TextError``.
     """
@@ -75,7 +75,7 @@ def places_of(specification: Specification, query: Query, source: str = "formula
     for note in notes_of(specification, claim):
         if note.at.line:
             inside = note.definition
-            name = source if inside is None else source_of(specification.library, inside).name
+            name = "formula" if inside is None else source_of(specification.library, inside).name
             key = (name, note.at, note.at.end_line, note.at.end_column, note.formula)
             found[key] = Place(name, note.at, note.formula)
     return list(found.values())

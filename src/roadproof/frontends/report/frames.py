@@ -68,7 +68,7 @@ class _Mobile:
             self.artist.set_color(DANGER if shape.red[k] else shape.fill)
 
 
-def draw_film(file: DriveFile, library: Library, title: str = "") -> Film:
+def draw_film(file: DriveFile, library: Library) -> Film:
     """The frames of a drive. Raises ``MissingSolverError`` without matplotlib."""
     grain = max(Fraction(1, RATE), file.horizon / MOST_FRAMES)
     scene = scene_of(file, library, grain=grain)
@@ -84,7 +84,7 @@ def draw_film(file: DriveFile, library: Library, title: str = "") -> Film:
     window = _draw(axes, Rectangle([(left, top - 1, width, height + 2)], "none"))  # with the edge lines
     for x in road:
         x.artist.set_clip_path(window)
-    others = [_Mobile(x, _draw(axes, x)) for x in (*headings(scene, title), *scene.vehicles(), *rows(scene))]
+    others = [_Mobile(x, _draw(axes, x)) for x in (*headings(scene), *scene.vehicles(), *rows(scene))]
     for order, x in enumerate((*road, *others)):
         x.artist.set_zorder(order)
     moving = [x for x in (*road, *others) if x.moves]

@@ -27,13 +27,13 @@ from roadproof.recordings.export.xml import document, element
 _BOX, _ENDS = ("x", "y", "width", "height"), ("x1", "x2", "y1", "y2")
 
 
-def draw_moving(file: DriveFile, library: Library, title: str = "") -> bytes:
+def draw_moving(file: DriveFile, library: Library) -> bytes:
     """The moving picture of a drive as SVG; the title is its scenario in words, or its formula."""
     scene = scene_of(file, library)
     root = element(
         "svg",
         element("rect", width="100%", height="100%", fill="white"),
-        *(_drawn(scene, x) for x in headings(scene, title)),
+        *(_drawn(scene, x) for x in headings(scene)),
         *_road(scene, scene.pavement()),
         *(_drawn(scene, x) for x in (*scene.vehicles(), *rows(scene))),
         xmlns="http://www.w3.org/2000/svg",

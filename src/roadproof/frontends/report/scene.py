@@ -291,9 +291,9 @@ class Envelope:
     near: Sequence[bool]
 
 
-def headings(scene: Scene, title: str = "") -> Iterator[Text]:
-    """The title (by default the scenario in words, or the formula) and a legend."""
-    yield Text(title or data.heading_of(scene.file, scene.library)[0], [(EDGE, 20)], size=14)
+def headings(scene: Scene) -> Iterator[Text]:
+    """The title, which is the scenario in words or the formula, and a legend."""
+    yield Text(data.heading_of(scene.file, scene.library)[0], [(EDGE, 20)], size=14)
     told = [f"the view follows {scene.subject}"]
     if len(scene.states) > 1:
         told.append("shaded: within RSS distances, red if violated")

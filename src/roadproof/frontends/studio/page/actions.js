@@ -223,13 +223,6 @@ export async function savePage() {
   else save({ name: "drive.html", content: told.answer.page, kind: "text/html" });
 }
 
-/** The drive that is shown as a file that `roadproof check` reads. */
-export function saveDrive() {
-  const drive = state.kept.drive.value;
-  if (!drive) return say("There is no drive to be saved: find one first.");
-  save({ name: "drive.json", content: `${JSON.stringify(drive, null, 2)}\n` });
-}
-
 export async function copy(text) {
   try {
     await navigator.clipboard.writeText(text);
