@@ -6,6 +6,6 @@ Faults are tried on all (``make mutants``), as is whatever runs with ``ROADPROOF
 import os
 
 
-def some(count: int) -> int:
-    """So many of ``count`` examples as this run tries."""
-    return count if os.environ.get("ROADPROOF_EXAMPLES") == "full" else max(25, count // 4)
+def some(count: int, least: int = 25) -> int:
+    """So many of ``count`` examples as this run tries, ``least`` at least."""
+    return count if os.environ.get("ROADPROOF_EXAMPLES") == "full" else max(least, count // 4)

@@ -64,8 +64,13 @@ def both(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     os.chdir(here)
     try:
         answer = asked.ask(Path("kept"))
-        code, text, _ = tell(shlex.split(asked.line))
-        _, data, _ = tell([*shlex.split(asked.line), "--json", "-"])
+        line = shlex.split(asked.line)
+        if request.param == "explore-values":  # beside a file of JSON, its evidence is in files, too
+            data = tell([*line, "--json", "-"])[1]
+            code, text, _ = tell(line)
+        else:
+            code, text, _ = tell([*line, "--json", "said.json"])
+            data = Path("said.json").read_text("utf-8")
         yield Both(request.param, asked, answer, code, text, data)
     finally:
         os.chdir(before)

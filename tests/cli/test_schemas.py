@@ -209,8 +209,8 @@ def of_show(run: Run, out: Path, traffic: Path) -> None:
         "every l in lanelets(L): occ(SV, l)",
         "some x in {SV, POV}: v_lon(x) > 1 m/s",
         "true U[0, 2 s] (G false or false)",
-        "-v_lon(SV) + 1/2 * rho * 2 m/s^2 > 2 m/s",
-        "true -> F[1 s, inf] not v_lon(SV) ^ 2 != v_lat(SV) ^ 2",
+        *("-v_lon(SV) > 2 m/s", "v_lon(SV) + rho * 2 m/s^2 > 2 m/s", "1/2 * rho > 2 s"),
+        *("true -> not false", "F[1 s, inf] true", "v_lon(SV) ^ 2 != v_lat(SV) ^ 2"),
     ):
         examine(run("show", what, js=("--format", "json")))
     for what in ("7", "cutIn"):

@@ -22,7 +22,7 @@ from roadproof.semantics.exact import exact, signals, truth
 from roadproof.semantics.sampled import semantics
 
 FOUND = sorted(case.FOUND.glob("*.txt"))
-FEW = {"held": 160, "truths": 25, "drives": 25, "claims": 80, "search": 2, "texts": 25}
+FEW = {"held": 160, "truths": 10, "drives": 25, "claims": 80, "search": 2, "texts": 25}
 FEW |= {"printed": 1000, "steps": 1000}
 
 

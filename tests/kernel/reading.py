@@ -8,7 +8,7 @@ from pathlib import Path
 from kernel import raw
 from roadproof.evidence.kernel.coq import ready
 from roadproof.evidence.kernel.printer import CLOSE, Formals, Printer
-from roadproof.evidence.kernel.source import HEAD
+from roadproof.evidence.kernel.source import HEAD, Module
 from roadproof.logic.formula import Formula
 
 SOURCES = Path(__file__).parents[2] / "proofs" / "kernel"
@@ -45,6 +45,23 @@ def answers(source: str) -> list[str]:
         ran = coq.run(source)
     assert ran.code == 0, ran.complained[:500]
     return re.findall(r"\b(true|false|None)\b", re.sub(r": list .*", "", ran.said))
+
+
+CLOSING = "\nQed.\nEnd "
+
+
+def sort_out(accepted: Sequence[Module], refused: Sequence[Module]) -> None:
+    """Raises ``AssertionError`` unless Coq takes the theorems of the first and none of the others.
+
+    All stand in one file; where ``judge`` is asked, each that is refused costs a file of its own.
+    """
+    texts = [x.text for x in accepted]
+    for x in refused:
+        assert x.text.count(CLOSING) == 1
+        texts.append(x.text.replace(CLOSING, "\nFail Qed.\nAbort.\nEnd "))
+    with ready() as coq:
+        ran = coq.run(HEAD + "".join(texts))
+    assert ran.code == 0, ran.complained[:500]
 
 
 # --- traces --------------------------------------------------------------------------------------

@@ -9,6 +9,7 @@ import pytest
 from evidence.test_none_within import QUESTIONS, none_within
 from evidence.trees import RIGHT, WRONG
 from kernel.needs import needs_coq, needs_ocaml
+from kernel.reading import sort_out
 from roadproof.engines.search.none_within import derive
 from roadproof.evidence.kernel import accept, coq, extracted, ocaml
 from roadproof.evidence.kernel.accept import AXIOMS, Word
@@ -17,6 +18,7 @@ from roadproof.evidence.program import Cases, Cut, Sum, refutes
 from roadproof.frontends.cli.main import main
 from roadproof.library.loading import bundled_library
 
+ONE = next(iter(RIGHT.items()))
 KERNELS = [pytest.param("coq", marks=needs_coq), pytest.param("extracted", marks=needs_ocaml)]
 
 
@@ -44,13 +46,27 @@ def asked():
     return found
 
 
-@pytest.mark.parametrize("kernel", KERNELS)
-def test_trees_are_accepted_or_refused_as_python_says(kernel):
-    every = WRONG | RIGHT  # Coq stops at the first that it refuses, and is asked again for those behind it
-    found = rulings(kernel, [(told, [pair]) for told, pair in every.items()])
+@needs_ocaml
+def test_the_program_accepts_or_refuses_trees_as_python_says():
+    every = RIGHT | WRONG
+    found = rulings("extracted", [(told, [pair]) for told, pair in every.items()])
     for told, ruling in zip(every, found, strict=True):
         assert ruling.word is (Word.ACCEPTED if told in RIGHT else Word.REFUSED), (told, ruling)
-    assert set(found[-1].axioms) <= AXIOMS
+
+
+@needs_coq
+def test_coq_accepts_or_refuses_trees_as_python_says():
+    first = next(iter(WRONG))
+    refused, *accepted = rulings("coq", [(x, [(RIGHT | WRONG)[x]]) for x in (first, *RIGHT)])
+    assert refused.word is Word.REFUSED, first
+    assert [x.word for x in accepted] == [Word.ACCEPTED] * len(RIGHT)
+    assert set(accepted[0].axioms) <= AXIOMS
+    right, *wrong = (
+        prepare(f"m{k}", [x], [pair]).module for k, (x, pair) in enumerate([ONE, *WRONG.items()])
+    )
+    sort_out([right], wrong)
+    with pytest.raises(AssertionError, match="The command has not failed"):
+        sort_out([], [*wrong, right])
 
 
 @pytest.mark.parametrize("kernel", KERNELS)

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from examples import some
 from roadproof.errors import InputError, MissingSolverError
 from roadproof.recordings.formats.highd import (
     RECORDING_COLUMNS,
@@ -258,7 +259,7 @@ def _spoil(files: dict[str, bytes], chance: random.Random) -> str:
 
 
 def test_fuzz_never_crashes_and_never_stays_silent(tmp_path: Path) -> None:
-    """600 damages: an InputError, or a note, or the very same recording; never anything else."""
+    """Damages: an InputError, or a note, or the very same recording; never anything else."""
     original = write_files(tiny_files(), tmp_path / "original")
     expected = read_highd(original, "01")
     texts = {path.name: path.read_bytes() for path in original.iterdir()}
@@ -267,7 +268,8 @@ def test_fuzz_never_crashes_and_never_stays_silent(tmp_path: Path) -> None:
     folder = tmp_path / "spoiled"
     folder.mkdir()
     silent, unnamed = [], []
-    for _ in range(600):
+    tried = some(600)
+    for _ in range(tried):
         files = dict(texts)
         done = _spoil(files, chance)
         for name, content in files.items():
@@ -287,9 +289,9 @@ def test_fuzz_never_crashes_and_never_stays_silent(tmp_path: Path) -> None:
     assert not unnamed
     # A plausible value in place of another (say -7 for an acceleration) cannot be told from the truth.
     assert all(done.startswith(("cell", "swap cells")) for done in silent), silent
-    assert len(silent) < 30, silent
-    assert outcomes["refused"] > 350
-    assert outcomes["harmless"] < 200, outcomes
+    assert len(silent) < tried / 20, silent
+    assert outcomes["refused"] > tried * 7 / 12
+    assert outcomes["harmless"] < tried / 3, outcomes
 
 
 # --- highD files that vary every column in both directions, against a reading of them with ``csv`` alone

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import roadproof as rp
+from examples import some
 from roadproof.errors import InputError
 from roadproof.recordings.evaluate.one_trace import OneTrace
 from roadproof.recordings.formats.storyboard.drives import StoryboardDrive, read_storyboard_drive
@@ -160,8 +161,8 @@ FORMULAS = [
 
 def test_exact_verdicts_are_those_of_refined_samples(tmp_path: Path) -> None:
     """Where the samples hold or fail by more than a hundredth, so that the time between them has no say."""
-    compared, jumps = {"true": 0, "false": 0}, 0
-    for seed in range(10):
+    compared, jumps, tried = {"true": 0, "false": 0}, 0, some(10, least=4)
+    for seed in range(tried):
         folder = tmp_path / str(seed)
         folder.mkdir()
         path = storyboard(folder, seed)
@@ -179,8 +180,8 @@ def test_exact_verdicts_are_those_of_refined_samples(tmp_path: Path) -> None:
             if sampled.verdict != "undecided" and min(map(abs, sampled.robustness)) > 0.01:
                 assert exact.verdict == sampled.verdict, (seed, formula)
                 compared[sampled.verdict] += 1
-    assert min(compared.values()) > 9
-    assert jumps < 4
+    assert min(compared.values()) >= tried
+    assert jumps < tried / 2
 
 
 def test_it_says_how_close_it_is_and_what_follows(tmp_path: Path) -> None:
