@@ -49,13 +49,17 @@ def term_with_values(term: t.Term, values: Mapping[str, Fraction]) -> t.Term:
 
 def _giving(values: Mapping[str, Fraction]) -> Callable[[t.Term], t.Term]:
     pool: dict[t.Term, t.Term] = {}
+    done: dict[t.Term, t.Term] = {}
 
     def give(term: t.Term) -> t.Term:
-        if isinstance(term, t.Parameter) and term.name in values:
-            made: t.Term = t.Number(values[term.name], term.dimension)
-        else:
-            made = t.with_children(term, tuple(map(give, t.children(term))))
-        return pool.setdefault(made, made)
+        made = done.get(term)
+        if made is None:
+            if isinstance(term, t.Parameter) and term.name in values:
+                made = t.Number(values[term.name], term.dimension)
+            else:
+                made = t.with_children(term, tuple(map(give, t.children(term))))
+            made = done[term] = pool.setdefault(made, made)
+        return made
 
     return give
 

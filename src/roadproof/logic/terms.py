@@ -225,8 +225,11 @@ def constant_value(term: Term) -> Fraction | None:
     """
     if isinstance(term, Number):
         return term.value
-    if isinstance(term, Leaf | Inverse):
-        return None
+    return None if isinstance(term, Leaf | Inverse) else _constant_inside(term)
+
+
+@once
+def _constant_inside(term: Sum | Product | Power | Quotient | Maximum | Minimum) -> Fraction | None:
     values: list[Fraction] = []
     for child in children(term):
         value = constant_value(child)

@@ -6,6 +6,7 @@ The monitor looks at all of them in floating point; the judge decides. The rows 
 from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
+from functools import cached_property
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -198,14 +199,17 @@ class _Search:
                 low = max(low, number)
         return (low, high) if low < high else (high, high)
 
+    @cached_property
+    def _formula(self) -> Formula:
+        return with_values(self.question.query.formula, self.question.values)
+
     def _numbers(self, dimension: t.Dimension, *of: str) -> tuple[Fraction, ...]:
         """The numbers of this dimension that the formula compares with, and some beside them.
 
         ``of``: a signal and a vehicle, where only what is compared with it is wanted.
         """
         found: dict[Fraction, None] = {}
-        formula = with_values(self.question.query.formula, self.question.values)
-        for part in f.subformulas(formula):
+        for part in f.subformulas(self._formula):
             if not isinstance(part, f.Compare) or (of and not _speaks_of(part, *of)):
                 continue
             for side in terms_of(part):
@@ -215,8 +219,7 @@ class _Search:
         return tuple(found)[:12]
 
     def _durations(self) -> tuple[Fraction, ...]:
-        formula = with_values(self.question.query.formula, self.question.values)
-        bounds = [x for interval in intervals_of(formula) for x in bounds_of(interval) if x]
+        bounds = [x for interval in intervals_of(self._formula) for x in bounds_of(interval) if x]
         return (*map(Fraction, (1, 2, 3)), *dict.fromkeys(x for x in bounds if 0 < x <= 6))[:8]
 
 

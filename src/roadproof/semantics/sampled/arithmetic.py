@@ -192,6 +192,7 @@ class _Builder:
     def __init__(self) -> None:
         self.steps: list[Step] = []
         self.known: dict[Step, int] = {}
+        self.placed: dict[t.Term, int] = {}
 
     def add(self, step: Step) -> int:
         if step not in self.known:
@@ -210,6 +211,11 @@ class _Builder:
 
     def place(self, term: t.Term) -> int:
         """The step that computes ``term``."""
+        if term not in self.placed:
+            self.placed[term] = self._place(term)
+        return self.placed[term]
+
+    def _place(self, term: t.Term) -> int:
         constant = t.constant_value(term)
         if constant is not None:
             return self.add(Load(float(constant)))
