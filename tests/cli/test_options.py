@@ -197,6 +197,14 @@ def test_an_empty_folder_is_not_the_current_one(command: str, capsys: pytest.Cap
         rp.witness(4, out="")
 
 
+def test_a_formula_that_cannot_be_asked_is_named_before_others_are(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["witness", "4", "F true", "--jobs", "1", "--out", str(tmp_path / "out")]) == 2
+    assert capsys.readouterr().err.startswith("roadproof: F true: the formula mentions no vehicle")
+    assert not (tmp_path / "out").exists()
+
+
 def test_an_unknown_keyword_is_a_type_error() -> None:
     with pytest.raises(TypeError, match="unexpected keyword argument 'horizn'; did you mean 'horizon'"):
         rp.witness(4, horizn=6)

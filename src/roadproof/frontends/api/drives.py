@@ -12,7 +12,7 @@ from roadproof.analysis.study import pool
 from roadproof.analysis.study.frame import StudyResult, look_up, put_away
 from roadproof.analysis.witnesses import WitnessStudy, evidence_files, none_within_file, stems
 from roadproof.engines.search.outcome import Outcome, Search
-from roadproof.engines.search.question import SearchOptions
+from roadproof.engines.search.question import SearchOptions, pose
 from roadproof.errors import UsageError
 from roadproof.evidence.answers import drives as kept
 from roadproof.evidence.answers.drives import Answer
@@ -216,7 +216,19 @@ def searches_for(what: Sequence[What], using: Definitions, given: Witness) -> li
     each = using.each(what)
     home = restricted(using, given, what=each)
     search_options = SearchOptions(given.objective, given.engine, given.solver, work_of(given))
-    return list(searches_of(home, each, setting(home, given), search_options, given.count))
+    found = list(searches_of(home, each, setting(home, given), search_options, given.count))
+    for search in found if len(found) > 1 else ():
+        _refuse_early(search)
+    return found
+
+
+def _refuse_early(search: Search) -> None:
+    """Raises ``UsageError`` for one of several formulas that cannot be asked, before others are searched."""
+    if search.scenario is None:
+        try:
+            pose(search.specification.library, search.query, search.setting)
+        except UsageError as error:
+            raise UsageError(f"{search.query.text[:80]}: {error}") from None
 
 
 def witness_all(
