@@ -10,16 +10,18 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
 from roadproof.analysis.claims import ClaimResult, Claims
 from roadproof.analysis.study.pool import in_order, work
-from roadproof.engines.prove.properties import Task
+from roadproof.engines.prove.properties import Task, choose, template_properties
 from roadproof.errors import InputError, LostError, MissingSolverError, TextError
 from roadproof.frontends.cli import supervising
 from roadproof.frontends.cli.main import main
+from roadproof.runtime import process_pool
 from roadproof.runtime.executors import LostJob
 from roadproof.runtime.process_pool import answers_of
 
@@ -206,6 +208,28 @@ def give_back(job: int) -> Callable[[], int]:
 def test_what_cannot_be_sent_is_an_error_and_no_hang() -> None:
     with pytest.raises(RuntimeError, match="pickle"):
         list(answers_of(give_back, [1, 2], 2))
+
+
+@dataclass(frozen=True)
+class KindredJob:
+    kin: str
+
+
+def test_a_worker_does_kin_one_after_the_other_and_helps_others_at_last() -> None:
+    waiting = process_pool._Waiting([KindredJob(x) for x in "aabbcbc"], range(7))
+    given = [(worker, waiting.pop(worker)) for worker in "XYXYYYX"]
+    assert given == [("X", 0), ("Y", 2), ("X", 1), ("Y", 3), ("Y", 5), ("Y", 4), ("X", 6)]
+    assert not waiting
+    plain = process_pool._Waiting("aab", range(3))
+    assert [plain.pop(worker) for worker in "XYX"] == [0, 1, 2]
+
+
+def test_claims_about_a_scenario_and_the_same_on_other_road_sectors_are_kin() -> None:
+    tasks = choose(template_properties(), ["P1", "P3"], "base")
+    kin: dict[object, list[int | None]] = {}
+    for task in tasks:
+        kin.setdefault(task.kin, []).append(task.scenario)
+    assert [*kin.values()] == [[n, n + 8, n + 16] * 2 for n in range(1, 9)]
 
 
 def test_a_claim_whose_process_dies_is_unknown_and_the_others_stand(

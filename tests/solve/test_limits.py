@@ -22,7 +22,8 @@ from roadproof.engines.solve import exact, milp, smt
 from roadproof.engines.solve.exact import solve_exactly
 from roadproof.engines.solve.highs import Answer
 from roadproof.engines.solve.milp import box_of, solve_mixed
-from roadproof.engines.solve.smt import Session, ask, solve
+from roadproof.engines.solve.recall import solve
+from roadproof.engines.solve.smt import Session, ask
 from roadproof.runtime import budget
 from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.world.polynomial import affine
@@ -221,11 +222,11 @@ def _fail(self, *arguments, **named):
 
 
 def silence_as_unsat(monkeypatch):
-    monkeypatch.setattr(smt, "_answer", lambda text: "sat" if "sat" in text.split() else "unsat")
+    monkeypatch.setattr(smt, "answer_in", lambda text: "sat" if "sat" in text.split() else "unsat")
 
 
 def unknown_as_sat(monkeypatch):
-    monkeypatch.setattr(smt, "_answer", lambda text: "unsat" if "unsat" in text.split() else "sat")
+    monkeypatch.setattr(smt, "answer_in", lambda text: "unsat" if "unsat" in text.split() else "sat")
 
 
 def unknown_as_infeasible(monkeypatch):

@@ -44,8 +44,9 @@ from roadproof.engines.solve.bounds import (
 )
 from roadproof.engines.solve.exact import solve_exactly
 from roadproof.engines.solve.milp import box_of, find_solver, solve_mixed
+from roadproof.engines.solve.recall import solve
 from roadproof.engines.solve.smooth import Square, minimise, narrow, near
-from roadproof.engines.solve.smt import Session, ask, parse_sexpression, read_value, solve
+from roadproof.engines.solve.smt import Session, ask, parse_sexpression, read_value
 from roadproof.errors import MissingSolverError, UsageError
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact import judge

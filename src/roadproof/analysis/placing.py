@@ -12,7 +12,7 @@ from roadproof.library.bind import bind, values_with
 from roadproof.library.specification import Library, Query
 from roadproof.logic import formula as f
 from roadproof.logic.formula import is_state
-from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.exact import LazyJudge
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road, names_of
 from roadproof.world.road import Lanelet, Road
@@ -35,10 +35,11 @@ def placed_on(file: DriveFile, query: Query, library: Library, roads: Iterable[R
     """The motions of ``file`` on the first of ``roads`` on which they satisfy ``query``, judged."""
     values = values_with(library, file.values)
     now = f.conjunction(*(part for part in parts(query.formula) if is_state(part)))
+    judge = LazyJudge.on(file.drive)  # of all roads: what they have in common is judged once
     for road in roads:
         if not set(file.lanes.values()) <= set(road.lanes):
             continue
-        if not judge(bind(now, road, file.lanes, values), file.drive).holds:
+        if not judge.holds(bind(now, road, file.lanes, values)):
             continue
         judged = judged_as(replace(file, road=road), query, library)
         if judged is not None:

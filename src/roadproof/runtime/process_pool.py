@@ -2,10 +2,10 @@
 
 import os
 from collections import deque
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Hashable, Sequence
 from functools import partial
 from multiprocessing.connection import wait
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar, runtime_checkable
 
 from roadproof.errors import UsageError
 from roadproof.reasons import Why
@@ -17,14 +17,24 @@ Job = TypeVar("Job")
 Answer = TypeVar("Answer")
 
 
+@runtime_checkable
+class Kindred(Protocol):
+    """A job of which a worker that did another of its kin may have done a part."""
+
+    @property
+    def kin(self) -> Hashable:
+        """What is equal for jobs that have much in common."""
+
+
 def answers_of(
     function: Callable[[Job], Answer], jobs: Sequence[Job], most: int | None = None, fresh: bool = False
 ) -> Generator[tuple[int, Answer | LostJob], None, None]:
     """``function`` of every job, each with its place in ``jobs``, in the order in which they are done.
 
-    A job whose process dies is tried again when the others are done. ``fresh``: as for ``Worker``. The
-    iterator is to be used up or closed. An error that a job raises is raised here, and ends the others.
-    ``most``: processes at once, None for one a core.
+    They are given out in order, but kin to one worker as far as others have work. A job whose process dies is
+    tried again when the others are done. ``fresh``: as for ``Worker``. The iterator is to be used up or
+    closed. An error that a job raises is raised here, and ends the others. ``most``: processes at once, None
+    for one a core.
     """
     start = partial(Worker, function, fresh, is_heard())
 
@@ -42,12 +52,12 @@ def _try_once(
     died: dict[int, str],
 ) -> Generator[tuple[int, Any], None, None]:
     """The answers at ``places``; where a process ended instead, ``died`` says by what."""
-    waiting = deque(places)
+    waiting = _Waiting(jobs, places)
     team: dict[Worker, int | None] = {}  # the place of the job that each is at
     try:
         while waiting or any(place is not None for place in team.values()):
             while waiting and (free := _free(team, processes, start)) is not None:
-                place = waiting.popleft()
+                place = waiting.pop(free)
                 team[free] = place
                 free.ask(jobs[place])
             busy = {worker.connection: (worker, at) for worker, at in team.items() if at is not None}
@@ -70,6 +80,30 @@ def _try_once(
         dismiss([worker.process for worker in team], GRACE)
         for worker in team:
             worker.connection.close()
+
+
+class _Waiting:
+    """The places of jobs that no worker was given yet."""
+
+    def __init__(self, jobs: Sequence[object], places: Sequence[int]) -> None:
+        self.kin = {x: job.kin for x in places if isinstance(job := jobs[x], Kindred)}
+        self.places = deque(places)
+        self.last: dict[object, Hashable] = {}  # of what kin the last job of each worker was
+
+    def __bool__(self) -> bool:
+        return bool(self.places)
+
+    def pop(self, worker: object) -> int:
+        """The first of the kin that a worker did last, else the first of a kin that no worker did last."""
+        if not self.kin:
+            return self.places.popleft()
+        taken, mine = {*self.last.values()}, self.last.get(worker)
+        alike = (x for x in self.places if worker in self.last and self.kin.get(x) == mine)
+        new = (x for x in self.places if self.kin.get(x) not in taken)
+        place = next(alike, next(new, self.places[0]))
+        self.places.remove(place)
+        self.last[worker] = self.kin.get(place)
+        return place
 
 
 def _free(team: dict[Worker, int | None], processes: int, start: Callable[[], Worker]) -> Worker | None:

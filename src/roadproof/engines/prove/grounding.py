@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import TypeAlias, assert_never
 
 from roadproof.engines.prove.roads import Roster
-from roadproof.engines.solve.smt import Session
+from roadproof.engines.solve.recall import RecallingSession
 from roadproof.evidence.atoms import ZONES, Atoms, is_rigid, membership, true_of_roads
 from roadproof.evidence.sites import Lemma, Site, prefix_form
 from roadproof.evidence.times import ZERO, Moment, at, compared_times, constant, moment_of
@@ -94,7 +94,7 @@ class Grounding:
     wishful: bool = False
     names: dict[Site, str] = field(default_factory=dict)
     roster: Roster | None = None
-    session: Session = field(default_factory=Session)
+    session: RecallingSession = field(default_factory=RecallingSession)
     universals: list[Universal] = field(default_factory=list)
     road_universals: list[RoadUniversal] = field(default_factory=list)
     moments: dict[Moment, None] = field(default_factory=lambda: {ZERO: None})

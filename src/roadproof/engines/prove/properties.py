@@ -14,6 +14,7 @@ from roadproof.library.specification import read_specification, unknown
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ClaimVerdict, Verdict, claim_verdict
 
+ROAD_SECTORS_APART = 8  # scenarios 9 to 24 are 1 to 8 on other road sectors
 OWN = "claim"  # the id of claims that users bring
 _RANGE = re.compile(r"\s*(\d+)\s*(?:\.\.\s*(\d+)\s*)?")
 _INDEX = re.compile(r"\{i(?:\+(\d+))?\}")
@@ -45,6 +46,13 @@ class Task:
         middle = f"-scenario-{self.scenario:02}" if self.scenario is not None else ""
         under = f"-at-{digest(statement(self.assuming, ''))}" if self.assuming else ""
         return f"{self.id}{'-' + self.part if self.part else ''}{middle}-{self.set_name}{under}"
+
+    @property
+    def kin(self) -> tuple[str, int | str]:
+        """What is equal for claims whose proofs have steps in common: set, and scenario but for its road."""
+        if self.scenario is None:
+            return self.set_name, self.claim
+        return self.set_name, self.scenario % ROAD_SECTORS_APART
 
 
 def name_of_claim(claim: str, set_name: str, assuming: Sequence[str] = ()) -> str:

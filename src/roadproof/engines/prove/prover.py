@@ -13,7 +13,7 @@ from roadproof.engines.prove.lasso import find_lasso
 from roadproof.engines.prove.roads import Roster, roster_for
 from roadproof.engines.prove.search import GaveUp, InstanceSearch, Model, Proof
 from roadproof.engines.prove.states import Learnt, StateChecker
-from roadproof.engines.solve.smt import ask
+from roadproof.engines.solve.recall import ask
 from roadproof.errors import InputError
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.certificate import Certificate, certify, goal_of
@@ -333,6 +333,8 @@ class _Attempt:
 
         Each premise is a universal that holds at time 0.
         """
+        if not assumed.axioms and not motion.limits_said(assumed.said):
+            return motion.Assumption(assumed.said)
         instances, atoms = _instances(proofs), Atoms()
         own, _ = self._met(atoms.abstract(with_values(self.query.formula, values)), atoms, proofs)
 

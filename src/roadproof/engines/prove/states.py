@@ -11,7 +11,7 @@ from dataclasses import field
 from fractions import Fraction
 from typing import Literal, TypeAlias, assert_never
 
-from roadproof.engines.solve.smt import Session, ask, solve
+from roadproof.engines.solve.recall import RecallingSession, ask, solve
 from roadproof.evidence import state
 from roadproof.evidence.atoms import Atoms
 from roadproof.evidence.derivation import derive_lemma_queries
@@ -153,7 +153,7 @@ class _Question:
     """
 
     def __init__(self, checker: StateChecker, wanted: Mapping[str, bool], assumed: Assumed) -> None:
-        self.session = Session()
+        self.session = RecallingSession()
         self.numbers: dict[str, Fraction] = {}
         self.meanings = {name: checker.atoms.meaning(name) for name in wanted}
         if assumed == "typical":

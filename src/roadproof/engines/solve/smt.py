@@ -6,12 +6,15 @@ written to a file and asked again of another program.
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
-from typing import Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from roadproof.errors import MissingSolverError
 from roadproof.runtime.budget import Budget
+
+if TYPE_CHECKING:
+    import z3
 
 # What is counted in about a second; by z3 up to 4 million on linear queries, 0.3 on polynomial ones.
 UNIT = 1_000_000
@@ -19,7 +22,7 @@ UNIT = 1_000_000
 CONTEXT, COMMAND, CHARACTER = 4.5e-3, 1e-4, 2e-7
 UNIT_CVC5 = 200_000
 _MOST = 4_000_000_000  # both count in 32 bits
-_NEVER = 4294967295
+NO_LIMITS = "(set-option :rlimit 0)(set-option :timeout 4294967295)\n"
 _TOKEN = re.compile(r"[()]|(?:\|[^|]*(?:\||$)|[^()\s|])+")  # what stands between bars is one word
 
 Satisfiability: TypeAlias = Literal["sat", "unsat", "unknown"]
@@ -35,25 +38,41 @@ class Session:
 
     def __init__(self, unit: int = UNIT) -> None:
         """``unit``: how much of what z3 counts is a unit of work."""
-        import z3
-
-        self._z3 = z3
         self._unit = unit
         self._counted = 0
         self._unspent = CONTEXT
-        z3.Context.owner = False  # of one that Ctrl-C meets while it is made, which its end asks for
-        self._context = z3.Context()
+        self._context: z3.Context | None = None
         self.tell("(set-option :produce-models true)(set-option :produce-unsat-cores true)")
 
-    def tell(self, commands: str) -> str:
-        """Run SMT-LIB commands and return what they print. Raises ``SolverError``.
+    def tell(self, commands: str) -> None:
+        """Run SMT-LIB commands that print nothing. Raises ``SolverError``, perhaps with a later question.
 
         Their cost is counted with the next answer.
         """
+        self._count(commands)
+        self._run(commands)
+
+    def _reply(self, question: str, limits: str = "", most: int | None = None) -> str:
+        """What z3 prints where commands end in a question, within ``limits``.
+
+        ``most``: how much z3 may count for the answer, which ``limits`` say, too. Raises ``SolverError``.
+        """
+        self._count(limits + question)
+        return self._run(limits + question)
+
+    def _count(self, commands: str) -> None:
         self._unspent += COMMAND + CHARACTER * len(commands)
+
+    def _run(self, commands: str) -> str:
+        """What z3 prints where it runs commands. Raises ``SolverError``."""
+        import z3  # here, because many answers need no solver
+
+        if self._context is None:
+            z3.Context.owner = False  # of one that Ctrl-C meets while it is made, which its end asks for
+            self._context = z3.Context()
         try:
-            answer: str = self._z3.Z3_eval_smtlib2_string(self._context.ref(), commands)
-        except self._z3.Z3Exception as error:
+            answer: str = z3.Z3_eval_smtlib2_string(self._context.ref(), commands)
+        except z3.Z3Exception as error:
             raise SolverError(f"z3 refused: {error}") from None
         if "(error" in answer:
             raise SolverError(f"z3 refused: {answer.strip()}")
@@ -61,7 +80,7 @@ class Session:
 
     def close(self) -> None:
         """Give back what z3 holds, where this object itself lives longer. Nothing may be told afterwards."""
-        del self._context
+        self._context = None
 
     def check(self, assuming: Sequence[str] = (), meter: Budget | None = None) -> Satisfiability:
         """``check-sat`` under Boolean constants or their negations, within what ``meter`` has left."""
@@ -81,30 +100,30 @@ class Session:
         ``unknown`` where the work is used up, or z3 gives up. Raises ``BudgetExceeded``.
         """
         if meter is None:
-            return _answer(self.tell(f"(set-option :rlimit 0)(set-option :timeout {_NEVER})\n{commands}"))
+            return answer_in(self._reply(commands, NO_LIMITS))
         if meter.is_out():
             return "unknown"
         work, milliseconds = _limits(meter, self._unit)
-        limits = f"(set-option :rlimit {work})(set-option :timeout {milliseconds})"
-        said = self.tell(f"{limits}\n{commands}\n(get-info :rlimit)")
-        counted = int(said[said.rindex(":rlimit") + 7 :].strip(" )\n"))
+        limits = f"(set-option :rlimit {work})(set-option :timeout {milliseconds})\n"
+        said = self._reply(f"{commands}\n(get-info :rlimit)", limits, work)
+        counted = counted_in(said)
         meter.spend((counted - self._counted) / self._unit + self._unspent)
         self._counted, self._unspent = counted, 0.0
-        answer = _answer(said)
+        answer = answer_in(said)
         if answer == "unknown":
             meter.seconds_left()
         return answer
 
     def core(self) -> list[str]:
         """The assumptions that the last ``unsat`` used."""
-        read = parse_sexpression(self.tell("(get-unsat-core)"))
+        read = parse_sexpression(self._reply("(get-unsat-core)"))
         return [x for x in read if isinstance(x, str)]
 
     def values(self, expressions: Sequence[str]) -> list[Fraction | bool | None]:
         """Values in the last model, in order; None for a number that is not rational."""
         if not expressions:
             return []
-        read = parse_sexpression(self.tell(f"(get-value ({' '.join(expressions)}))"))
+        read = parse_sexpression(self._reply(f"(get-value ({' '.join(expressions)}))"))
         return [read_value(pair[1]) for pair in read]
 
 
@@ -114,7 +133,13 @@ def _limits(meter: Budget, unit: int) -> tuple[int, int]:
     return max(1, min(_MOST, math.ceil(min(meter.left(), _MOST) * unit))), min(_MOST, milliseconds)
 
 
-def _answer(text: str) -> Satisfiability:
+def counted_in(said: str) -> int:
+    """How much z3 has counted up to a reply that ends in it."""
+    return int(said[said.rindex(":rlimit") + 7 :].strip(" )\n"))
+
+
+def answer_in(text: str) -> Satisfiability:
+    """The answer to a check among what a solver prints."""
     words = text.split()
     if "unsat" in words:
         return "unsat"
@@ -127,18 +152,6 @@ def ask(script: str, solver: str = "z3", meter: Budget | None = None) -> Satisfi
     Raises ``MissingSolverError`` where cvc5 is not installed, and ``BudgetExceeded``.
     """
     return Session().answer(script, meter) if solver == "z3" else _ask_cvc5(script, meter)
-
-
-def solve(script: str, symbols: Sequence[str], meter: Budget) -> Mapping[str, Fraction | bool] | None:
-    """Values of ``symbols`` in a model that z3 finds for a whole script, or None where it finds none.
-
-    Numbers that are not rational are left out. Raises ``BudgetExceeded``.
-    """
-    session = Session()
-    if session.answer(script, meter) != "sat":
-        return None
-    read = session.values(symbols)
-    return {s: v for s, v in zip(symbols, read, strict=True) if v is not None}
 
 
 def _ask_cvc5(script: str, meter: Budget | None) -> Satisfiability:
@@ -164,7 +177,7 @@ def _ask_cvc5(script: str, meter: Budget | None) -> Satisfiability:
     if meter is not None:
         used = solver.getStatistics().get("resource::resourceUnitsUsed").get("value", 0)
         meter.spend(used / UNIT_CVC5)
-    answer = _answer(" ".join(printed))
+    answer = answer_in(" ".join(printed))
     if answer == "unknown" and meter is not None:
         meter.seconds_left()
     return answer
