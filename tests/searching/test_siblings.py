@@ -1,13 +1,16 @@
 """The drive of a scenario, offered for those that differ from it in the road sector only."""
 
+import os
+import signal
 from dataclasses import replace
 from fractions import Fraction
 
 import pytest
 
 from asking import posed, search_for
+from roadproof.analysis.study.frame import conduct
 from roadproof.analysis.witnesses import WitnessStudy
-from roadproof.engines.search import search, siblings
+from roadproof.engines.search import ask, search, siblings
 from roadproof.engines.search.ask import answer
 from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.question import FoundDrive, SearchOptions, SearchProblem, Setting
@@ -176,3 +179,16 @@ def test_scenarios_alike_are_one_piece_whatever_their_set():
         ("scenario-04-base", "scenario-04-ext", "scenario-20-ext"),
         ("scenario-05-base",),
     ]
+
+
+def test_of_scenarios_alike_only_that_whose_process_dies_is_in_doubt(monkeypatch):
+    def die_at_12(search):
+        if search.scenario == 12:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return ask.undecided(search, Why.NONE_FOUND())
+
+    monkeypatch.setattr(ask, "answer", die_at_12)
+    study = WitnessStudy(tuple(search_for(number) for number in ("4", "12", "20", "5")))
+    answers = conduct(study, hands=2).answers
+    dead = {name for name, outcome in answers.items() if outcome.reason.kind is Why.PROCESS}
+    assert (len(answers), dead) == (4, {"scenario-12-base"})
