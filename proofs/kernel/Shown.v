@@ -5,7 +5,7 @@
    the drive, in the sense of Meaning.v and Drive.v.  Derivations are found by roadproof; nothing here relies on
    how. *)
 From Coq Require Import Reals QArith Qreals String List Bool Arith Lra Lia.
-From Roadproof Require Import Meaning Signs Drive.
+From Roadproof Require Import Meaning Signs Zeros Drive.
 Import ListNotations.
 Open Scope R_scope.
 
@@ -16,7 +16,7 @@ Inductive moment := Fixed (u : Q) | Later (u : Q).
    derived of what is true; of what is false it is the same with `and` and `or`, some and every, F and G
    exchanged. *)
 Inductive derivation :=
-| Plain                                                   (* true is true *)
+| Plain                                                   (* true is true; G where its window is empty *)
 | Sign (cuts : list Q)                                    (* signs of polynomials between these instants *)
 | Turn (p : derivation)                                   (* not *)
 | Both (p q : derivation)                                 (* and *)
@@ -29,6 +29,8 @@ Inductive derivation :=
 | Moment (m : moment) (p : derivation)                    (* F *)
 | Reach (m : moment) (p q : derivation)                   (* U: q for its right side, p for its left until then *)
 | Break (m : moment) (p q : derivation)                   (* not U: q for its right side until its left is false *)
+| Soon (c d : Q) (p q : derivation)                       (* not U: p for its right side to c, q for its left to d *)
+| Crossing (a b : Q) (s : list Q) (p q r : derivation)    (* F, U, not U about an instant at which s is 0 *)
 | Earlier (rounds : nat) (p : derivation)                 (* as so many rounds of a repeating trace earlier *)
 | Round (p : derivation).                                 (* as in the first round of the interval *)
 
@@ -655,6 +657,35 @@ Section Check.
     | None, _ => false
     end.
 
+  (* windows that end before they begin *)
+  Definition is_empty (I : interval) (lo : term) (hi : option term) : bool :=
+    match rigid I lo, hi with
+    | Some a, Some hi => match rigid I hi with Some b => below b a | None => false end
+    | _, _ => false
+    end.
+  (* from a to b, and between them *)
+  Definition closed_ (a b : Q) : interval := {| from_ := a; after_ := false; to_ := Some (b, false) |}.
+  Definition open_ (a b : Q) : interval := {| from_ := a; after_ := true; to_ := Some (b, true) |}.
+  (* s is above 0 at a, and not at b, which comes later *)
+  Definition falls (s : list Q) (a b : Q) : bool :=
+    below a b && above true s (closed_ a a) && above false (pneg s) (closed_ b b).
+
+  Lemma is_empty_right I lo hi t u : is_empty I lo hi = true -> inside I t -> ~ within W t lo hi u.
+  Proof.
+    unfold is_empty, within. intros H T [A B]. destruct (rigid I lo) as [a|] eqn:E; [|discriminate].
+    destruct hi as [hi|]; [|discriminate]. destruct (rigid I hi) as [b|] eqn:F'; [|discriminate].
+    rewrite (rigid_right I lo a t E T) in A. rewrite (rigid_right I hi b t F' T) in B. apply below_R in H. lra.
+  Qed.
+  Lemma closed_right a b t : Q2R a <= t <= Q2R b -> inside (closed_ a b) t.
+  Proof. intros H. exact H. Qed.
+  Lemma falls_right s a b : falls s a b = true ->
+    exists z, Q2R a < z <= Q2R b /\ eval s z = 0 /\ forall w, Q2R a <= w < z -> 0 < eval s w.
+  Proof.
+    unfold falls. intros H. apply andb_prop in H as [H B]. apply andb_prop in H as [L A]. apply below_R in L.
+    apply (first_zero s); [lra|apply (above_right true s (closed_ a a)); [exact A|apply closed_right; lra]|].
+    pose proof (above_right false (pneg s) (closed_ b b) (Q2R b) B ltac:(apply closed_right; lra)) as N.
+    unfold sign_ok, pneg in N. rewrite pscale_eval in N. unfold Q2R at 1 in N. simpl in N. lra.
+  Qed.
   Lemma image_right I m t : inside I t -> inside (image I m) (at_ m t).
   Proof.
     unfold inside. destruct m as [u|u]; cbn [image from_ after_ to_ at_]; [intros _; lra|].
@@ -791,6 +822,17 @@ Section Check.
     - rewrite IHf. tauto.
     - rewrite IHf1, IHf2. tauto.
     - rewrite IHf1, IHf2. tauto.
+  Qed.
+
+  (* The formula where s is 0. *)
+  Definition at_zero (I : interval) (s : list Q) (f : formula) : formula := assume I s false (assume I (pneg s) false f).
+  Lemma at_zero_right I s f t : inside I t -> eval s t = 0 ->
+    forall b, Meaning.holds W named b t (at_zero I s f) <-> Meaning.holds W named b t f.
+  Proof.
+    intros T Z b. unfold at_zero. rewrite (assume_right I s false), (assume_right I (pneg s) false); try assumption.
+    - tauto.
+    - unfold has_sign, pneg. rewrite pscale_eval, Z. lra.
+    - unfold has_sign. lra.
   Qed.
 
   (* --- traces that repeat ------------------------------------------------------------------------------- *)
@@ -942,6 +984,8 @@ Section Check.
       end in
     match p, f with
     | Plain, Truth b => Bool.eqb b pol
+    | Plain, Always lo hi _ => pol && is_empty I lo hi
+    | Plain, Eventually lo hi _ | Plain, Until _ lo hi _ => negb pol && is_empty I lo hi
     | Sign cuts, Compare l o r => forallb (compare_on pol o l r) (parts I cuts)
     | Sign cuts, Occupies a l => forallb (occupies_on pol a (index_of env l)) (parts I cuts)
     | Turn p, Not f => check p f env (negb pol) I
@@ -966,6 +1010,23 @@ Section Check.
     | Break m p q, Until f lo hi g =>
         negb pol && is_late I m lo && check p f env pol (image I m)
         && somewhere_in (until_then I m lo false) (check q g env pol)
+    | Soon c d p q, Until f lo hi g =>
+        negb pol && below c d && is_late I (Fixed c) lo
+        && somewhere_in (until_then I (Fixed c) lo false) (check p g env pol) && check q f env pol (open_ c d)
+    | Crossing a b s p q r, Eventually lo hi f =>
+        pol && falls s a b && is_late I (Fixed a) lo && is_early I (Fixed b) hi
+        && check r (at_zero (closed_ a b) s f) env pol (closed_ a b)
+    | Crossing a b s p q r, Always lo hi f =>
+        negb pol && falls s a b && is_late I (Fixed a) lo && is_early I (Fixed b) hi
+        && check r (at_zero (closed_ a b) s f) env pol (closed_ a b)
+    | Crossing a b s p q r, Until f lo hi g =>
+        is_late I (Fixed a) lo
+        && somewhere_in (until_then I (Fixed a) lo false) (check p (if pol then f else g) env pol)
+        && (if pol
+            then falls s a b && is_early I (Fixed b) hi && check q (assume (closed_ a b) s true f) env pol (closed_ a b)
+                 && check r (at_zero (closed_ a b) s g) env pol (closed_ a b)
+            else below a b && above true s (closed_ b b) && check q (assume (closed_ a b) s false g) env pol (closed_ a b)
+                 && check r (assume (closed_ a b) s true f) env pol (closed_ a b))
     | Earlier n p, _ =>
         match repeats D with
         | Some (_, period) =>
@@ -1007,22 +1068,31 @@ Section Check.
     (forall s p q, P p -> P q -> P (Case s p q)) -> (forall e p, P p -> P (Element e p)) ->
     (forall ps, Forall P ps -> P (Each ps)) -> (forall p, P p -> P (Whole p)) ->
     (forall m p, P p -> P (Moment m p)) -> (forall m p q, P p -> P q -> P (Reach m p q)) ->
-    (forall m p q, P p -> P q -> P (Break m p q)) -> (forall n p, P p -> P (Earlier n p)) ->
+    (forall m p q, P p -> P q -> P (Break m p q)) ->
+    (forall c d p q, P p -> P q -> P (Soon c d p q)) ->
+    (forall a b s p q r, P p -> P q -> P r -> P (Crossing a b s p q r)) -> (forall n p, P p -> P (Earlier n p)) ->
     (forall p, P p -> P (Round p)) -> forall p, P p.
   Proof.
-    intros H1 H2 H3 H4 H5 H6 HC H7 H8 H9 H10 H11 H12 HE HR. fix IH 1. intros p.
+    intros H1 H2 H3 H4 H5 H6 HC H7 H8 H9 H10 H11 H12 HS HZ HE HR. fix IH 1. intros p.
     destruct p; [apply H1|apply H2|apply H3|apply H4|apply H5|apply H6|apply HC|apply H7|apply H8|apply H9|apply H10|apply H11|apply H12
-              |apply HE|apply HR];
+              |apply HS|apply HZ|apply HE|apply HR];
       try apply IH.
     induction ps as [|p ps IHps]; constructor; [apply IH|exact IHps].
   Qed.
 
+  Ltac parted H :=
+    repeat match type of H with _ && _ = true => let X := fresh "X" in apply andb_prop in H as [H X] end.
+
   Theorem check_right p : right_for p.
   Proof.
     induction p as [|cuts|p IHp|p q IHp IHq|second p IHp|c after p q IHp IHq|s p q IHp IHq|e p IHp|ps IHps|p IHp|m p IHp
-                   |m p q IHp IHq|m p q IHp IHq|n p IHp|p IHp] using derivation_ind';
+                   |m p q IHp IHq|m p q IHp IHq|c d p q IHp IHq|za zb s p q r IHp IHq IHr|n p IHp|p IHp] using derivation_ind';
       intros f env pol I b t H B T; cbn [check] in H.
-    - destruct f; try discriminate. apply Bool.eqb_prop in H. subst. simpl. destruct pol; simpl; congruence.
+    - destruct f; try discriminate; [apply Bool.eqb_prop in H; subst; simpl; destruct pol; simpl; congruence| | |];
+        apply andb_prop in H as [H0 H]; destruct pol; try discriminate; cbn [Meaning.holds says].
+      + intros [u [U _]]. exact (is_empty_right I lo hi t u H T U).
+      + intros [u [U _]]. exact (is_empty_right I lo hi t u H T U).
+      + intros u U. destruct (is_empty_right I lo hi t u H T U).
     - destruct f; try discriminate; rewrite forallb_forall in H; destruct (parts_right cuts t I T) as [J [P J']];
         specialize (H J P); cbn [Meaning.holds].
       + apply (compare_right _ _ _ _ _ _ H J').
@@ -1076,6 +1146,54 @@ Section Check.
       destruct (Rle_lt_dec u (at_ m t)) as [C|C].
       + apply (IHq _ _ _ _ _ _ H2 B (until_then_right I m lo false J t u EJ T A C) G).
       + apply IHp, L. lra.
+    - destruct f; try discriminate; parted H; destruct pol; try discriminate.
+      apply below_R in X2. pose proof (is_late_right I (Fixed c) lo t X1 T) as L. cbn [at_] in L.
+      cbn [Meaning.holds says] in *. intros [u [[A _] [G K]]]. destruct (Rle_lt_dec u (Q2R c)) as [C|C].
+      + apply somewhere_exists in X0 as [J [EJ X0]].
+        apply (IHp _ _ _ _ _ _ X0 B (until_then_right I (Fixed c) lo false J t u EJ T A C) G).
+      + set (w := (Q2R c + Rmin u (Q2R d)) / 2). pose proof (Rmin_l u (Q2R d)). pose proof (Rmin_r u (Q2R d)).
+        assert (Q2R c < Rmin u (Q2R d)) by (apply Rmin_glb_lt; assumption).
+        assert (V : inside (open_ c d) w) by (unfold inside, open_, w; cbn [from_ after_ to_]; lra).
+        apply (IHq _ _ _ _ _ _ X B V), K. unfold w. lra.
+    - destruct f; try discriminate; parted H.
+      + pose proof (is_late_right I (Fixed za) lo t H T) as L. cbn [at_] in L.
+        apply somewhere_exists in X0 as [J [EJ X0]]. destruct pol; parted X.
+        * destruct (falls_right s za zb X) as [z [Z1 [Z2 Z3]]].
+          pose proof (is_early_right I (Fixed zb) hi t X3 T) as E. cbn [at_] in E.
+          assert (V : inside (closed_ za zb) z) by (apply closed_right; lra).
+          specialize (IHr _ _ _ _ _ _ X1 B V). cbn [Meaning.holds says] in *.
+          apply (at_zero_right (closed_ za zb) s f2 z V Z2) in IHr.
+          exists z. split; [split; [lra|destruct hi; lra]|]. split; [exact IHr|]. intros w [A K].
+          destruct (Rle_lt_dec w (Q2R za)) as [C|C].
+          -- apply (IHp _ _ _ _ _ _ X0 B (until_then_right I (Fixed za) lo false J t w EJ T A C)).
+          -- assert (V' : inside (closed_ za zb) w) by (apply closed_right; lra).
+             apply (assume_right (closed_ za zb) s true f1 w V'); [apply Z3; lra|].
+             apply (IHq _ _ _ _ _ _ X2 B V').
+        * apply below_R in X. cbn [Meaning.holds says] in *. intros [u [[A _] [G K]]].
+          assert (N : 0 < eval s (Q2R zb))
+            by (apply (above_right true s (closed_ zb zb)); [exact X3|apply closed_right; lra]).
+          assert (F' : forall w, Q2R za <= w <= Q2R zb -> 0 < eval s w -> ~ holds b w f1).
+          { intros w V S H'. apply (IHr _ _ _ _ _ _ X1 B (closed_right za zb w V)).
+            apply (assume_right (closed_ za zb) s true f1 w (closed_right za zb w V)); assumption. }
+          destruct (Rle_lt_dec u (Q2R za)) as [C|C];
+            [apply (IHp _ _ _ _ _ _ X0 B (until_then_right I (Fixed za) lo false J t u EJ T A C) G)|].
+          destruct (Rle_lt_dec u (Q2R zb)) as [C'|C']; [|apply (F' (Q2R zb)); [lra|exact N|apply K; lra]].
+          assert (V : Q2R za <= u <= Q2R zb) by lra.
+          apply (IHq _ _ _ _ _ _ X2 B (closed_right za zb u V)).
+          apply (assume_right (closed_ za zb) s false f2 u (closed_right za zb u V)); [|exact G].
+          apply (at_the_end s (Q2R za)); [exact C|]. intros w M.
+          destruct (Rle_lt_dec (eval s w) 0) as [O|O]; [exact O|exfalso]. apply (F' w); [lra|exact O|apply K; lra].
+      + destruct pol; try discriminate. destruct (falls_right s za zb X2) as [z [Z1 [Z2 _]]].
+        pose proof (is_late_right I (Fixed za) lo t X1 T) as L. pose proof (is_early_right I (Fixed zb) hi t X0 T) as E.
+        cbn [at_] in L, E. assert (V : inside (closed_ za zb) z) by (apply closed_right; lra).
+        specialize (IHr _ _ _ _ _ _ X B V). cbn [Meaning.holds says] in *.
+        apply (at_zero_right (closed_ za zb) s f z V Z2) in IHr.
+        exists z. split; [split; [lra|destruct hi; lra]|exact IHr].
+      + destruct pol; try discriminate. destruct (falls_right s za zb X2) as [z [Z1 [Z2 _]]].
+        pose proof (is_late_right I (Fixed za) lo t X1 T) as L. pose proof (is_early_right I (Fixed zb) hi t X0 T) as E.
+        cbn [at_] in L, E. assert (V : inside (closed_ za zb) z) by (apply closed_right; lra).
+        specialize (IHr _ _ _ _ _ _ X B V). cbn [Meaning.holds says] in *.
+        intros N. apply IHr, (at_zero_right (closed_ za zb) s f z V Z2), N. split; [lra|destruct hi; lra].
     - destruct (repeats D) as [[start period]|] eqn:E; [|discriminate].
       destruct (rounds_of f (earlier I (many n period))) as [q|] eqn:R; [|discriminate].
       apply rounds_of_right in R as [s [R [P [S A]]]]. rewrite E in R. injection R as <- <-.

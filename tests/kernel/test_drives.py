@@ -180,7 +180,7 @@ def test_a_change_at_an_irrational_instant():
 
 
 @needs_coq
-def test_what_holds_at_one_irrational_instant_alone_is_unknown(tmp_path):
+def test_operators_of_time_that_change_at_one_irrational_instant_are_unknown(tmp_path):
     """Neither accepted nor rejected: the exact judge accepts it, Coq is told nothing."""
     data = json.loads(ONE.read_text("utf-8"))
     data["scenario"] = None
@@ -190,14 +190,14 @@ def test_what_holds_at_one_irrational_instant_alone_is_unknown(tmp_path):
         "v_lon": "0",
         "pieces": [{"duration": None, "a_lon": "1", "a_lat": "0"}],
     }
-    data["formula"] = "F (s(SV) >= 0 m and s(SV) <= 0 m)"
+    data["formula"] = "G[0 s, 1 s] ((G[0 s, 1 s] s(SV) < 0 m) or (F[0 s, 1 s] s(SV) >= 0 m))"
     data["verdict"] = {}
     path = tmp_path / "touching.json"
     path.write_text(json.dumps(data), "utf-8")
     assert check(path).accepted
     (finding,) = check(path, kernel="coq").findings
     assert (finding.outcome, finding.kernel) == (Acceptance.UNDECIDED, str(Word.UNKNOWN))
-    assert "no derivation was found: no rational instant" in finding.reason
+    assert "no derivation was found: what holds changes exactly at an irrational" in finding.reason
 
 
 # --- What Coq says of several certificates at once: good, bad and silent ones, known and other axioms

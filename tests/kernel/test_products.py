@@ -16,12 +16,12 @@ import roadproof as rp
 from kernel.needs import needs_coq
 from planting import plant
 from roadproof.evidence.certificate import read_certificate
-from roadproof.evidence.derivations.parts import NoDerivationError, breaks, covered, moments
+from roadproof.evidence.derivations.parts import NoDerivationError, between, breaks, covered, moments
 from roadproof.evidence.derivations.signs import Part
 from roadproof.evidence.kernel import cone, source
 from roadproof.evidence.kernel.accept import prepare
 from roadproof.evidence.kernel.coq import ready
-from roadproof.evidence.kernel.derivation import Fixed
+from roadproof.evidence.kernel.derivation import Crossing, Fixed, Later, Soon
 from roadproof.evidence.kernel.derivation import Moment as DerivedMoment
 from roadproof.evidence.kernel.instant import reason
 from roadproof.evidence.kernel.linear import GOAL, Linear
@@ -266,6 +266,10 @@ def at(moment: DerivedMoment, time: F) -> F:
     return moment.time if isinstance(moment, Fixed) else time + moment.time
 
 
+def root_of(crossing: Crossing) -> Root:
+    return Root(crossing.polynomial, crossing.begin, crossing.end)
+
+
 def sampled(low: F, high: F) -> Iterator[F]:
     """From ``low`` on, before ``high``."""
     time = low
@@ -291,7 +295,7 @@ def whole(rng: random.Random) -> Part:
 @pytest.mark.parametrize("roots", [0.0, 0.5])
 @pytest.mark.parametrize("block", range(3))
 def test_a_moment_of_a_part_serves_each_of_its_instants(block: int, roots: float) -> None:
-    rng, found, refused, lost = random.Random(block), 0, 0, 0
+    rng, found, refused, lost, crossings = random.Random(block), 0, 0, 0, 0
     for _ in range(60 if roots else 400):
         right, left, window, part = truth(rng, roots), truth(rng, roots), windows(rng), whole(rng)
         low, high = window
@@ -305,6 +309,13 @@ def test_a_moment_of_a_part_serves_each_of_its_instants(block: int, roots: float
         follow([x for x, _ in made], part)
         for piece, moment in made:
             for time in instants(piece.begin, piece.end):
+                if isinstance(moment, Crossing):
+                    crossings += 1
+                    assert time + low <= moment.begin
+                    assert high is None or moment.end <= time + high
+                    assert right.at(root_of(moment))
+                    assert all(left.at(x) for x in (*sampled(time + low, moment.begin), moment.begin))
+                    continue
                 moved = at(moment, time)
                 assert time + low <= moved, (piece, moment)
                 assert high is None or moved <= time + high
@@ -313,6 +324,7 @@ def test_a_moment_of_a_part_serves_each_of_its_instants(block: int, roots: float
     assert found > 5
     assert refused > 5
     assert roots or lost <= MOST_LOST
+    assert not crossings or roots
 
 
 def until_everywhere(part: Part, window: tuple[F, F | None], right: TruthSet, left: TruthSet) -> bool:
@@ -348,12 +360,19 @@ def test_a_break_of_a_part_is_one_at_each_of_its_instants(block: int, roots: flo
         follow([x for x, _ in made], part)
         for piece, moment in made:
             fixed += isinstance(moment, Fixed)
-            later += moment is not None and not isinstance(moment, Fixed)
+            later += isinstance(moment, Later)
             never_comes += moment is None
             for time in instants(piece.begin, piece.end):
                 if moment is None:
                     last = F(3 * END) if high is None else time + high
                     assert all(never.at(x) for x in (*sampled(time + low, last), last))
+                elif isinstance(moment, Soon | Crossing):
+                    assert time + low <= moment.begin < moment.end
+                    change = moment.begin if isinstance(moment, Soon) else root_of(moment)
+                    assert all(
+                        never.at(x) for x in (*sampled(time + low, moment.begin), moment.begin, change)
+                    )
+                    assert failing.at(between(change, moment.end))
                 else:
                     moved = at(moment, time)
                     assert moved >= time + low

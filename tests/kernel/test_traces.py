@@ -20,8 +20,8 @@ from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.kernel.accept import Word
 from roadproof.evidence.kernel.coq import ready
 from roadproof.evidence.kernel.derivation import Later, Step, coq_derivation, sign, timed
-from roadproof.evidence.kernel.trace import ANYWHERE, Refutation, Refuted, refuted, world_of
-from roadproof.evidence.kernel.world import world_lines
+from roadproof.evidence.kernel.trace import Refutation, Refuted, refuted, world_of
+from roadproof.evidence.kernel.world import ANYWHERE, world_lines
 from roadproof.evidence.refutation import when_true
 from roadproof.frontends.api.checking import check
 from roadproof.library.loading import bundled_library

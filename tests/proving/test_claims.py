@@ -427,6 +427,8 @@ def test_limits_that_contradict_each_other_make_every_claim_vacuous(claim):
         ("assuming motion: false", "false on a drive without vehicles, judged exactly in dense time"),
         ("assuming motion: F[0 s, 1 s] some M in lanes: false", "false on a drive without vehicles"),
         ("assuming motion: rho < 1 s", "judged exactly in dense time, with rho=1"),
+        ("assuming motion: F[rho, 2 s] true", "judged exactly in dense time, with rho=3"),
+        ("assuming motion: F[0 s, 1 s] (true U[rho, 2 s] true)", "with rho=3"),
     ],
 )
 def test_a_claim_about_no_vehicle_is_refuted_under_motion(claim, told, tmp_path):

@@ -82,6 +82,9 @@ let rec derivation = function
   | Node [ Word "Moment"; m; p ] -> Moment (moment m, derivation p)
   | Node [ Word "Reach"; m; p; r ] -> Reach (moment m, derivation p, derivation r)
   | Node [ Word "Break"; m; p; r ] -> Break (moment m, derivation p, derivation r)
+  | Node [ Word "Soon"; c; d; p; r ] -> Soon (q c, q d, derivation p, derivation r)
+  | Node [ Word "Crossing"; a; b; s; before; between; at ] ->
+      Crossing (q a, q b, list q s, derivation before, derivation between, derivation at)
   | Node [ Word "Earlier"; n; p ] -> Earlier (nat n, derivation p)
   | Node [ Word "Round"; p ] -> Round (derivation p)
   | _ -> unread "a derivation"

@@ -3213,6 +3213,8 @@ type derivation =
 | Moment of moment * derivation
 | Reach of moment * derivation * derivation
 | Break of moment * derivation * derivation
+| Soon of q * q * derivation * derivation
+| Crossing of q * q * q list * derivation * derivation * derivation
 | Earlier of nat * derivation
 | Round of derivation
 
@@ -3736,6 +3738,36 @@ let at_once d f i m lo =
      | Later u -> qle_bool u a)
   | None -> false
 
+(** val is_empty :
+    drive -> fleet -> interval -> term -> term option -> bool **)
+
+let is_empty d f i lo hi =
+  match rigid0 d f i lo with
+  | Some a ->
+    (match hi with
+     | Some hi0 ->
+       (match rigid0 d f i hi0 with
+        | Some b -> below b a
+        | None -> false)
+     | None -> false)
+  | None -> false
+
+(** val closed_ : q -> q -> interval **)
+
+let closed_ a b =
+  { from_ = a; after_ = false; to_ = (Some (b, false)) }
+
+(** val open_ : q -> q -> interval **)
+
+let open_ a b =
+  { from_ = a; after_ = true; to_ = (Some (b, true)) }
+
+(** val falls : q list -> q -> q -> bool **)
+
+let falls s a b =
+  (&&) ((&&) (below a b) (above0 true s (closed_ a a)))
+    (above0 false (pneg s) (closed_ b b))
+
 (** val same_sign : q list -> q list -> bool option **)
 
 let same_sign s q0 =
@@ -3807,6 +3839,12 @@ let rec assume d f i s above3 f0 = match f0 with
 | And (f1, g) -> And ((assume d f i s above3 f1), (assume d f i s above3 g))
 | Or (f1, g) -> Or ((assume d f i s above3 f1), (assume d f i s above3 g))
 | _ -> f0
+
+(** val at_zero :
+    drive -> fleet -> interval -> q list -> formula -> formula **)
+
+let at_zero d f i s f0 =
+  assume d f i s false (assume d f i (pneg s) false f0)
 
 (** val is_ahead : drive -> fleet -> q -> term -> bool **)
 
@@ -3888,9 +3926,13 @@ let rec check1 d f p f0 env pol0 i =
     in each
   in
   (match p with
-   | Plain0 -> (match f0 with
-                | Truth b -> eqb b pol0
-                | _ -> false)
+   | Plain0 ->
+     (match f0 with
+      | Truth b -> eqb b pol0
+      | Until (_, lo, hi, _) -> (&&) (negb pol0) (is_empty d f i lo hi)
+      | Eventually (lo, hi, _) -> (&&) (negb pol0) (is_empty d f i lo hi)
+      | Always (lo, hi, _) -> (&&) pol0 (is_empty d f i lo hi)
+      | _ -> false)
    | Sign0 cuts ->
      (match f0 with
       | Compare (l, o, r) ->
@@ -3979,6 +4021,51 @@ let rec check1 d f p f0 env pol0 i =
             (check1 d f p2 f1 env pol0 (image i m)))
           (somewhere_in (until_then d f i m lo false)
             (check1 d f q0 g env pol0))
+      | _ -> false)
+   | Soon (c, d0, p2, q0) ->
+     (match f0 with
+      | Until (f1, lo, _, g) ->
+        (&&)
+          ((&&)
+            ((&&) ((&&) (negb pol0) (below c d0))
+              (is_late d f i (Fixed c) lo))
+            (somewhere_in (until_then d f i (Fixed c) lo false)
+              (check1 d f p2 g env pol0)))
+          (check1 d f q0 f1 env pol0 (open_ c d0))
+      | _ -> false)
+   | Crossing (a, b, s, p2, q0, r) ->
+     (match f0 with
+      | Until (f1, lo, hi, g) ->
+        (&&)
+          ((&&) (is_late d f i (Fixed a) lo)
+            (somewhere_in (until_then d f i (Fixed a) lo false)
+              (check1 d f p2 (if pol0 then f1 else g) env pol0)))
+          (if pol0
+           then (&&)
+                  ((&&) ((&&) (falls s a b) (is_early d f i (Fixed b) hi))
+                    (check1 d f q0 (assume d f (closed_ a b) s true f1) env
+                      pol0 (closed_ a b)))
+                  (check1 d f r (at_zero d f (closed_ a b) s g) env pol0
+                    (closed_ a b))
+           else (&&)
+                  ((&&) ((&&) (below a b) (above0 true s (closed_ b b)))
+                    (check1 d f q0 (assume d f (closed_ a b) s false g) env
+                      pol0 (closed_ a b)))
+                  (check1 d f r (assume d f (closed_ a b) s true f1) env pol0
+                    (closed_ a b)))
+      | Eventually (lo, hi, f1) ->
+        (&&)
+          ((&&) ((&&) ((&&) pol0 (falls s a b)) (is_late d f i (Fixed a) lo))
+            (is_early d f i (Fixed b) hi))
+          (check1 d f r (at_zero d f (closed_ a b) s f1) env pol0
+            (closed_ a b))
+      | Always (lo, hi, f1) ->
+        (&&)
+          ((&&)
+            ((&&) ((&&) (negb pol0) (falls s a b))
+              (is_late d f i (Fixed a) lo)) (is_early d f i (Fixed b) hi))
+          (check1 d f r (at_zero d f (closed_ a b) s f1) env pol0
+            (closed_ a b))
       | _ -> false)
    | Earlier (n0, p2) ->
      (match d.repeats with

@@ -9,7 +9,7 @@ from roadproof.evidence.answers.drive import DriveSays, TrueTimes
 from roadproof.evidence.codec import write
 from roadproof.evidence.drive_file import DriveFile, drive_data, natural_of, read_drive
 from roadproof.evidence.strict import JsonObject
-from roadproof.library.bind import bind, values_with
+from roadproof.library.bind import bind, values_with, without_empty_windows
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library, Query, Specification
 from roadproof.reasons import NO_REASON, Reason, Why
@@ -54,7 +54,7 @@ def judge_file(file: DriveFile, library: Library) -> Ruling:
             known = f"; it has {', '.join(file.drive.vehicles)}" if file.drive.vehicles else ""
             raise InputError(f"the file has no vehicle {', '.join(sorted(absent))}{known}")
         formula = bind(query.formula, file.road, file.lanes, values_with(library, file.values))
-        judgement = judge(formula, file.drive)
+        judgement = judge(without_empty_windows(formula), file.drive)
     except RoadproofError as error:
         return Ruling(None, Why.TOLD(error))
     if not judgement.holds:

@@ -7,13 +7,12 @@ instant, lanes and lanelets as for drives, and time by the exact judge.
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
-from typing import assert_never
 
-from roadproof.errors import InputError, RoadproofError
+from roadproof.errors import RoadproofError
 from roadproof.evidence.countermodel import NOWHERE, Countermodel, fault_of_states, read_trace
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.periodic import judge_periodic
-from roadproof.library.bind import bind, values_with
+from roadproof.library.bind import bind, values_with, without_empty_windows
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import under_limits
 from roadproof.library.specification import Specification
@@ -21,7 +20,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.node import once
-from roadproof.logic.rewrite import bounds_of, leaves_of, map_terms, without_names
+from roadproof.logic.rewrite import leaves_of, map_terms, without_names
 from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.semantics.exact import TruthSet, judge
 from roadproof.semantics.exact.signals import AbstractSignals
@@ -73,38 +72,6 @@ def numbered(formula: Formula, trace: Countermodel) -> Formula:
     """A formula without names of definitions, and with the values of its variables."""
     first = trace.instants[0].values
     return map_terms(without_names(formula), lambda term: _with_variables(term, first))
-
-
-def without_empty_windows(formula: Formula) -> Formula:
-    """``formula`` with operators whose window ends before it begins replaced by what they then are.
-
-    Raises ``InputError`` where a bound has no value.
-    """
-
-    def visit(current: Formula) -> Formula:
-        if not any(map(_is_empty, f.intervals(current))):
-            return current
-        match current:
-            case f.Always():
-                return f.TRUE
-            case f.Until() | f.Eventually():
-                return f.FALSE
-            case f.Truth() | f.Compare() | f.Occupies() | f.Some() | f.Every() | f.Not() | f.And() | f.Or():
-                return current
-            case f.Application():
-                return current
-            case _:
-                assert_never(current)
-
-    return f.transform(formula, visit)
-
-
-def _is_empty(interval: f.Interval) -> bool:
-    try:
-        low, high = bounds_of(interval)
-    except ValueError as error:
-        raise InputError(str(error)) from None
-    return high is not None and high < low
 
 
 def _with_variables(term: t.Term, values: Mapping[str, Fraction]) -> t.Term:

@@ -7,14 +7,14 @@ from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
 from numbers import Integral, Real
-from typing import TypeAlias
+from typing import TypeAlias, assert_never
 
 from roadproof.errors import InputError
 from roadproof.library.specification import Library, is_within, source_of, unknown
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import leaves_of, with_values
+from roadproof.logic.rewrite import bounds_of, leaves_of, with_values
 from roadproof.world.road import Lanelet, Road
 from roadproof.world.units import UNITS
 
@@ -187,3 +187,35 @@ def read_value(name: str, text: str, unit: str) -> Fraction:
     if bottom and Fraction(bottom) == 0:
         raise InputError(f"{name}={text}: the denominator is zero")
     return Fraction(top) / Fraction(bottom or 1) * UNITS[given][0]
+
+
+def without_empty_windows(formula: Formula) -> Formula:
+    """``formula`` with operators whose window ends before it begins replaced by what they then are.
+
+    Raises ``InputError`` where a bound has no value.
+    """
+
+    def visit(current: Formula) -> Formula:
+        if not any(map(_is_empty, f.intervals(current))):
+            return current
+        match current:
+            case f.Always():
+                return f.TRUE
+            case f.Until() | f.Eventually():
+                return f.FALSE
+            case f.Truth() | f.Compare() | f.Occupies() | f.Some() | f.Every() | f.Not() | f.And() | f.Or():
+                return current
+            case f.Application():
+                return current
+            case _:
+                assert_never(current)
+
+    return f.transform(formula, visit)
+
+
+def _is_empty(interval: f.Interval) -> bool:
+    try:
+        low, high = bounds_of(interval)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    return high is not None and high < low

@@ -16,7 +16,7 @@ from roadproof.engines.prove.states import StateChecker
 from roadproof.errors import RoadproofError
 from roadproof.evidence.countermodel import Countermodel, Instant, Loop
 from roadproof.evidence.periodic import judge_periodic
-from roadproof.evidence.refutation import without_empty_windows
+from roadproof.library.bind import without_empty_windows
 from roadproof.library.specification import Query
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula

@@ -6,7 +6,7 @@ cases are made of the sign of a polynomial, which decides the comparisons that c
 enough there is no derivation. Nothing rests on this: Coq checks what comes out.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TypeAlias, assert_never
@@ -15,12 +15,14 @@ from roadproof.evidence import periodic
 from roadproof.evidence.derivations.parts import (
     NoDerivationError,
     at_once,
-    between,
     breaks,
     contains,
     covered,
+    cuts_between,
     image,
     moments,
+    moved,
+    narrowed,
     put_together,
     run,
     widened,
@@ -31,14 +33,24 @@ from roadproof.evidence.derivations.signs import (
     Part,
     Shapes,
     Signs,
+    assume,
     compares,
     occupies,
-    said_of,
-    splits,
 )
-from roadproof.evidence.kernel.derivation import Step, case, element, sign, timed
+from roadproof.evidence.kernel.derivation import (
+    Crossing,
+    Soon,
+    Step,
+    case,
+    crossed,
+    element,
+    sign,
+    soon,
+    timed,
+)
 from roadproof.evidence.periodic import PeriodicJudge, Window
 from roadproof.library.bind import occupies as occupies_formula
+from roadproof.library.bind import without_empty_windows
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
@@ -46,10 +58,11 @@ from roadproof.logic.rewrite import leaves_of, with_values, without_names
 from roadproof.reasons import Why
 from roadproof.semantics.exact.algebraic import Root
 from roadproof.semantics.exact.exact import NOTHING_GIVEN, seconds
-from roadproof.semantics.exact.polynomial import Polynomial, polynomial
+from roadproof.semantics.exact.polynomial import negate, polynomial, sign_at
 from roadproof.semantics.exact.signals import AbstractSignals, Courses
 from roadproof.semantics.exact.truth import (
     ALWAYS,
+    START,
     Cut,
     TruthSet,
     complement,
@@ -60,7 +73,6 @@ from roadproof.world.drive import Drive
 from roadproof.world.road import Road
 
 MOST_STEPS = 5_000
-DEEPEST = 16  # how often a part is halved until a sign is seen
 NOTHING = Courses(AbstractSignals({}, {}))
 NOW = Part(Cut(Fraction(0), False), Cut(Fraction(0), True))
 # What a bound variable speaks of: the number of a lanelet, which stands for its lane, too.
@@ -79,7 +91,7 @@ def derive(
 
 def derive_on(shapes: Shapes, formula: Formula, road: Road, lanes: Mapping[str, str]) -> Step:
     """Why a formula without parameters is true at time 0. Raises as ``derive``."""
-    return _Finding(road, lanes, shapes).why(formula, {}, True, NOW)
+    return _Finding(road, lanes, shapes).why(without_empty_windows(formula), {}, True, NOW)
 
 
 @dataclass
@@ -197,7 +209,7 @@ class _Finding:
             cuts: list[Fraction] = []
             for place, piece in enumerate(whole.cut(knots)):
                 cuts += knots[place - 1 : place] if place else []
-                cuts += _cuts(is_seen, piece, DEEPEST)
+                cuts += cuts_between(is_seen, piece)
             found.append((whole, sign(tuple(cuts))))
         return put_together(found)
 
@@ -253,7 +265,7 @@ class _Finding:
     def _case(self, formula: Formula, scope: Scope, positive: bool, part: Part, change: Root) -> Step:
         """Where a polynomial that has this root is above 0, and where it is not."""
         changing = polynomial(*change.polynomial)
-        above, not_above = (self._assuming(formula, part, changing, x) for x in (True, False))
+        above, not_above = (assume(self.shapes, formula, part, changing, x) for x in (True, False))
         if formula in (above, not_above):
             raise NoDerivationError(Why.IRRATIONAL_CHANGE())
         return case(
@@ -261,23 +273,6 @@ class _Finding:
             self.why(above, scope, positive, part),
             self.why(not_above, scope, positive, part),
         )
-
-    def _assuming(self, formula: Formula, part: Part, changing: Polynomial, above: bool) -> Formula:
-        """``formula`` with what the sign of a polynomial says of its comparisons at the same instant."""
-        match formula:
-            case f.Compare():
-                leaves = {*leaves_of(formula)}
-                if any(part.has_inside(x) for leaf in leaves for x in self.shapes.knots(leaf)) or any(
-                    len(part.around(self.shapes.steps(leaf))) > 1 for leaf in leaves
-                ):
-                    return formula
-                said = said_of(self.shapes, formula, part, changing, above)
-                return formula if said is None else f.Truth(said)
-            case f.Not() | f.And() | f.Or() | f.Some() | f.Every():
-                inside = (self._assuming(x, part, changing, above) for x in f.children(formula))
-                return f.with_children(formula, tuple(inside))
-            case _:
-                return formula
 
     def _timed(
         self,
@@ -293,6 +288,9 @@ class _Finding:
         found: list[tuple[Part, Step]] = []
         when = self.ahead(body, scope, window[0], positive)
         for piece, moment in moments(part, self._searched(window), when, ALWAYS):
+            if isinstance(moment, Crossing):
+                found.append((piece, self._crossed(moment, scope, positive, body)))
+                continue
             step = self.why(body, scope, positive, image(piece, moment))
             found.append((piece, timed("Moment", moment, step)))
         return put_together(found)
@@ -308,6 +306,10 @@ class _Finding:
         found: list[tuple[Part, Step]] = []
         comes, kept = (self.ahead(x, scope, window[0]) for x in (right, left))
         for piece, moment in moments(part, self._searched(window), comes, kept):
+            if isinstance(moment, Crossing):
+                begin = moved(piece.begin, window[0])
+                found.append((piece, self._crossed(moment, scope, True, right, left, begin)))
+                continue
             before = Step("Plain")
             if not at_once(piece, moment, window[0]):
                 before = self.why(left, scope, True, run(piece, moment, window[0], out=True))
@@ -328,6 +330,12 @@ class _Finding:
         for piece, moment in breaks(part, self._searched(window), never, failing):
             if moment is None:
                 step = Step("Whole", (), (self.why(right, scope, False, widened(piece, window)),))
+            elif isinstance(moment, Crossing):
+                step = self._crossed(moment, scope, False, left, right, moved(piece.begin, window[0]))
+            elif isinstance(moment, Soon):
+                early = Part(moved(piece.begin, window[0]), Cut(moment.begin, True))
+                late = Part(early.end or early.begin, Cut(moment.end, False))
+                step = soon(moment, self.why(right, scope, False, early), self.why(left, scope, False, late))
             else:
                 step = timed(
                     "Break",
@@ -337,6 +345,33 @@ class _Finding:
                 )
             found.append((piece, step))
         return put_together(found)
+
+    def _crossed(
+        self,
+        moment: Crossing,
+        scope: Scope,
+        positive: bool,
+        last: Formula,
+        lasting: Formula | None = None,
+        begin: Cut = START,
+    ) -> Step:
+        """What comes at an irrational instant, or right after it, and what lasts from ``begin`` to it."""
+        formulas = [last] if lasting is None else [last, lasting]
+        leaves = {x for formula in formulas for x in leaves_of(formula)}
+        times = {x for leaf in leaves for x in (*self.shapes.knots(leaf), *self.shapes.steps(leaf))}
+        moment = narrowed(moment, times)
+        near = Part(Cut(moment.begin, False), Cut(moment.end, True))
+        at_it = lasting is None or positive
+        above = sign_at(moment.polynomial, moment.begin if at_it else moment.end)
+        changing = polynomial(*(above * x for x in moment.polynomial))
+        before = between = Step("Plain")
+        if lasting is not None:
+            before = self.why(lasting, scope, positive, Part(begin, Cut(moment.begin, True)))
+            between = self.why(assume(self.shapes, lasting, near, changing, positive), scope, positive, near)
+        if at_it:
+            last = assume(self.shapes, last, near, negate(changing), False)
+        last = assume(self.shapes, last, near, changing, not at_it)
+        return crossed(moment, above, (before, between, self.why(last, scope, positive, near)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -359,24 +394,3 @@ class _ScopedJudge(PeriodicJudge):
                 return union(truths) if isinstance(formula, f.Some) else intersection(truths)
             case _:
                 return PeriodicJudge._visit(self, formula)
-
-
-def _cuts(is_seen: Callable[[Part, Signs], bool], part: Part, deeper: int) -> list[Fraction]:
-    """Instants between which each sign is seen."""
-    signs = Signs()
-    if is_seen(part, signs):
-        return []
-    if not deeper:
-        raise NoDerivationError(Why.IRRATIONAL_SIGN())
-    inside = splits(signs.tested, part)
-    if inside:
-        cut = inside[len(inside) // 2]
-    elif part.stop is None:
-        cut = part.start + 2 ** (DEEPEST - deeper)
-    else:
-        third = (part.stop - part.start) / 3
-        cut = between(part.start + third, part.stop - third)
-    if not part.has_inside(cut):
-        raise NoDerivationError(Why.SIGN_UNSEEN())
-    before, after = part.cut([cut])
-    return [*_cuts(is_seen, before, deeper - 1), cut, *_cuts(is_seen, after, deeper - 1)]

@@ -1,18 +1,20 @@
 """Parts of time that follow each other, each with the rational instant, or the case, that serves it."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from fractions import Fraction
 from typing import TypeVar
 
 from roadproof.errors import RoadproofError
-from roadproof.evidence.derivations.signs import Part
-from roadproof.evidence.kernel.derivation import Fixed, Later, Moment, Step, split
+from roadproof.evidence.derivations.signs import Part, Signs, rational_of, splits
+from roadproof.evidence.kernel.derivation import Crossing, Fixed, Later, Moment, Soon, Step, split
 from roadproof.reasons import Reason, Why
 from roadproof.semantics.exact.algebraic import Point, Root, bounds
+from roadproof.semantics.exact.polynomial import sign_at
 from roadproof.semantics.exact.truth import START, Cut, Span, TruthSet
 
 Served = TypeVar("Served")
 MOST_PARTS = 300
+DEEPEST = 16  # how often a part is halved until a sign is seen
 """Parts that follow each other towards an irrational instant never reach it."""
 
 
@@ -155,11 +157,11 @@ def _in_turn(
 
 def moments(
     part: Part, window: tuple[Fraction, Fraction | None], right: TruthSet, left: TruthSet
-) -> Iterator[tuple[Part, Moment]]:
+) -> Iterator[tuple[Part, Moment | Crossing]]:
     """For parts that follow each other, when within its window ``right`` holds, and ``left`` until then."""
     low, high = window
 
-    def serve(cut: Cut) -> tuple[Cut | None, Moment]:
+    def serve(cut: Cut) -> tuple[Cut | None, Moment | Crossing]:
         here = _span_at(right, moved(cut, low))
         if here is None:
             return _later(part, cut, low, high, right, left)
@@ -182,7 +184,7 @@ def _before(limit: Cut | None, low: Fraction, wanted: Cut | None, cut: Cut) -> C
 
 def _later(
     part: Part, cut: Cut, low: Fraction, high: Fraction | None, right: TruthSet, left: TruthSet
-) -> tuple[Cut | None, Moment]:
+) -> tuple[Cut | None, Moment | Crossing]:
     """A moment after ``cut`` and the begin of its window, and how far it serves."""
     start = Part(cut, None).start
     first = moved(cut, low)
@@ -205,7 +207,33 @@ def _later(
         if time is not None:
             end = Cut(time - low, True)
             return (part.end if part.end is not None and part.end <= end else end), Fixed(time)
+        if stop == span.begin.point and not span.begin.after:
+            crossing = _crossing(part, span.begin.point, low, last)
+            if crossing is not None:
+                return part.end, crossing
     raise NoDerivationError(Why.NO_INSTANT())
+
+
+def _crossing(part: Part, change: Point, low: Fraction, limit: Point | None) -> Crossing | None:
+    """An irrational instant after the begins of all windows of a part, and before ``limit``."""
+    if not isinstance(change, Root) or part.stop is None or change <= part.stop + low:
+        return None
+    last = None if limit is None else Cut(limit, False)
+    before, after = _around(change, Cut(part.stop + low, False), last, None)
+    return Crossing(rational_of(before), rational_of(after), change.polynomial)
+
+
+def narrowed(crossing: Crossing, times: Collection[Fraction]) -> Crossing:
+    """The same instant, between two so near that none of ``times`` lies between them."""
+    begin, end = crossing.begin, crossing.end
+    first = sign_at(crossing.polynomial, begin)
+    while any(begin < x < end for x in times):
+        middle = (begin + end) / 2
+        if sign_at(crossing.polynomial, middle) == first:
+            begin = middle
+        else:
+            end = middle
+    return Crossing(begin, end, crossing.polynomial)
 
 
 def _instant(span: Span, stop: Point | None, wanted: Fraction | None) -> Fraction | None:
@@ -226,7 +254,7 @@ def _instant(span: Span, stop: Point | None, wanted: Fraction | None) -> Fractio
 
 def breaks(
     part: Part, window: tuple[Fraction, Fraction | None], never: TruthSet, failing: TruthSet
-) -> Iterator[tuple[Part, Moment | None]]:
+) -> Iterator[tuple[Part, Moment | Soon | Crossing | None]]:
     """For parts that follow each other, when the left side of an until fails before its right side comes.
 
     None: the right side never comes. ``never`` is when the right side is false, ``failing`` the left.
@@ -234,7 +262,7 @@ def breaks(
     low, high = window
     stuck = Why.CHANGE_TOGETHER()
 
-    def serve(cut: Cut) -> tuple[Cut | None, Moment | None]:
+    def serve(cut: Cut) -> tuple[Cut | None, Moment | Soon | Crossing | None]:
         first = moved(cut, low)
         free = _span_at(never, first)
         if free is None:
@@ -250,12 +278,29 @@ def breaks(
         spans = (x for x in failing.spans() if first < x.begin and (free.end is None or x.begin < free.end))
         times = (_instant(x, _first_end(x, free), wanted) for x in spans)
         found = [x for x in times if x is not None and failing.at(x) and never.at(x)]
-        if not found:
+        if found:
+            after = Cut(max(found) - low, True)
+            return (part.end if part.end is not None and part.end <= after else after), Fixed(max(found))
+        together = _together(part, free, failing, low)
+        if together is None:
             raise NoDerivationError(stuck)
-        after = Cut(max(found) - low, True)
-        return (part.end if part.end is not None and part.end <= after else after), Fixed(max(found))
+        return part.end, together
 
     return _in_turn(part, serve, stuck)
+
+
+def _together(part: Part, free: Span, failing: TruthSet, low: Fraction) -> Soon | Crossing | None:
+    """Where the left side of an until fails as soon as its right side comes, for all of a part."""
+    for span in failing.spans():
+        change = span.begin.point
+        if free.end is None or change != free.end.point or not free.end.after:
+            continue
+        limit = None if span.end is None else span.end.point
+        if isinstance(change, Root):
+            return _crossing(part, change, low, limit) if limit is None or change < limit else None
+        if part.stop is not None and part.stop + low <= change:
+            return Soon(change, between(change, limit))
+    return None
 
 
 def _first_end(one: Span, other: Span) -> Point | None:
@@ -291,3 +336,24 @@ def _simplest(low: Fraction, high: Fraction) -> Fraction:
         # between whole and high <= whole + 1: whole + 1/n
         return whole + Fraction(1, int(1 / (high - whole)) + 1)
     return whole + 1 / _simplest(1 / (high - whole), 1 / (low - whole))
+
+
+def cuts_between(is_seen: Callable[[Part, Signs], bool], part: Part, deeper: int = DEEPEST) -> list[Fraction]:
+    """Instants between which each sign is seen."""
+    signs = Signs()
+    if is_seen(part, signs):
+        return []
+    if not deeper:
+        raise NoDerivationError(Why.IRRATIONAL_SIGN())
+    inside = splits(signs.tested, part)
+    if inside:
+        cut = inside[len(inside) // 2]
+    elif part.stop is None:
+        cut = part.start + 2 ** (DEEPEST - deeper)
+    else:
+        third = (part.stop - part.start) / 3
+        cut = between(part.start + third, part.stop - third)
+    if not part.has_inside(cut):
+        raise NoDerivationError(Why.SIGN_UNSEEN())
+    before, after = part.cut([cut])
+    return [*cuts_between(is_seen, before, deeper - 1), cut, *cuts_between(is_seen, after, deeper - 1)]

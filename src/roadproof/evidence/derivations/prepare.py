@@ -32,7 +32,7 @@ def prepare(
         return without_question(error)
     try:
         printed = claim_text(what)
-        derivation = derive(what.formula, file.drive, file.road, file.lanes, what.values)
+        derivation = derive(what.formula, file.drive, what.world.road, file.lanes, what.values)
         return CoqModule(written(name, what, printed, derivation))
     except NoDerivationError as error:
         return CoqModule(None, refusal=Ruling(Word.UNKNOWN, Why.NO_DERIVATION(error)))

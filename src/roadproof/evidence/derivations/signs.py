@@ -12,8 +12,10 @@ from functools import cached_property, reduce
 from itertools import pairwise, product
 
 from roadproof.evidence.countermodel import Loop
+from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.logic.formula import Compare, Comparison
+from roadproof.logic.formula import Compare, Comparison, Formula
+from roadproof.logic.rewrite import leaves_of
 from roadproof.logic.terms import Term
 from roadproof.semantics.exact.algebraic import Root, real_roots
 from roadproof.semantics.exact.polynomial import (
@@ -43,11 +45,11 @@ class Part:
 
     @property
     def start(self) -> Fraction:
-        return _rational(self.begin)
+        return rational_of(self.begin)
 
     @property
     def stop(self) -> Fraction | None:
-        return None if self.end is None else _rational(self.end)
+        return None if self.end is None else rational_of(self.end)
 
     def has_inside(self, time: Fraction) -> bool:
         """Whether cutting just before ``time`` leaves something on both sides."""
@@ -66,7 +68,8 @@ class Part:
         return [Part(*pair) for pair in pairwise([self.begin, *inside, self.end])]  # type: ignore[arg-type]
 
 
-def _rational(cut: Cut) -> Fraction:
+def rational_of(cut: Cut) -> Fraction:
+    """The instant of a cut. Raises ``ValueError`` where it is irrational."""
     if isinstance(cut.point, Root):
         raise ValueError("a part of a derivation ends at rational instants")
     return cut.point
@@ -310,7 +313,7 @@ def _cases(
             yield (True, negate(p)), (False, q)
 
 
-def said_of(shapes: Shapes, compared: Compare, part: Part, changing: Polynomial, above: bool) -> bool | None:
+def _said_of(shapes: Shapes, compared: Compare, part: Part, changing: Polynomial, above: bool) -> bool | None:
     """What a comparison is in ``part`` where ``changing`` is above 0, or is not; None: open."""
     left = shapes.term(compared.left, part, Signs())
     right = shapes.term(compared.right, part, Signs())
@@ -351,3 +354,21 @@ def occupies(
     if positive:
         return all(signs.above(True, p, part) for p in edges)
     return any(signs.above(False, negate(p), part) for p in edges)
+
+
+def assume(shapes: Shapes, formula: Formula, part: Part, changing: Polynomial, above: bool) -> Formula:
+    """``formula`` with what the sign of a polynomial says of its comparisons at the same instant."""
+    match formula:
+        case f.Compare():
+            leaves = {*leaves_of(formula)}
+            if any(part.has_inside(x) for leaf in leaves for x in shapes.knots(leaf)) or any(
+                len(part.around(shapes.steps(leaf))) > 1 for leaf in leaves
+            ):
+                return formula
+            said = _said_of(shapes, formula, part, changing, above)
+            return formula if said is None else f.Truth(said)
+        case f.Not() | f.And() | f.Or() | f.Some() | f.Every():
+            inside = (assume(shapes, x, part, changing, above) for x in f.children(formula))
+            return f.with_children(formula, tuple(inside))
+        case _:
+            return formula

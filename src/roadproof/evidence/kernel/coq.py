@@ -25,7 +25,7 @@ from roadproof.runtime.package_data import shipped
 
 THEORIES = (
     *("Meaning", "Text", "Linear", "Tableau", "Products", "Rss", "Instant", "Named", "Values", "Known"),
-    *("Drive", "Signs", "Shown", "Guarantee", "Motion", "Integral", "Schemas", "Moves"),
+    *("Drive", "Signs", "Zeros", "Shown", "Guarantee", "Motion", "Integral", "Schemas", "Moves"),
     *("Prescribed", "Braking", "Gained", "Boundary", "Braked", "Following", "Responding"),
     *("Joined", "Aided", "Assisted", "Aeb", "Reading"),
     *("Programs", "Refuted"),

@@ -26,6 +26,23 @@ Moment: TypeAlias = Fixed | Later
 
 
 @dataclass(frozen=True)
+class Soon:
+    """Each instant between two, which are as near to the first as one likes."""
+
+    begin: Fraction
+    end: Fraction
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """The irrational instant between two at which a polynomial, lowest power first, is 0."""
+
+    begin: Fraction
+    end: Fraction
+    polynomial: tuple[int, ...]
+
+
+@dataclass(frozen=True)
 class Step:
     """A rule of Shown.v, what it is told, and what it rests on.
 
@@ -53,6 +70,16 @@ def case(polynomial: tuple[Fraction, ...], above: Step, not_above: Step) -> Step
 
 def element(number: int, step: Step) -> Step:
     return Step("Element", (str(number),), (step,))
+
+
+def soon(moment: Soon, before: Step, after: Step) -> Step:
+    return Step("Soon", (rational(moment.begin), rational(moment.end)), (before, after))
+
+
+def crossed(moment: Crossing, sign: int, steps: tuple[Step, Step, Step]) -> Step:
+    """``sign``: by which the polynomial is multiplied."""
+    coefficients = "; ".join(rational(Fraction(sign * x)) for x in moment.polynomial)
+    return Step("Crossing", (rational(moment.begin), rational(moment.end), f"[{coefficients}]"), steps)
 
 
 def timed(rule: str, moment: Moment, *steps: Step) -> Step:

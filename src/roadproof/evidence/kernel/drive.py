@@ -15,7 +15,7 @@ from roadproof.evidence.kernel.printer import Formals, Printer
 from roadproof.evidence.kernel.source import ClaimText, Module, claim_lines, comment_lines
 from roadproof.evidence.kernel.source import claim_text as coq_claim
 from roadproof.evidence.kernel.statement import bounds_of, formals_of
-from roadproof.evidence.kernel.world import Steps, World, world_lines
+from roadproof.evidence.kernel.world import Steps, World, road_with_lanelets, world_lines
 from roadproof.library.bind import refuse_variables, values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library
@@ -46,7 +46,8 @@ class Shown:
             t.Own(*key): tuple((start, value, value) for start, value in course)
             for key, course in sorted(drive.own.items())
         }
-        return World(drive.vehicles, self.file.road, self.file.lanes, self.values, steps)
+        road = road_with_lanelets(self.file.road)
+        return World(drive.vehicles, road, self.file.lanes, self.values, steps)
 
 
 def shown(file: DriveFile, library: Library) -> Shown:

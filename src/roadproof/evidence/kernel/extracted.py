@@ -6,7 +6,6 @@ proved. The rest is a certificate, which the program checks.
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from roadproof.errors import InputError
 from roadproof.evidence.kernel.accept import CoqModule, KernelRulings, Ruling, Word
 from roadproof.evidence.kernel.constructors import Writer, term
 from roadproof.evidence.kernel.derivation import Step, coq_derivation
@@ -85,8 +84,6 @@ def _on_a_world(name: str, head: Iterable[str], claim: str, world: World, deriva
 
 def _world(world: World) -> Iterator[str]:
     """The fields of ``drive`` in Drive.v."""
-    if not world.road.lanelets:
-        raise InputError("a road without lanelets is not written")
     yield f" ({_list(_body(name, motion) for name, motion in world.vehicles.items())}"
     yield f"  {_list(map(_rectangle, world.road.lanelets))}"
     yield f"  {_list(f'{quoted(a)} {quoted(b)}' for a, b in beside(world.road))}"

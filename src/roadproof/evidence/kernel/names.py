@@ -37,8 +37,8 @@ long wide long_above_0 wide_above_0 along across starts_at
 starts_with pieces finally lane lies_in from_s to_s right_d left_d numbers
 Place_lon Place_lat Speed_lon Speed_lat Acceleration_lon Acceleration_lat Jerk_lon the_trace
 Turn One Split Element Each Whole Moment
-Reach Break Fixed Later Drive Signs Shown Roadproof Coq Meaning Text Linear Tableau Products Rss Instant
-Named Sane Guarantee Case Motion Integral Schemas Moves
+Reach Break Soon Crossing Fixed Later Drive Signs Zeros Shown Roadproof Coq Meaning Text Linear Tableau
+Products Rss Instant Named Sane Guarantee Case Motion Integral Schemas Moves
 world element R W B named holds respects unbound parameter now iff_trans Prescribed Braking Gained Boundary
 Braked Following Responding Joined Aided Assisted Aeb Reading
 """

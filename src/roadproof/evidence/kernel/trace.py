@@ -14,7 +14,7 @@ from roadproof.evidence.kernel.drive import closed
 from roadproof.evidence.kernel.printer import Formals, Printer
 from roadproof.evidence.kernel.source import ClaimText, Module, claim_lines, claim_text, comment_lines
 from roadproof.evidence.kernel.statement import bounds_of, formals_of
-from roadproof.evidence.kernel.world import WORDS_OF_SIGNALS, Steps, World, world_lines
+from roadproof.evidence.kernel.world import WORDS_OF_SIGNALS, Steps, World, road_with_lanelets, world_lines
 from roadproof.library.bind import values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import under_limits
@@ -24,11 +24,9 @@ from roadproof.logic.custom_names import kind_of, own_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import leaves_of, parameters_of
 from roadproof.world.drive import Motion, Piece
-from roadproof.world.road import Lanelet, Road
+from roadproof.world.road import Road
 
 _ZERO, _ONE = Fraction(0), Fraction(1)
-# Where a claim speaks of no road, any will do.
-ANYWHERE = Road("any", (Lanelet("any", "any", "main", "main", (None, None), (_ZERO, _ONE)),), frozenset())
 
 
 @dataclass(frozen=True)
@@ -66,13 +64,18 @@ def refuted(asked: Refutation, library: Library) -> Refuted:
         raise InputError(fault)
     values = values_with(library, trace.parameters)
     spoken = parameters_of(query.formula)
-    road = ANYWHERE if trace.road is None or not trace.road.lanelets else trace.road
     first = trace.instants[0].values
     variables = {x.name for x in leaves_of(query.formula) if isinstance(x, t.Variable)}
     if not variables <= {*first}:
         raise InputError(f"the trace does not say what {', '.join(sorted(variables - {*first}))} is")
     world = replace(
-        world_of(trace, query.vehicles, own_of([query.formula]), road, {n: values[n] for n in spoken}),
+        world_of(
+            trace,
+            query.vehicles,
+            own_of([query.formula]),
+            road_with_lanelets(trace.road),
+            {n: values[n] for n in spoken},
+        ),
         lanes={name: name for name in query.lanes},
         numbers={name: first[name] for name in variables},
     )

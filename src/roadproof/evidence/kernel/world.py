@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import TypeAlias
 
-from roadproof.errors import InputError
 from roadproof.evidence.countermodel import Loop
 from roadproof.evidence.kernel.derivation import rational
 from roadproof.evidence.kernel.names import literal, quoted
@@ -26,6 +25,19 @@ WORDS_OF_SIGNALS: Mapping[SignalName, str] = {
 """What Meaning.v calls each signal."""
 
 
+ANYWHERE = Road(
+    "any",
+    (Lanelet("any", "any", "main", "main", (None, None), (Fraction(0), Fraction(1))),),
+    frozenset(),
+)
+"""Every road has a lanelet; a claim that is made of none may be about any road."""
+
+
+def road_with_lanelets(road: Road | None) -> Road:
+    """The road, or one of one lanelet where it has none."""
+    return road if road is not None and road.lanelets else ANYWHERE
+
+
 @dataclass(frozen=True)
 class Course:
     """As `course` of Drive.v: ``pieces`` are durations with acceleration and jerk, ``last`` is for ever."""
@@ -38,7 +50,7 @@ class Course:
 
 @dataclass(frozen=True)
 class World:
-    """Vehicles on a road, and signals in steps; all others are those of the motions.
+    """Vehicles on a road that has lanelets, and signals in steps; all others are those of the motions.
 
     ``lanes``: the lane of the road that a name of the claim stands for. ``values``: of parameters;
     ``numbers``: of those that the claim speaks of. ``repeats``: from when on signals repeat, and how often.
@@ -55,8 +67,6 @@ class World:
 
 def world_lines(world: World) -> Iterator[str]:
     """Raises ``InputError`` for names that are not printed."""
-    if not world.road.lanelets:
-        raise InputError("a road without lanelets is not printed")
     yield "{|"
     yield from _field("bodies", [_body(name, motion) for name, motion in world.vehicles.items()])
     first, *others = map(_rectangle, world.road.lanelets)
