@@ -5,6 +5,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 import roadproof as rp
+from examples import some
 from judge.cases import formulas, jerk_comparisons, jerk_drives
 from kernel.drives import HEAD, ROAD, agrees_with_the_judge, cases, derived, example, own_asked, own_drives
 from kernel.needs import needs_coq
@@ -41,13 +42,13 @@ def library(tmp_path, text=SPEC):
 @needs_coq
 def test_what_a_drive_with_jerk_shows_coq_accepts():
     """Comparisons of any degree up to six in time, with irrational instants."""
-    given = cases(40, formulas(jerk_comparisons, leaves=4), jerk_drives)
+    given = cases(some(40), formulas(jerk_comparisons, leaves=4), jerk_drives)
     agrees_with_the_judge(given, len(given) - 4)
 
 
 @needs_coq
 def test_what_drives_with_own_signals_and_kinds_show_coq_accepts():
-    given = cases(50, own_asked, own_drives)
+    given = cases(some(50), own_asked, own_drives)
     agrees_with_the_judge(given, len(given) - 4)
 
 
@@ -120,7 +121,7 @@ ATOMS = [
 def random_claims(count):
     """Claims that hold for reasons of time, of bounds, of both."""
     r = random.Random(7)
-    some = lambda: r.choice(ATOMS)  # noqa: E731
+    atom = lambda: r.choice(ATOMS)  # noqa: E731
     forms = [
         lambda p, q, x: f"G[0 s, {x} s] ({p}) -> F ({p} or {q})",
         lambda p, q, x: f"({p}) U[0 s, {x} s] ({q}) -> F[0 s, {x} s] ({q})",
@@ -129,7 +130,7 @@ def random_claims(count):
         lambda p, q, x: f"kind(SV) = bus and F ({p}) -> F (not kind(SV) = car and ({p}))",
         lambda p, q, x: f"not F[0 s, {x} s] ({p}) <-> G[0 s, {x} s] not ({p})",
     ]
-    return [r.choice(forms)(some(), some(), r.randint(1, 9)) for _ in range(count)]
+    return [r.choice(forms)(atom(), atom(), r.randint(1, 9)) for _ in range(count)]
 
 
 @needs_coq

@@ -71,6 +71,8 @@ def near_the_boundary(joined: str, cases: int, seed: int, parameters: dict[str, 
         gained += (speed + faster) / 2 / RATE - (v - x["dV0"]) / RATE
         speed = faster
         most = np.maximum(most, gained)
+        if (speed <= v - x["dV0"]).all():
+            break  # who brakes and is not the faster one gains no more
     beside = np.maximum(most + rng.uniform(-0.3, 0.3, cases), 0)
     x["dx0"] = np.where(rng.random(cases) < 0.5, beside, rng.uniform(0, 60, cases))
     return x, drive, most

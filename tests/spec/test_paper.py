@@ -1,6 +1,7 @@
 """The library against the paper, and faults in the library that this comparison has to find."""
 
 import re
+from functools import cache
 
 import pytest
 
@@ -34,13 +35,18 @@ def plain(formula: Formula) -> Formula:
 
 def differing(library: Library) -> list[tuple[str, int]]:
     """The scenarios that are not the paper's."""
+    selected = {set_name: library.select(set_name) for set_name in SETS}
     return [
         (set_name, number)
-        for set_name in SETS
+        for set_name, specification in selected.items()
         for number in range(1, 25)
-        if plain(apply_definition(library.select(set_name), f"scenario_{number}").formula)
-        != paper.Table(set_name).scenario(number)
+        if plain(apply_definition(specification, f"scenario_{number}").formula) != of_paper(set_name, number)
     ]
+
+
+@cache
+def of_paper(set_name: str, number: int) -> Formula:
+    return paper.Table(set_name).scenario(number)
 
 
 def test_all_scenarios_are_the_papers() -> None:
