@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from roadproof.errors import TextError
 from roadproof.library import loading
 from roadproof.library.loading import load_library
 from roadproof.library.specification import on_request
@@ -117,6 +118,24 @@ def test_the_library_is_that_of_its_texts(home: Path, monkeypatch: pytest.Monkey
     monkeypatch.setattr(loading, "version", lambda: "another")
     assert loading.bundled_library.__wrapped__() == anew
     assert [x.name.partition("-")[0] for x in {*home.iterdir()} - before] == ["library"]
+
+
+def test_the_tree_of_one_call_is_remembered(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    read = parse.parse_claim.__wrapped__
+    texts = ("scenario_4@ext(SV, POV,L)", "danger(SV,POV)")
+    first = [read(text) for text in texts]
+    assert first == [parse._parse(text, "claim", "claim") for text in texts]
+    assert [x.name.partition("-")[0] for x in home.iterdir()].count("call") == 2
+    longer = read("not danger(SV,POV)")
+    with pytest.raises(TextError):
+        read("given(SV,POV)")
+    monkeypatch.setattr(parse, "_parse", lambda *_: pytest.fail("it was remembered"))
+    assert [read(text) for text in texts] == first
+    assert [x.body.at for x in map(read, texts)] == [x.body.at for x in first]
+    monkeypatch.undo()
+    monkeypatch.setenv("XDG_CACHE_HOME", str(home.parent.parent))
+    assert read("not danger(SV,POV)") == longer
+    assert [x.name.partition("-")[0] for x in home.iterdir()].count("call") == 2
 
 
 def test_files_of_roadproof_are_parsed_once_and_others_are_read_as_they_stand(

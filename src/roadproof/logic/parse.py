@@ -12,6 +12,7 @@ from roadproof.runtime.cache import remembered
 
 DEEPEST_NESTING = 100
 LONGEST_CLAIM = 100_000
+_CALL = re.compile(r"\w+(?:@\w+)?\(\w+(?:, ?\w+)*\)")
 _PARENTHESES = re.compile(r'[()\[\]{}]|"[^"\n]*"|#[^\n]*')
 
 
@@ -42,9 +43,19 @@ def parse_claim(text: str, source: str = "claim") -> syntax.Claim:
             None,
             "Give its parts names with def.",
         ).locate(source, text)
-    claim = cast(syntax.Claim, _parse(text, source, "claim"))
+    claim = _remembered_call(text, source) if _CALL.fullmatch(text) else _parsed_claim(text, source)
     _check_depth(claim.body, Position(1, 1), source, text)
     return claim
+
+
+def _remembered_call(text: str, source: str) -> syntax.Claim:
+    """A claim that is one call, as scenarios are: many runs read the same, so its tree is remembered."""
+    made_of = "\0".join((text, version())).encode()
+    return remembered("call", made_of, lambda: _parsed_claim(text, source))
+
+
+def _parsed_claim(text: str, source: str) -> syntax.Claim:
+    return cast(syntax.Claim, _parse(text, source, "claim"))
 
 
 def _definitions(statements: tuple[Statement, ...]) -> list[syntax.Definition]:

@@ -1,7 +1,6 @@
 """The files of certificates, as they stand in JSON."""
 
-from collections.abc import Iterator
-from dataclasses import make_dataclass
+from collections.abc import Iterator, Mapping
 from functools import reduce
 from itertools import groupby
 from operator import or_
@@ -56,10 +55,15 @@ def _kinds_of_axioms() -> Iterator[type]:
     groups = groupby(ALL_SCHEMAS.items(), lambda x: x[1])
     for (taken, those), (name, of, doc, of_doc) in zip(groups, _AXIOMS, strict=True):
         fields = [(x, Formula if x == "inside" else Term) for x in taken]
-        arguments = make_dataclass(f"Of{of}", fields, kw_only=True, namespace={"__doc__": of_doc})
+        arguments = _definition(f"Of{of}", of_doc, dict(fields))
         schema = Literal[tuple(x for x, _ in those)]  # type: ignore[valid-type]
-        told = [("schema", schema), ("arguments", arguments)]
-        yield make_dataclass(f"{name}Axiom", told, kw_only=True, namespace={"__doc__": doc})
+        yield _definition(f"{name}Axiom", doc, {"schema": schema, "arguments": arguments})
+
+
+def _definition(name: str, doc: str, fields: Mapping[str, object]) -> type:
+    about = {"__annotations__": dict(fields), "__doc__": doc, "__module__": __name__}
+    made: type = dataclass(frozen=True, kw_only=True)(type(name, (), about))
+    return made
 
 
 @dataclass(frozen=True, kw_only=True)
