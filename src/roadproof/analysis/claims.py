@@ -135,7 +135,9 @@ class Claims(Unprepared):
         return Question(SCHEMA, said, {}, self.library, find_label)
 
     def pieces(self, known: Mapping[str, ClaimResult]) -> Sequence[Task]:
-        return [task for name, task in self.named.items() if name not in known]
+        """Those about no single scenario first: they take longest."""
+        left = [task for name, task in self.named.items() if name not in known]
+        return sorted(left, key=lambda task: task.scenario is not None)
 
     def settle(self, piece: Task) -> dict[str, ClaimResult]:
         """One claim settled: in dense time, or within bounds."""

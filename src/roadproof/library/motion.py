@@ -216,7 +216,8 @@ def values_said(specification: Specification, said: Sequence[str]) -> dict[str, 
         [(name, value)] = found.items()
         if values.setdefault(name, value) != value:
             raise InputError(f"{name} cannot have two values: {', '.join(said)[:200]}")
-    values_with(specification.library, values)
+    if values:
+        values_with(specification.library, values)
     return dict(sorted(values.items()))
 
 

@@ -1,6 +1,6 @@
 """What a formula says of the instant that it begins with, and which parameters it leaves one value only."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from fractions import Fraction
 from functools import cache, reduce
 from typing import TypeAlias, assert_never
@@ -8,6 +8,7 @@ from typing import TypeAlias, assert_never
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula, Interval
+from roadproof.logic.node import once
 from roadproof.logic.rewrite import leaves_of
 from roadproof.logic.terms import Parameter, Term, constant_value
 
@@ -108,7 +109,8 @@ _Bounds: TypeAlias = frozenset[_Bound]
 _NONE: _Bounds = frozenset()
 
 
-def pins(formula: Formula) -> dict[str, Fraction]:
+@once
+def pins(formula: Formula) -> Mapping[str, Fraction]:
     """The parameters that have one value wherever ``formula`` is false at time 0, with that value.
 
     Those that a premise pins: ``minDanger = 0.6 s and A -> B`` is false only where minDanger is 0.6 s, so it

@@ -46,13 +46,17 @@ def place(
     states = [_standing(formula, vehicles, found, fixed) for found in model.signals.values()]
     if len(states) == 1 or not vehicles:
         return states
-    compared = _comparisons(atoms, model)
-    before = _truths(compared, model, states, fixed)
+    comparisons = _comparisons(atoms, model)
     for along in (True, False):
         moved = _apart(states, vehicles, along)
-        if _truths(compared, model, moved, fixed) == before:
+        compared = [x for x in comparisons if _speaks_of("s" if along else "d", x)]
+        if _truths(compared, model, moved, fixed) == _truths(compared, model, states, fixed):
             return moved
     return states
+
+
+def _speaks_of(signal: t.SignalName, comparison: Formula) -> bool:
+    return any(isinstance(leaf, t.Signal) and leaf.name == signal for leaf in leaves_of(comparison))
 
 
 def _standing(
