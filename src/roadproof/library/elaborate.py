@@ -18,6 +18,8 @@ from roadproof.world.units import UNITS
 
 MOST_REMEMBERED = 500_000
 """So many parts of formulas are remembered of what was read in one specification."""
+MOST_READ = 5_000
+"""So many claims are remembered as they were read in one specification."""
 
 
 def read_claim(specification: Specification, text: str, source: str = "claim") -> Query:
@@ -27,9 +29,15 @@ def read_claim(specification: Specification, text: str, source: str = "claim") -
     in front: ``given A, B: vehicle; v: m/s: …``. ``scenario_4@ext(…)`` names a definition of another
     set. Raises ``TextError``.
     """
+    read: dict[str, Query] = specification.worked_out.setdefault((read_claim,), {})
+    if text in read:
+        return read[text]
     claim = parse_claim(text, source)
     try:
-        return read_tree(specification, claim, text.strip())
+        query = read_tree(specification, claim, text.strip())
+        if len(read) < MOST_READ:
+            read[text] = query
+        return query
     except TextError as error:
         first = error.locate(source, text)
     raise_all(mistakes_in(specification, claim, source, text) or [first])
