@@ -18,7 +18,7 @@ from roadproof.world.units import UNITS
 
 MOST_REMEMBERED = 500_000
 """So many parts of formulas are remembered of what was read in one specification."""
-MOST_READ = 5_000
+MOST_CLAIMS = 5_000
 """So many claims are remembered as they were read in one specification."""
 
 
@@ -35,7 +35,7 @@ def read_claim(specification: Specification, text: str, source: str = "claim") -
     claim = parse_claim(text, source)
     try:
         query = read_tree(specification, claim, text.strip())
-        if len(read) < MOST_READ:
+        if len(read) < MOST_CLAIMS:
             read[text] = query
         return query
     except TextError as error:
