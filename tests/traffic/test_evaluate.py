@@ -40,7 +40,7 @@ from roadproof.recordings.evaluate.recheck import recheck
 from roadproof.recordings.formats import pairs as recorded_pairs
 from roadproof.recordings.formats.neighbours import NONE, find_neighbours
 from roadproof.recordings.formats.pairs import Pairs
-from roadproof.recordings.formats.recording import Recording, keep_vehicles
+from roadproof.recordings.formats.recording import Bools, Recording, keep_vehicles
 from roadproof.recordings.formats.samples import HEADER
 from roadproof.recordings.simulate.planting import Place, plant
 from roadproof.recordings.simulate.simulate import simulate
@@ -398,6 +398,9 @@ def test_only_traces_in_which_danger_arises_are_counted(questions: Questions) ->
             other = convention != questions.settings.convention
             true, false = ([not other, False, False, False], [other, True, other, other])
             return Verdicts(convention, {"it": TruthArrays(np.array(true), np.array(false))}, {})
+
+        def holds(self, seen: object, convention: str) -> dict[str, Bools]:
+            return {"it": self.evaluate(seen, convention).answers["it"].true}
 
     tally = evaluate._Tally(questions)
     for arises, counts in (([1, 1, 1, 1], (4, 2, 1)), ([0, 1, 1, 0], (6, 3, 1)), ([1, 0, 0, 0], (7, 3, 2))):

@@ -55,9 +55,8 @@ def _detect(recording: Recording, questions: Questions, pairs: Pairs, lanes: Mas
         block = asked.choose(index)
         at = {LANE: lane[index]}
         batch = gather(recording, block.vehicles, block.low, block.high, signals, at, questions.lane_atoms)
-        answers = questions.detectors.evaluate(batch, questions.settings.convention).answers
-        for sought, answer in answers.items():
-            for p in np.flatnonzero(answer.true):
+        for sought, true in questions.detectors.holds(batch, questions.settings.convention).items():
+            for p in np.flatnonzero(true):
                 who = int(ids[block.first[p]]), int(ids[block.second[p]])
                 sv, pov = who if sought.sv == "first" else who[::-1]
                 yield Detection(sought.detector, sv, pov, recording.lanes[at[LANE][p]].name)

@@ -69,14 +69,14 @@ def find_disturbances(recording: Recording, questions: Questions) -> Disturbance
         here, within = _spread_hits(hits, index)
         truth = np.zeros((int(block.samples.max()), len(block)), bool)
         truth[frame[here] - block.low[within], within] = True
-        answers = questions.danger.evaluate(_batch(recording, questions, block, truth), at="all").answers
+        true = questions.danger.holds(_batch(recording, questions, block, truth), at="all")
         sample = np.arange(len(truth))[:, None]
         inside = np.flatnonzero(sample < block.samples)
         frames = sample + block.low
         place = (sample + offset[:-1][index]).take(inside)
-        next_safe[place] = _next(answers[SAFE].true, frames).take(inside)
+        next_safe[place] = _next(true[SAFE], frames).take(inside)
         for k, last in enumerate(last_danger):
-            last[place] = _last(answers[Danger(k)].true, frames).take(inside)
+            last[place] = _last(true[Danger(k)], frames).take(inside)
     start = next_safe[offset[:-1]]
     end = []
     for steps, danger in zip(questions.danger_steps, last_danger, strict=True):
@@ -102,7 +102,7 @@ def _violations(recording: Recording, questions: Questions, meeting: Pairs) -> t
         rows = dict(zip(PAIR, (moments.first[None], moments.second[None]), strict=True))
         lengths = np.ones(len(moments), np.int64)
         batch = gather_rows(recording, vehicles, rows, lengths, questions.violation.signals)
-        true = np.flatnonzero(questions.violation.evaluate(batch).answers[VIOLATION].true)
+        true = np.flatnonzero(questions.violation.holds(batch)[VIOLATION])
         pairs.append(moments.pair.take(true))
         frames.append(moments.frame.take(true))
     return np.concatenate(pairs), np.concatenate(frames)
@@ -116,7 +116,7 @@ def _violations_in_time(
     for index in blocks(meeting.low, meeting.high, 400_000):
         block = meeting.choose(index)
         batch = gather(recording, block.vehicles, block.low, block.high, questions.violation.signals)
-        sample, trace = np.nonzero(questions.violation.evaluate(batch, at="all").answers[VIOLATION].true)
+        sample, trace = np.nonzero(questions.violation.holds(batch, at="all")[VIOLATION])
         pairs.append(index[trace])
         frames.append(sample + block.low[trace])
     pair, frame = np.concatenate(pairs), np.concatenate(frames)

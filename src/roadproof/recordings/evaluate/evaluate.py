@@ -189,13 +189,13 @@ class _Tally:
         """For each question which traces, of those where danger ``arises``, satisfy it."""
         convention = self.questions.settings.convention
         answers = monitor.evaluate(seen, convention).answers
-        others = monitor.evaluate(seen, OTHER[convention]).answers
+        others = monitor.holds(seen, OTHER[convention])
         true = {}
         for asked, answer in answers.items():
             true[asked] = answer.true & arises
             self.asked += int(np.count_nonzero(arises))
             self.undecided += int(np.count_nonzero(answer.undecided & arises))
-            self.differing += int(np.count_nonzero((answer.true != others[asked].true) & arises))
+            self.differing += int(np.count_nonzero((answer.true != others[asked]) & arises))
         return true
 
 
@@ -227,7 +227,7 @@ def _candidates(window: Window, questions: Questions, found: Disturbances) -> Cu
     lanes = {LANE: _lane_at(recording, cut.triples.sv, cut.start)}
     vehicles, signals = cut.triples.vehicles, questions.triple_start.signals
     batch = gather(recording, vehicles, cut.start, cut.start, signals, lanes, questions.lane_atoms)
-    return cut.choose(questions.triple_start.evaluate(batch).answers[START].true)
+    return cut.choose(questions.triple_start.holds(batch)[START])
 
 
 def _match_triples(recording: Recording, questions: Questions, cut: CutTriples, tally: _Tally) -> list[Match]:
@@ -326,5 +326,5 @@ def _sectors_at(
         return {x.name: everywhere for x in questions.sectors}
     asked = questions.where
     batch = gather(recording, pairs.vehicles, frame, frame, asked.signals, None, questions.lane_atoms)
-    answers = asked.evaluate(batch).answers
-    return {x.name: answers[x].true if x in answers else everywhere for x in questions.sectors}
+    inside = asked.holds(batch)
+    return {x.name: inside.get(x, everywhere) for x in questions.sectors}

@@ -172,11 +172,12 @@ def _decide(
     lanes: Mapping[str, Integers],
     atoms: Mapping[Formula, LaneAtom],
 ) -> Iterator[tuple[Formula, Bools]]:
-    occupied = {name: recording.occupancy.take(at) for name, at in rows.items()}
+    bits = np.min_scalar_type((1 << len(recording.lanes)) - 1)
+    occupied = {name: recording.occupancy.take(at).astype(bits) for name, at in rows.items()}
     zones: dict[str, Array] = {}
     masks: dict[tuple[str, str], Array] = {}
-    own = np.array([1 << k for k in range(len(recording.lanes))] + [0], np.uint32)
-    beside = np.array([recording.beside_mask(k) for k in range(len(recording.lanes))] + [0], np.uint32)
+    own = np.array([1 << k for k in range(len(recording.lanes))] + [0], bits)
+    beside = np.array([recording.beside_mask(k) for k in range(len(recording.lanes))] + [0], bits)
     for name, index in lanes.items():
         masks["at", name], masks["beside", name] = own[index], beside[index]
     for formula, atom in atoms.items():

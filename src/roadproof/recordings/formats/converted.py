@@ -34,8 +34,8 @@ from roadproof.recordings.formats.recording import (
 )
 from roadproof.recordings.formats.samples import CONVERTED
 from roadproof.recordings.formats.source import Files, Format, RecordingSource, with_suffix
-from roadproof.recordings.formats.table import Column, Frame, polars_module
-from roadproof.recordings.formats.windows import Window, WindowedRecording, divide
+from roadproof.recordings.formats.table import Column, Frame, joined, polars_module
+from roadproof.recordings.formats.windows import Window, WindowedRecording, divide, undivided
 from roadproof.runtime.files import read_limited, write_json, write_whole
 from roadproof.runtime.version import VERSION
 from roadproof.world.road import Lanelet
@@ -122,11 +122,15 @@ def read_converted(path: Path, strict: bool = True) -> Recording:
     """
     head = _head_of(path)
     with _as_written(head):
-        said = _read_head(head)
-        recording = _recording(said, _read_samples(_table_of(head), said["samples"]["sha256"], _rows(said)))
-        believing = PlausibilityChecks(head, recording.rate, recording.lanes)
-        believing.add(recording)
-        return with_notes(recording, believing.notes(recording.notes))
+        return _whole(head, _read_head(head))
+
+
+def _whole(head: Path, said: Head) -> Recording:
+    """The recording of which the head says this. Raises ``InputError``, and what ``_as_written`` takes."""
+    recording = _recording(said, _read_samples(_table_of(head), said["samples"]["sha256"], _rows(said)))
+    believing = PlausibilityChecks(head, recording.rate, recording.lanes)
+    believing.add(recording)
+    return with_notes(recording, believing.notes(recording.notes))
 
 
 def samples_in(head: Path) -> int:
@@ -291,7 +295,7 @@ def _read_samples(path: Path, digest: str, rows: int) -> dict[str, Column]:
     frame = polars_module().read_parquet(io.BytesIO(content))
     if frame.height != rows:
         raise ValueError(f"{frame.height} rows of {rows}")
-    return {name: frame[name].to_numpy() for name in frame.columns}
+    return {name: joined(frame[name].get_chunks()) for name in frame.columns}
 
 
 def _require_digest(path: Path, found: str, digest: str) -> None:
@@ -303,7 +307,9 @@ def _recording(said: Head, columns: Mapping[str, Column]) -> Recording:
     def group(prefix: str) -> dict[str, Column]:
         return {x.removeprefix(prefix): values for x, values in columns.items() if x.startswith(prefix)}
 
-    plain = {name: columns[name].astype(kind) for name, kind in _OF_SAMPLES.items() if name in columns}
+    plain = {
+        name: columns[name].astype(kind, copy=False) for name, kind in _OF_SAMPLES.items() if name in columns
+    }
     vehicles = {name: np.array(said["vehicles"][name], kind) for name, kind in _OF_VEHICLES.items()}
     slack, inside, rows = group("slack:"), group("inside:"), int(said["samples"]["rows"])
     counts = np.array(said["counts"], np.int64)
@@ -336,6 +342,11 @@ def _find(path: Path) -> dict[str, Files]:
 
 def _divide(path: Path, strict: bool) -> WindowedRecording | None:
     """Vehicles were left out, or not, where the recording was converted."""
+    head = _head_of(path)
+    with _as_written(head):
+        said = _read_head(head)
+        if _rows(said) <= windows.MOST_SAMPLES:
+            return undivided(_whole(head, said))
     return divide_converted(path)
 
 

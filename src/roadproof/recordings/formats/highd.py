@@ -142,7 +142,7 @@ def _check_lanes(tracks: Table, recording: Recording, marked: Bools) -> Iterator
     ``marked``: the samples whose lanes come from the markings, which laneId counts. Raises ``InputError``.
     """
     names = np.array([int(x.name) if x.name.isdecimal() else 0 for x in recording.lanes] + [0])
-    other = marked & (names[recording.lane] != tracks["laneId"])
+    other = marked & (names.take(recording.lane) != tracks["laneId"])
     rule = "laneId is not the lane of the box's centre"
     return seldom(tracks, other, "laneId", rule, "do markings and positions fit?")
 

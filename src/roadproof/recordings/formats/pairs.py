@@ -115,7 +115,7 @@ def all_moments(recording: Recording, pairs: Pairs, samples: int = 300_000) -> I
 
 
 def near_moments(
-    recording: Recording, pairs: Pairs, reach: Reach, samples: int = 300_000
+    recording: Recording, pairs: Pairs, reach: Reach, samples: int = 1_000_000
 ) -> Iterator[Moments]:
     """The moments at which a pair is near enough, along and across, for an RSS violation.
 

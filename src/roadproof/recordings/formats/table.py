@@ -89,7 +89,7 @@ class Table:
 
     def is_within(self, most: Mapping[str, float]) -> bool:
         """Whether no cell of these columns is greater than the most, less than its negative, or no number."""
-        return all(_reaches(self[column]) <= limit for column, limit in most.items())
+        return all(reach_of(self[column]) <= limit for column, limit in most.items())
 
     def require_within(self, most: float, *columns: str) -> None:
         """Raise for the first cell of the columns that is greater than ``most`` or less than -``most``."""
@@ -108,7 +108,7 @@ class Table:
             raise self.refuse(int(np.argmin(holds)), column, rule)
 
 
-def _reaches(values: Column) -> float:
+def reach_of(values: Column) -> float:
     """The greatest magnitude, NaN where there is one."""
     least, greatest = float(values.min()), float(values.max())
     return max(-least, greatest) if least <= greatest else math.nan
@@ -348,10 +348,10 @@ def _read_fast(
     full |= {name: full[name].fill_null(math.nan if wanted[name] == "number" else -1) for name in gaps}
     if frame.height != rows or any(values.null_count() for values in full.values()):
         return None
-    return {name: _joined(values.get_chunks()) for name, values in full.items()}
+    return {name: joined(values.get_chunks()) for name, values in full.items()}
 
 
-def _joined(chunks: "Sequence[polars.Series]") -> Column:
+def joined(chunks: "Sequence[polars.Series]") -> Column:
     """The values of all chunks, in memory that is kept for the next file, unlike that of polars."""
     return np.concatenate([chunk.to_numpy() for chunk in chunks])
 

@@ -78,8 +78,7 @@ def in_order(tracks: Table, column: str) -> tuple[Table, tuple[str, ...]]:
     Raises ``InputError``.
     """
     ids, frames = tracks[column], tracks["frame"]
-    same = np.diff(ids) == 0
-    if ((np.diff(ids) > 0) | (same & (np.diff(frames) > 0))).all():
+    if (np.diff(ids[starts_of(ids)]) > 0).all() and (_steps_within(ids, frames) > 0).all():
         return tracks, ()
     order = np.lexsort((np.arange(tracks.rows), frames, ids))
     repeated = np.zeros(tracks.rows, bool)
@@ -88,6 +87,18 @@ def in_order(tracks: Table, column: str) -> tuple[Table, tuple[str, ...]]:
     return tracks.at(order), (
         f"{tracks.path.name}: rows were not in order of {column} and frame; they were sorted",
     )
+
+
+def starts_of(ids: Integers) -> Integers:
+    """The rows where another id begins than that of the row before."""
+    return np.append(0, np.flatnonzero(ids[1:] != ids[:-1]) + 1)
+
+
+def _steps_within(ids: Integers, frames: Integers) -> Integers:
+    """By how much frames go on from row to row; 1 from one id to the next."""
+    steps: Integers = np.diff(frames)
+    steps[starts_of(ids)[1:] - 1] = 1
+    return steps
 
 
 def usable(
@@ -149,7 +160,7 @@ def match_vehicles(meta: Table, tracks: Table, column: str, least: int) -> Integ
 
     ``column`` has the ids, of which ``least`` is the least that is one. Raises ``InputError``.
     """
-    first = np.flatnonzero(np.diff(tracks[column], prepend=-1) != 0)
+    first = starts_of(tracks[column])
     start = np.append(first, tracks.rows)
     ids, counts = tracks[column][first], np.diff(start)
     tracks.require(
@@ -161,7 +172,7 @@ def match_vehicles(meta: Table, tracks: Table, column: str, least: int) -> Integ
             f"{tracks.path}, column {column}={tracks_only[0]}: the vehicle is not in {meta.path.name}"
         )
     meta.require(np.isin(meta[column], ids), column, f"the vehicle has no rows in {tracks.path.name}")
-    gaps = np.flatnonzero((np.diff(tracks[column]) == 0) & (np.diff(tracks["frame"]) != 1))
+    gaps = np.flatnonzero(_steps_within(tracks[column], tracks["frame"]) != 1)
     if len(gaps):
         before, after = tracks["frame"][gaps[0]], tracks["frame"][gaps[0] + 1]
         vehicle = tracks[column][gaps[0]]
