@@ -364,6 +364,7 @@ with hold_folder(Path(sys.argv[1])):
         time.sleep(float(sys.argv[2]))
     os._exit(0)
 """
+HANGS = 120.0
 linux = pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
 
 
@@ -449,16 +450,36 @@ def test_a_dying_run_is_waited_for(
             assert len(asked) == 1
 
 
+# The run that has the folder waits until the other one has ended, however slow that is.
+RACE = """
+import sys, time
+from pathlib import Path
+from roadproof.frontends.api import recordings
+from roadproof.frontends.cli.main import main
+run = recordings.run_experiment
+def wait(*arguments):
+    while not Path("ended").exists():
+        time.sleep(0.01)
+    return run(*arguments)
+recordings.run_experiment = wait
+sys.exit(main(sys.argv[1:]))
+"""
+
+
 @linux
 @pytest.mark.parametrize("apart", [0.0, 0.01, 0.03, 0.05])
 def test_two_evaluations_that_begin_together(apart: float, tmp_path: Path) -> None:
     made = rp.simulate(tmp_path / "made", recordings=2, seconds=30, seed=1, jobs=1).folder
-    command = [sys.executable, "-m", "roadproof", "evaluate", str(made), "--out", str(tmp_path / "out")]
+    command = [sys.executable, "-c", RACE, "evaluate", str(made), "--out", str(tmp_path / "out")]
     command += ["--jobs", "1", "--no-pictures", "--quiet"]
-    runs = []
+    runs, pipe = [], subprocess.PIPE
     for _ in range(2):
-        runs.append(subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True))
+        runs.append(subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True, cwd=tmp_path))
         time.sleep(apart)
+    latest = time.monotonic() + HANGS
+    while all(run.poll() is None for run in runs) and time.monotonic() < latest:
+        time.sleep(0.01)
+    (tmp_path / "ended").touch()
     said = [run.communicate() for run in runs]
     codes = [run.returncode for run in runs]
     assert sorted(codes) == [0, 3], said
