@@ -4,7 +4,6 @@ import re
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import cache, lru_cache
-from importlib import resources
 from pathlib import Path
 from typing import TypeAlias, assert_never
 
@@ -35,8 +34,7 @@ Parse: TypeAlias = Callable[[str, str], tuple[syntax.Statement, ...]]
 @cache
 def bundled_library() -> Library:
     """The library that comes with roadproof (``library/sets/*.spec``), remembered from run to run."""
-    folder = resources.files("roadproof.library").joinpath("sets")
-    files = sorted((f for f in folder.iterdir() if f.name.endswith(".spec")), key=lambda f: f.name)
+    files = sorted((Path(__file__).parent / "sets").glob("*.spec"))
     sources = [Source(f.name, f.read_text("utf-8")) for f in files]
     code = (Path(__file__).with_name(name).read_text("utf-8") for name in ("loading.py", "specification.py"))
     made_of = "\0".join((version(), *code, *(text for x in sources for text in (x.name, x.text))))

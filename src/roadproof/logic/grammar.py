@@ -3,7 +3,6 @@
 import re
 import sys
 from functools import cache
-from importlib import resources
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -13,7 +12,7 @@ from roadproof.world.units import UNITS
 @cache
 def grammar() -> str:
     """The grammar as lark reads it."""
-    text = resources.files("roadproof.logic").joinpath("grammar.lark").read_text("utf-8")
+    text = Path(__file__).with_name("grammar.lark").read_text("utf-8")
     longest_first = sorted(UNITS, key=len, reverse=True)
     return text.replace("%UNITS%", "|".join(re.escape(x).replace("/", r"\/") for x in longest_first))
 

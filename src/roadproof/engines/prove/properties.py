@@ -4,7 +4,6 @@ import hashlib
 import re
 from collections.abc import Iterator, Sequence
 from functools import cache
-from importlib import resources
 from itertools import groupby
 from pathlib import Path
 
@@ -69,7 +68,7 @@ def template_properties() -> list[Task]:
     """P1 to P9 and the negative controls, in order."""
     import tomllib
 
-    text = resources.files("roadproof.engines.prove").joinpath("properties.toml").read_text("utf-8")
+    text = Path(__file__).with_name("properties.toml").read_text("utf-8")
     entries = (_Property(**entry) for said in tomllib.loads(text).values() for entry in said)
     tasks = [task for entry in entries for task in entry.tasks]
     headings = list(dict.fromkeys((task.id, task.title, task.set_name) for task in tasks))
