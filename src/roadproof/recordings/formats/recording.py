@@ -21,7 +21,7 @@ from roadproof.world.signals import KINDS, RECORDED, Kind
 
 Column: TypeAlias = npt.NDArray[Any]
 
-ROWS = 1 << 14
+ROWS = 1 << 15
 """So many rows of a few columns of doubles fit the cache of a core."""
 
 
