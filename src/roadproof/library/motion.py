@@ -185,8 +185,10 @@ def under(specification: Specification, query: Query, said: Sequence[str]) -> As
     Values of parameters that the claim does not speak of are left out. Raises ``InputError``.
     """
     limits = (x.text for x in _limits(specification, query, said))
-    spoken = {*parameters_of(query.formula)}
-    values = {name: x for name, x in values_said(specification, said).items() if name in spoken}
+    values = values_said(specification, said)
+    if values:
+        spoken = {*parameters_of(query.formula)}
+        values = {name: x for name, x in values.items() if name in spoken}
     told = dict.fromkeys([*said[: is_moving(said)], *limits])
     return AssumedClaim(query, (*told, *value_texts(specification, values)))
 

@@ -46,6 +46,7 @@ class RecallingSession(Session):
         self._names: dict[str, str] = {}
         self._waiting: list[str] = []  # what z3 has not been told
         self._digest = hashlib.blake2b(digest_size=16)
+        self._is_behind = False  # whether some of that are questions
         self._recalls = True
         super().__init__(unit)
 
@@ -64,15 +65,18 @@ class RecallingSession(Session):
 
     def _reply(self, question: str, limits: str = "", most: int | None = None) -> str:
         self._count(limits + question)
-        before = "\n".join(self._waiting)
         self._note(question)
         key = self._digest.digest()
         said = REPLIES.find(key) if self._recalls else None
         if said is not None and (most is None or counted_in(said) - self._counted <= most):
+            self._is_behind = True
             return said
-        self._run(NO_LIMITS + before)
-        said = self._run(limits + self._waiting[-1])
+        if self._is_behind:
+            self._run(NO_LIMITS + "\n".join(self._waiting[:-1]))
+            del self._waiting[:-1]
+        said = self._run(limits + "\n".join(self._waiting))
         self._waiting.clear()
+        self._is_behind = False
         self._recalls = self._recalls and not (limits and answer_in(said) == "unknown")
         if self._recalls:
             REPLIES.keep(key, said)

@@ -8,6 +8,7 @@ import math
 import re
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import lru_cache
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from roadproof.errors import MissingSolverError
@@ -123,8 +124,7 @@ class Session:
         """Values in the last model, in order; None for a number that is not rational."""
         if not expressions:
             return []
-        read = parse_sexpression(self._reply(f"(get-value ({' '.join(expressions)}))"))
-        return [read_value(pair[1]) for pair in read]
+        return [*_values_in(self._reply(f"(get-value ({' '.join(expressions)}))"))]
 
 
 def _limits(meter: Budget, unit: int) -> tuple[int, int]:
@@ -196,6 +196,12 @@ def parse_sexpression(text: str) -> list[SExpression]:
             stack[-1].append(token)
     first = stack[0][0] if stack[0] else []
     return first if isinstance(first, list) else [first]
+
+
+@lru_cache(maxsize=4096)
+def _values_in(said: str) -> tuple[Fraction | bool | None, ...]:
+    """The values that a solver prints, each behind its expression."""
+    return tuple(read_value(pair[1]) for pair in parse_sexpression(said))
 
 
 def read_value(value: SExpression) -> Fraction | bool | None:
