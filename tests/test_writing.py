@@ -1,7 +1,9 @@
 """Files appear whole or not at all; what is no file is written to and stays what it is."""
 
 import errno
+import json
 import os
+import shutil
 import stat
 import subprocess
 import sys
@@ -89,3 +91,49 @@ def test_stdout_on_a_full_disk_is_told() -> None:
     assert done.returncode == 3
     assert done.stderr.startswith("roadproof: cannot write the answer: no space left on device")
     assert len(done.stderr.splitlines()) == 1
+
+
+DRIVE = Path(__file__).parents[1] / "examples" / "catalogue" / "tests" / "drives" / "braking.json"
+NO_TEXT = os.fsdecode(b"gr\xf6sse")
+"""A name in Latin-1, which is no UTF-8."""
+
+
+@pytest.fixture
+def latin(tmp_path: Path) -> Path:
+    """A folder with a drive and with samples, under a name that is no UTF-8."""
+    folder = tmp_path / NO_TEXT
+    try:
+        folder.mkdir()
+    except OSError:
+        pytest.skip("this file system has no such names")
+    shutil.copy(DRIVE, folder)
+    (folder / "samples.csv").write_text("time,vehicle,s\n0,SV,1\n")
+    return folder
+
+
+def test_names_that_are_no_text_are_escaped(latin: Path, tmp_path: Path) -> None:
+    """JSON has an escape that is read as the same name; a page shows it."""
+    answer, page, build = tmp_path / "answer.json", tmp_path / "page.html", tmp_path / "build.xml"
+    assert main(["check", str(latin), "--json", str(answer), "--junit", str(build)]) == 0
+    [finding] = json.loads(answer.read_text("utf-8"))["findings"]
+    assert finding["where"] == str(latin / DRIVE.name)
+    assert main(["report", str(latin), "--out", str(page)]) == 0
+    assert "\\udcf6" in page.read_text("utf-8")
+    assert "\\udcf6" in build.read_text("utf-8")
+    out = ["--out", str(tmp_path / "out"), "--no-pictures", "--jobs", "1"]
+    assert main(["catalogue", str(latin / DRIVE.name), "--among", "4", "--no-classes", *out]) in (0, 10)
+
+
+@pytest.mark.parametrize(
+    "command", [["monitor", "4"], ["evaluate", "--out", "out"], ["convert", "--out", "out"]]
+)
+def test_recordings_of_such_names_are_refused(
+    command: list[str],
+    latin: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main([*command, str(latin / "samples.csv")]) == 3
+    assert "this path is not UTF-8 text" in capsys.readouterr().err

@@ -164,7 +164,12 @@ def write_json(path: Path, data: Mapping[str, object]) -> None:
 
 def json_bytes(data: Mapping[str, object]) -> bytes:
     """Plain data as the bytes of a JSON file."""
-    return (json.dumps(data, indent=2, ensure_ascii=False) + "\n").encode("utf-8")
+    return utf8(json.dumps(data, indent=2, ensure_ascii=False) + "\n")
+
+
+def utf8(text: str) -> bytes:
+    """A text in UTF-8. Bytes of a file's name that are not UTF-8 become escapes, which JSON reads again."""
+    return text.encode("utf-8", "backslashreplace")
 
 
 def read_limited(path: Path, most: int, advice: str) -> bytes:

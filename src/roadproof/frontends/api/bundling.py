@@ -26,7 +26,7 @@ from roadproof.frontends.settings.keywords import BundleKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Bundle as Options
 from roadproof.runtime import pins as packages
-from roadproof.runtime.files import whole_file
+from roadproof.runtime.files import utf8, whole_file
 from roadproof.runtime.records import dataclass
 from roadproof.runtime.version import VERSION
 from roadproof.verdict import ExitCode
@@ -135,7 +135,7 @@ def _page(
         made = page(*named, out=Path(folder) / PAGE, specs=specs, progress=progress, title="Bundle")
         if made.checked is None:
             raise UsageError(f"{', '.join(map(str, named))}: no evidence to check; name folders of --out")
-        return made.text.encode(), made.checked
+        return utf8(made.text), made.checked
 
 
 def _packages(files: dict[str, bytes], wheel: str | Path | None, with_wheels: bool) -> list[packages.Pin]:

@@ -21,7 +21,7 @@ from roadproof.library.loading import load_library
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.specification import Library
 from roadproof.library.words import words_of
-from roadproof.runtime.files import whole_file
+from roadproof.runtime.files import utf8, whole_file
 from roadproof.runtime.records import dataclass
 from roadproof.runtime.version import VERSION
 from roadproof.verdict import ExitCode
@@ -58,7 +58,7 @@ class Page:
             if wrong
             else ""
         )
-        size = f"{len(self.text.encode()) / 1e6:.1f} MB"
+        size = f"{len(utf8(self.text)) / 1e6:.1f} MB"
         return f"{self.path}: {told}, {size}, in one file that needs no network{bad}"
 
 
@@ -107,7 +107,7 @@ def page(*results: str | Path, out: str | Path, **options: Unpack[PageKeywords])
     )
     text = page_of(said, summary, [x.html for x in sections], book.documents)
     with whole_file(target) as file:
-        file.write(text.encode("utf-8"))
+        file.write(utf8(text))
     return Page(target, text, len(book.documents), len(given.results) + bool(alone), checked)
 
 

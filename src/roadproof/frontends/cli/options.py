@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.streams import takes_everything
 from roadproof.frontends.settings.flags import section
-from roadproof.runtime.files import whole_file, write_whole
+from roadproof.runtime.files import utf8, whole_file, write_whole
 
 if TYPE_CHECKING:
     from roadproof.evidence.strict import JsonObject
@@ -32,9 +32,9 @@ def write_build_results(args: argparse.Namespace, found: object) -> None:
 
     assert isinstance(found, BuildResult)
     if args.junit is not None:
-        write_whole(args.junit, found.to_junit().encode())
+        write_whole(args.junit, utf8(found.to_junit()))
     if args.sarif is not None:
-        write_whole(args.sarif, found.to_sarif().encode())
+        write_whole(args.sarif, utf8(found.to_sarif()))
 
 
 def print_answer(found: _Answer, target: str | None) -> None:
@@ -56,7 +56,7 @@ def write_json(data: Mapping[str, object], target: str) -> None:
         print(text, end="")
         return
     with whole_file(Path(target)) as file:
-        file.write(text.encode("utf-8"))
+        file.write(utf8(text))
 
 
 def add_what_arguments(parser: argparse.ArgumentParser, every: str) -> None:

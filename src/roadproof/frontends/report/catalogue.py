@@ -20,6 +20,7 @@ from roadproof.frontends.report.figures import count_axis, make_figure
 from roadproof.frontends.report.sheet import Column, Mark, Sheet, csv_text
 from roadproof.frontends.report.sheet import as_csv as csv_of
 from roadproof.library.scenarios import number_in
+from roadproof.runtime.files import utf8
 from roadproof.verdict import Verdict
 
 MOST_TOLD, MOST_ALIKE = 40, 8
@@ -151,7 +152,7 @@ def tables(result: Result) -> dict[str, bytes]:
         "drivers.csv": drivers_csv(result.decisions),
         "junit.xml": as_junit(tests, found, in_force),
     }
-    return {name: text.encode() for name, text in made.items()}
+    return {name: utf8(text) for name, text in made.items()}
 
 
 def former_table(name: str, content: bytes) -> bytes:

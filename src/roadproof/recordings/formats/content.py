@@ -56,6 +56,14 @@ class ByteCounts:
     strange: bool
 
 
+def refuse_name(path: Path) -> None:
+    """Raises ``InputError`` for a path that polars does not take."""
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:
+        raise InputError(f"{path}: this path is not UTF-8 text; rename the file or its folder") from None
+
+
 @dataclass(frozen=True)
 class Content:
     """What is in a file, without the mark of UTF-8: looked at piece by piece, and not kept.
@@ -71,6 +79,7 @@ class Content:
     @classmethod
     def of(cls, path: Path, thousands: bool = False) -> "Content":
         """Raises ``InputError`` for a file that cannot be read or is empty. ``thousands``: see plain_text."""
+        refuse_name(path)
         try:
             kept = None if path.is_file() else path.read_bytes().removeprefix(_MARK)
             found = cls(path, stamp_of(path), kept)

@@ -22,7 +22,7 @@ from roadproof.errors import InputError
 from roadproof.evidence.codec import write
 from roadproof.recordings.formats import windows
 from roadproof.recordings.formats.believable import PlausibilityChecks
-from roadproof.recordings.formats.content import require_unchanged, stamp_of
+from roadproof.recordings.formats.content import refuse_name, require_unchanged, stamp_of
 from roadproof.recordings.formats.recording import (
     Integers,
     Lane,
@@ -193,6 +193,7 @@ def _of_vehicles(said: Head, vehicles: Integers) -> Head:
 
 def _read_rows(table: Path, start: Integers, vehicles: Integers) -> dict[str, Column]:
     """The samples of some vehicles, in order; those that lie near each other are read at once."""
+    refuse_name(table)
     pl = polars_module()
     begin, end = start[vehicles], start[vehicles + 1]
     apart = np.flatnonzero(begin[1:] - end[:-1] > _NEAR) + 1

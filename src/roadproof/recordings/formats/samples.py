@@ -19,6 +19,7 @@ import numpy.typing as npt
 from roadproof.errors import InputError
 from roadproof.library.roles import vehicle_order
 from roadproof.reasons import Why
+from roadproof.recordings.formats.content import refuse_name
 from roadproof.recordings.formats.contradictions import contradictions
 from roadproof.recordings.formats.plausible import (
     LARGEST_ACCELERATION,
@@ -78,6 +79,7 @@ def count_rows(path: Path) -> int:
 
 @contextmanager
 def _readable(path: Path) -> Iterator[None]:
+    refuse_name(path)
     pl = polars_module()
     try:
         yield

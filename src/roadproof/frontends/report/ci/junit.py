@@ -5,6 +5,7 @@ from itertools import groupby
 from xml.etree import ElementTree as xml
 
 from roadproof.frontends.report.ci.cases import Case, State
+from roadproof.runtime.files import utf8
 
 _ELEMENTS: dict[State, str] = {"failed": "failure", "undecided": "error"}
 _FORBIDDEN = {code: "\N{REPLACEMENT CHARACTER}" for code in range(32) if chr(code) not in "\t\n\r"}
@@ -35,7 +36,7 @@ def as_before_1_0(content: bytes) -> bytes:
         for x in wrong:
             x.tag = "failure"
             x.attrib.pop("type", None)
-    return as_text(suites).encode()
+    return utf8(as_text(suites))
 
 
 def as_text(suites: xml.Element) -> str:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from roadproof.evidence.finding import NO_EVIDENCE, Finding
 from roadproof.frontends.report.explore import show
+from roadproof.runtime.files import utf8
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -141,7 +142,7 @@ def page(title: str, summary: str, sections: Sequence[str], documents: Sequence[
 def _packed(document: Document) -> str:
     """A document as gzipped JSON in base64, which the browser unpacks when it is asked for."""
     text = json.dumps(document.as_json(), ensure_ascii=False, separators=(",", ":"))
-    return base64.b64encode(gzip.compress(text.encode(), mtime=0)).decode()
+    return base64.b64encode(gzip.compress(utf8(text), mtime=0)).decode()
 
 
 @cache
