@@ -120,20 +120,28 @@ def test_names_that_are_no_text_are_escaped(latin: Path, tmp_path: Path) -> None
     assert main(["report", str(latin), "--out", str(page)]) == 0
     assert "\\udcf6" in page.read_text("utf-8")
     assert "\\udcf6" in build.read_text("utf-8")
-    out = ["--out", str(tmp_path / "out"), "--no-pictures", "--jobs", "1"]
-    assert main(["catalogue", str(latin / DRIVE.name), "--among", "4", "--no-classes", *out]) in (0, 10)
 
 
 @pytest.mark.parametrize(
-    "command", [["monitor", "4"], ["evaluate", "--out", "out"], ["convert", "--out", "out"]]
+    "command",
+    [
+        "monitor 4 {}/samples.csv",
+        "evaluate {}/samples.csv --out out",
+        "convert {}/samples.csv --out out",
+        "catalogue {} --out out",
+        "catalogue {}/braking.json --out out",
+        "witness 4 --spec {}/mine.spec",
+        "bundle {} --out out.tar.gz",
+    ],
 )
-def test_recordings_of_such_names_are_refused(
-    command: list[str],
+def test_what_evidence_names_has_to_be_text(
+    command: str,
     latin: Path,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
+    """``check`` refuses such a name, and polars does not read such files."""
     monkeypatch.chdir(tmp_path)
-    assert main([*command, str(latin / "samples.csv")]) == 3
+    assert main(command.replace("{}", latin.name).split()) == 3
     assert "this path is not UTF-8 text" in capsys.readouterr().err

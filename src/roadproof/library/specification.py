@@ -19,7 +19,7 @@ from roadproof.logic import syntax
 from roadproof.logic.custom_names import freedom_of, own_signal
 from roadproof.logic.formula import Formula
 from roadproof.logic.show import text
-from roadproof.runtime.files import read_limited
+from roadproof.runtime.files import read_limited, refuse_name
 from roadproof.runtime.records import dataclass
 from roadproof.world.signals import FIXED, SIGNALS
 
@@ -167,6 +167,7 @@ def read_specification(path: Path) -> Source:
     Raises ``InputError`` where it cannot be read as UTF-8 text.
     """
     path = on_request().get(str(path), path)
+    refuse_name(path)
     data = read_limited(path, LARGEST_FILE, "split it, or name another file")
     try:
         return Source(str(path), data.decode("utf-8"))

@@ -172,6 +172,14 @@ def utf8(text: str) -> bytes:
     return text.encode("utf-8", "backslashreplace")
 
 
+def refuse_name(path: Path) -> None:
+    """Raises ``InputError`` for a path that is no text: evidence may not name it, and polars takes none."""
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:
+        raise InputError(f"{path}: this path is not UTF-8 text; rename the file or its folder") from None
+
+
 def read_limited(path: Path, most: int, advice: str) -> bytes:
     """The bytes of a file of at most ``most``. Raises ``InputError``, with ``advice`` where it is larger."""
     try:

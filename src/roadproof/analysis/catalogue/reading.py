@@ -17,6 +17,7 @@ from roadproof.recordings.evaluate.one_trace import is_pair
 from roadproof.recordings.formats.samples import HEADER
 from roadproof.recordings.formats.source import TRACK_FILES, first_line
 from roadproof.recordings.formats.storyboard.distributions import scenarios_of, split
+from roadproof.runtime.files import refuse_name
 
 _LOOK = 400  # bytes of a file that tell what it is
 
@@ -83,6 +84,7 @@ def _with_own_ids(found: Iterable[_Found]) -> Iterator[Entry]:
 def _file(path: Path, specification: Specification) -> list[_Found]:
     if not path.exists() and split(path) is None:
         raise InputError(f"{path} does not exist")
+    refuse_name(path)
     if path.suffix == ".toml":
         return _listed(path, specification)
     return [_Found(Concrete(x.stem, str(x)), str(path)) for x in scenarios_of(path)]
@@ -110,6 +112,7 @@ def _folder(
         if answers & {*path.parents}:
             continue
         if is_test(path):
+            refuse_name(path)
             for one in scenarios_of(path):
                 name = one.relative_to(folder).with_suffix("").as_posix()
                 known = {*taken, *(x.entry.id for x in found)}

@@ -26,7 +26,7 @@ from roadproof.frontends.settings.keywords import BundleKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Bundle as Options
 from roadproof.runtime import pins as packages
-from roadproof.runtime.files import utf8, whole_file
+from roadproof.runtime.files import refuse_name, utf8, whole_file
 from roadproof.runtime.records import dataclass
 from roadproof.runtime.version import VERSION
 from roadproof.verdict import ExitCode
@@ -120,9 +120,11 @@ def _tests_of(evidence: Sequence[Path]) -> Iterator[Path]:
 
 
 def _files(paths: Iterable[Path]) -> Iterator[Path]:
-    """All files of folders and files, once; hidden ones are left out."""
+    """All files of folders and files, once; hidden ones are left out. Raises ``InputError``."""
     found = (y for x in paths for y in (sorted(x.rglob("*")) if x.is_dir() else [x]))
-    yield from dict.fromkeys(x for x in found if x.is_file() and not x.name.startswith("."))
+    for file in dict.fromkeys(x for x in found if x.is_file() and not x.name.startswith(".")):
+        refuse_name(file)
+        yield file
 
 
 def _page(

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from roadproof.errors import InputError
+from roadproof.runtime.files import refuse_name
 
 _THOUSANDS = re.compile(r"-?\d{1,3}(,\d{3})+(\.\d+)?")
 
@@ -54,14 +55,6 @@ class ByteCounts:
     commas: int
     quoted: bool
     strange: bool
-
-
-def refuse_name(path: Path) -> None:
-    """Raises ``InputError`` for a path that polars does not take."""
-    try:
-        str(path).encode()
-    except UnicodeEncodeError:
-        raise InputError(f"{path}: this path is not UTF-8 text; rename the file or its folder") from None
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from roadproof.errors import InputError
 from roadproof.evidence.codec import write
 from roadproof.recordings.formats import windows
 from roadproof.recordings.formats.believable import PlausibilityChecks
-from roadproof.recordings.formats.content import refuse_name, require_unchanged, stamp_of
+from roadproof.recordings.formats.content import require_unchanged, stamp_of
 from roadproof.recordings.formats.recording import (
     Integers,
     Lane,
@@ -36,7 +36,7 @@ from roadproof.recordings.formats.samples import CONVERTED
 from roadproof.recordings.formats.source import Files, Format, RecordingSource, with_suffix
 from roadproof.recordings.formats.table import Column, Frame, joined, polars_module
 from roadproof.recordings.formats.windows import Window, WindowedRecording, divide, undivided
-from roadproof.runtime.files import read_limited, write_json, write_whole
+from roadproof.runtime.files import read_limited, refuse_name, write_json, write_whole
 from roadproof.runtime.version import VERSION
 from roadproof.world.road import Lanelet
 from roadproof.world.signals import RECORDED

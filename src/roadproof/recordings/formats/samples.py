@@ -19,7 +19,6 @@ import numpy.typing as npt
 from roadproof.errors import InputError
 from roadproof.library.roles import vehicle_order
 from roadproof.reasons import Why
-from roadproof.recordings.formats.content import refuse_name
 from roadproof.recordings.formats.contradictions import contradictions
 from roadproof.recordings.formats.plausible import (
     LARGEST_ACCELERATION,
@@ -45,6 +44,7 @@ from roadproof.recordings.formats.table import (
     read_pieces,
     read_table,
 )
+from roadproof.runtime.files import refuse_name
 from roadproof.world.models import load_recorded_road
 from roadproof.world.signals import RECORDED, SIGNALS, SIZES
 
