@@ -5,6 +5,7 @@ import os
 import shlex
 from collections.abc import Iterator
 from dataclasses import FrozenInstanceError, dataclass, fields, replace
+from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -382,8 +383,13 @@ OF_A_CAR = (
 )
 
 
+@cache
+def behind():
+    return rp.prove(BEHIND, assume="motion", jobs=1)
+
+
 def test_an_answer_says_what_it_assumes():
-    answer = rp.prove(BEHIND, assume="motion", jobs=1)
+    answer = behind()
     assert str(answer).startswith(f"PROVED  assuming motion: {BEHIND}\n")
     [row], [said] = answer.rows(), answer.as_data()["verdicts"]
     assert (row["assuming"], row["refuted_by"]) == ("motion", None)
@@ -392,10 +398,7 @@ def test_an_answer_says_what_it_assumes():
 
 
 def test_a_claim_may_say_itself_what_it_assumes():
-    assert (
-        rp.prove(f"assuming motion: {BEHIND}", jobs=1).verdicts
-        == rp.prove(BEHIND, assume="motion", jobs=1).verdicts
-    )
+    assert rp.prove(f"assuming motion: {BEHIND}", jobs=1).verdicts == behind().verdicts
     iso = rp.load()
     built = rp.G(rp.SV.v_lon <= rp.POV.v_lon) & (rp.SV.s < rp.POV.s)
     assert rp.prove(built >> rp.G(rp.SV.s <= rp.POV.s), using=iso, assume="motion", jobs=1).verdict is (

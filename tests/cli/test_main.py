@@ -260,8 +260,9 @@ def test_every_verdict_has_a_colour() -> None:
 def test_verdicts_are_coloured_on_terminals_only() -> None:
     plain = in_pipe(*PROVE)
     assert plain.startswith("PROVED")
-    assert on_terminal(*PROVE, columns=300).startswith(GREEN)
-    assert COLOUR.sub("", on_terminal(*PROVE, columns=300)) == plain
+    coloured = on_terminal(*PROVE, columns=300)
+    assert coloured.startswith(GREEN)
+    assert COLOUR.sub("", coloured) == plain
     assert in_pipe(*PROVE, FORCE_COLOR="1").startswith(GREEN)
     for more in ({"NO_COLOR": "1"}, {"TERM": "dumb"}, {"NO_COLOR": "1", "FORCE_COLOR": "1"}):
         assert on_terminal(*PROVE, columns=300, **more) == plain

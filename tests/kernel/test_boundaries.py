@@ -1,5 +1,6 @@
 """Formulas of driver models against the motions of proofs/kernel/Prescribed.v, as Coq proves them."""
 
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -16,7 +17,7 @@ from roadproof.evidence.kernel.printer import CLOSE, Printer
 from roadproof.evidence.kernel.statement import formals_of
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import load_library
-from roadproof.library.specification import Source, Specification
+from roadproof.library.specification import Library, Source, Specification
 
 PERCEPTIONS, GATES = ("time", "distance", "overlap"), ("none", "before_perception", "before_delay")
 CELLS = [
@@ -38,9 +39,14 @@ WITHOUT = [
 ]
 
 
-def specification(options: dict[str, str], *changes: str) -> Specification:
+@cache
+def library(*changes: str) -> Library:
     sources = [Source(f"changed-{k}.spec", x) for k, x in enumerate(changes)]
-    return load_library([Path("driver"), *sources]).select("base", options)
+    return load_library([Path("driver"), *sources])
+
+
+def specification(options: dict[str, str], *changes: str) -> Specification:
+    return library(*changes).select("base", options)
 
 
 def boundary(manoeuvre: str, model: str) -> Boundary:
