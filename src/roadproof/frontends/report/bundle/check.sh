@@ -18,7 +18,7 @@ version=$("$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])') || e
 place=$(mktemp -d) || exit 2
 trap 'rm -rf "$place"' EXIT
 "$python" -m venv "$place/environment" || exit 2
-"$place/environment/bin/python" -m pip install --quiet --disable-pip-version-check --require-hashes --no-deps @wheels@ -r requirements.txt || exit 2
+"$place/environment/bin/python" -m pip install --quiet --no-compile --disable-pip-version-check --require-hashes --no-deps @wheels@ -r requirements.txt || exit 2
 HOME=$place ROADPROOF_QUIET=1 PATH=$place/environment/bin:$PATH
 export HOME ROADPROOF_QUIET PATH
 unset PYTHONPATH
