@@ -28,24 +28,24 @@ tests:
                                          like are SV, and of two vehicles the other one is POV
 
 examples:
-  roadproof catalogue tests                            what is tested, and what is not
-  roadproof catalogue tests --complete more            drives for what is not, as tests in the folder more
+  roadproof catalogue tests                            which scenarios are tested, and which are not
+  roadproof catalogue tests --complete more            drives for the others, as tests in the folder more
   roadproof catalogue tests more --out report          matrix.csv, junit.xml, a picture, evidence
   roadproof catalogue tests --roles any --lanes any --start any
   roadproof catalogue tests --gaps                     and gaps: danger that no scenario covers, in classes
   roadproof catalogue tests --complete more --spread 3 --format openscenario,csv
   roadproof catalogue tests --complete more --objective severe
-  roadproof catalogue tests --unpreventable careful    which tests begin with what nobody could prevent
-  roadproof catalogue tests --drivers careful,r157     what becomes of tests under these driver models only
+  roadproof catalogue tests --unpreventable careful    tests whose danger no careful driver could prevent
+  roadproof catalogue tests --drivers careful,r157     judge tests by these driver models only
   roadproof check report                               judge all tests again; stale ones are named
   roadproof catalogue tests --set base,ext             base, and figures of how much of ext is tested
 
 A test that cannot be read is a fault of this test; all others are judged.
-A drive file fixes roles, lane and start; samples fix roles where vehicles are called SV and POV, and are
-looked at in all lanes from all instants on. Which class of gap a test shows is told in any case; --gaps asks
-for a test of each class that is not proved empty, which takes as long as roadproof coverage.
-Exit code 0 where all is tested and each test is what it claims, 10 where not, 20 where something is in doubt,
-with --gaps also whether a class of gaps is empty, with --explore how far drives of a class go.
+A drive file fixes roles, lane and start. Samples fix roles if vehicles are called SV and POV; all lanes and
+all instants are tried. The class of gap that a test shows is always named; --gaps asks for a test of each
+class that is not proved empty, which takes as long as roadproof coverage.
+Exit codes: 0 if all is tested and each test shows what it claims, 10 if not, 20 if something is undecided;
+with --gaps also if a class of gaps may be empty, with --explore if the range of a class is undecided.
 """
 OPTIONS = Catalogue
 

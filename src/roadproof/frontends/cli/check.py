@@ -24,18 +24,18 @@ examples:
   roadproof check mine/ --spec mine.spec           claims that were made with definitions of yours
   roadproof check case.toml                        all evidence of an assurance case, as roadproof assurance
 
-A certificate is accepted when the claim, read with the library at hand, and the certificate's instances
-give the very query that is stored, and the solver answers unsat to it. A drive file is accepted when its
-formula holds on its drive, judged exactly in dense time. A NONE-WITHIN is accepted when its tree refutes
-the question, which is encoded again in exact numbers. The index of a folder is a part of the evidence:
-each entry must be that of its file, and no file may be without one; kept answers (answers.jsonl) too. Where
-an index names specification files beside it, such as classes.spec, these are put on top of the library,
-unless they would change what is there.
+A certificate is accepted when two things hold: the claim and the certificate's instances, read with the
+present library, give the stored query; and the solver answers unsat to it. A drive file is accepted when
+its formula holds on its drive, judged exactly in dense time. A NONE-WITHIN is accepted when its tree refutes
+the question, which is encoded again in exact numbers. The index of a folder is a part of the evidence: each
+entry must equal its file, and each file must have an entry; so must kept answers (answers/*.json). If an
+index names specification files beside it, such as classes.spec, they are added to the library, unless they
+would change its definitions.
 
-A line for each claim says what was checked, and what was not; fields of an index and files that nothing is
-compared with are listed below. Exit code 10 where something is rejected, 20 where the solver did not decide
-or no evidence was accepted at all, 3 where a file is damaged or speaks of definitions that are not at hand.
-For pipelines: with --strict also 20 where an answer has no evidence, such as UNKNOWN or NONE-WITHIN.
+A line for each claim lists the checked and unchecked parts; unchecked fields of an index and unchecked files
+follow below. Exit codes: 10 if something is rejected; 20 if the solver did not decide, or no evidence was
+accepted; 3 if a file is damaged or needs definitions that are missing. For pipelines: with --strict also 20
+if an answer has no evidence, such as UNKNOWN or NONE-WITHIN.
 """
 OPTIONS = Check
 _THERE = {
@@ -45,7 +45,7 @@ _THERE = {
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("paths", metavar="FILE|DIR", nargs="+", type=Path)
+    parser.add_argument("paths", metavar="FILE|DIR", nargs="+", type=Path, help="evidence, or folders of it")
 
 
 def run(args: argparse.Namespace) -> int:

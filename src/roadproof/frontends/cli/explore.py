@@ -21,11 +21,11 @@ examples:
   roadproof explore 1 --unpreventable careful --vary cc_delay=0.3:1.5    a value of the driver model
   roadproof explore --spec driver 'unpreventable_cutIn_careful(SV,POV)' --vary cc_delay=0.3:1.5
 
-Limits are v_lon, v_lat, a_lon and a_lat, each .min and .max. Where durations change, dt is the coarsest step
-that divides them, and --dt its upper bound. A drive that was found is judged at every other value, so
-most values take no search. A value that none is found for costs up to three times the --effort.
-Nothing is claimed of values between those looked at, and no extreme is called the best there is: the
-other side of the bracket is printed with what is known of it.
+Limits are v_lon, v_lat, a_lon and a_lat, each .min and .max. If durations change, dt is the coarsest step
+that divides them, and --dt its upper bound. Each drive is judged at all other values, so most values need no
+search. A value without a drive costs up to three times the --effort. The answer claims nothing about values
+between those examined. An extreme is a bracket: a drive on one side, and on the other the reason why no
+better one is known.
 
 A formula about one instant that no engine reads (a driver model) is proved impossible at single values.
 

@@ -20,10 +20,10 @@ examples:
   roadproof preventable cut-in --option cc_perception=overlap     another reading of the regulation
   roadproof preventable cut-in --model careful --option cc_aeb=max    AEB after full wrap
 
-A plate varies two initial values and fixes the others. On each of its lines the ends of what is unpreventable
-are exact; a judged drive on each side follows the model, and touches the other vehicle, or never does. The
-lemmas say why the formula (--spec driver) is the boundary. The fuzzy safety model (fsm) is a controller that
-looks ten times a second: its lines are places decided one by one, and nothing is claimed between them.
+A plate varies two initial values and fixes the others. On each of its lines, the ends of the unpreventable
+range are exact. A judged drive on each side follows the model: one ends in a collision, the other never does.
+The lemmas say why the formula (--spec driver) is the boundary. The fuzzy safety model (fsm) is a controller
+that looks ten times a second: its points are decided one by one, and nothing is claimed between them.
 With --out: evidence, plates.csv, plates.png.
 """
 OPTIONS = Preventable

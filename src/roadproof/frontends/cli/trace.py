@@ -17,7 +17,7 @@ examples:
   roadproof trace requirements.toml --out trace          also as page, CSV, Markdown and JSON
   roadproof trace requirements.toml --accept             remember what each link rests on
   roadproof trace requirements.toml --reqif states.reqif for a requirements tool
-  roadproof trace --baseline old/trace.json new/trace.json    what got better, got worse, is new or gone
+  roadproof trace --baseline old/trace.json new/trace.json    links that are better, worse, new or gone
 
 requirements.toml:
   [trace]
