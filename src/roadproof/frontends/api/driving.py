@@ -96,6 +96,9 @@ def drive(
     from roadproof.engines.search.question import assignments, usual_road
 
     home = definitions_of(using)
+    for name, moved in vehicles.items():
+        if not isinstance(moved, Motion):
+            raise UsageError(f"vehicles[{name!r}]={moved!r}: write what rp.motion returns")
     scenario, query = home.numbered(what, vehicles)
     if scenario is not None and not {*query.vehicles} <= {*vehicles}:
         roles = cast_of([*vehicles], query.vehicles, {}, "drive: vehicles")

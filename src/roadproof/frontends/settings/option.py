@@ -2,7 +2,7 @@
 
 import dataclasses
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from difflib import get_close_matches
 from functools import partial
 from numbers import Integral
@@ -77,7 +77,7 @@ class Settings:
     @classmethod
     def of(cls, given: Mapping[str, object]) -> Self:
         """The settings that keyword arguments give. Raises ``TypeError``, ``UsageError``."""
-        known = cls.options()
+        known, several = cls.options(), _lists(cls)
         for name, value in given.items():
             if name not in known or not known[name].keyword:
                 near = get_close_matches(name, [x for x in known if known[x].keyword], n=1)
@@ -85,7 +85,16 @@ class Settings:
                 raise TypeError(f"{cls.__name__.lower()}() got an unexpected keyword argument {name!r}{hint}")
             if value is not getattr(cls, name):
                 known[name].check(name, value)
+                if name in several and (isinstance(value, str) or not isinstance(value, Iterable)):
+                    shown = repr(value)[:60]
+                    raise UsageError(f"{name}={shown}: write a list, such as {name}=[{shown}]")
         return cls(**given)
+
+
+def _lists(settings: type[Settings]) -> set[str]:
+    """The options that take several values, and none by itself."""
+    found = dataclasses.fields(settings)
+    return {x.name for x in found if str(x.type).startswith(("Iterable", "Sequence"))}
 
 
 def takes(settings: type[Settings]) -> Callable[[F], F]:
