@@ -14,6 +14,7 @@ import pytest
 from roadproof.errors import InputError, TextError, UsageError
 from roadproof.library import scenario_references as references
 from roadproof.library import scenarios
+from roadproof.library.alike import likes_of
 from roadproof.library.bind import bind, default_values
 from roadproof.library.elaborate import read_claim, signature
 from roadproof.library.loading import build_library, bundled_library
@@ -36,7 +37,7 @@ def with_text(text: str, set_name: str = "base") -> Specification:
 
 def test_the_paper_has_24_scenarios_in_three_sectors() -> None:
     assert scenarios.numbers_of(BASE) == tuple(range(1, 25))
-    assert scenarios.likes_of(BASE) == {n: (n - 1) % 8 + 1 for n in range(1, 25)}
+    assert likes_of(BASE) == {n: (n - 1) % 8 + 1 for n in range(1, 25)}
     sectors = [without_names(scenarios.sector(BASE, n, ("SV", "POV")).formula) for n in range(1, 25)]
     assert [sectors.index(s) + 1 for s in sectors] == [1] * 8 + [9] * 8 + [17] * 8
 

@@ -22,6 +22,7 @@ from roadproof.evidence.answers import overlap as kept_answers
 from roadproof.evidence.answers.overlap import SCHEMA
 from roadproof.evidence.settled import Settled
 from roadproof.library import scenarios as s
+from roadproof.library.alike import likes_of
 from roadproof.library.compose import both, either, eventually, negation
 from roadproof.library.elaborate import StatedQuery, read_claim
 from roadproof.library.specification import Query, Specification
@@ -166,7 +167,7 @@ class Overlap:
 
     @cached_property
     def _likes(self) -> dict[str, dict[int, int]]:
-        return {name: s.likes_of(self.basis.specification.in_set(name)) for name in self.basis.set_names}
+        return {name: likes_of(self.basis.specification.in_set(name)) for name in self.basis.set_names}
 
     def settle(self, piece: Group) -> dict[str, PairVerdict]:
         """The seed is solved, and the others are answered with its help."""

@@ -23,6 +23,7 @@ from roadproof.evidence.countermodel import Countermodel, read_trace, trace_data
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.settled import Settled
 from roadproof.library import scenarios as s
+from roadproof.library.alike import likes_of
 from roadproof.library.bind import bind
 from roadproof.library.compose import both, equivalence, implication, negation
 from roadproof.library.elaborate import StatedQuery, read_tree
@@ -207,7 +208,7 @@ class Redundancy(Unprepared):
 
     @cached_property
     def _likes(self) -> dict[int, int]:
-        return s.likes_of(self.basis.specification)
+        return likes_of(self.basis.specification)
 
     def settle(self, piece: ScenarioTask) -> dict[str, ChangeFindings]:
         examining = _ExaminationJobs(self.basis, piece.scenario, piece.learned)
@@ -395,7 +396,5 @@ class _ExaminationJobs:
             return None
         if elsewhere:
             return placed(file, query, library)
-        values = {**self.values, **file.values}
-        if not judge(bind(query.formula, file.road, file.lanes, values), file.drive).holds:
-            return None
-        return judged_as(file, query, library)
+        bound = bind(query.formula, file.road, file.lanes, {**self.values, **file.values})
+        return judged_as(file, query, library) if judge(bound, file.drive).holds else None

@@ -11,10 +11,10 @@ from roadproof.engines.search.outcome import Outcome, Search, undecided
 from roadproof.errors import InputError
 from roadproof.evidence.answers import drives as kept
 from roadproof.evidence.answers.drives import SCHEMA
+from roadproof.library.alike import like_of
 from roadproof.library.bind import values_with
 from roadproof.library.dependence import digest_of
 from roadproof.library.elaborate import StatedQuery, read_claim
-from roadproof.library.scenarios import like_of
 from roadproof.logic.show import declared
 from roadproof.reasons import Reason
 from roadproof.runtime.budget import Effort

@@ -50,7 +50,7 @@ class _Part:
         """
         with _LOCK:
             if self.left:
-                made = _initializer(self.cls) if self.left == ["__init__"] else None
+                made = _initializer(self.cls) if "__init__" in self.left else None
                 found = self._made_by_twin() if made is None else {"__init__": made}
                 for name in self.left:
                     setattr(self.cls, name, found[name])
@@ -113,7 +113,7 @@ def _initializer(cls: Any) -> object | None:
     fields = sorted(dataclasses.fields(cls), key=lambda x: x.kw_only is True)
     if any(x.default_factory is not dataclasses.MISSING or not x.init for x in fields):
         return None
-    given, body = ["self"], [f"set_(self, {x.name!r}, {x.name})" for x in fields]
+    given, body = list[str](), [f"set_(self, {x.name!r}, {x.name})" for x in fields]
     for place, x in enumerate(fields):
         if x.kw_only and not (place and fields[place - 1].kw_only):
             given.append("*")
@@ -121,11 +121,13 @@ def _initializer(cls: Any) -> object | None:
         given.append(x.name if is_required else f"{x.name}=defaults_[{place}]")
     if hasattr(cls, "__post_init__"):
         body.append("self.__post_init__()")
-    lines = "\n  ".join(body or ["pass"])
-    source = f"def make_(set_, defaults_):\n def __init__({', '.join(given)}):\n  {lines}\n return __init__"
-    made = dict[str, Any]()
+    lines = "\n  ".join(body) or "pass"
+    arguments = ", ".join(("self", *given))
+    source = f"def make_(set_, defaults_):\n def __init__({arguments}):\n  {lines}\n return __init__"
+    made: dict[str, Callable[..., Any]] = {}
     exec(source, {"__name__": cls.__module__}, made)
-    found = made["make_"](object.__setattr__, [x.default for x in fields])
+    (make,) = made.values()
+    found = make(object.__setattr__, [x.default for x in fields])
     found.__qualname__ = f"{cls.__qualname__}.__init__"
     found.__annotations__ = {x.name: x.type for x in fields} | {"return": None}
     return cast(object, found)

@@ -15,6 +15,7 @@ from roadproof.drivers.restriction import restriction_of
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.library import scenarios as s
+from roadproof.library.alike import likes_of
 from roadproof.library.bind import bind
 from roadproof.library.specification import Specification
 from roadproof.library.words import called
@@ -127,7 +128,7 @@ def _faults(home: Specification, numbers: Sequence[int]) -> Iterator[str]:
         if not s.follows_template(home, number):
             yield f"{s.name_of(number)} does not follow the template {s.TEMPLATE}; leave it out with --among"
             return
-    likes = s.likes_of(home)
+    likes = likes_of(home)
     sectors = sectors_of(_with_only(home, numbers))
     rows = {tuple(sorted({likes[n] for n in sector})) for sector in sectors}
     if len(rows) > 1:

@@ -15,6 +15,7 @@ from roadproof.analysis.classify.cells import Axis, Cell
 from roadproof.analysis.study.evidence_store import specification_names
 from roadproof.errors import InputError, TextError, UsageError
 from roadproof.library import scenarios as s
+from roadproof.library.alike import likes_of
 from roadproof.library.elaborate import apply_definition
 from roadproof.library.scenarios import disturbance, sector
 from roadproof.library.scenarios import name_of as scenario_name
@@ -163,7 +164,7 @@ def plan_of(specification: Specification, numbers: Sequence[int]) -> Plan:
         raise UsageError(f"there is a set '{SET_NAME}' already: classify the set that it extends")
     if FILE_NAME in specification_names(specification.library):
         raise UsageError(f"--spec: the output file for classes is {FILE_NAME}: rename your file")
-    likes = s.likes_of(specification)
+    likes = likes_of(specification)
     disturbances: dict[int, int] = {}
     sectors: dict[Formula, int] = {}
     groups: dict[tuple[str, ...], dict[int, tuple[int, int]]] = {}

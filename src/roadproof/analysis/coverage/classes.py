@@ -18,6 +18,7 @@ from roadproof.analysis.basis import Basis
 from roadproof.engines.search.question import zones_of
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.library import scenarios as s
+from roadproof.library.alike import likes_of
 from roadproof.library.bind import bind
 from roadproof.library.compose import (
     both,
@@ -288,7 +289,7 @@ class GapClasses:
         self.values = basis.all_values()
         self.sectors = sectors_of(self.specification)
         self.numbers = tuple(number for sector in self.sectors for number in sector)
-        self.likes = s.likes_of(self.specification)
+        self.likes = likes_of(self.specification)
         self.by_number = {number: parts_of(self.specification, number) for number in self.numbers}
         self.parts = [part for number in self.sectors[0] for part in self.by_number[number]]
         self.finest = frozenset(part.key for part in self.parts if part.finest)

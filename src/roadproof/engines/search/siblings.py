@@ -20,7 +20,8 @@ from roadproof.engines.search.question import (
 from roadproof.engines.search.search import Attempt, find_witness
 from roadproof.engines.solve.bounds import value_of
 from roadproof.errors import InputError, UsageError
-from roadproof.library.scenarios import Scenario, applied, like_of
+from roadproof.library.alike import like_of
+from roadproof.library.scenarios import Scenario, applied
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.rewrite import parameters_of
 from roadproof.semantics.exact.exact import judge
