@@ -7,16 +7,21 @@ from fractions import Fraction
 import pytest
 
 import roadproof as rp
+from kernel import raw
 from kernel.needs import needs_coq
 from kernel.test_products import asked
 from planting import plant
 from roadproof.evidence.kernel import accept, cone, squares
 from roadproof.evidence.kernel.accept import prepare
 from roadproof.evidence.kernel.cone import Constraint
+from roadproof.evidence.kernel.constructors import term
 from roadproof.evidence.kernel.coq import ready
+from roadproof.evidence.kernel.instant import reason
 from roadproof.evidence.kernel.reduction import reduce_constraints
 from roadproof.evidence.kernel.source import HEAD
+from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
+from roadproof.logic.rewrite import without_names
 from roadproof.world.polynomial import Polynomial
 from tables import read_table
 
@@ -148,3 +153,34 @@ def test_programs_that_are_too_large_are_not_built():
     known: cone.Products = {}
     assert cone.contradiction(many, 2, known) == (None, cone.MOST_COLUMNS + 1)
     assert not known
+
+
+# Six disjunctions, of which the last alone matters.
+CHOICES = " and ".join(f"({x} <= 0 m or {x} > 1 m)" for x in "abcde")
+MANY_CASES = f"given a, b, c, d, e, x, y: m: {CHOICES} and (x >= 1 m or y >= 1 m) -> x > 0 m or y > 0 m"
+
+
+@needs_coq
+def test_what_contradicts_itself_once_closes_every_case_that_has_it():
+    """Two contradictions, not one for each of 64 cases; Coq refuses them where they are about others."""
+    fact = without_names(read_claim(bundled_library().select("base", {}), MANY_CASES).formula)
+    found = reason(fact, {}, ())
+    assert found.written.count("Absurd") <= 14
+    places = list(re.finditer(r"given_ (\d+)", found.written))
+    others = [
+        f"{found.written[: x.start(1)]}{int(x[1]) + by}{found.written[x.end(1) :]}"
+        for x in places
+        for by in (-1, 1)
+        if int(x[1]) + by >= 0
+    ]
+    atoms = "; ".join(map(term, found.atoms))
+    out = [HEAD, "Open Scope Q_scope.\nOpen Scope nat_scope.\n"]
+    for why in [found.written, *others]:
+        out.append(
+            f"Eval vm_compute in (Roadproof.Products.settles [] [{atoms}] {raw.formula(fact)} {why}).\n"
+        )
+    with ready() as coq:
+        ran = coq.run("".join(out))
+    assert ran.code == 0, ran.complained[:500]
+    answers = re.findall(r"= (true|false)\n", ran.said)
+    assert answers == ["true", *["false"] * len(others)]

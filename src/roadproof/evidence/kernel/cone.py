@@ -6,7 +6,7 @@ there, and their multipliers are computed exactly. Not trusted: Coq adds the pro
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property, lru_cache, reduce
 from itertools import combinations, combinations_with_replacement, islice
@@ -50,6 +50,11 @@ class Constraint:
 
     kind: Kind
     polynomial: Polynomial[int]
+
+    @cached_property
+    def key(self) -> Hashable:
+        """Equal where constraints are."""
+        return self.kind, frozenset(self.polynomial.terms.items())
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,9 @@ then a contradiction of polynomial constraints is looked for (``cone.py``, then 
 quotients and variables taken to be at least 0, or below.
 """
 
+import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
@@ -27,6 +28,8 @@ MOST_PARTS = 400  # of a polynomial
 MOST_CUTS = 2
 LEVELS = (1, 2, 3)
 _PLACES = ("s", "d")
+_GIVEN = re.compile(r"\(given_ (\d+)\)")
+_OPEN = re.compile(r"<(\d+)>")
 
 
 class NoReasonError(Exception):
@@ -39,6 +42,20 @@ class Reason:
 
     written: str
     atoms: tuple[Term, ...]
+
+
+@dataclass(frozen=True)
+class _Core:
+    """Constraints that contradict each other, and why; ``<0>`` in it is how many come after the first."""
+
+    keys: tuple[Hashable, ...]
+    why: str
+
+    def written(self, after: Mapping[Hashable, int]) -> str | None:
+        """The same where so many constraints come ``after`` each; None where one of them is missing."""
+        if not all(x in after for x in self.keys):
+            return None
+        return _OPEN.sub(lambda x: str(after[self.keys[int(x[1])]]), self.why)
 
 
 @dataclass(frozen=True)
@@ -87,6 +104,7 @@ class _Search:
     work: int = MOST_WORK
     sums: int = MOST_SUMS
     products: cone.Products = field(default_factory=dict)
+    cores: list[_Core] = field(default_factory=list)
 
     def run(self) -> str:
         for x in comparisons(self.fact):
@@ -108,6 +126,9 @@ class _Search:
         return self._prove(_State(((False, self.fact),), tuple(reversed(bounds)), table, (0,)))
 
     def _prove(self, state: _State) -> str:
+        known = self._known(state.constraints)
+        if known is not None:
+            return known
         self.left -= 1
         if self.left < 0:
             raise NoReasonError
@@ -134,8 +155,22 @@ class _Search:
         for level in levels:
             found = self._contradiction(state.constraints, level)
             if found is not None:
-                return f"(Absurd {found.written()})"
+                return self._learn(state.constraints, f"(Absurd {found.written()})")
         return None
+
+    def _learn(self, constraints: Sequence[cone.Constraint], written: str) -> str:
+        """Remembers which constraints contradict each other: they close other cases as well."""
+        last = len(constraints) - 1
+        places = sorted({last - int(x) for x in _GIVEN.findall(written)})
+        template = _GIVEN.sub(lambda x: f"(given_ <{places.index(last - int(x[1]))}>)", written)
+        self.cores.append(_Core(tuple(constraints[x].key for x in places), template))
+        return written
+
+    def _known(self, constraints: Sequence[cone.Constraint]) -> str | None:
+        """Why these contradict each other, if that was found out before."""
+        last = len(constraints) - 1
+        after = {x.key: last - place for place, x in enumerate(constraints)}
+        return next((x for core in self.cores if (x := core.written(after)) is not None), None)
 
     def _contradiction(self, constraints: Sequence[cone.Constraint], level: int) -> cone.Sum | None:
         found, work = cone.contradiction(constraints, level, self.products)
@@ -152,7 +187,7 @@ class _Search:
         from roadproof.evidence.kernel import squares  # with numpy and a solver
 
         found = squares.contradiction(state.constraints)
-        return None if found is None else f"(Absurd {found})"
+        return None if found is None else self._learn(state.constraints, f"(Absurd {found})")
 
     # --- facts -------------------------------------------------------------------------------------
 
@@ -173,16 +208,13 @@ class _Search:
                     return f"(Both {number} {inside})"
                 left = tuple(x for x in state.waiting if x != place)
                 return self._prove(replace(state, waiting=left, choices=(*state.choices, place)))
-            case f.Compare(left, op, right):
+            case f.Compare(left, _, right):
                 if isinstance(left, t.Inverse) or isinstance(right, t.Inverse):
                     without = plain(formula)
                     return f"(Plain {number} {self._prove(state.told(place, (sign, without)))})"
-                one_side, other = self._polynomial(state, left), self._polynomial(state, right)
-                if one_side is None or other is None:
+                new = self._constraint(state, sign, formula)
+                if new is None:
                     return None
-                greater = other - one_side if (op in ("<", "<=")) == sign else one_side - other
-                strict = (op in ("<", ">")) == sign
-                new = cone.Constraint("above" if strict else "at least", greater)
                 return f"(Reads {number} {self._prove(state.told(place).constrained(new))})"
             case _:
                 for other_place, (other_sign, other_formula) in enumerate(state.facts):
@@ -192,14 +224,49 @@ class _Search:
                         return f"(Opposed {last - true} {last - false})"
                 return self._prove(state.told(place))
 
+    def _constraint(self, state: _State, sign: bool, compare: f.Compare) -> cone.Constraint | None:
+        """What a comparison says; None where it has to wait until extrema are resolved."""
+        left, op, right = compare.left, compare.op, compare.right
+        one_side, other = self._polynomial(state, left), self._polynomial(state, right)
+        if one_side is None or other is None:
+            return None
+        greater = other - one_side if (op in ("<", "<=")) == sign else one_side - other
+        strict = (op in ("<", ">")) == sign
+        return cone.Constraint("above" if strict else "at least", greater)
+
     def _divide(self, state: _State) -> str | None:
         if not state.choices:
             return None
-        place = state.choices[0]
+        place = next((x for x in state.choices if self._is_settled(state, *state.facts[x])), state.choices[0])
         sign, formula = state.facts[place]
         assert isinstance(formula, f.And | f.Or)
-        one, two = (self._prove(state.told(place, (sign, x))) for x in formula.parts)
-        return f"(Either {len(state.facts) - 1 - place} {one} {two})"
+        one, two = formula.parts
+        first = self._prove(state.told(place, (sign, one)))
+        known = self._known(state.constraints)
+        if known is not None:
+            return known
+        other = self._prove(state.told(place, (sign, two)))
+        return f"(Either {len(state.facts) - 1 - place} {first} {other})"
+
+    def _is_settled(self, state: _State, sign: bool, formula: Formula) -> bool:
+        """Whether at most one of two cases is left by what contradicts each other."""
+        return any(self._is_excluded(state, sign, x) for x in f.children(formula))
+
+    def _is_excluded(self, state: _State, sign: bool, formula: Formula) -> bool:
+        match formula:
+            case f.Not(body):
+                return self._is_excluded(state, not sign, body)
+            case f.And(parts) | f.Or(parts):
+                every = all if isinstance(formula, f.Or) == sign else any
+                return every(self._is_excluded(state, sign, x) for x in parts)
+            case f.Compare():
+                try:
+                    found = self._constraint(state, sign, formula)
+                except NoReasonError:
+                    return False
+                return found is not None and self._known((*state.constraints, found)) is not None
+            case _:
+                return False
 
     # --- terms -------------------------------------------------------------------------------------
 

@@ -19,6 +19,7 @@ from roadproof.evidence.kernel.cone import (
     Column,
     Constraint,
     Monomial,
+    Parts,
     coq,
     joined,
     monomials,
@@ -37,6 +38,8 @@ MOST_BLOCKS = 800
 MOST_FACTORS = 4
 MOST_ITERATIONS = 80
 DEGREES = (2, 3, 4, 5)
+HIGHEST = 6  # of products alone
+MOST_PRODUCTS = 4000
 GRIDS = (16, 1000, 10**6)  # eigenvectors are rounded to fractions with these denominators
 _SMALL = 1e-6  # a share of a Gram matrix that is left out
 _Floats: TypeAlias = "np.ndarray[tuple[int, ...], np.dtype[np.float64]]"
@@ -65,7 +68,8 @@ def contradiction(constraints: Sequence[Constraint]) -> str | None:
     """A sum of products and squares that is absurd, for Coq; None where none is found."""
     try:
         reduction = reduce_constraints(constraints)
-        return next((x for d in DEGREES if (x := _of_degree(reduction, d)) is not None), None)
+        found = next((x for d in DEGREES if (x := _of_degree(reduction, d)) is not None), None)
+        return found or _of_products(reduction)
     except OverflowError:  # a number that no float has
         return None
 
@@ -87,8 +91,33 @@ def _of_degree(reduction: Reduction, degree: int) -> str | None:
             break
     if parts is None:
         return None
+    return _written(parts)
+
+
+def _written(parts: Parts) -> str:
     whole = whole_factor(q for _, q in parts)
     return joined("sum_", [x.written(q * whole, str) for x, q in parts])
+
+
+def _of_products(reduction: Reduction) -> str | None:
+    """A sum of products alone, of a higher degree and of more factors."""
+    products = list(islice(_products(reduction.inequalities), MOST_PRODUCTS + 1))
+    if len(products) > MOST_PRODUCTS:
+        return None
+    columns = [*_multiples(reduction, HIGHEST), *(_column(x, None, reduction) for x in products)]
+    parts = solved(columns)
+    return None if parts is None else _written(parts)
+
+
+def _products(inequalities: Sequence[Inequality]) -> Iterator[_Block]:
+    """Of at most two inequalities that are not linear, with at most two repetitions."""
+    for count in range(MOST_FACTORS + 2):
+        for chosen in combinations_with_replacement(inequalities, count):
+            degrees = [x.polynomial.degree for x in chosen]
+            if sum(degrees) > HIGHEST or sum(x > 1 for x in degrees) > 2:
+                continue
+            if len({id(x) for x in chosen}) >= count - 2:
+                yield _product(chosen, ())
 
 
 def _blocks(inequalities: Sequence[Inequality], degree: int) -> Iterator[_Block]:
@@ -99,18 +128,22 @@ def _blocks(inequalities: Sequence[Inequality], degree: int) -> Iterator[_Block]
                 continue
             if any(a is b and not a.strict for a, b in pairwise(chosen)):
                 continue
-            product: Polynomial[int] = constant(Fraction(1))
-            for x in chosen:
-                product = product * x.polynomial
-            basis = tuple(monomials(variables, (degree - product.degree) // 2))
+            basis = tuple(monomials(variables, (degree - sum(x.polynomial.degree for x in chosen)) // 2))
             repeated = len({id(x) for x in chosen}) < len(chosen)
-            yield _Block(
-                product,
-                all(x.strict for x in chosen),
-                tuple(x.written for x in chosen),
-                prod((x.scale for x in chosen), start=Fraction(1)),
-                basis[:1] if repeated else basis,
-            )
+            yield _product(chosen, basis[:1] if repeated else basis)
+
+
+def _product(chosen: Sequence[Inequality], basis: tuple[Monomial, ...]) -> _Block:
+    product: Polynomial[int] = constant(Fraction(1))
+    for x in chosen:
+        product = product * x.polynomial
+    return _Block(
+        product,
+        all(x.strict for x in chosen),
+        tuple(x.written for x in chosen),
+        prod((x.scale for x in chosen), start=Fraction(1)),
+        basis,
+    )
 
 
 def _multiples(reduction: Reduction, degree: int) -> Iterator[Column]:
