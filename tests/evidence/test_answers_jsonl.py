@@ -257,7 +257,6 @@ def written(folder: Path, end: str = "\n") -> Journal:
 def test_lines_are_numbered_as_in_the_file(tmp_path: Path) -> None:
     journal = written(tmp_path)
     assert [(int(x.name), x.fault) for x in journal.lines] == [(2, ""), (3, "")]
-    assert not journal.torn
 
 
 @pytest.mark.parametrize(
@@ -271,7 +270,6 @@ def test_lines_are_numbered_as_in_the_file(tmp_path: Path) -> None:
 def test_a_last_line_that_was_cut_short_does_not_count(end: str, numbers: list[int], tmp_path: Path) -> None:
     journal = written(tmp_path, end)
     assert [int(x.name) for x in journal.lines] == numbers
-    assert journal.torn == (not end.endswith("\n"))
     assert all(not x.fault for x in journal.lines)
 
 
@@ -287,8 +285,7 @@ def test_a_line_that_is_damaged_in_the_middle_is_told(tmp_path: Path) -> None:
 def test_a_journal_of_one_line_has_no_answers(tmp_path: Path) -> None:
     for end in ("", "\n"):
         (tmp_path / NAME).write_text(json.dumps(HEAD) + end, "utf-8")
-        journal = read_journal(tmp_path / NAME)
-        assert (journal.lines, journal.torn) == ((), False)
+        assert read_journal(tmp_path / NAME).lines == ()
 
 
 def test_a_seal_is_of_the_answer_and_the_question(tmp_path: Path) -> None:
