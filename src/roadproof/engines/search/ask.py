@@ -3,15 +3,10 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from roadproof.engines.search.initial_candidates import is_read
 from roadproof.engines.search.outcome import Outcome, Search, undecided
-from roadproof.engines.search.question import (
-    FoundDrive,
-    SearchProblem,
-    pose,
-)
+from roadproof.engines.search.question import FoundDrive, SearchProblem, pose
 from roadproof.engines.search.search import Attempt, find_witness
 from roadproof.engines.search.siblings import find_once, offered
 from roadproof.evidence.drive_file import DriveFile
@@ -26,9 +21,6 @@ from roadproof.runtime.progress import about, begin
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
-
-if TYPE_CHECKING:
-    pass
 
 # Units of work for a proof that there is none; and where no engine reads all, which is hard to prove, too.
 NEVER, NEVER_UNREAD = 10.0, 2.0
