@@ -400,3 +400,12 @@ def test_a_reader_with_a_fault_reads_another_claim(right, wrong, compiled):
     said = echoed(compiled, [text for text, _ in asked], READER.replace(right, wrong))
     assert len(said) == len(asked)
     assert said != [answer for _, answer in asked]
+
+
+@needs_ocaml
+def test_a_claim_without_a_proof_leaves_nothing_to_ask():
+    found = rp.prove("v_lon(SV) > 3 m/s", kernel="extracted", jobs=1)
+    assert found.kernel is not None
+    assert str(found.kernel).endswith(": nothing asked")
+    proved = rp.prove("v_lon(SV) > 3 m/s -> v_lon(SV) > 2 m/s", kernel="extracted", jobs=1)
+    assert str(proved.kernel).endswith(" s of processor time")

@@ -95,7 +95,8 @@ class KernelAnswer:
 
     def __str__(self) -> str:
         if self.kernel == "extracted":
-            return f"extracted program, OCaml {self.version}: {self.seconds:.2f} s of processor time"
+            spent = f"{self.seconds:.2f} s of processor time" if self.seconds else "nothing asked"
+            return f"extracted program, OCaml {self.version}: {spent}"
         held = f"at most {self.megabytes:.0f} MB" if self.megabytes else "nothing asked"
         axioms = ", ".join(self.axioms) or "none"
         return f"coqc {self.version}: {self.seconds:.1f} s of processor time, {held}; axioms: {axioms}"
