@@ -139,8 +139,8 @@ def _read(path: Path) -> Mapping[str, object]:
 def _sources() -> str:
     """A digest that changes when the program or a model does, so that no state of it answers for another."""
     places = Path(__file__).parents[2], shipped("models")
-    walked = (x for place in places for x in os.walk(place))
-    files = sorted(os.path.join(folder, x) for folder, _, names in walked for x in names if x[-4:] != ".pyc")
+    walked = (x for place in places for x in os.walk(place) if not x[0].endswith("__pycache__"))
+    files = sorted(os.path.join(folder, x) for folder, _, names in walked for x in names)
     stats = [(name, os.stat(name)) for name in files]
     return _digest([(name, said.st_size, said.st_mtime_ns) for name, said in stats])
 
