@@ -183,6 +183,13 @@ def test_names_of_vehicles_are_on_nothing() -> None:
     assert names["POV2"][0] > 17.0
 
 
+def test_a_vehicle_alone_has_no_gaps() -> None:
+    figure = draw_drive(file_of(None, "F (v_lon(SV) > 3 m/s)", SV=driving(0, 30)), LIBRARY)
+    labels = [one.get_ylabel() for one in figure.axes[SNAPSHOTS:]]
+    assert (labels[0], len(labels)) == ("speed, m/s", 2)
+    assert not any("gap" in label for label in labels)
+
+
 def test_the_figure_says_what_it_shows() -> None:
     figure = draw_drive(file_of(), LIBRARY)
     title = figure.get_suptitle().splitlines()

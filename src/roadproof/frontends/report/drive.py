@@ -27,7 +27,7 @@ LETTER = (0.058, 0.13)  # of a vehicle's name, in inches
 
 
 def draw_drive(file: DriveFile, library: Library, title: str = "") -> Any:
-    """The road at some instants, then speeds, gaps and strips over one axis of time.
+    """The road at some instants, then speeds, gaps and strips over one axis of time; no gaps of one vehicle.
 
     The title is the formula where none is given. Raises ``MissingSolverError`` without matplotlib.
     """
@@ -35,17 +35,20 @@ def draw_drive(file: DriveFile, library: Library, title: str = "") -> Any:
     strips = () if judgement is None else data.strips_of(judgement, file.horizon)
     dangers = data.dangers_of(file, library)
     above = [_road_height(file)] * SNAPSHOTS
-    heights = [*above, 1.4, 1.4, 1.2, 0.2 + STRIP * len(strips)]
+    gaps: Mapping[data.Direction, float] = (
+        {"along": 1.4, "across": 1.2} if len(file.drive.vehicles) > 1 else {}
+    )
+    heights = [*above, 1.4, *gaps.values(), 0.2 + STRIP * len(strips)]
     longest = max((2 * x.depth + len(x.name) for x in strips), default=0)
     figure, axes = make_figure(heights, WIDTH + 0.05 * max(0, longest - 50))  # room for names of strips
     colours = dict(zip(data.vehicles_of(file), COLOURS * len(file.drive.vehicles), strict=False))
     _draw_roads(axes[:SNAPSHOTS], file, colours, heights[0])
-    speeds, along, across, below = axes[SNAPSHOTS:]
+    speeds, *between, below = axes[SNAPSHOTS:]
     _speeds(speeds, file, colours)
-    _gaps(along, file, colours, library, "along")
-    _gaps(across, file, colours, library, "across")
+    for one, direction in zip(between, gaps, strict=True):
+        _gaps(one, file, colours, library, direction)
     _draw_strips(below, strips)
-    _share_time((speeds, along, across, below), float(file.horizon), dangers)
+    _share_time((speeds, *between, below), float(file.horizon), dangers)
     for one in axes:
         one.tick_params(axis="x", labelsize=7)
     figure.align_ylabels(axes[SNAPSHOTS:-1])
