@@ -32,6 +32,7 @@ from roadproof.frontends.settings.groups import Budget
 from roadproof.library.bind import bind
 from roadproof.library.scenarios import Scenario, applied, name_of, vehicles_of
 from roadproof.library.specification import Query
+from roadproof.recordings.export.registry import FORMATS
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.exact import judge
 
@@ -264,6 +265,35 @@ def test_what_is_missing_is_made_and_then_nothing_is_missing(
     (tmp_path / "more" / "class_6.json").unlink()
     (tmp_path / "more" / "catalogue.toml").unlink()
     assert ask(few, tmp_path / "more").missing == ("class_6",)
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_what_is_missing_is_written_in_every_format_without_a_specification_of_the_users(
+    name: str, few: Path, tmp_path: Path
+) -> None:
+    """``--spec`` is left out here, so its value is the default of the definition."""
+    chosen = ["--among", "3,4", "--no-classes", "--drivers", "none", "--quiet", "--jobs", "1"]
+    out = tmp_path / "more"
+    assert (
+        main(["catalogue", str(few / "braking.json"), *chosen, "--complete", str(out), "--format", name])
+        == 10
+    )
+    assert (out / "scenario_3.json").exists()
+    assert any(x.is_file() for x in (out / name).rglob("*"))
+
+
+def test_a_claim_of_a_scenario_that_is_not_asked_for_is_told_apart_from_one_that_does_not_exist(
+    few: Path, tmp_path: Path
+) -> None:
+    shutil.copy(few / "braking.json", tmp_path)
+    text = "".join(
+        f'[[test]]\nid = "{n}"\nfile = "braking.json"\nclaims = ["{n}"]\n' for n in ("9", "class_1_2_3")
+    )
+    (tmp_path / "catalogue.toml").write_text(text, "utf-8")
+    found = catalogue(tmp_path, among="1-8", jobs=1, classes=False)
+    remarks = {x.tests: x.told for x in found.tested.faults}
+    assert "scenario_9, which is not among the scenarios of this run" in remarks[("9",)]
+    assert "no scenario and no class of that name" in remarks[("class_1_2_3",)]
 
 
 def test_tables_and_reports(few: Path) -> None:

@@ -385,3 +385,19 @@ def test_nothing_is_written_where_one_of_several_is_refused(tmp_path: Path) -> N
     with pytest.raises(rp.InputError, match="v_lon=-"):
         rp.export([kept()["scenario-04-base"], back], ["csv", "openscenario"], tmp_path / "out")
     assert not (tmp_path / "out").exists()
+
+
+def test_a_drive_prints_in_a_few_lines_and_is_saved_as_evidence(tmp_path: Path) -> None:
+    made = drive("v_lon(SV) > 1 m/s and v_lon(POV) > 1 m/s", pair())
+    assert str(made).splitlines() == [
+        "v_lon(SV) > 1 m/s and v_lon(POV) > 1 m/s  base  WITNESSED  road main-2",
+        "SV s=0 m d=2.6 m v_lon=29 m/s v_lat=0 m/s 1 piece",
+        "POV s=80 m d=2.8 m v_lon=28 m/s v_lat=0 m/s 4 pieces",
+    ]
+    assert len(repr(made)) < 100
+    assert made._repr_html_().count("<tr>") == 3
+    assert "<b>v_lon(SV) &gt; 1 m/s" in made._repr_html_()
+    path = made.save(tmp_path / "made.json")
+    assert rp.check(path, jobs=1).accepted
+    with pytest.raises(InputError, match="made"):
+        made.save(path / "made.json")  # a file is no folder

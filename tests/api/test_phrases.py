@@ -261,3 +261,31 @@ def test_it_can_be_copied_and_sent() -> None:
         assert str(other) == "v_lon(SV) > 3"
     assert len({str(SV), str(SV)}) == 1
     assert hash(SV.v_lon) == hash(rp.call("v_lon", SV))
+
+
+def test_a_quantifier_is_written_in_the_order_of_its_text_too() -> None:
+    formula = rp.call("atLane", SV, rp.lane("M"))
+    for quantifier, word in ((rp.every, "every"), (rp.some, "some")):
+        expected = f"{word} M in lanes: atLane(SV, M)"
+        assert str(quantifier("M", rp.lanes, formula)) == expected
+        assert str(quantifier("M", rp.lanes, lambda K: rp.call("atLane", SV, K))) == expected
+        assert str(quantifier(rp.lanes, lambda M: rp.call("atLane", SV, M))) == expected
+    with_other_lane = rp.every("M", rp.lanes, formula | rp.call("atLane", POV, rp.lane("N")))
+    assert str(with_other_lane) == "given N: lane: every M in lanes: atLane(SV, M) or atLane(POV, N)"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("M", rp.lanes, 3), "needs a domain and a function"),
+        (("M", rp.lanes), "needs a domain and a function"),
+        ((rp.lanes, 3), "needs a domain and a function"),
+        ((rp.lanes, SV), "needs a domain and a function"),
+        (("M", lambda M: M, SV), "needs a domain and a function"),
+        (("M N", rp.lanes, SV), "'M N' is not a name"),
+        (("M", SV.v_lon > "3 m/s", SV), "is not a domain"),
+    ],
+)
+def test_a_quantifier_names_what_is_wrong(arguments: tuple[object, ...], message: str) -> None:
+    with pytest.raises(rp.UsageError, match=message):
+        rp.every(*arguments)  # type: ignore[arg-type]

@@ -5,11 +5,13 @@ import os
 import re
 import shlex
 from collections.abc import Iterator
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+import roadproof as rp
 from roadproof.frontends.cli.main import main
 from studio.browser import Tab, why_none
 from studio.serving import running, workers_of
@@ -47,6 +49,53 @@ def test_a_drive_of_the_command_line_is_shown_with_its_parts_and_the_token_leave
     tab.page.locator(".drives button[aria-pressed=false]").click()
     tab.until("() => document.querySelector('.row .words')?.textContent.startsWith('scenario_1')")
     assert "01-base" in tab.see(".drives button[aria-pressed=true]").inner_text()
+
+
+def test_samples_of_the_command_line_are_monitored(browser: Any) -> None:
+    samples = ROOT / "examples" / "catalogue" / "tests" / "samples" / "braking.csv"
+    with running(str(samples)) as (found, _):
+        tab = Tab(browser, found)
+        tab.until("() => document.querySelector('.scene')?.ariaLabel.includes('101 km/h')")
+        tab.see(".strips.question .row")
+        assert tab.faults == []
+        tab.close()
+
+
+def test_no_label_of_the_scene_covers_another(browser: Any, tmp_path: Path) -> None:
+    starts = {"SV": (0, "2.6"), "POV": (6, "2.4"), "POV2": (3, 6), "POV3": (-5, "2.5")}
+    moving = {name: rp.motion(s, d, 30) for name, (s, d) in starts.items()}
+    formula = " and ".join(f"v_lon({name}) > 1 m/s" for name in starts)
+    rp.drive(formula, moving, road="main-3", collisions=True).save(tmp_path / "four.json")
+    with running(str(tmp_path / "four.json")) as (found, _):
+        tab = Tab(browser, found)
+        tab.page.add_init_script(HEARD_WORDS)
+        tab.page.reload()
+        tab.until("() => (window.heard ?? []).filter((x) => x.words.includes('km/h')).length >= 4")
+        last = tab.page.evaluate(
+            "() => window.heard.slice(window.heard.findLastIndex((x) => x.words === 'main-1'))"
+        )
+        names = [x for x in last if "km/h" in x["words"]]
+        assert {x["words"].split()[0] for x in names} == {*starts}
+        for one, other in combinations([x for x in last if "km/h" in x["words"] or "RSS" in x["words"]], 2):
+            apart = abs(one["y"] - other["y"]) >= 11 or (
+                one["x"] + one["wide"] <= other["x"] or other["x"] + other["wide"] <= one["x"]
+            )
+            assert apart, (one, other)
+        tab.close()
+
+
+HEARD_WORDS = """
+const write = CanvasRenderingContext2D.prototype.fillText;
+CanvasRenderingContext2D.prototype.fillText = function (words, x, y) {
+  const place = this.getTransform().transformPoint(new DOMPoint(x, y));
+  const ratio = window.devicePixelRatio || 1;
+  const wide = this.measureText(words).width;
+  if (this.canvas.classList.contains("scene")) {
+    (window.heard ??= []).push({ words, x: place.x / ratio, y: place.y / ratio, wide });
+  }
+  return write.call(this, words, x, y);
+};
+"""
 
 
 def test_what_is_typed_is_read_and_judged_at_once(tab: Tab) -> None:

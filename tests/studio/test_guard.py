@@ -267,6 +267,21 @@ def test_specifications_and_drives_are_opened_by_their_endings(tmp_path: Path) -
         begin_with([spec, tmp_path / "own.txt"])
 
 
+def test_samples_recordings_and_certificates_of_the_command_line_are_opened_by_the_page(
+    tmp_path: Path,
+) -> None:
+    proof = next((EXAMPLES.parent / "proofs").glob("P4-*.json"))
+    samples = SAMPLES / "braking.csv"
+    found = begin_with([samples, DRIVE, proof])
+    assert [x["name"] for x in found.as_data()["files"]] == [samples.name, proof.name]  # type: ignore[attr-defined]
+    assert dict(found.files)[samples.name] == samples.read_text("utf-8")
+    assert [name for name, _ in found.drives] == [DRIVE.name]
+    assert begin_with([SAMPLES]).files == ()
+    (tmp_path / "own.csv").write_bytes(b"\xff\xfe")
+    with pytest.raises(InputError, match=r"own\.csv cannot be read as text"):
+        begin_with([tmp_path / "own.csv"])
+
+
 def dropped(*paths: Path) -> dict[str, Any]:
     files = [{"name": x.name, "content": x.read_text("utf-8")} for x in paths]
     draft = {"base": "base", "text": "", "options": {}, "params": {}}

@@ -3,6 +3,8 @@ exact judge asked, no solver.
 """
 
 from collections.abc import Callable
+from html import escape
+from pathlib import Path
 
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers.drive import DriveSays, TrueTimes
@@ -13,6 +15,7 @@ from roadproof.library.bind import bind, values_with, without_empty_windows
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library, Query, Specification
 from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.runtime.files import write_json
 from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.exact import Judgement, judge
 from roadproof.semantics.exact.replay import first_overlap
@@ -79,9 +82,11 @@ class RejectedError(InputError):
     """The judge rejects a drive file, for this reason."""
 
 
-@dataclass(frozen=True, init=False)
+@dataclass(frozen=True, init=False, repr=False)
 class JudgedDrive:
     """A drive file that stands: its formula holds on its drive. Only judging makes one.
+
+    It prints as a few lines: the formula, the road, and how each vehicle starts and moves.
 
     ``natural``: whether it was looked for among natural drives (``encode.build.Assumptions``), None where it
     was not looked for.
@@ -103,6 +108,44 @@ class JudgedDrive:
     def as_data(self) -> JsonObject:
         """The drive file as plain data, with the verdict and with what is true when."""
         return drive_data(self.file, DriveSays(natural=self.natural, times=times_said(self.judgement)))
+
+    def save(self, path: str | Path) -> Path:
+        """Write the drive as a file that ``check``, ``export`` and the studio read, whole or not at all.
+
+        Raises ``InputError`` where it cannot be written.
+        """
+        write_json(Path(path), self.as_data())
+        return Path(path)
+
+    def __repr__(self) -> str:
+        return f"<drive of {self.file.formula}@{self.file.set_name}: {', '.join(self.file.drive.vehicles)}>"
+
+    def __str__(self) -> str:
+        return "\n".join([self._heading, *(" ".join(filter(None, x)) for x in self._rows[1:])])
+
+    def _repr_html_(self) -> str:
+        first, *others = ("".join(f"<td>{escape(x)}</td>" for x in row) for row in self._rows)
+        body = "".join(f"<tr>{row}</tr>" for row in others)
+        heading = first.replace("td>", "th>")
+        return f"<p><b>{escape(self._heading)}</b></p><table><tr>{heading}</tr>{body}</table>"
+
+    @property
+    def _heading(self) -> str:
+        file = self.file
+        lanes = "".join(f"  {name}={lane}" for name, lane in file.lanes.items())
+        return f"{file.formula}  {file.set_name}  WITNESSED  road {file.road.name}{lanes}"
+
+    @property
+    def _rows(self) -> list[tuple[str, ...]]:
+        """A heading, then how each vehicle starts, in SI units, and the number of its pieces of motion."""
+        heading = ("vehicle", "kind", "front", "left side", "speed along", "speed across", "motion")
+        rows: list[tuple[str, ...]] = [heading]
+        for name, x in self.file.drive.vehicles.items():
+            start = (f"s={float(x.s):.4g} m", f"d={float(x.d):.4g} m")
+            speed = (f"v_lon={float(x.v_lon):.4g} m/s", f"v_lat={float(x.v_lat):.4g} m/s")
+            count = len(x.pieces)
+            rows.append((name, x.kind or "", *start, *speed, f"{count} piece{'' if count == 1 else 's'}"))
+        return rows
 
 
 class KnownDrive(JudgedDrive):

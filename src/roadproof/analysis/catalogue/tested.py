@@ -12,7 +12,7 @@ from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, ConcreteAnswer
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.drivers.restriction import restriction_of
 from roadproof.evidence.answers.catalogue_index import Figure, Kind, Remark, Target
-from roadproof.library.scenarios import name_of, number_in
+from roadproof.library.scenarios import name_of, number_in, numbers_of
 from roadproof.library.words import called
 from roadproof.verdict import Verdict
 
@@ -83,7 +83,7 @@ def tested(
     claimed = (
         ()
         if restricted
-        else (*_of_concrete(concrete, known, gaps.asked), *_of_abstract(asked, abstract, facts))
+        else (*_of_concrete(asked, concrete, known, gaps.asked), *_of_abstract(asked, abstract, facts))
     )
     unreadable = (Remark((x.entry.id,), f"cannot be read: {x.fault}") for x in concrete if x.fault)
     # Drive files that are not what they say, judged with their own values.
@@ -179,7 +179,9 @@ def _target(
 # --- remarks -------------------------------------------------------------------------------------
 
 
-def _of_concrete(concrete: Sequence[ConcreteAnswer], known: Collection[str], gaps: bool) -> Iterator[Remark]:
+def _of_concrete(
+    asked: Questions, concrete: Sequence[ConcreteAnswer], known: Collection[str], gaps: bool
+) -> Iterator[Remark]:
     """Tests that do not show what they claim, or nothing at all; ``gaps``: whether a gap is something.
 
     A copy whose format cannot say enough claims nothing.
@@ -190,7 +192,7 @@ def _of_concrete(concrete: Sequence[ConcreteAnswer], known: Collection[str], gap
         shown = sorted(x.names - {ENDANGERED, GAP, NOWHERE})
         for claim in x.claims:
             if claim not in known:
-                yield Remark((x.entry.id,), f"claims {claim}, {_NO_TARGET}")
+                yield Remark((x.entry.id,), f"claims {claim}, {_no_target(claim, asked)}")
             elif claim not in x.names:
                 told = f"claims {claim}, and shows {', '.join(shown) or 'no scenario'}"
                 yield Remark((x.entry.id,), told + _with_other_values(x))
@@ -215,7 +217,12 @@ def _with_other_values(answer: ConcreteAnswer) -> str:
     return f"; its file has other values of {', '.join(answer.others)} than are asked for"
 
 
-_NO_TARGET = "but there is no scenario and no class of that name: classes that are proved empty are left out"
+def _no_target(claim: str, asked: Questions) -> str:
+    """Say why a claimed name is none of the targets of this catalogue."""
+    number = number_in(claim)
+    if number is not None and number in numbers_of(asked.specification):
+        return "which is not among the scenarios of this run; add it with --among"
+    return "but there is no scenario and no class of that name: classes that are proved empty are left out"
 
 
 def _why_of_formula(runs: Fact, asked: Questions) -> str:

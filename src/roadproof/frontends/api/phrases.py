@@ -11,7 +11,7 @@ from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
 from numbers import Real
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 from roadproof.errors import InputError, UsageError
 from roadproof.library.bind import Number, exact
@@ -143,20 +143,28 @@ def U(left: Term, right: Term, within: tuple[Number, Number | None] | None = Non
     return _temporal("U", left, right, within)
 
 
-def some(domain: Phrase, body: Callable[[Phrase], Phrase], name: str = "") -> Phrase:
-    """``some K in domain: body(K)``, where ``domain`` is ``lanes``, ``lanelets(L)``, ``zone("main")``, …
+_Quantifier: TypeAlias = Literal["some", "every"]
+Body: TypeAlias = Phrase | Callable[[Phrase], Phrase]
+"""What a quantifier says of its variable: a formula, or a function that makes one."""
+
+
+def some(domain: "Phrase | str", body: Body, name: "str | Body" = "") -> Phrase:
+    """Return ``some K in domain: body(K)``; ``domain`` is ``lanes``, ``lanelets(L)``, ``zone("main")``, …
 
     K is called ``name``, or as ``body`` calls it, and otherwise where ``body`` speaks of something else by
-    that name. Raises ``UsageError``.
+    that name. In the order of the text, ``some("M", lanes, body)``, ``body`` may also be a formula that
+    speaks of M, such as ``call("atLane", SV, lane("M"))``. Raises ``UsageError``.
 
     >>> print(some(lanes, lambda K: call("laneKeep", SV, K)))
     some K in lanes: laneKeep(SV, K)
+    >>> print(some("M", lanes, call("laneKeep", SV, lane("M"))))
+    some M in lanes: laneKeep(SV, M)
     """
     return _quantified("some", domain, body, name)
 
 
-def every(domain: Phrase, body: Callable[[Phrase], Phrase], name: str = "") -> Phrase:
-    """``every K in domain: body(K)``, as ``some``."""
+def every(domain: "Phrase | str", body: Body, name: "str | Body" = "") -> Phrase:
+    """Return ``every K in domain: body(K)``; the arguments are those of ``some``."""
     return _quantified("every", domain, body, name)
 
 
@@ -243,14 +251,32 @@ def _temporal(
     return Phrase(syntax.Temporal(op, bounds, first, parts[-1].expression), _given(parts))
 
 
-def _quantified(kind: Any, domain: Phrase, body: Callable[[Phrase], Phrase], name: str) -> Phrase:
+def _quantified(kind: _Quantifier, domain: "Phrase | str", body: Body, name: str | Body) -> Phrase:
+    match domain, body, name:
+        case str(), Phrase(), _ if isinstance(name, Phrase) or callable(name):  # in the order of the text
+            if not domain.isidentifier():
+                raise UsageError(f"'{domain}' is not a name: write {kind}('K', lanes, formula)")
+            return _over(kind, domain, body, name)
+        case Phrase(), _, str() if callable(body) and not isinstance(body, Phrase):
+            words = {*_WORD.findall(str(_lift(body(Phrase(syntax.Name(_HELD))))))}
+            wanted = name or next(iter(inspect.signature(body).parameters), "K")
+            many = (f"{wanted}{k}" for k in range(2, len(words) + 3))
+            return _over(kind, next(x for x in (wanted, *many) if x not in words), domain, body)
+        case _:
+            raise UsageError(
+                f"{kind}() needs a domain and a function, as {kind}(lanes, lambda K: ...), "
+                f"or a name, a domain and a formula, as {kind}('K', lanes, formula)"
+            )
+
+
+def _over(kind: _Quantifier, name: str, domain: Phrase, body: Body) -> Phrase:
+    """Quantify over ``name``; a formula ``body`` speaks of it by that name."""
     over = domain.expression
     if not isinstance(over, syntax.Name | syntax.Call):
         raise UsageError(
             f"{domain} is not a domain: give lanes, lanelets(L), zone('main'), adjacent_lanes(L)"
         )
-    words = {*_WORD.findall(str(_lift(body(Phrase(syntax.Name(_HELD))))))}
-    wanted = name or next(iter(inspect.signature(body).parameters), "K")
-    free = next(x for x in (wanted, *(f"{wanted}{k}" for k in range(2, len(words) + 3))) if x not in words)
-    inside = _lift(body(Phrase(syntax.Name(free))))
-    return Phrase(syntax.Quantified(kind, free, over, inside.expression), _given([domain, inside]))
+    inside = _lift(body if isinstance(body, Phrase) else body(Phrase(syntax.Name(name))))
+    free = tuple(x for x in inside.given if x.name != name)
+    parts = [domain, Phrase(inside.expression, free)]
+    return Phrase(syntax.Quantified(kind, name, over, inside.expression), _given(parts))

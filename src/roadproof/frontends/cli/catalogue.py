@@ -5,6 +5,7 @@ import argparse
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
 from roadproof.frontends.cli.progress import Counter
+from roadproof.frontends.settings.flags import read_flag
 from roadproof.frontends.settings.studies import Catalogue
 
 SUMMARY = "list which scenarios a catalogue of tests covers, and complete it"
@@ -74,7 +75,7 @@ def run(args: argparse.Namespace) -> int:
             args.formats or (),
             args.jobs,
             Counter(),
-            args.specs,
+            specs=read_flag(args, OPTIONS, "specs"),
         )
         if args.json != "-":
             print(completed)

@@ -12,6 +12,7 @@ examples:
   roadproof studio                          opens the browser
   roadproof studio mine.spec drive.json     with definitions of yours, and a drive
   roadproof studio drives                   with the drives and definitions of a folder to choose from
+  roadproof studio 01_*.csv                 with a recording: the three files of highD
   roadproof studio --no-browser --port 9000
 
 The page is served on this machine's loopback interface only, at the address that is printed; its token is
@@ -22,7 +23,10 @@ OPTIONS = settings.Studio
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(quiet=True)  # how far it is, the page says
-    told = "a .spec file, a drive (.json), or a folder of such files (default: those of the working folder)"
+    told = (
+        "a .spec file, drive or certificate (.json), samples (.csv, .xosc), the files of a recording, or a "
+        "folder of drives and definitions (default: the working folder)"
+    )
     parser.add_argument("files", metavar="FILE", nargs="*", type=Path, help=told)
 
 

@@ -23,6 +23,8 @@ _OWN = (
     *("picture", "gallery", "tour", "bar", "side", "app"),
 )
 MOST_FILES, LARGEST_FILE = 200, 1_000_000  # of a folder that is looked through; bytes
+LARGEST_TOGETHER = 60_000_000  # bytes of named recordings, as of dropped ones
+OPENED = (".json", ".csv", ".xosc", ".xodr", ".xml", ".toml")
 
 
 @dataclass(frozen=True)
@@ -74,13 +76,15 @@ def _read(name: str) -> str:
 @dataclass(frozen=True)
 class Begun:
     """``text``: the definitions that the editor begins with; ``drives``, ``specs``: the contents of drive
-    files and the texts of specification files that the page lists, by name; ``shows``: whether the page
-    begins with the first drive.
+    files and the texts of specification files that the page lists, by name; ``files``: the texts of other
+    named files, which the page opens as if they were dropped on it; ``shows``: whether the page begins with
+    the first drive.
     """
 
     text: str = ""
     drives: tuple[tuple[str, Any], ...] = ()
     specs: tuple[tuple[str, str], ...] = ()
+    files: tuple[tuple[str, str], ...] = ()
     shows: bool = True
 
     def as_data(self) -> dict[str, object]:
@@ -89,6 +93,7 @@ class Begun:
             "text": self.text,
             "drives": [{"name": name, "drive": x} for name, x in self.drives],
             "specs": [{"name": name, "text": x} for name, x in self.specs],
+            "files": [{"name": name, "content": x} for name, x in self.files],
             "shows": self.shows and bool(self.drives),
             "form": form(),
             "examples": [asdict(x) for x in EXAMPLES],
@@ -96,28 +101,54 @@ class Begun:
 
 
 def begin_with(paths: Sequence[Path]) -> Begun:
-    """Read specification files (.spec), drive files (.json), and folders of such. Raises ``InputError``.
+    """Read the files that the studio starts with, and the drives and definitions of folders.
 
     The editor begins with the definitions of the files that are named, not with those of folders.
+    Raises ``InputError`` for other kinds of file, and for more than ``LARGEST_TOGETHER`` bytes of recordings.
     """
     texts: list[str] = []
     drives: list[tuple[str, Any]] = []
     specs: list[tuple[str, str]] = []
+    files: list[tuple[str, str]] = []
     for path in paths:
         if path.is_dir():
             inside = found_in(path)
             drives += inside.drives
             specs += inside.specs
-        elif path.suffix == ".json":
-            drives.append((path.name, read_json(path)))
         elif path.suffix == ".spec":
             texts.append(read_specification(path).text)
             specs.append((path.name, texts[-1]))
+        elif path.suffix == ".json" and is_drive(content := read_json(path)):
+            drives.append((path.name, content))
+        elif path.suffix in OPENED:
+            files.append((path.name, _text_of(path)))
         else:
             raise InputError(
-                f"{path}: the studio opens specification files (.spec), drive files (.json) and folders"
+                f"{path}: the studio opens specification files (.spec), drives and certificates (.json), "
+                "samples (.csv, .xosc), the files of a recording, and folders"
             )
-    return Begun("\n".join(texts), tuple(drives), tuple(specs))
+    if sum(len(text) for _, text in files) > LARGEST_TOGETHER:
+        raise InputError(
+            f"the named recordings have more than {LARGEST_TOGETHER // 1_000_000} MB together: "
+            "use roadproof evaluate"
+        )
+    return Begun("\n".join(texts), tuple(drives), tuple(specs), tuple(files))
+
+
+def is_drive(content: object) -> bool:
+    """Return whether plain data say that they are a drive file."""
+    return isinstance(content, dict) and content.get("schema") in SCHEMAS_READ
+
+
+def _text_of(path: Path) -> str:
+    try:
+        if path.stat().st_size > LARGEST_TOGETHER:
+            raise InputError(
+                f"{path} is larger than {LARGEST_TOGETHER // 1_000_000} MB: use roadproof evaluate"
+            )
+        return path.read_text("utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path} cannot be read as text: {error}") from None
 
 
 def found_in(folder: Path) -> Begun:
@@ -134,6 +165,6 @@ def found_in(folder: Path) -> Begun:
     for path in sorted(folder.glob("*.json"))[:MOST_FILES]:
         with suppress(RoadproofError, OSError):
             content = read_json(path, LARGEST_FILE)
-            if isinstance(content, dict) and content.get("schema") in SCHEMAS_READ:
+            if is_drive(content):
                 drives.append((path.name, content))
     return Begun("", tuple(drives), tuple(specs), shows=False)

@@ -57,8 +57,10 @@ function paint(canvas, drive, time, toScale) {
   if (place.bends) paintBar(brush, drive, place);
   else paintScale(brush, place);
   const colours = coloursOf(Object.keys(drive.vehicles));
-  for (const distance of drive.distances) paintNeeded(brush, drive, distance, time, place, colours);
-  for (const name of Object.keys(drive.vehicles)) paintVehicle(brush, drive, name, time, place, colours);
+  const needs = drive.distances.map((distance) => paintNeeded(brush, drive, distance, time, place, colours));
+  const boxes = Object.keys(drive.vehicles).map((name) => paintVehicle(brush, drive, name, time, place, colours));
+  boxes.forEach((box, k) => nameVehicle(brush, box, boxes.filter((_, other) => other !== k), place));
+  for (const need of needs) if (need) nameDistance(brush, need, boxes, place);
   const told = `${describe(drive, time)}`;
   canvas.setAttribute("aria-label", `The road from above at ${time.toFixed(2)} s: ${told}`);
 }
@@ -68,7 +70,7 @@ function placing(drive, time, width, toScale) {
   const [low, high] = windowOf(drive);
   const [right, left] = acrossOf(drive.road);
   const origin = stateAt(Object.values(drive.vehicles)[0], time).s;
-  const common = { low, high, right, left, origin, width, letters: 0 };
+  const common = { low, high, right, left, origin, width, letters: 0, labels: [] };
   const view = viewOf(drive, time);
   if (view) return { ...common, ...bentPlacing(drive, view, width) };
   const along = width / (high - low);
@@ -169,10 +171,10 @@ function paintScale(brush, place) {
   brush.fillText(`m from the first front · ${stretched} · driving direction →`, place.width - 6, 13);
 }
 
-/** The RSS distance that the one behind, or the right one, has to keep, around that one. */
+/** The RSS distance that the one behind, or the right one, has to keep, around that one; its words, if they fit. */
 function paintNeeded(brush, drive, distance, time, place, colours) {
   const { keeper, other, needed, gap } = keptAt(drive, distance, time);
-  if (needed === null || needed <= 0) return;
+  if (needed === null || needed <= 0) return null;
   const { length, width } = drive.vehicles[keeper];
   const { s, d } = stateAt(drive.vehicles[keeper], time);
   const ahead = distance.direction === "along";
@@ -187,18 +189,26 @@ function paintNeeded(brush, drive, distance, time, place, colours) {
   if (ahead) {
     const more = 3 / place.across;
     stroke(brush, [place.point(s + needed, d + more), place.point(s + needed, d - width - more)]);
-    brush.fillStyle = colour("--ink");
-    brush.font = font(11);
-    brush.textAlign = "left";
-    const high = width * place.across;
-    const below = high > 34 ? high - 5 : high / 2 + 4; // below the names of vehicles
-    const fits = needed * place.along > 110 && high >= place.letters;
-    if (fits) write(brush, place, [s, d], `RSS to ${other} ${shown(needed)} m`, [8, below]);
   } else {
     const more = 3 / place.along;
     stroke(brush, place.way(s - length - more, s + more, d + needed));
   }
   brush.restore();
+  const high = width * place.across;
+  const fits = ahead && needed * place.along > 110 && high >= place.letters;
+  const below = high > 34 ? high - 5 : high / 2 + 4; // below the names of vehicles
+  return fits ? { at: [s, d], below, words: `RSS to ${other} ${shown(needed)} m` } : null;
+}
+
+/** Write how long an RSS distance is, unless the words would cover a label or a vehicle. */
+function nameDistance(brush, { at, below, words }, boxes, place) {
+  brush.fillStyle = colour("--ink");
+  brush.font = font(11);
+  brush.textAlign = "left";
+  const [x, y] = place.point(...at);
+  const spot = { x: x + 8, y: y + below - LETTERS + 3, wide: brush.measureText(words).width, tall: LETTERS };
+  const isFree = ![...place.labels, ...boxes].some((other) => overlap(spot, other));
+  if (place.bends || isFree) write(brush, place, at, words, [8, below]);
 }
 
 function paintVehicle(brush, drive, name, time, place, colours) {
@@ -218,23 +228,48 @@ function paintVehicle(brush, drive, name, time, place, colours) {
   brush.lineWidth = 1;
   brush.stroke();
   brush.restore();
-  brush.fillStyle = colour("--ink");
-  brush.font = font(12, 600);
-  const words = `${name} ${shown(vLon * 3.6)} km/h`;
-  const half = (Math.abs(Math.cos(turn)) * long + Math.abs(Math.sin(turn)) * high) / 2;
-  if (high < place.letters) {
-    const wide = brush.measureText(words).width;
-    brush.textAlign = "left";
-    brush.fillText(words, Math.max(2, Math.min(place.width - wide - 2, x - wide / 2)), y - high / 2 - 5);
-    return;
-  }
-  const fits = x - half > brush.measureText(words).width + 8;
-  brush.textAlign = fits ? "right" : "left";
-  brush.fillText(words, fits ? x - half - 6 : x + half + 6, y + 4);
+  const [cos, sin] = [Math.abs(Math.cos(turn)), Math.abs(Math.sin(turn))];
+  const [wide, tall] = [cos * long + sin * high, sin * long + cos * high];
+  const flat = high < place.letters;
+  return { x: x - wide / 2, y: y - tall / 2, wide, tall, flat, words: `${name} ${shown(vLon * 3.6)} km/h` };
 }
 
-/** Words beside a place of the road, in its direction. */
+/** Write the name of a vehicle beside its box, at the first place where it covers no label and no other box. */
+function nameVehicle(brush, box, others, place) {
+  brush.fillStyle = colour("--ink");
+  brush.font = font(12, 600);
+  brush.textAlign = "left";
+  const wide = brush.measureText(box.words).width;
+  const inside = (x) => Math.max(2, Math.min(place.width - wide - 2, x));
+  const [middle, level] = [inside(box.x + box.wide / 2 - wide / 2), box.y + box.tall / 2 - LETTERS / 2];
+  const beside = [[box.x - 6 - wide, level], [box.x + box.wide + 6, level]].filter(([x]) => x === inside(x));
+  const [above, below] = [box.y - 3, box.y + box.tall + 3];
+  const rows = [0, 1, 2, 3].flatMap((k) => [[middle, above - (k + 1) * LETTERS], [middle, below + k * LETTERS]]);
+  const spots = (box.flat ? [...rows, ...beside] : [...beside, ...rows])
+    .filter(([, y]) => y >= 0 && y + LETTERS <= place.height)
+    .map(([x, y]) => ({ x, y, wide: wide + 6, tall: LETTERS }));
+  const isFree = (spot, taken) => !taken.some((other) => overlap(spot, other));
+  const spot =
+    spots.find((x) => isFree(x, [...place.labels, ...others])) ??
+    spots.find((x) => isFree(x, place.labels)) ?? { x: middle, y: level, wide, tall: LETTERS };
+  place.labels.push(spot);
+  brush.fillText(box.words, spot.x, spot.y + LETTERS - 3);
+}
+
+/** Whether two boxes of pixels share a place. */
+export function overlap(one, other) {
+  const across = Math.abs(one.x + one.wide / 2 - other.x - other.wide / 2);
+  const down = Math.abs(one.y + one.tall / 2 - other.y - other.tall / 2);
+  return 2 * across < one.wide + other.wide && 2 * down < one.tall + other.tall;
+}
+
+/** Words beside a place of the road, in its direction; on a straight road no name of a vehicle will cover them. */
 function write(brush, place, [s, d], words, [ahead, below]) {
+  const [x, y] = place.point(s, d);
+  if (!place.bends) {
+    const wide = brush.measureText(words).width;
+    place.labels.push({ x: x + ahead, y: y + below - LETTERS + 3, wide, tall: LETTERS });
+  }
   brush.save();
   brush.translate(...place.point(s, d));
   brush.rotate(place.turn(s));

@@ -240,6 +240,11 @@ export async function open(list) {
     return;
   }
   for (const file of list) files.push({ name: file.name, content: await file.text() });
+  await openTexts(files);
+}
+
+/** Files with their names and contents, as `open`; those that the studio was started with, too. */
+export async function openTexts(files) {
   if (!files.length) return;
   const spec = files.find((x) => x.name.endsWith(".spec"));
   if (spec) {

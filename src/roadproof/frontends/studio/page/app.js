@@ -157,7 +157,8 @@ async function begin() {
   followChanges();
   followEdits();
   followSets(!begun.shows);
-  if (!said) welcome();
+  if (!said && begun.files.length) actions.openTexts(begun.files);
+  else if (!said) welcome();
   document.documentElement.dataset.ready = "yes";
 }
 
