@@ -1,6 +1,7 @@
 """Claims that are kept: a run that was broken off goes on; what has sound evidence is not asked again."""
 
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -105,7 +106,14 @@ def test_what_was_taken_up_is_told_as_before(
         target = tmp_path / "answer.json"
         prove(tmp_path / "out", *CLAIMS, JUMPS, more=["--json", str(target)])
         told.append((capsys.readouterr().out, json.loads(target.read_text())))
-    assert told[0] == told[1]
+    assert without_durations(*told[0]) == told[1]
+
+
+def without_durations(printed: str, answer: Any) -> tuple[str, Any]:
+    """An answer as it is when it is recalled: evidence has no durations."""
+    for settled in answer["verdicts"]:
+        settled["seconds"] = 0.0
+    return re.sub(r", \d+\.\d\d s$", "", printed, flags=re.MULTILINE), answer
 
 
 def test_a_folder_grows_and_keeps_its_order(tmp_path: Path, asked: Asked) -> None:
@@ -172,7 +180,6 @@ def test_a_drive_within_limits_answers_no_other_limits(tmp_path: Path, asked: As
         ('"PROVED"', '"REFUTED"'),
         ('"base"', '"ext"'),
         ("danger(POV,SV)", "danger(SV,POV)"),
-        ('"seconds": 0', '"seconds": 9'),
         ('"property": "claim"', '"property": "P2"'),
     ],
 )
@@ -244,15 +251,12 @@ def test_other_definitions_need_another_folder(
     assert {x: x.read_bytes() for x in Path("out").rglob("*.json")} == before
 
 
-def test_a_folder_of_an_earlier_version_is_taken_up(tmp_path: Path, asked: Asked) -> None:
+def test_a_folder_with_an_index_alone_is_taken_up(tmp_path: Path, asked: Asked) -> None:
     """Its claims stay in the index, with their files, and are asked again when somebody asks."""
     prove(tmp_path, SYMMETRIC, ALWAYS)
     for path in [tmp_path / HEAD, *(tmp_path / ANSWERS).iterdir()]:
         path.unlink()
     (tmp_path / ANSWERS).rmdir()
-    index = json.loads((tmp_path / "index.json").read_text())
-    bare = {"schema": index["schema"], "claims": index["claims"]}
-    (tmp_path / "index.json").write_text(json.dumps(bare))
     assert prove(tmp_path, FALSE, ALWAYS) == 10
     assert asked == [SYMMETRIC, ALWAYS, FALSE, ALWAYS]
     assert outcomes(tmp_path) == ACCEPTED
@@ -503,7 +507,10 @@ def test_python_takes_up_drives_of_the_command_line(tmp_path: Path, searched: As
     assert searched.since() == [A4, "formula-02-base"]
     assert found.check().accepted
     again = rp.witness(4, IMPOSSIBLE, out=out, pictures=False, jobs=1)
-    assert again.as_data() == found.as_data()
+    computed = found.as_data()
+    for outcome in computed["verdicts"]:  # type: ignore[union-attr]
+        outcome["seconds"] = {}  # type: ignore[index, call-overload]
+    assert again.as_data() == computed
     assert searched.since() == []
     again.save(tmp_path / "copy", pictures=False)
     assert accepted(tmp_path / "copy") == accepted(out)

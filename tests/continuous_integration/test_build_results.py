@@ -16,8 +16,8 @@ import roadproof as rp
 from console import environment
 from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.report.ci.cases import MEANINGS, Case, Location, Rule
-from roadproof.frontends.report.ci.junit import as_before_1_0, as_junit
+from roadproof.frontends.report.ci.cases import MEANINGS, Case, Location
+from roadproof.frontends.report.ci.junit import as_junit
 from roadproof.verdict import ExitCode, Verdict
 
 ROOT = Path(__file__).parents[2]
@@ -184,40 +184,6 @@ def test_characters_that_xml_cannot_hold_are_replaced() -> None:
     case = Case(suite="claims", name="a\x00b", state="undecided", rule=Verdict.UNKNOWN, message="\x1b[1m<&")
     found = next(xml.fromstring(as_junit("roadproof prove", [case])).iter("testcase"))
     assert (found.get("name"), found[0].tag, found[0].get("message")) == ("a\ufffdb", "error", "\ufffd[1m<&")
-
-
-def test_the_form_before_1_0_is_known() -> None:
-    cases = [
-        Case(suite="tests", name="A", state="undecided", rule=Verdict.UNKNOWN, message="in doubt"),
-        Case(suite="tests", name="B", state="passed"),
-        Case(suite="tested", name="C", state="failed", rule=Rule.NOT_TESTED, message="no test shows it"),
-    ]
-    former = as_before_1_0(as_junit("roadproof catalogue", cases, ["x"]).encode()).decode()
-    assert (
-        former
-        == """\
-<?xml version="1.0" encoding="UTF-8"?>
-<testsuites name="roadproof catalogue">
-  <testsuite name="tests" tests="2" failures="1">
-    <properties>
-      <property name="asked with" value="x" />
-    </properties>
-    <testcase classname="tests" name="A">
-      <failure message="in doubt" />
-    </testcase>
-    <testcase classname="tests" name="B" />
-  </testsuite>
-  <testsuite name="tested" tests="1" failures="1">
-    <properties>
-      <property name="asked with" value="x" />
-    </properties>
-    <testcase classname="tested" name="C">
-      <failure message="no test shows it" />
-    </testcase>
-  </testsuite>
-</testsuites>
-"""
-    )
 
 
 def test_a_file_that_cannot_be_written_is_told_before_the_work(capsys: pytest.CaptureFixture[str]) -> None:

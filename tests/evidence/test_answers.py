@@ -33,17 +33,19 @@ from roadproof.library.loading import bundled_library, load_library
 from roadproof.library.scenarios import Scenario
 from roadproof.library.specification import Library
 from roadproof.logic import formula as f
+from roadproof.runtime.version import VERSION
 
 LIBRARY = bundled_library()
+HEADED: dict[str, Any] = {"roadproof": VERSION, "library": LIBRARY.fingerprint}
 SAID: dict[str, Any] = {"options": {}, "parameters": {}, "specs": []}
 
 
 def entries(data: dict[str, Any], library: Library = LIBRARY) -> list[Entry]:
-    return read_index(index_fields(data, "index.json"), library, find_label)
+    return read_index(index_fields(HEADED | data, "index.json"), library, find_label)
 
 
 def faults(data: dict[str, Any], formulas: dict[str, str] | None = None) -> list[str]:
-    return list(faults_of(index_fields(data, "index.json"), LIBRARY, formulas or {}))
+    return list(faults_of(index_fields(HEADED | data, "index.json"), LIBRARY, formulas or {}))
 
 
 def with_one(data: dict[str, Any], field: str, **changed: Any) -> dict[str, Any]:
@@ -56,6 +58,8 @@ def with_one(data: dict[str, Any], field: str, **changed: Any) -> dict[str, Any]
 
 PROVED = {
     "schema": "roadproof/index/1",
+    "options": {},
+    "specs": [],
     "claims": [
         {"property": "claim", "claim": claim, "set": "base", "verdict": "PROVED", "evidence": f"{k}.json"}
         | {"part": "", "scenario": None}
@@ -193,7 +197,7 @@ def test_an_order_that_its_evidence_shows() -> None:
     assert drive.fault_of is not None
     assert drive.fault_of(DRIVEN["d.json"]) == ""
     assert faults(ORDER, DRIVEN) == []
-    assert first_set(index_fields(ORDER, "index.json")) == "base"
+    assert first_set(index_fields(HEADED | ORDER, "index.json")) == "base"
 
 
 @pytest.mark.parametrize(

@@ -353,8 +353,6 @@ SAME_ANSWERS = {
     },
     "index.json": {
         "roadproof: ": "which version made the folder: nothing rests on it",
-        "library: removed": "as in earlier folders: claims are read with the library at hand",
-        "options: ": "what is not named is the default, which it is",
         "options.lateral_sign: removed": "the default",
         "options.lateral_rss: removed": "the default",
         "options.speed: removed": "the default",

@@ -1,6 +1,5 @@
 """What Coq accepts, what it refuses, and that nothing but its word counts."""
 
-import json
 import re
 import shutil
 from dataclasses import replace
@@ -38,18 +37,6 @@ def test_every_shipped_proof_is_accepted_and_so_is_the_index():
     assert set(checked.kernel.axioms) <= accept.AXIOMS
     assert not [*validator("check.json").iter_errors(checked.as_data())]
     print(checked.kernel)
-
-
-@needs_coq
-def test_a_certificate_of_the_version_before_is_searched_for_its_tableau(tmp_path):
-    data = json.loads(ONE.read_text("utf-8"))
-    data["schema"] = "roadproof/certificate/1"
-    del data["tableau"]
-    old = tmp_path / ONE.name
-    old.write_text(json.dumps(data), "utf-8")
-    assert read_certificate(old).tableau is None
-    (finding,) = check(old, kernel="coq").findings
-    assert (finding.outcome, finding.kernel) == (Acceptance.ACCEPTED, "accepted")
 
 
 @needs_coq

@@ -280,7 +280,7 @@ def _read_alike(data: Fields, folder: Path, claims: Claims) -> bool:
     kept = data.texts("specs") if data.has("specs") else ()
     there = {name: read_specification(folder / Path(name).name).text for name in kept}
     told = data.named_texts("options") if data.has("options") else {}
-    same = library_of(data) in (None, library.fingerprint)
+    same = library_of(data) == library.fingerprint
     return same and there == texts and dict(library.select(options=told).options) == options
 
 

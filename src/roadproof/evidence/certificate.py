@@ -29,8 +29,6 @@ from roadproof.logic.rewrite import parameters_of, with_values
 from roadproof.reasons import NO_REASON, Reason, Why
 
 SCHEMA = kept.SCHEMA
-WITHOUT_TABLEAU = "roadproof/certificate/1"  # as files were written before, which are read too
-SCHEMAS_READ = (SCHEMA, WITHOUT_TABLEAU)
 
 
 @dataclass(frozen=True)
@@ -254,13 +252,9 @@ def read_certificate(path: Path) -> Certificate:
 
 def read_certificate_data(content: object, where: str) -> Certificate:
     """The inverse of ``certificate_data``. Raises ``InputError``."""
-    data = Fields(content, where)
-    schema = data.text("schema")
-    if schema not in SCHEMAS_READ:
-        raise InputError(f"{where} is no certificate: its schema must be {SCHEMA} or {WITHOUT_TABLEAU}")
-    if ("tableau" in data.content) != (schema == SCHEMA):
-        raise InputError(f"{where}: tableau is a field of {SCHEMA}, and of no other")
-    said = read(kept.Certificate, {"tableau": None, **data.content, "schema": SCHEMA}, where)
+    if Fields(content, where).text("schema") != SCHEMA:
+        raise InputError(f"{where} is no certificate: its schema must be {SCHEMA}")
+    said = read(kept.Certificate, content, where)
     names = [(_site(row[1:], said.formulas, where), row[0]) for row in said.times]
     instances = [(_site(row[:-1], said.formulas, where), row[-1]) for row in said.instances]
     for what, sites in (("times", names), ("instances", instances)):

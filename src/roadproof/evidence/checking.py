@@ -28,7 +28,7 @@ from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.exact import Judgement
 from roadproof.semantics.exact.replay import first_overlap
 
-SCHEMAS = (*certificate.SCHEMAS_READ, *drive_file.SCHEMAS_READ, none_within.SCHEMA)
+SCHEMAS = (certificate.SCHEMA, *drive_file.SCHEMAS_READ, none_within.SCHEMA)
 """The files of evidence that are checked alone."""
 _TEMPLATE = ("P", "C")  # what labels of template properties begin with, before a digit
 
@@ -52,7 +52,7 @@ class Checker:
         try:
             content = read_json(path)
             schema = Fields(content, str(path)).text("schema")
-            if schema in certificate.SCHEMAS_READ:
+            if schema == certificate.SCHEMA:
                 return self._certificate(path, certificate.read_certificate_data(content, str(path)))
             if schema in drive_file.SCHEMAS_READ:
                 return self._drive(path, content)

@@ -84,6 +84,8 @@ UNCHECKED = Mark("unchecked")
 """``check`` compares the field with nothing, and lists it."""
 LEFT_OUT = Mark("left out")
 """The field is left out where it has its default."""
+TIMED = Mark("timed")
+"""A duration: answers have it, and files of evidence leave it out, so that two runs write the same files."""
 LACKING = Mark("lacking")
 """The field is always written, and files that earlier versions shipped lack it."""
 
@@ -114,7 +116,7 @@ class Field:
     @property
     def is_written(self) -> bool:
         """Whether each answer that is written has it."""
-        return not self.has(LEFT_OUT)
+        return not self.has(LEFT_OUT) and not self.has(TIMED)
 
     def has(self, mark: Mark) -> bool:
         """Whether the field has a mark."""
@@ -148,27 +150,35 @@ def bare(kind: object) -> object:
 # --- write ---------------------------------------------------------------------------------------
 
 
-def write(value: object) -> JsonObject:
-    """The JSON object of a value of a definition. Raises ``TypeError``."""
-    found = _plain(value)
+def write(value: object, timed: bool = True) -> JsonObject:
+    """Return the JSON object of a value of a definition.
+
+    Without ``timed`` it has no field marked ``TIMED``, at any depth, as in files of evidence. Raises
+    ``TypeError`` for a value that is no definition.
+    """
+    found = _plain(value, timed)
     assert isinstance(found, dict)
     return found
 
 
-def _plain(value: object) -> Json:
+def _plain(value: object, timed: bool) -> Json:
     match value:
         case StrEnum() | Fraction() | Reason():
             return str(value)
         case None | bool() | int() | float() | str():
             return value
         case Mapping():
-            return {key: _plain(x) for key, x in value.items()}
+            return {key: _plain(x, timed) for key, x in value.items()}
         case tuple() | list():
-            return [_plain(x) for x in value]
+            return [_plain(x, timed) for x in value]
     if not is_dataclass(value) or isinstance(value, type):
         raise TypeError(f"{type(value).__name__} has no place in JSON")
     found = ((x, getattr(value, x.name)) for x in fields_of(type(value)))
-    return {x.key: _plain(y) for x, y in found if y != x.default or not x.has(LEFT_OUT)}
+    return {
+        x.key: _plain(y, timed)
+        for x, y in found
+        if (y != x.default or not x.has(LEFT_OUT)) and (timed or not x.has(TIMED))
+    }
 
 
 # --- read ----------------------------------------------------------------------------------------

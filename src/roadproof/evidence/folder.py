@@ -18,7 +18,6 @@ from roadproof.evidence.checking import without_place
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding, OtherVerdict
 from roadproof.evidence.heading import library_of
 from roadproof.evidence.journal import ANSWERS, HEAD, Journal, faults_of_line, read_kept
-from roadproof.evidence.journal import NAME as JOURNAL
 from roadproof.evidence.refutation import judge_trace
 from roadproof.evidence.specifications import read_beside
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, Json, JsonObject, read_json
@@ -85,7 +84,7 @@ def survey(paths: Sequence[Path], given: tuple[Path, ...], find_label: FindLabel
             continue
         inside, links = _walk(path)
         problems += [Finding(str(x), "", Acceptance.REJECTED, Why.LINK()) for x in links]
-        homes = sorted({x.parent for x in inside if x.name in (INDEX, JOURNAL, HEAD)})
+        homes = sorted({x.parent for x in inside if x.name in (INDEX, HEAD)})
         by_home = {home: _read_told(home, given, find_label) for home in homes}
         told += by_home.values()
         kept = {home / ANSWERS for home in homes if (home / HEAD).exists()}
@@ -93,7 +92,7 @@ def survey(paths: Sequence[Path], given: tuple[Path, ...], find_label: FindLabel
         evidence = [x for x in others if x.suffix == ".json"]
         for x in {*others} - {*evidence}:
             home = next((folder for folder in x.parents if folder in by_home), None)
-            if home is not None and x.name != JOURNAL and x not in by_home[home].specs:
+            if home is not None and x not in by_home[home].specs:
                 by_home[home].others.append(x.relative_to(home).as_posix())
         if not evidence and not homes and not links:
             raise InputError(f"{path} holds no .json file: name a folder with certificates or drive files")
@@ -127,7 +126,7 @@ def _read_told(home: Path, given: tuple[Path, ...], find_label: FindLabel) -> Fo
         journal = read_kept(home)
     except RoadproofError as error:
         journal = None
-        told.problems.append(_unreadable(home / (HEAD if (home / HEAD).exists() else JOURNAL), str(error)))
+        told.problems.append(_unreadable(home / HEAD, str(error)))
     try:
         if (home / INDEX).exists():
             content = read_json(home / INDEX, LARGEST_INDEX)
@@ -136,7 +135,7 @@ def _read_told(home: Path, given: tuple[Path, ...], find_label: FindLabel) -> Fo
         told.library, told.specs = read_beside(named, home, given)
         told.alone = journal is not None and told.index is None and read.reader_of(journal.head).alone
         if told.index is not None:
-            if library_of(told.index) not in (None, told.library.fingerprint):
+            if library_of(told.index) != told.library.fingerprint:
                 told.unchecked = (OTHER_LIBRARY,)
             told.entries += _without_twins(told, read.read_index(told.index, told.library, find_label))
     except RoadproofError as error:

@@ -21,15 +21,12 @@ def heading(schema: str, library: Library) -> dict[str, Any]:
     return {"schema": schema, "roadproof": VERSION, "library": library.fingerprint, **free}
 
 
-def library_of(data: Fields) -> str | None:
-    """The fingerprint of the definitions of an index, None in those of earlier versions.
+def library_of(data: Fields) -> str:
+    """Return the fingerprint of the definitions of an index.
 
-    Raises ``InputError`` where that, or the version, is none.
+    Raises ``InputError`` where that, or the version, is missing or none.
     """
-    if "roadproof" in data.content:
-        data.text("roadproof")
-    if "library" not in data.content:
-        return None
+    data.text("roadproof")
     found = data.text("library")
     if not _FINGERPRINT.fullmatch(found):
         raise InputError(f"{data.where}: library='{found[:60]}' is no fingerprint of 16 digits from 0 to f")

@@ -2,16 +2,14 @@
 
 In a folder of evidence ``question.json`` says what was asked, and each file ``answers/NAME.json`` is an
 answer with the names of its evidence files, and the seal: a digest of the answer and of the bytes of those
-files. Before, both were lines of one file, ``answers.jsonl``, which is still read. A seal tells damage and
-carelessness, not malice, since anybody can compute it. So an answer also has to say what its evidence says,
-and ``roadproof check`` checks that evidence again.
+files. A seal tells damage and carelessness, not malice, since anybody can compute it. So an answer also has
+to say what its evidence says, and ``roadproof check`` checks that evidence again.
 """
 
 import hashlib
 import json
-from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
 from roadproof.errors import InputError, RoadproofError
@@ -19,12 +17,11 @@ from roadproof.evidence.answers.entry import Entry, evidence_name, mismatch, rea
 from roadproof.evidence.answers.read import faults_of_record, read_record, record_fields
 from roadproof.evidence.answers.reader import FindLabel, without_labels
 from roadproof.evidence.refutation import judge_trace
-from roadproof.evidence.strict import LARGEST_INDEX, Fields, Json, JsonObject, parse_json, read_json
+from roadproof.evidence.strict import LARGEST_INDEX, Fields, Json, JsonObject, read_json
 from roadproof.library.specification import Library
-from roadproof.runtime.files import read_limited, read_text
+from roadproof.runtime.files import read_limited
 from roadproof.runtime.records import dataclass
 
-NAME = "answers.jsonl"
 HEAD, ANSWERS = "question.json", "answers"
 SCHEMA = "roadproof/journal/1"
 _HEAD = ("schema", "of", "question", "said")
@@ -32,7 +29,7 @@ _HEAD = ("schema", "of", "question", "said")
 
 @dataclass(frozen=True)
 class Line:
-    """One answer of a journal, with its number or its name; ``fault`` says why it does not count."""
+    """One answer of a journal with its name; ``fault`` says why it does not count."""
 
     name: str
     path: Path
@@ -50,7 +47,7 @@ class Journal:
 
 
 def head_of(schema: str, question: str, said: Mapping[str, Json]) -> JsonObject:
-    """The first line of a journal."""
+    """The content of ``question.json``."""
     return {"schema": SCHEMA, "of": schema, "question": question, "said": dict(said)}
 
 
@@ -71,57 +68,35 @@ def read_kept(folder: Path, but: Container[str] = ()) -> Journal | None:
     ``but``: names of answers that are passed over. Raises ``InputError``.
     """
     if not (folder / HEAD).exists():
-        return read_journal(folder / NAME) if (folder / NAME).exists() else None
-    head, fields = _head(read_json(folder / HEAD, LARGEST_INDEX), folder / HEAD, str(folder / HEAD))
+        return None
+    head, fields = _head(folder / HEAD)
     found = (folder / ANSWERS).glob("*.json")
     paths = sorted(x for x in found if not x.name.startswith(".") and x.stem not in but)
-    read = [
-        _line(path.stem, path, partial(read_json, path, LARGEST_INDEX), str(path), fields, head)
-        for path in paths
-    ]
-    return Journal(folder / HEAD, head, tuple(read))
+    return Journal(folder / HEAD, head, tuple(_line(path, fields, head) for path in paths))
 
 
-def read_journal(path: Path) -> Journal:
-    """A journal, each line with its seal checked. Raises ``InputError`` where it is none."""
-    first, *lines = read_text(path, LARGEST_INDEX, "roadproof reads no larger journals").split("\n")
-    head, fields = _head(parse_json(first, f"{path}, line 1"), path, str(path))
-    read = [
-        _line(str(number), path, partial(parse_json, text, where), where, fields, head)
-        for number, text in enumerate(lines, 2)
-        for where in (f"{path}, line {number}",)
-        if text
-    ]
-    if lines and lines[-1] and read[-1].record is None:  # cut short, as when a run is killed
-        read.pop()
-    return Journal(path, head, tuple(read))
-
-
-def _head(content: object, path: Path, where: str) -> tuple[Fields, tuple[str, ...]]:
+def _head(path: Path) -> tuple[Fields, tuple[str, ...]]:
     """What was asked, and the fields that each answer has."""
-    head = Fields(content, where, _HEAD)
+    head = Fields(read_json(path, LARGEST_INDEX), str(path), _HEAD)
     if head.text("schema") != SCHEMA:
         raise InputError(f"{path}: schema={head.text('schema')!r}, but a journal has {SCHEMA!r}")
     return head, ("evidence", "seal", *record_fields(head.text("of"), str(path)))
 
 
-def _line(
-    name: str, path: Path, read: Callable[[], object], where: str, fields: Sequence[str], head: Fields
-) -> Line:
+def _line(path: Path, fields: Sequence[str], head: Fields) -> Line:
     try:
-        record = Fields(read(), where, fields)
+        record = Fields(read_json(path, LARGEST_INDEX), str(path), fields)
     except InputError as error:
-        return Line(name, path, None, str(error))
+        return Line(path.stem, path, None, str(error))
     try:
         for k, file in enumerate(record.texts("evidence"), 1):
-            evidence_name(f"{where}, evidence {k}", "evidence", file)
+            evidence_name(f"{path}, evidence {k}", "evidence", file)
         if record.text("seal") != seal_of(record.content, head.text("question"), Path(head.where).parent):
-            return Line(
-                name, path, record, f"{where}: answer and evidence are not what its seal was made for"
-            )
+            fault = f"{path}: answer and evidence are not what its seal was made for"
+            return Line(path.stem, path, record, fault)
     except InputError as error:
-        return Line(name, path, record, str(error))
-    return Line(name, path, record)
+        return Line(path.stem, path, record, str(error))
+    return Line(path.stem, path, record)
 
 
 def answers_of(journal: Journal, library: Library, find_label: FindLabel = without_labels) -> Iterator[Line]:
@@ -154,8 +129,7 @@ def faults_of_line(
 
     ``in_index``: what an index says in the same words is looked at there.
     """
-    name = None if line.path == journal.path else line.name
-    return faults_of_record(journal.head, record, name, entries, library, in_index)
+    return faults_of_record(journal.head, record, line.name, entries, library, in_index)
 
 
 def _fault_of(entry: Entry, folder: Path) -> str:

@@ -51,7 +51,7 @@ def _of_file(path: Path) -> Found:
     if not isinstance(content, dict):
         return
     schema = str(content.get("schema", ""))
-    if schema in certificate.SCHEMAS_READ:
+    if schema == certificate.SCHEMA:
         yield from _of_certificate(content)
     elif schema in drive_file.SCHEMAS_READ:
         yield from _of_drive(content)

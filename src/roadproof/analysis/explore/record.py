@@ -48,7 +48,6 @@ def as_kept(
         drives=explored.drives,
         extremes=tuple(writing.extreme(x, name, k) for k, x in enumerate(explored.extremes, 1)),
         seconds=round(explored.seconds, 1),
-        stem="" if shelf.folder is None else name,
     )
 
 

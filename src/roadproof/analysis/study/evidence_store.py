@@ -16,7 +16,7 @@ from typing import Any
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.answers.reader import FindLabel, without_labels
 from roadproof.evidence.certificate import (
-    SCHEMAS_READ,
+    SCHEMA,
     Certificate,
     certificate_data,
     read_certificate_data,
@@ -138,7 +138,7 @@ class EvidenceStore:
             return
         for name, text in files.items():
             content = None if whole else json.loads(text)
-            if content is not None and content.get("schema") in SCHEMAS_READ:
+            if content is not None and content.get("schema") == SCHEMA:
                 self.certificate(name, read_certificate_data(content, name))
             else:
                 self._put(self.folder, name, text.encode())

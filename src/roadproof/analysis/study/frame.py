@@ -136,7 +136,7 @@ def put_away(
 
 def _keep(study: Study[Piece, Answer, Record], name: str, answer: Answer, shelf: EvidenceStore) -> Record:
     record = study.record(name, answer, shelf)
-    shelf.keep(name, write(record), study.is_sure(answer))
+    shelf.keep(name, write(record, timed=False), study.is_sure(answer))
     return record
 
 
@@ -290,7 +290,7 @@ def _known(
     if said != name:
         return None
     shelf.adopt(found.files, whole=found.origin == "shipped")
-    shelf.keep(name, dict(found.record), study.is_sure(answer))
+    shelf.keep(name, write(record, timed=False), study.is_sure(answer))
     return found.origin, record, answer
 
 
@@ -299,7 +299,7 @@ def known_answer(
 ) -> KnownAnswer:
     """An answer with the texts of its evidence, as ``EvidenceTexts`` has them."""
     texts = EvidenceTexts(study.question, whole=whole)
-    record = write(study.record(name, answer, texts))
+    record = write(study.record(name, answer, texts), timed=False)
     return KnownAnswer(record, texts.files)
 
 

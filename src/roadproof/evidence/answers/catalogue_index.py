@@ -289,7 +289,7 @@ class Index(Preamble, shared.Heading):
     alike: Annotated[Remarks, Doc("Tests that say the same.")]
     contradictions: Annotated[Remarks, Doc("What was seen although it is proved never to be.")]
     notes: tuple[str, ...]
-    seconds: shared.Seconds
+    seconds: shared.Seconds = 0.0
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -88,7 +88,7 @@ class Query:
 @dataclass(frozen=True, kw_only=True)
 class Certificate:
     """The claim, and the instances and lemmas from which the stored queries are derived again; each query is
-    to be answered unsat. Those of roadproof/certificate/1 have no tableau, and are still read.
+    to be answered unsat.
     """
 
     schema: Literal["roadproof/certificate/2"] = SCHEMA

@@ -9,7 +9,7 @@ from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.entry import Common, Entry, evidence_name, fault_of_number, shows_of
 from roadproof.evidence.answers.proofs import shown
 from roadproof.evidence.answers.reader import Background, Reader, unchecked
-from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
+from roadproof.evidence.codec import LEFT_OUT, TIMED, UNCHECKED, Doc, Rule
 from roadproof.evidence.json_schema import File, Whole
 from roadproof.evidence.strict import rational
 from roadproof.logic import formula as f
@@ -21,7 +21,10 @@ SCHEMA: Final = "roadproof/witness/1"
 Road: TypeAlias = Annotated[str, UNCHECKED, Doc("Name of the road on which was searched.")]
 Natural: TypeAlias = Annotated[bool, UNCHECKED, Doc("Whether the first drive was found among natural ones.")]
 Stages: TypeAlias = Annotated[
-    Mapping[str, shared.Seconds], UNCHECKED, Doc("By stage of the search, and all together, in s.")
+    Mapping[str, shared.Seconds],
+    UNCHECKED,
+    TIMED,
+    Doc("By stage of the search, and all together, in s. Files of evidence leave it out."),
 ]
 Sizes: TypeAlias = Annotated[
     Mapping[str, Annotated[int, Rule(minimum=0)]],
@@ -47,7 +50,7 @@ class OutcomeRecord:
     certificate: Annotated[object, File(), Doc("Of an IMPOSSIBLE only.")]
     core: Core
     minimal: Annotated[bool, UNCHECKED, Doc("Whether no part of the core can be left out.")]
-    seconds: Stages
+    seconds: Stages = field(default_factory=dict)
     sizes: Sizes
 
     def expected(self, common: Common) -> list[Formula]:

@@ -111,13 +111,6 @@ class Exploration:
     drives: Annotated[Count, Doc("How many drives serve the values.")] = 0
     extremes: tuple[Extreme, ...]
     seconds: shared.Seconds = 0.0
-    stem: Annotated[
-        str,
-        UNCHECKED,
-        LEFT_OUT,
-        Rule(least=1),
-        Doc("How the names of its files begin; where evidence goes to a folder."),
-    ] = ""
 
 
 @dataclass(frozen=True, kw_only=True)

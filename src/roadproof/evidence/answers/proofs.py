@@ -1,7 +1,7 @@
 """The index that ``roadproof prove`` writes, and its answer: claims with their verdicts."""
 
 from collections.abc import Iterator
-from dataclasses import field, replace
+from dataclasses import replace
 from enum import StrEnum
 from functools import partial
 from typing import Annotated, Final, Literal, TypeAlias
@@ -59,18 +59,15 @@ def _trace_of(claim: Claim) -> object:
 
 @dataclass(frozen=True, kw_only=True)
 class Preamble:
-    """What an index says once for all claims; indices of earlier versions do not."""
+    """What an index says once for all claims."""
 
-    options: shared.Options = field(default_factory=dict)
-    specs: shared.Specifications = ()
+    options: shared.Options
+    specs: shared.Specifications
 
 
 @dataclass(frozen=True, kw_only=True)
 class Index(Preamble, shared.Heading):
-    """Claims with the files that show them.
-
-    Folders of earlier versions have no roadproof, library, options, specs.
-    """
+    """Claims with the files that show them."""
 
     schema: Literal["roadproof/index/1"] = SCHEMA
     claims: tuple[Claim, ...]
@@ -82,7 +79,7 @@ class Record:
 
     claim: Claim
     reason: shared.Reason
-    seconds: shared.Seconds
+    seconds: shared.Seconds = 0.0
     asked: Annotated[
         str,
         UNCHECKED,
@@ -216,7 +213,7 @@ class ClaimAnswer:
         Doc("How a refuting drive leaves the limits of the shipped vehicles; null where it keeps them."),
     ]
     view: Annotated[Literal["dense", "grid"], Doc("grid: on samples up to a horizon, within the limits.")]
-    seconds: shared.Seconds
+    seconds: shared.Seconds = 0.0
     reason: shared.Reason
     doubt: Annotated[Doubt | None, LEFT_OUT] = None
     limits: Annotated[shared.KeptLimits | None, LEFT_OUT, Doc("Of a PROVED-BOUNDED only.")] = None

@@ -100,16 +100,16 @@ def faults_of_head(head: Fields, index: Fields) -> Iterator[str]:
 
 
 def faults_of_record(
-    head: Fields, record: Fields, name: str | None, entries: Sequence[Entry], library: Library, in_index: bool
+    head: Fields, record: Fields, name: str, entries: Sequence[Entry], library: Library, in_index: bool
 ) -> Iterator[str]:
-    """What a kept answer says otherwise than its file, whose ``name`` is None in a journal, and its entries.
+    """What a kept answer says otherwise than the ``name`` of its file, and its entries.
 
     ``in_index``: what an index says in the same words is looked at there.
     """
     reader = reader_of(head)
     told = reader.file_name(record)
-    if None not in (told, name) and told != name:
-        yield f"{record.where}: it is kept as '{name}', but says that it is '{str(told)[:60]}'"
+    if told is not None and told != name:
+        yield f"{record.where}: it is kept as '{name}', but says that it is '{told[:60]}'"
     files = {x.file for x in entries if x.file is not None}
     if {*record.texts("evidence")} != files:
         yield f"{record.where}: the files that it lists are not those that its answer names"

@@ -5,7 +5,7 @@ from fractions import Fraction
 from typing import Annotated, Literal, TypeAlias
 
 from roadproof import reasons
-from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
+from roadproof.evidence.codec import LEFT_OUT, TIMED, UNCHECKED, Doc, Rule
 from roadproof.evidence.json_schema import Other, Plain, Shared
 from roadproof.library.words import Words
 from roadproof.runtime.records import dataclass
@@ -66,7 +66,8 @@ Seconds: TypeAlias = Annotated[
     float,
     Rule(minimum=0),
     UNCHECKED,
-    Doc("How long it took, in s; differs from run to run."),
+    TIMED,
+    Doc("How long it took, in s; differs from run to run. Files of evidence leave it out."),
     Shared("seconds"),
 ]
 
@@ -90,7 +91,7 @@ class Kernel:
     ocaml: Annotated[
         str, LEFT_OUT, Doc("With --kernel extracted, the version of the OCaml that compiled the program.")
     ] = ""
-    seconds: Seconds
+    seconds: Seconds = 0.0
     megabytes: Annotated[int, Rule(minimum=0), Doc("Of Coq; 0 with --kernel extracted.")]
     axioms: tuple[str, ...]
 
@@ -250,11 +251,11 @@ class OnRoad:
 
 @dataclass(frozen=True, kw_only=True)
 class PlainHeading:
-    """How every answer begins; earlier versions did not say the version and the library."""
+    """How every answer begins."""
 
     schema: str
-    roadproof: Version = ""
-    library: Fingerprint = ""
+    roadproof: Version
+    library: Fingerprint
     signals: Annotated[Signals | None, LEFT_OUT] = None
 
 

@@ -27,7 +27,7 @@ from roadproof.evidence.strict import Fields, JsonObject, read_json
 from roadproof.frontends.api.definitions import Definitions
 from roadproof.frontends.api.restricting import drivers_of
 from roadproof.frontends.api.settings import basis_of
-from roadproof.frontends.report.catalogue import former_table, tables
+from roadproof.frontends.report.catalogue import tables
 from roadproof.frontends.settings.studies import Catalogue
 from roadproof.library.scenarios import name_of as scenario_name
 from roadproof.library.specification import Library
@@ -84,7 +84,7 @@ def compare(told: FolderStatements, jobs: Jobs = None, progress: Progress | None
     written = tables(again)
     for name, content in written.items():
         path = told.folder / name
-        if path.is_file() and path.read_bytes() not in (content, former_table(name, content)):
+        if path.is_file() and path.read_bytes() != content:
             findings.append(_rejected(str(path), Why.OTHER_TABLE()))
     return Comparison(tuple(findings), ("parameters", *written))
 

@@ -12,7 +12,7 @@ from roadproof.analysis.study.pool import Progress
 from roadproof.errors import RoadproofError
 from roadproof.evidence import drive_file
 from roadproof.evidence.answers.shared import Kernel
-from roadproof.evidence.certificate import SCHEMAS_READ, Certificate, read_certificate_data
+from roadproof.evidence.certificate import SCHEMA, Certificate, read_certificate_data
 from roadproof.evidence.derivations.prepare import prepare as prepare_drive
 from roadproof.evidence.derivations.prepare import prepare_trace
 from roadproof.evidence.drive_file import DriveFile, read_drive
@@ -250,7 +250,7 @@ def _read(path: Path) -> Certificate | DriveFile | NoneWithinFile | None:
         return read_drive(content, str(path))
     if schema == NONE_WITHIN:
         return read_none_within(content, str(path))
-    return read_certificate_data(content, str(path)) if schema in SCHEMAS_READ else None
+    return read_certificate_data(content, str(path)) if schema == SCHEMA else None
 
 
 def _unprepared(asked: KernelQuestion, reason: Reason) -> CoqModule:

@@ -75,7 +75,7 @@ class StudyAnswers(Answer, Generic[S, A, R]):
         """The index, made of the answers as they are recorded."""
 
     def _write_index(self, folder: Path, found: StudyResult[A, R]) -> None:
-        write_index(folder, write(self._index(found.records)))
+        write_index(folder, write(self._index(found.records), timed=False))
 
     def files(self, pictures: bool) -> dict[str, bytes]:
         """What is written beside the evidence to be looked at, by name."""

@@ -84,7 +84,7 @@ def _may_be_drive(path: Path) -> bool:
 
     content = read_json(path)
     kind = content.get("schema") if isinstance(content, dict) else None
-    return kind not in (*certificate.SCHEMAS_READ, journal.SCHEMA)
+    return kind not in (certificate.SCHEMA, journal.SCHEMA)
 
 
 def _found(text: str, set_name: str) -> "Iterator[DriveFile]":

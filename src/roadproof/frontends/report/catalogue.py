@@ -155,11 +155,6 @@ def tables(result: Result) -> dict[str, bytes]:
     return {name: utf8(text) for name, text in made.items()}
 
 
-def former_table(name: str, content: bytes) -> bytes:
-    """The same table as versions before 1.0 wrote it."""
-    return junit.as_before_1_0(content) if name == "junit.xml" else content
-
-
 def figures_csv(counted: Sequence[Figure]) -> str:
     """The figures as a table."""
     columns: tuple[Column[Figure], ...] = (

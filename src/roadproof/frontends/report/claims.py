@@ -25,7 +25,8 @@ def line(answered: ClaimResult) -> str:
     mark = "" if answered.verdict is answered.expected else f", expected {answered.expected}"
     seconds = answered.settled.result.seconds
     at = f" at {', '.join(task.assuming)}" if task.assuming else ""
-    return f"{task.id}{scenario} {task.set_name}{at}: {verdict(answered)}{mark} ({seconds:.2f} s)"
+    took = f" ({seconds:.2f} s)" if seconds else ""
+    return f"{task.id}{scenario} {task.set_name}{at}: {verdict(answered)}{mark}{took}"
 
 
 def verdict(answered: ClaimResult) -> str:
@@ -47,11 +48,10 @@ def table(answered: Sequence[ClaimResult], specification: Specification) -> str:
         verdicts = sorted({verdict(s) for s in found})
         expected = found[0].expected
         slowest = max(s.settled.result.seconds for s in found)
+        took = f"{slowest:5.2f} s" if slowest else ""  # none of a recalled answer
         mark = "" if all(s.verdict is expected for s in found) else f"   expected {expected}"
         count = f"{len(found)} claim{'s' if len(found) > 1 else ''}"
-        rows.append(
-            f"{name:3} {set_name:5} {count:10} {', '.join(verdicts):8} {slowest:5.2f} s  {title}{mark}"
-        )
+        rows.append(f"{name:3} {set_name:5} {count:10} {', '.join(verdicts):8} {took:7}  {title}{mark}")
         rows += [f"      {line(s)} {s.settled.result.reason}" for s in found if s.verdict is not s.expected]
     values = sorted({value for s in answered for value in s.task.assuming})
     rows += [f"each at those of {', '.join(values)} that it speaks of"] if values else []
@@ -96,7 +96,8 @@ def details(answered: ClaimResult, asked: Claims) -> str:
         f"  {words}" for words in called_by(asked.specification_of(task), [task.claim]).values() if words.name
     ]
     within = "drives up to a horizon" if settled.bounded else "dense time, all horizons"
-    lines.append(f"  set {task.set_name}, {within}, {result.seconds:.2f} s")
+    took = f", {result.seconds:.2f} s" if result.seconds else ""
+    lines.append(f"  set {task.set_name}, {within}{took}")
     lines += [f"  {said}" for said in asked.supposed(task)]
     if result.reason:
         lines.append(f"  {result.reason}")

@@ -28,7 +28,7 @@ def as_line(outcome: Outcome, specification: Specification, verbose: bool = Fals
         shown += f" horizon {file.horizon} s"
         shown += "" if outcome.natural else " (not natural: within the vehicles' limits only)"
         shown += f" {len(outcome.drives)} drives" if len(outcome.drives) > 1 else ""
-    shown += f" {outcome.seconds['all']:.2f} s"
+    shown += f" {outcome.seconds['all']:.2f} s" if outcome.seconds else ""  # none of a recalled answer
     if outcome.scenario is not None:
         name = words_of(specification, outcome.scenario).name
         shown += f"\n  {name}" if name else ""
@@ -41,7 +41,8 @@ def as_line(outcome: Outcome, specification: Specification, verbose: bool = Fals
         shown += "".join(f"\n    {part}" for part in outcome.impossibility.told)
     if verbose:
         shown += f"\n  sizes {dict(outcome.sizes)}"
-        shown += "\n  seconds " + ", ".join(f"{k} {v:.3f}" for k, v in outcome.seconds.items())
+        stages = ", ".join(f"{k} {v:.3f}" for k, v in outcome.seconds.items())
+        shown += f"\n  seconds {stages}" if stages else ""
     return shown
 
 
@@ -57,7 +58,7 @@ def sheet_of(searches: Sequence[SearchedFor]) -> Sheet[SearchedFor]:
             Column("road", lambda x: x[0].road),
             Column("drives", lambda x: len(x[0].drives)),
             Column("reason", lambda x: x[0].reason or _core_of(x[0])),
-            Column("seconds", lambda x: x[0].seconds["all"], "frame"),
+            Column("seconds", lambda x: x[0].seconds.get("all"), "frame"),
         ),
         searches,
     )

@@ -5,7 +5,6 @@ from itertools import groupby
 from xml.etree import ElementTree as xml
 
 from roadproof.frontends.report.ci.cases import Case, State
-from roadproof.runtime.files import utf8
 
 _ELEMENTS: dict[State, str] = {"failed": "failure", "undecided": "error"}
 _FORBIDDEN = {code: "\N{REPLACEMENT CHARACTER}" for code in range(32) if chr(code) not in "\t\n\r"}
@@ -22,21 +21,6 @@ def as_junit(title: str, cases: Sequence[Case], in_force: Sequence[str] = ()) ->
     for name, those in groupby(sorted(cases, key=lambda x: order.index(x.suite)), lambda x: x.suite):
         _add_suite(suites, name, list(those), in_force)
     return as_text(suites)
-
-
-def as_before_1_0(content: bytes) -> bytes:
-    """The same as versions before 1.0 wrote it, where all that did not pass was a failure."""
-    suites = xml.fromstring(content)
-    for element in (suites, *suites.iter("testsuite")):
-        for count in {"errors"} | ({"tests", "failures"} if element is suites else set[str]()):
-            del element.attrib[count]
-    for suite in suites.iter("testsuite"):
-        wrong = [x for case in suite.iter("testcase") for x in case]
-        suite.set("failures", str(len(wrong)))
-        for x in wrong:
-            x.tag = "failure"
-            x.attrib.pop("type", None)
-    return utf8(as_text(suites))
 
 
 def as_text(suites: xml.Element) -> str:

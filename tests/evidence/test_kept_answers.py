@@ -1,4 +1,4 @@
-"""Answers of earlier versions, lines of one file: only those count that are as they were written."""
+"""Answers that a run has kept in a folder: only those count that are as they were written."""
 
 import json
 import os
@@ -20,7 +20,7 @@ from roadproof.evidence.codec import Rule, read
 from roadproof.evidence.codec import write as write_json
 from roadproof.evidence.finding import NO_EVIDENCE as MISSING_EVIDENCE
 from roadproof.evidence.finding import Acceptance, Finding, exit_code, summary
-from roadproof.evidence.journal import NAME, Journal, answers_of, head_of, read_journal, read_kept, seal_of
+from roadproof.evidence.journal import ANSWERS, HEAD, answers_of, head_of, read_kept, seal_of
 from roadproof.evidence.json_schema import schema_of
 from roadproof.evidence.specifications import read_beside
 from roadproof.evidence.strict import Fields
@@ -63,7 +63,7 @@ def answer(pair: tuple[int, int], folder: Path) -> dict[str, Any]:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A folder as earlier versions wrote it: a head, and a line an answer."""
+    """A folder with a question and two answers."""
     made = tmp_path / "out"
     made.mkdir()
     parameters = {name: str(value) for name, value in sorted(default_values(LIBRARY).items())}
@@ -85,24 +85,34 @@ def answers(folder: Path) -> tuple[list[Any], list[str]]:
 
 
 def lines(folder: Path) -> list[Any]:
-    return [json.loads(line) for line in (folder / NAME).read_text("utf-8").splitlines()]
+    """The question and its answers, in the order of ``PAIRS``."""
+    paths = [folder / HEAD, *(folder / ANSWERS / f"{name_of(*pair)}.json" for pair in PAIRS)]
+    return [json.loads(path.read_text("utf-8")) for path in paths]
 
 
 def write(folder: Path, records: list[Any]) -> None:
-    (folder / NAME).write_text("".join(json.dumps(record) + "\n" for record in records), "utf-8")
+    head, *answers = records
+    (folder / ANSWERS).mkdir(exist_ok=True)
+    (folder / HEAD).write_text(json.dumps(head), "utf-8")
+    for pair, record in zip(PAIRS, answers, strict=True):
+        (folder / ANSWERS / f"{name_of(*pair)}.json").write_text(json.dumps(record), "utf-8")
+
+
+def name_of(a: int, b: int) -> str:
+    return f"base-{a:02}-base-{b:02}"
 
 
 def test_answers_are_kept_and_checked(folder: Path) -> None:
-    assert answers(folder) == (list(PAIRS), [])
+    assert answers(folder) == (sorted(PAIRS), [])
     findings = check(folder)
     assert [(x.outcome, x.verdict, x.label) for x in findings] == [
-        (Acceptance.ACCEPTED, "IMPOSSIBLE", "scenarios 5@base and 6@base"),
         (Acceptance.ACCEPTED, "IMPOSSIBLE", "scenarios 3@base and 4@base"),
+        (Acceptance.ACCEPTED, "IMPOSSIBLE", "scenarios 5@base and 6@base"),
     ]
 
 
 def test_a_verdict_that_was_exchanged_is_found(folder: Path) -> None:
-    path = folder / NAME
+    path = folder / ANSWERS / f"{name_of(5, 6)}.json"
     path.write_text(path.read_text("utf-8").replace("IMPOSSIBLE", "WITNESSED", 1), "utf-8")
     assert any(x.outcome is Acceptance.REJECTED and "seal" in x.reason for x in check(folder))
     kept, told = answers(folder)
@@ -156,10 +166,11 @@ def test_evidence_that_is_gone_is_asked_again(folder: Path) -> None:
     assert (kept, len(told)) == ([(3, 4)], 1)
 
 
-def test_a_last_line_cut_short_is_left_out_without_a_word(folder: Path) -> None:
-    path = folder / NAME
+def test_an_answer_cut_short_is_told(folder: Path) -> None:
+    path = folder / ANSWERS / f"{name_of(3, 4)}.json"
     path.write_bytes(path.read_bytes()[:-40])
-    assert answers(folder) == ([(5, 6)], [])
+    kept, told = answers(folder)
+    assert (kept, len(told)) == ([(5, 6)], 1)
 
 
 def seals_are_not_compared(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -179,13 +190,13 @@ def test_the_seal_alone_and_the_evidence_alone_are_not_enough(
     write(folder, [head, slower, second])
     with monkeypatch.context() as patch:
         seals_are_not_compared(patch)
-        assert answers(folder)[0] == list(PAIRS)
+        assert answers(folder)[0] == sorted(PAIRS)
     wrong = {**first, "verdict": {**first["verdict"], "verdict": "WITNESSED"}}
     sealed = {**wrong, "seal": seal_of(wrong, head["question"], folder)}
     write(folder, [head, sealed, second])
     with monkeypatch.context() as patch:
         evidence_is_not_looked_at(patch)
-        assert answers(folder)[0] == list(PAIRS)
+        assert answers(folder)[0] == sorted(PAIRS)
     write(folder, [head, sealed, second])
     assert answers(folder)[0] == [(3, 4)]
 
@@ -232,82 +243,27 @@ def test_reader_and_schema_refuse_the_same(field: str, bad: object, told: str) -
     assert not CODEC_SCHEMA.is_valid({**GOOD, field: bad})
 
 
-# --- Journals as they are read: lines with their numbers, a last line that was cut short, and their answers
-
-JOURNAL_SCHEMA = "roadproof/overlap/1"
-SAID: dict[str, Any] = {"set": "base", "lanes": "same", "roles": "same", "start": "same", "options": {}}
-SAID |= {"parameters": {}, "specs": []}
-NO_EVIDENCE = {"certificate": None, "drive": None}
-HEAD = head_of(JOURNAL_SCHEMA, "which?", SAID)
+# --- Journals as they are read ----------------------------------------------------------------------
 
 
-def journal_answer(a: int, b: int, folder: Path) -> dict[str, Any]:
-    """An answer that promises nothing, so that no file is needed."""
-    pair = {"a": a, "b": b, "set_a": "base", "set_b": "base", "verdict": "UNKNOWN", "formula": "true"}
-    record: dict[str, Any] = {"evidence": [], "verdict": {**pair, "core": [], "cores": [], **NO_EVIDENCE}}
-    return {**record, "seal": seal_of(record, "which?", folder)}
+def test_a_seal_is_of_the_question_too(folder: Path) -> None:
+    head, *records = lines(folder)
+    write(folder, [{**head, "question": "another question"}, *records])
+    journal = read_kept(folder)
+    assert journal is not None
+    assert all("not what its seal was made for" in x.fault for x in journal.lines)
 
 
-def written(folder: Path, end: str = "\n") -> Journal:
-    lines = [HEAD, journal_answer(1, 2, folder), journal_answer(3, 4, folder)]
-    (folder / NAME).write_text("\n".join(map(json.dumps, lines)) + end, "utf-8")
-    return read_journal(folder / NAME)
+@pytest.mark.parametrize("change", [{"schema": "roadproof/journal/9"}, {"of": "roadproof/nothing/1"}])
+def test_what_is_no_journal_is_refused(change: dict[str, str], folder: Path) -> None:
+    head, *records = lines(folder)
+    write(folder, [{**head, **change}, *records])
+    with pytest.raises(InputError, match=r"schema=|there are journals of"):
+        read_kept(folder)
 
 
-def test_lines_are_numbered_as_in_the_file(tmp_path: Path) -> None:
-    journal = written(tmp_path)
-    assert [(int(x.name), x.fault) for x in journal.lines] == [(2, ""), (3, "")]
-
-
-@pytest.mark.parametrize(
-    ("end", "numbers"),
-    [
-        ("", [2, 3]),  # whole, but for the end of its line
-        ('\n{"evidence": [], "ver', [2, 3]),
-        ("\n\n\n", [2, 3]),
-    ],
-)
-def test_a_last_line_that_was_cut_short_does_not_count(end: str, numbers: list[int], tmp_path: Path) -> None:
-    journal = written(tmp_path, end)
-    assert [int(x.name) for x in journal.lines] == numbers
-    assert all(not x.fault for x in journal.lines)
-
-
-def test_a_line_that_is_damaged_in_the_middle_is_told(tmp_path: Path) -> None:
-    written(tmp_path)
-    head, first, second = (tmp_path / NAME).read_text("utf-8").splitlines()
-    (tmp_path / NAME).write_text(f"{head}\n{first[:-9]}\n{second}\n", "utf-8")
-    journal = read_journal(tmp_path / NAME)
-    assert [(int(x.name), bool(x.fault)) for x in journal.lines] == [(2, True), (3, False)]
-    assert "line 2" in journal.lines[0].fault
-
-
-def test_a_journal_of_one_line_has_no_answers(tmp_path: Path) -> None:
-    for end in ("", "\n"):
-        (tmp_path / NAME).write_text(json.dumps(HEAD) + end, "utf-8")
-        assert read_journal(tmp_path / NAME).lines == ()
-
-
-def test_a_seal_is_of_the_answer_and_the_question(tmp_path: Path) -> None:
-    written(tmp_path)
-    text = (tmp_path / NAME).read_text("utf-8")
-    for old, new in (('"a": 1', '"a": 5'), ("which?", "what?")):
-        (tmp_path / NAME).write_text(text.replace(old, new), "utf-8")
-        assert "not what its seal was made for" in read_journal(tmp_path / NAME).lines[0].fault
-
-
-def test_what_is_no_journal_is_refused(tmp_path: Path) -> None:
-    for head in ({**HEAD, "schema": "roadproof/journal/9"}, {**HEAD, "of": "roadproof/nothing/1"}):
-        (tmp_path / NAME).write_text(json.dumps(head) + "\n", "utf-8")
-        with pytest.raises(InputError, match=r"schema=|there are journals of"):
-            read_journal(tmp_path / NAME)
-
-
-def test_a_folder_with_a_journal_alone_is_what_the_journal_says(tmp_path: Path) -> None:
-    written(tmp_path)
-    found = check(tmp_path)
-    assert {x.outcome for x in found} == {Acceptance.ACCEPTED}
-    assert [x.label for x in found] == ["scenarios 1@base and 2@base", "scenarios 3@base and 4@base"]
+def test_a_folder_without_a_question_has_no_kept_answers(tmp_path: Path) -> None:
+    assert read_kept(tmp_path) is None
 
 
 # --- What is said at the end of a check: how many claims came out how, and the exit code ------------
