@@ -65,8 +65,6 @@ PROVED = {
         | {"part": "", "scenario": None}
         for k, claim in enumerate(("F p -> F p", "G p -> p"))
     ],
-    "options": {},
-    "specs": [],
 }
 
 
