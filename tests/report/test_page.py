@@ -18,6 +18,7 @@ from roadproof.frontends.report.page.templates import page as page_of
 from roadproof.frontends.report.page.templates import render
 from roadproof.runtime.package_data import shipped
 
+HEADED = {"roadproof": "1.0.0", "library": "0123456789abcdef"}
 HOSTILE = "<img src=x onerror=alert(1)>"
 CLOSED = "</script><script>alert(1)</script>"
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
@@ -116,7 +117,7 @@ def test_what_does_not_stand_is_said_on_the_page(tmp_path, drives):
     found, text = made(tmp_path / "wrong.json", out=tmp_path / "page.html")
     assert "0 of 1 accepted" in body_of(text)
     assert found.exit_code == 10
-    inline = {"schema": "roadproof/witness/1", "verdicts": [outcome("danger(SV,POV)", wrong)]}
+    inline = {"schema": "roadproof/witness/1", **HEADED, "verdicts": [outcome("danger(SV,POV)", wrong)]}
     (tmp_path / "inline.json").write_text(json.dumps(inline), "utf-8")
     assert "the formula is false on this drive" in made(tmp_path / "inline.json", out=tmp_path / "b.html")[1]
 
@@ -139,7 +140,7 @@ def hostile_overlap() -> dict:
         {"a": 1, "b": 5, "verdict": "UNKNOWN", "core": [HOSTILE], **pair},
         {"a": 1, "b": 4, "verdict": "IMPOSSIBLE", "core": [CLOSED], **pair},
     ]
-    return {"schema": "roadproof/overlap/1", **said, "verdicts": verdicts}
+    return {"schema": "roadproof/overlap/1", **HEADED, **said, "verdicts": verdicts}
 
 
 def hostile_classes() -> dict:
@@ -325,7 +326,7 @@ def test_a_hostile_text_stays_text_in_every_section(tmp_path, drives):
     for kind, data in hostile_answers(drive_in(drives)).items():
         files.append(tmp_path / f"{kind}.json")
         version = {"compare": 2, "monitor": 2, "traffic-results": 3}.get(kind, 1)
-        files[-1].write_text(json.dumps({"schema": f"roadproof/{kind}/{version}", **data}), "utf-8")
+        files[-1].write_text(json.dumps({"schema": f"roadproof/{kind}/{version}", **HEADED, **data}), "utf-8")
     found, text = made(*files, out=tmp_path / "page.html", title=f"{HOSTILE} {CLOSED}")
     assert found.results == len(files)
     assert "<img" not in text
@@ -352,10 +353,10 @@ def test_a_hostile_text_stays_text_in_every_section(tmp_path, drives):
         ("{", "is no JSON"),
         ("[]", ""),
         ('{"schema": "other/1"}', "its schema does not begin with roadproof/"),
-        ('{"schema": "roadproof/overlap/1", "verdicts": [{"a": []}]}', "'set' is missing"),
-        ('{"schema": "roadproof/classify/1", "classes": 3}', "'set' is missing"),
-        ('{"schema": "roadproof/traffic-results/3", "table": 3}', "'settings' is missing"),
-        ('{"schema": "roadproof/catalogue/1", "tests": 3}', "'set' is missing"),
+        ('{"schema": "roadproof/overlap/1", "verdicts": [{"a": []}]}', "'roadproof' is missing"),
+        ('{"schema": "roadproof/classify/1", "classes": 3}', "'roadproof' is missing"),
+        ('{"schema": "roadproof/traffic-results/3", "table": 3}', "'roadproof' is missing"),
+        ('{"schema": "roadproof/catalogue/1", "tests": 3}', "'roadproof' is missing"),
     ],
 )
 def test_mistakes_are_named(tmp_path, capsys, content, wrong):
@@ -421,7 +422,7 @@ def test_a_cell_of_a_catalogue_leads_to_the_judged_drive_of_its_test(tmp_path):
         plain = {"sector": "", "possible": [], "covered": {}}
         return plain | {"name": f"scenario_{number}", "words": words, "tested": tested}
 
-    answer = {"schema": "roadproof/catalogue/1"} | catalogue_of(
+    answer = {"schema": "roadproof/catalogue/1", **HEADED} | catalogue_of(
         **{"options": {}, "parameters": {}, "specs": []},
         tests=[
             test("right", "scenario_4", drive),

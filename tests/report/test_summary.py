@@ -8,7 +8,7 @@ import pytest
 
 import roadproof as rp
 from evidence.folders import some_proofs
-from report.test_page import body_of, drive_in, hostile_overlap, made
+from report.test_page import HEADED, body_of, drive_in, hostile_overlap, made
 from roadproof.engines.prove.properties import template_properties
 from roadproof.frontends.report.page.results import Result
 from roadproof.frontends.report.page.summary import overview
@@ -24,7 +24,7 @@ def claims_of(*names: str, **verdicts: str) -> dict:
         for x in template_properties()
         if x.id in names
     ]
-    return {"schema": "roadproof/index/1", "library": "0123456789abcdef", "claims": claims}
+    return {"schema": "roadproof/index/1", **HEADED, "options": {}, "specs": [], "claims": claims}
 
 
 def written(folder: Path, **answers: dict) -> list[Path]:
