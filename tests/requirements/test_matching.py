@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from random import Random
 
 import pytest
 
@@ -11,17 +12,38 @@ from roadproof.analysis.requirements.fingerprints import Surroundings, differenc
 from roadproof.analysis.requirements.matching import combined, read_target, shown_by
 from roadproof.analysis.requirements.requirement import Link, Requirement
 from roadproof.errors import InputError, TextError
-from roadproof.evidence.answers.trace import LinkState, Position
+from roadproof.evidence.answers.trace import LinkKind, LinkState, Position
 from roadproof.evidence.finding import Acceptance, Finding, Kind
+from roadproof.evidence.subject import SubjectKind
 from roadproof.library.loading import bundled_library
 from roadproof.reasons import NO_REASON, Why
 
 HOME = bundled_library().select()
 GOOD = Acceptance.ACCEPTED
 PLATE = Finding(
-    "p.json", "drive", GOOD, NO_REASON, "WITNESSED", "careful-Vy-1, unpreventable", "v_lon(SV) > 1 m/s"
+    "p.json",
+    "drive",
+    GOOD,
+    NO_REASON,
+    "WITNESSED",
+    "careful-Vy-1, unpreventable",
+    "v_lon(SV) > 1 m/s",
+    subject=SubjectKind.PLATE,
+    name="careful-Vy-1",
 )
-TEST = Finding("index.json", "test", GOOD, NO_REASON, "JUDGED", "test CUT-1", "shows class_1, scenario_1")
+TEST = Finding(
+    "index.json",
+    "test",
+    GOOD,
+    NO_REASON,
+    "JUDGED",
+    "test CUT-1",
+    "shows class_1, scenario_1",
+    subject=SubjectKind.TEST,
+    name="CUT-1",
+    shows="scenarios",
+)
+NAMED = SubjectKind.PROPERTY
 OURS = "F v_lon(SV) > 3 m/s"
 
 
@@ -104,7 +126,19 @@ def test_assumptions_are_a_part_of_a_claim() -> None:
     ],
 )
 def test_only_proofs_without_assumptions_hold_for_every_value(kind: Kind, claim: str, values: bool) -> None:
-    found = checked(Finding("x.json", kind, GOOD, NO_REASON, "PROVED", "P1 base", claim))
+    found = checked(
+        Finding(
+            "x.json",
+            kind,
+            GOOD,
+            NO_REASON,
+            "PROVED",
+            "P1 base",
+            claim,
+            subject=SubjectKind.PROPERTY,
+            name="P1 base",
+        )
+    )
     link = Link("claim", "P1 base")
     owner = Requirement("A", "text", Position(file="r.toml"), links=(link,))
     around = Surroundings(HOME, Path())
@@ -120,15 +154,19 @@ def test_only_proofs_without_assumptions_hold_for_every_value(kind: Kind, claim:
     ("change", "expected", "reason"),
     [
         ({}, "witnessed", ""),
-        ({"claim": "shows no scenario"}, "unknown", "it shows no scenario"),
-        ({"claim": "cannot be read: torn"}, "rejected", "cannot be read: torn"),
+        ({"shows": "nothing"}, "unknown", "it shows no scenario"),
+        ({"claim": "cannot be read: torn", "shows": "unreadable"}, "rejected", "cannot be read: torn"),
         ({"verdict": "READ", "kind": "index"}, "unknown", "no drive of its formula was found"),
-        ({"label": "CUT-1 runs", "verdict": "WITNESSED", "kind": "drive"}, "witnessed", ""),
-        ({"label": "CUT-1 runs", "verdict": "IMPOSSIBLE"}, "refuted", "it is proved that no drive shows it"),
-        ({"label": "CUT-1 excludes scenario_4"}, "missing", "there is no evidence for it"),
-        ({"label": "test CUT-11"}, "missing", "there is no evidence for it"),
+        ({"subject": SubjectKind.RUN, "shows": "", "verdict": "WITNESSED", "kind": "drive"}, "witnessed", ""),
         (
-            {"label": "CUT-1", "outcome": Acceptance.REJECTED, "reason": Why.TEST_GONE()},
+            {"subject": SubjectKind.RUN, "shows": "", "verdict": "IMPOSSIBLE"},
+            "refuted",
+            "it is proved that no drive shows it",
+        ),
+        ({"subject": SubjectKind.FACT, "shows": ""}, "missing", "there is no evidence for it"),
+        ({"name": "CUT-11"}, "missing", "there is no evidence for it"),
+        (
+            {"outcome": Acceptance.REJECTED, "reason": Why.TEST_GONE()},
             "stale",
             Why.TEST_GONE(),
         ),
@@ -146,7 +184,7 @@ def test_a_test_that_is_not_what_it_claims_is_refuted(tmp_path: Path) -> None:
     found = replace(TEST, where=str(tmp_path / "index.json"))
     told = (LinkState.REFUTED, "claims scenario_4, and shows scenario_1")
     assert state(Link("test", "CUT-1"), found) == told
-    assert state(Link("test", "CUT-2"), replace(found, label="test CUT-2"))[0] == "witnessed"
+    assert state(Link("test", "CUT-2"), replace(found, name="CUT-2"))[0] == "witnessed"
 
 
 def test_all_parts_of_a_plate_count() -> None:
@@ -154,7 +192,7 @@ def test_all_parts_of_a_plate_count() -> None:
     link = Link("plate", "careful-Vy-1")
     assert state(link, PLATE, other)[0] == "witnessed"
     assert state(link, PLATE, replace(other, verdict="UNKNOWN")) == (LinkState.UNKNOWN, "UNKNOWN")
-    assert state(link, replace(PLATE, label="careful-Vy-10, preventable"))[0] == "missing"
+    assert state(link, replace(PLATE, name="careful-Vy-10"))[0] == "missing"
 
 
 def test_a_word_is_no_label() -> None:
@@ -166,3 +204,45 @@ def test_a_word_is_no_label() -> None:
 def test_a_scenario_that_is_not_there_is_told_with_its_place(target: str) -> None:
     with pytest.raises(InputError, match=r"^r\.toml, line 3: there is no scenario 99"):
         read_target(Link("scenario", target), HOME, "r.toml, line 3")
+
+
+@pytest.mark.parametrize("kind", ["test", "plate"])
+def test_a_link_matches_no_evidence_of_another_kind_with_its_name(kind: LinkKind) -> None:
+    for other in SubjectKind:
+        if other in (SubjectKind.PLATE,) if kind == "plate" else other in (SubjectKind.TEST, SubjectKind.RUN):
+            continue
+        for verdict in ("PROVED", "IMPOSSIBLE", "WITNESSED"):
+            found = Finding(
+                "x.json", "certificate", GOOD, NO_REASON, verdict, "N", OURS, subject=other, name="N"
+            )
+            assert state(Link(kind, "N"), found)[0] == "missing", (other, verdict)
+
+
+def test_no_rewording_of_labels_claims_and_checks_changes_the_state_of_a_link() -> None:
+    random = Random(39)
+    proof = Finding("x.json", "certificate", GOOD, NO_REASON, "PROVED", "P1 base", OURS)
+    cases = [
+        (Link("test", "CUT-1"), replace(TEST, shows=shows))
+        for shows in ("scenarios", "nothing", "unreadable")
+    ]
+    cases += [(Link("test", "CUT-1"), replace(TEST, subject=SubjectKind.FACT))]
+    cases += [(Link("plate", "careful-Vy-1"), PLATE), (Link("plate", "N"), PLATE)]
+    cases += [(Link("claim", "P1 base"), replace(proof, subject=SubjectKind.PROPERTY, name="P1 base"))]
+    cases += [(Link("claim", "P1 base"), proof)]
+    words = (
+        "shows no scenario",
+        "cannot be read",
+        "test CUT-1",
+        "CUT-1 runs",
+        "careful-Vy-1, x",
+        "N",
+        "P1 base",
+    )
+    for _ in range(300):
+        link, found = random.choice(cases)
+        reworded = (
+            replace(found, label=random.choice(words), checked=(random.choice(words),))
+            if found.subject is not SubjectKind.TEST
+            else replace(found, label=random.choice(words), claim=random.choice(words))
+        )
+        assert state(link, reworded)[0] is state(link, found)[0], (link, reworded)

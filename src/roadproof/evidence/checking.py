@@ -14,6 +14,7 @@ from roadproof.evidence.finding import Acceptance, Finding, OtherVerdict
 from roadproof.evidence.judged import judge_file, times_data
 from roadproof.evidence.none_within import Derive, Derived, NoneWithinFile
 from roadproof.evidence.strict import Fields, read_json
+from roadproof.evidence.subject import SubjectKind
 from roadproof.library.bind import default_values, values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import is_moving, statement
@@ -86,7 +87,17 @@ class Checker:
         read = (*ruled.checked, *self._readings(file.options))
         more = (read, ruled.unchecked) if outcome is Acceptance.ACCEPTED else ((), ())
         return Finding(
-            str(path), "certificate", outcome, reason, "PROVED", named, told, *more, kernel=ruled.word
+            str(path),
+            "certificate",
+            outcome,
+            reason,
+            "PROVED",
+            named,
+            told,
+            *more,
+            kernel=ruled.word,
+            subject=SubjectKind.OTHER if label is None else SubjectKind.PROPERTY,
+            name="" if label is None else named,
         )
 
     def _rule(self, file: Certificate) -> tuple[Acceptance, Reason]:

@@ -6,6 +6,7 @@ from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers.shared import KernelWord, Reason
 from roadproof.evidence.codec import LEFT_OUT, Doc
+from roadproof.evidence.subject import SubjectKind, TestOutcome
 from roadproof.reasons import NO_REASON, Why
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
@@ -64,6 +65,11 @@ class Finding:
     claim: str = ""
     checked: Annotated[tuple[str, ...], Doc("What was looked at, in words.")] = ()
     unchecked: Annotated[tuple[str, ...], Doc("What was not, in words.")] = ()
+    subject: Annotated[
+        SubjectKind, LEFT_OUT, Doc("The kind of thing that it is about; links of requirements match on it.")
+    ] = SubjectKind.OTHER
+    name: Annotated[str, LEFT_OUT, Doc("The name of a subject that has a kind, such as that of a test.")] = ""
+    shows: Annotated[TestOutcome, LEFT_OUT, Doc("What a test of a catalogue shows.")] = ""
     kernel: Annotated[
         KernelWord, LEFT_OUT, Doc("What Coq says of a certificate or drive, where it was asked.")
     ] = ""

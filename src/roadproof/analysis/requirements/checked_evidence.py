@@ -155,7 +155,7 @@ class _Reader:
         index = Path(finding.where)
         if index not in self.remarks:
             self.remarks[index] = dict(_remarks(index))
-        return self.remarks[index].get(finding.label.removeprefix("test "), "")
+        return self.remarks[index].get(finding.name, "")
 
 
 def _meaning(specification: Specification, claim: str) -> Meaning | None:

@@ -12,6 +12,7 @@ from roadproof.analysis.requirements.requirement import Link
 from roadproof.errors import InputError, TextError, UsageError
 from roadproof.evidence.answers.trace import LinkState
 from roadproof.evidence.finding import STALE, Acceptance
+from roadproof.evidence.subject import OF_TESTS, SubjectKind
 from roadproof.library.bind import default_values
 from roadproof.library.elaborate import apply_definition
 from roadproof.library.scenario_references import read_query
@@ -142,7 +143,9 @@ def _of_formula(target: Target, evidence: Sequence[CheckedEvidence]) -> Iterator
     for x in evidence:
         if x.finding.kind == "test":
             continue
-        by_label = target.meaning is None and x.finding.label == label
+        by_label = (
+            target.meaning is None and x.finding.subject is SubjectKind.PROPERTY and x.finding.name == label
+        )
         if by_label or (target.meaning is not None and x.meaning == target.meaning):
             yield _not_accepted(x) or _same(target.link.kind, x)
         elif target.meaning is not None and x.meaning == target.meaning.opposite:
@@ -184,7 +187,11 @@ def _opposite(kind: str, x: CheckedEvidence) -> Iterator[Shown]:
 
 def _of_test(name: str, evidence: Sequence[CheckedEvidence]) -> Iterator[Shown]:
     """What a catalogue says of a test; without one, of the drive whose file has its name."""
-    mine = [x for x in evidence if x.finding.label in (name, f"test {name}", f"{name} runs")]
+    mine = [
+        x
+        for x in evidence
+        if x.finding.subject in (SubjectKind.TEST, SubjectKind.RUN) and x.finding.name == name
+    ]
     if not mine:
         mine = [x for x in evidence if x.finding.kind == "drive" and Path(x.finding.where).stem == name]
     for x in mine:
@@ -193,9 +200,9 @@ def _of_test(name: str, evidence: Sequence[CheckedEvidence]) -> Iterator[Shown]:
             yield wrong
         elif x.remark:
             yield Shown(x, LinkState.REFUTED, Why.TOLD(x.remark))
-        elif x.finding.claim.startswith("cannot be read"):
+        elif x.finding.shows == "unreadable":
             yield Shown(x, LinkState.REJECTED, Why.TOLD(x.finding.claim))
-        elif x.finding.claim == "shows no scenario":
+        elif x.finding.shows == "nothing":
             yield Shown(x, LinkState.UNKNOWN, Why.SHOWS_NONE())
         elif x.finding.verdict == "READ":
             yield Shown(x, LinkState.UNKNOWN, Why.NO_DRIVE_OF_FORMULA())
@@ -207,11 +214,11 @@ def _of_test(name: str, evidence: Sequence[CheckedEvidence]) -> Iterator[Shown]:
 
 def is_of_test(link: Link, x: CheckedEvidence) -> bool:
     """Whether evidence is a fact of a catalogue about the test, such as ``CUT-1 excludes scenario_4``."""
-    return link.kind == "test" and x.finding.label.startswith(f"{link.target} ")
+    return link.kind == "test" and x.finding.subject in OF_TESTS and x.finding.name == link.target
 
 
 def _is_plate(x: CheckedEvidence, name: str) -> bool:
-    return x.finding.label == name or x.finding.label.startswith(f"{name},")
+    return x.finding.subject is SubjectKind.PLATE and x.finding.name == name
 
 
 def _is_at(x: CheckedEvidence, place: Path) -> bool:

@@ -14,6 +14,7 @@ from roadproof.evidence.answers.catalogue_index import VERDICTS, Index, KeptFact
 from roadproof.evidence.answers.entry import Common, Entry, file_of, shows_of, shows_of_claim
 from roadproof.evidence.answers.reader import Background, Reader
 from roadproof.evidence.strict import Fields, rational
+from roadproof.evidence.subject import subject_of_fact
 from roadproof.library.compose import both, implication, negation
 from roadproof.library.elaborate import read_claim, read_term
 from roadproof.library.scenarios import Scenario, applied, number_in
@@ -43,6 +44,7 @@ def _facts(facts: Sequence[KeptFact], background: Background, where: str) -> Ite
             file_of(place, shows, fact.certificate, fact.drive),
             unchecked=("that no drive goes farther",) if fact.relation == "reaches" else (),
             fault=_fault(fact, place, common),
+            subject=subject_of_fact(fact.test, fact.relation),
             expected=partial(_expected, fact, common),
         )
 

@@ -17,6 +17,7 @@ from roadproof.evidence import certificate
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.drive_file import SCHEMAS_READ, DriveFile, read_drive
 from roadproof.evidence.strict import Fields, rational, read_json, text
+from roadproof.evidence.subject import Subject
 from roadproof.library.bind import values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import under_limits
@@ -91,6 +92,7 @@ class Entry:
     fault_of: Callable[[str], str] | None = None
     fault_of_drive: Callable[[DriveFile], str] | None = None
     assuming: tuple[str, ...] = ()
+    subject: Subject = Subject()
     expected: Callable[[], Sequence[Formula | Conjunctions] | None] = field(kw_only=True)
 
 

@@ -18,6 +18,7 @@ from roadproof.evidence.answers.plates import Index, Lemma, Line, Plate, Preambl
 from roadproof.evidence.answers.reader import Background, Reader
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.strict import rational
+from roadproof.evidence.subject import Subject, SubjectKind
 from roadproof.library.bind import values_with
 from roadproof.logic.formula import Formula as FormulaTree
 from roadproof.runtime.records import dataclass
@@ -142,6 +143,7 @@ def _plate(said: Plate, background: Background, number: int) -> Iterator[Entry]:
             unchecked=(_PLACES, _CONTROLLER) if plate.is_stepped else (),
             fault=fault,
             fault_of_drive=partial(_begins_otherwise, plate.manoeuvre, at),
+            subject=Subject(SubjectKind.PLATE, said.name),
             expected=partial(_expected, plate, shown, at),
         )
 

@@ -12,6 +12,7 @@ from roadproof.evidence.answers.entry import Common, Entry, evidence_name, shows
 from roadproof.evidence.answers.reader import Background, Reader
 from roadproof.evidence.codec import ABSENT, LEFT_OUT, UNCHECKED, Doc, Rule
 from roadproof.evidence.json_schema import File
+from roadproof.evidence.subject import Subject, SubjectKind
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import is_moving, under_limits
 from roadproof.logic import formula as f
@@ -120,6 +121,7 @@ def _entry(claim: Claim, where: str, background: Background) -> Entry:
         evidence_name(where, "evidence", claim.evidence),
         _trace_of(claim),
         unchecked=unchecked_of(claim.verdict),
+        subject=Subject() if label is None else Subject(SubjectKind.PROPERTY, shown(label, claim.set)),
         fault=fault,
         assuming=claim.assuming,
         expected=partial(claim.expected, common),

@@ -24,6 +24,7 @@ from roadproof.evidence.codec import read, write
 from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.evidence.folder import INDEX, FolderStatements
 from roadproof.evidence.strict import Fields, JsonObject, read_json
+from roadproof.evidence.subject import OTHER, Subject, SubjectKind, subject_of_fact
 from roadproof.frontends.api.definitions import Definitions
 from roadproof.frontends.api.restricting import drivers_of
 from roadproof.frontends.api.settings import basis_of
@@ -152,25 +153,35 @@ def _tests(index: Fields, again: Index, where: str) -> Iterator[Finding]:
         yield _of_test(name, said.get(name), test, where)
     for name in said:
         if name not in now:
-            yield _rejected(where, Why.TEST_GONE(), name)
+            yield _rejected(where, Why.TEST_GONE(), name, _test(name))
 
 
 def _of_test(name: str, said: JsonObject | None, now: ConcreteTest | AbstractTest, where: str) -> Finding:
     if said is None:
-        return _rejected(where, Why.TEST_UNKNOWN(), name)
+        return _rejected(where, Why.TEST_UNKNOWN(), name, _test(name))
     if isinstance(now, ConcreteTest) and said.get("sha256") != now.sha256:
-        return _rejected(where, (Why.FILE_CHANGED if now.sha256 else Why.FILE_GONE)(now.file), name)
+        return _rejected(
+            where, (Why.FILE_CHANGED if now.sha256 else Why.FILE_GONE)(now.file), name, _test(name)
+        )
     data = write(now)
     wrong = [key for key in dict.fromkeys((*said, *data)) if said.get(key) != data.get(key)]
     if wrong:
-        return _rejected(where, Why.JUDGED_OTHERWISE(", ".join(wrong)), name)
+        return _rejected(where, Why.JUDGED_OTHERWISE(", ".join(wrong)), name, _test(name))
+    found = Finding(
+        where, "index", Acceptance.ACCEPTED, label=f"test {name}", subject=SubjectKind.TEST, name=name
+    )
     if isinstance(now, AbstractTest):
-        return Finding(where, "index", Acceptance.ACCEPTED, NO_REASON, "READ", f"test {name}", now.formula)
+        return replace(found, verdict="READ", claim=now.formula)
     shown = ", ".join(dict.fromkeys(x.what for x in now.shown)) or "no scenario"
     how = "read again" if now.fault else "judged again in dense time" if now.dense else "monitored again"
-    told = f"cannot be read: {now.fault}" if now.fault else f"shows {shown}"
-    checked = (how, "its file is unchanged")
-    return Finding(where, "test", Acceptance.ACCEPTED, NO_REASON, "JUDGED", f"test {name}", told, checked)
+    return replace(
+        found,
+        kind="test",
+        verdict="JUDGED",
+        claim=f"cannot be read: {now.fault}" if now.fault else f"shows {shown}",
+        checked=(how, "its file is unchanged"),
+        shows="unreadable" if now.fault else "scenarios" if now.shown else "nothing",
+    )
 
 
 # --- what is derived -----------------------------------------------------------------------------
@@ -182,7 +193,12 @@ def _about_facts(made: Examination, facts: Sequence[Fact], where: str) -> Iterat
     for fact in facts:
         reason = _wrong(fact, entries, made)
         if reason:
-            yield _rejected(where, reason, f"{fact.test} {fact.relation} {fact.other}".strip())
+            yield _rejected(
+                where,
+                reason,
+                f"{fact.test} {fact.relation} {fact.other}".strip(),
+                subject_of_fact(fact.test, fact.relation),
+            )
     ends = {(x.other, x.term) for x in facts if x.term}
     for reach in made.study.reaches:
         if (reach.target, reach.term) not in ends:
@@ -191,12 +207,12 @@ def _about_facts(made: Examination, facts: Sequence[Fact], where: str) -> Iterat
         those = [x for x in facts if x.test == name]
         alone = [x for x in those if not x.other]
         if len(alone) != 1:
-            yield _rejected(where, Why.RUNS_UNSAID(), name)
+            yield _rejected(where, Why.RUNS_UNSAID(), name, _test(name))
         elif alone[0].relation == "runs":
             known = {x.other for x in those}
             missing = [x for x in made.study.asked.scenarios_of(entry.query.vehicles) if x not in known]
             if missing:
-                yield _rejected(where, Why.NOTHING_SAID(", ".join(missing)), name)
+                yield _rejected(where, Why.NOTHING_SAID(", ".join(missing)), name, _test(name))
 
 
 def _wrong(fact: Fact, entries: Mapping[str, Abstract], made: Examination) -> Reason:
@@ -275,5 +291,11 @@ def _whole(index: Fields, again: Index, where: str) -> Iterator[Finding]:
         )
 
 
-def _rejected(where: str, reason: Reason, label: str = "") -> Finding:
-    return Finding(where, "index", Acceptance.REJECTED, reason, label=label)
+def _test(name: str) -> Subject:
+    return Subject(SubjectKind.TEST, name)
+
+
+def _rejected(where: str, reason: Reason, label: str = "", subject: Subject = OTHER) -> Finding:
+    return Finding(
+        where, "index", Acceptance.REJECTED, reason, label=label, subject=subject.kind, name=subject.name
+    )

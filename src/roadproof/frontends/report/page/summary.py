@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from typing import Final
 
 from roadproof.engines.prove.properties import find_task
+from roadproof.evidence.answers.catalogue_index import Figure
+from roadproof.evidence.codec import read
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding, summary
 from roadproof.evidence.strict import Json
 from roadproof.frontends.report.page.results import Result
@@ -53,7 +55,7 @@ class Overview:
     """A section of the page in a line.
 
     ``told``: counts in words; ``rejected``: how many reasons there are to reject its evidence; ``remarked``:
-    whether tests have faults.
+    whether tests have faults or situations are untested.
     """
 
     title: str
@@ -87,7 +89,9 @@ def overview(result: Result, title: str, question: str, rejected: int = 0) -> Ov
     target = f"result-{result.id}"
     statements = [Statement(_text(x, "verdict"), _told(x), at, _is_expected(x, result)) for x, at in found]
     subject = _subject(result, [x for x, _ in found])
-    remarked = result.kind == "catalogue" and any(result.data.get(key) for key in _REMARKS)
+    remarked = result.kind == "catalogue" and (
+        any(result.data.get(key) for key in _REMARKS) or any(x.tested < x.total for x in _figures(result))
+    )
     told = _counts_of(result)
     return Overview(title, question, target, result.name, subject, told, statements, rejected, remarked)
 
@@ -204,7 +208,13 @@ def _counts_of(result: Result) -> str:
     if result.kind == "catalogue":
         counts = (("tests", "test"), *((key, words) for key, words in _REMARKS.items()))
         found = [(len(x) if isinstance(x := data.get(key), list) else 0, words) for key, words in counts]
-        return ", ".join(f"{n} {_plural(words, n)}" for n, words in found if n)
+        told = [f"{n} {_plural(words, n)}" for n, words in found if n]
+        told += [
+            f"{x.total - x.tested} of {x.total} {x.kind} untested (set {x.set_name})"
+            for x in _figures(result)
+            if x.tested < x.total
+        ]
+        return ", ".join(told)
     if result.kind != "traffic-results":
         return ""
     table = data.get("table")
@@ -218,6 +228,13 @@ def _counts_of(result: Result) -> str:
     read = f"{many} {_plural('recording', many)}, {data.get('vehicles')} vehicles"
     matches = [f"{n['matching']} of {n['traces']} critical traces match in {of}" for of, n in sums.items()]
     return excerpt("; ".join([read, *matches]), 300)
+
+
+def _figures(result: Result) -> list[Figure]:
+    """The figures of a catalogue for all road sectors."""
+    found = result.data.get("figures")
+    every = [read(Figure, x, result.name) for x in found] if isinstance(found, list) else []
+    return [x for x in every if not x.sector]
 
 
 def _plural(word: str, count: object) -> str:

@@ -1,0 +1,43 @@
+"""The subject of evidence: the kind of question that it answers and the name of the thing asked about.
+
+Links of requirements match on these, never on labels, which are words for people.
+"""
+
+from enum import StrEnum
+from typing import Final, Literal, NamedTuple, TypeAlias
+
+
+class SubjectKind(StrEnum):
+    """The kinds of subjects; OTHER: a claim or drive that no requirement names by itself."""
+
+    PROPERTY = "property"
+    TEST = "test"
+    RUN = "run"
+    """The drive of a test that is given as a formula."""
+    FACT = "fact"
+    """A relation between a test and a scenario, such as that it excludes one."""
+    PLATE = "plate"
+    OTHER = ""
+
+
+OF_TESTS = (SubjectKind.TEST, SubjectKind.RUN, SubjectKind.FACT)
+
+
+class Subject(NamedTuple):
+    """A kind of subject with its name."""
+
+    kind: SubjectKind = SubjectKind.OTHER
+    name: str = ""
+
+
+OTHER: Final = Subject()
+
+TestOutcome: TypeAlias = Literal["scenarios", "nothing", "unreadable", ""]
+"""What a concrete test shows: at least one scenario, none, or its file cannot be read; empty of all else."""
+
+
+def subject_of_fact(test: str, relation: str) -> Subject:
+    """The subject of a fact of a catalogue; one without a test is about a scenario."""
+    if not test:
+        return OTHER
+    return Subject(SubjectKind.RUN if relation == "runs" else SubjectKind.FACT, test)
