@@ -1,0 +1,76 @@
+"""No code decides by the words of a claim, a label, a message or a reason."""
+
+import ast
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+SOURCE = Path(__file__).parents[2] / "src/roadproof"
+WORDS = {"label", "told", "reason", "claim", "remark", "message"}
+EXCEPTIONS = {
+    "frontends/api/judging_again.py": 1,  # the formula of a claim, without which the answer is rejected
+    "recordings/evaluate/experiment.py": 1,  # the words of an error get their place once
+    "analysis/catalogue/listing.py": 1,  # a range in a list that a user writes
+    "semantics/streaming/c_files.py": 1,  # the identifier of a monitor in C
+    "analysis/requirements/checked_evidence.py": 1,  # open: the set of an entry without a file
+    "analysis/assurance/limits.py": 3,  # open: limits of a search as evidence states them
+}
+"""How many matches on words each file may have."""
+MATCHES = {"rpartition", "startswith", "endswith", "find", "index", "match", "search", "fullmatch"}
+
+
+def words_in(node: ast.expr) -> bool:
+    match node:
+        case ast.Attribute(attr=name) | ast.Name(id=name):
+            return name in WORDS
+    return False
+
+
+def is_words(node: ast.expr) -> bool:
+    return isinstance(node, ast.Constant) and isinstance(node.value, str) and bool(node.value)
+
+
+def verdicts_from_words(source: str) -> Iterator[int]:
+    """Lines that compare the words of a field with a literal, or match or look up these words."""
+    for node in ast.walk(ast.parse(source)):
+        match node:
+            case ast.Compare(left=left, comparators=[right, *_]):
+                literal = is_words(left) or is_words(right)
+                listed = isinstance(right, ast.Tuple | ast.List | ast.Set) and any(map(is_words, right.elts))
+                formatted = isinstance(right, ast.JoinedStr)
+                if (words_in(left) or words_in(right)) and (literal or listed or formatted):
+                    yield node.lineno
+            case ast.Call(func=ast.Attribute(value=value, attr=name), args=args) if name in MATCHES:
+                if words_in(value) or any(map(words_in, args)):
+                    yield node.lineno
+            case ast.Subscript(slice=key, ctx=ast.Load()) if words_in(key):
+                yield node.lineno
+
+
+def test_no_source_decides_by_words() -> None:
+    found = Counter(
+        str(path.relative_to(SOURCE))
+        for path in sorted(SOURCE.rglob("*.py"))
+        if SOURCE / "recordings/formats" not in path.parents
+        for _ in verdicts_from_words(path.read_text("utf-8"))
+    )
+    assert found == EXCEPTIONS
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        'x.claim == "shows no scenario"',
+        '"no scenario" in x.reason',
+        'x.label in ("a", "b")',
+        'x.label == f"test {name}"',
+        'x.label.startswith("test ")',
+        "re.match(pattern, x.told)",
+        "TABLE[x.label]",
+    ],
+)
+def test_a_verdict_from_words_is_found(source: str) -> None:
+    assert [*verdicts_from_words(source)] == [1]
+    assert [*verdicts_from_words('x.kind is Kind.TEST and x.reason.kind in STALE and x.label == ""')] == []
