@@ -1,6 +1,6 @@
 """What analyses of scenarios rest on: definitions, values of parameters, and how hard is searched."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Generic, TypeVar
@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 from roadproof.analysis.study.evidence_store import readings
 from roadproof.engines.prove.induction import prove_of_scenarios
 from roadproof.engines.prove.prover import Result, SharedPremise
+from roadproof.evidence.claim import Claim, Exists, claim_of
 from roadproof.evidence.settled import Settled
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.bind import values_with
-from roadproof.library.dependence import digest_of
 from roadproof.library.specification import Library, Query, Specification
 from roadproof.runtime.budget import BudgetExceeded, Effort
+from roadproof.runtime.canonical import digest
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ProofVerdict, Verdict
 from roadproof.world.road import Road
@@ -23,14 +24,14 @@ if TYPE_CHECKING:
     from roadproof.engines.search.outcome import Search
     from roadproof.engines.search.question import Objective
 
-Claim = TypeVar("Claim")
+Asked = TypeVar("Asked")
 
 
 @dataclass(frozen=True)
-class ProofResult(Settled[ProofVerdict], Generic[Claim]):
+class ProofResult(Settled[ProofVerdict], Generic[Asked]):
     """The verdict on a claim: a certificate where it is proved, else a reason."""
 
-    claim: Claim
+    claim: Asked
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,7 @@ class Basis:
     @property
     def models(self) -> dict[str, str]:
         """The models, for those on which answers depend besides what an index says."""
-        return {"vehicles": repr(sorted(self.vehicles.items()))} if self.vehicles else {}
+        return {"vehicles": digest(self.vehicles)} if self.vehicles else {}
 
     @property
     def library(self) -> Library:
@@ -75,11 +76,23 @@ class Basis:
         values = sorted((name, str(value)) for name, value in self.all_values().items())
         return readings(self.specification, parameters=dict(values))
 
-    def key(self, *texts: str) -> str:
-        """A digest of what an answer depends on that speaks of the definitions in ``texts``."""
-        limits = self.horizon, self.effort, self.proof, self.objective, sorted(self.vehicles.items())
-        home = self.specification
-        return f"{digest_of(home, texts, self.all_values())} {limits!r} {sorted(home.options.items())}"
+    def claim(self, query: Query) -> Claim:
+        """The claim that there is a drive on which ``query`` holds, within the limits of this basis."""
+        vehicles = {name: x for name, x in self.vehicles.items() if not name or name in query.vehicles}
+        mode = Exists(vehicles=vehicles, horizon=self.horizon, objective=self.objective)
+        return claim_of(self.library, query, mode, self.values)
+
+    def key(self, queries: Iterable[Query], *more: object) -> str:
+        """A digest of all that an answer depends on: the claims of ``queries``, limits, and ``more``.
+
+        ``more``: plain data (``runtime.canonical``) beside the claims. Raises ``ValueError`` without queries,
+        since an answer about nothing would be an answer to every question.
+        """
+        claims = [self.claim(x).digest() for x in queries]
+        if not claims:
+            raise ValueError("a key needs the claims that the answer is about")
+        limits = self.horizon, self.objective, self.vehicles, self.effort, self.proof
+        return digest(claims, limits, self.specification.options, self.set_names, more)
 
     def search(
         self, query: Query, road: Road | None = None, effort: Effort | None = None, explain: bool = False
@@ -103,7 +116,7 @@ class Basis:
         effort = self.effort.of(self.proof if units is None else units)
         return prove_of_scenarios(self.specification, query, effort, shared).called(label)
 
-    def settle(self, claim: Claim, query: Query, units: float, label: str) -> ProofResult[Claim]:
+    def settle(self, claim: Asked, query: Query, units: float, label: str) -> ProofResult[Asked]:
         """The verdict on ``claim``, which ``query`` says; in doubt where the clock cuts the proof off."""
         try:
             result = self.proof_of(query, units, label)

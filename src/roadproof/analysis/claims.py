@@ -1,6 +1,5 @@
 """Many claims, each settled by itself and kept: what is asked, and what came out."""
 
-import hashlib
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
@@ -17,17 +16,18 @@ from roadproof.errors import InputError, UsageError
 from roadproof.evidence.answers import proofs as kept
 from roadproof.evidence.answers.proofs import SCHEMA, Claim, Index, Record
 from roadproof.evidence.answers.read import index_fields
+from roadproof.evidence.claim import valid_under
 from roadproof.evidence.codec import ABSENT, read, write
 from roadproof.evidence.countermodel import read_trace, trace_data
 from roadproof.evidence.heading import library_of
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, JsonObject, read_json
-from roadproof.library.dependence import digest_of
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library, Query, Specification, read_specification
 from roadproof.logic.custom_names import told_freedom
 from roadproof.reasons import Reason, Why
 from roadproof.runtime.budget import Effort
+from roadproof.runtime.canonical import digest
 from roadproof.runtime.progress import about
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ClaimVerdict, Verdict
@@ -181,10 +181,13 @@ class Claims(Unprepared):
 
     def key(self, name: str) -> str | None:
         """None within bounds, where the answer has no evidence."""
+        if self.within is not None:
+            return None
         task = self.named[name]
         home = self.specification_of(task)
-        limits = self.effort, self.seek_drive, task.claim.split(), task.assuming
-        return None if self.within is not None else f"{digest_of(home, [task.claim])} {limits!r}"
+        claim = valid_under(home, read_claim(home, task.claim), task.assuming)
+        called = task.id, task.part, task.scenario, task.set_name, " ".join(task.claim.split()), task.assuming
+        return digest(claim.digest(), called, home.options, self.effort, self.seek_drive)
 
     def record(self, name: str, answer: ClaimResult, shelf: EvidenceStore) -> kept.Record:
         task, settled, result = answer.task, answer.settled, answer.settled.result
@@ -232,7 +235,7 @@ class Claims(Unprepared):
         if self.within is None:
             return _BY_DRIVE if self.seek_drive else _BY_TRACE
         place, search_options = self.within
-        return f"{search_options.engine} {hashlib.sha256(repr(place).encode()).hexdigest()[:16]}"
+        return f"{search_options.engine} {digest(place)[:16]}"
 
     def _check_refuted(self, name: str, asked: str, drive: JudgedDrive | None) -> None:
         """Raises ``InputError`` where a kept counterexample is less than what is asked for now."""

@@ -159,11 +159,15 @@ class Overlap:
         for a, b in self.pairs:
             if name_of(a, b) in known:
                 continue
-            first, second = self._likes[a.set_name][a.number], self._likes[b.set_name][b.number]
-            turned = a.set_name == b.set_name and second < first
-            seed = (s.Scenario(first, a.set_name), s.Scenario(second, b.set_name))
+            seed = self._seed(a, b)
+            turned = a.set_name == b.set_name and seed[1].number < seed[0].number
             groups.setdefault(seed[::-1] if turned else seed, []).append((b, a) if turned else (a, b))
         return [Group(seed, tuple(pairs)) for seed, pairs in groups.items()]
+
+    def _seed(self, a: s.Scenario, b: s.Scenario) -> Pair:
+        """The first pair that differs from this one in road sectors only."""
+        first, second = self._likes[a.set_name][a.number], self._likes[b.set_name][b.number]
+        return s.Scenario(first, a.set_name), s.Scenario(second, b.set_name)
 
     @cached_property
     def _likes(self) -> dict[str, dict[int, int]]:
@@ -201,7 +205,14 @@ class Overlap:
         return {name_of(a, b): (a, b) for a, b in self.pairs}
 
     def key(self, name: str) -> str:
-        return self.basis.key(*map(s.definition_of, self._named[name]))
+        """Besides the pair, that which is solved for all that differ in road sectors only counts."""
+        pair = self._named[name]
+        home, meeting = self.basis.specification, self.meeting
+        return self.basis.key(
+            [x for both in (pair, self._seed(*pair)) for x in conjunctions(home, *both, meeting)],
+            pair,
+            meeting,
+        )
 
     def prepare(self) -> None:
         prepare()

@@ -230,7 +230,11 @@ class Redundancy(Unprepared):
         return {name_of(number): number for number in self.numbers}
 
     def key(self, name: str) -> str:
-        return self.basis.key(s.definition_of(self._scenario(self._named[name])))
+        """What the first scenario that differs in its road sector only has taught counts, too."""
+        home, number = self.basis.specification, self._named[name]
+        leader = next(n for n in self.numbers if self._likes[n] == self._likes[number])
+        asked = [s.applied(home, self._scenario(n)) for n in (number, leader)]
+        return self.basis.key(asked, number, leader, self.whole)
 
     def record(self, name: str, answer: ChangeFindings, shelf: EvidenceStore) -> Record:
         number = int(name.rpartition("-")[2])

@@ -1,6 +1,5 @@
 """Drives for scenarios and formulas, each looked for by itself and kept."""
 
-import hashlib
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -12,12 +11,11 @@ from roadproof.errors import InputError
 from roadproof.evidence.answers import drives as kept
 from roadproof.evidence.answers.drives import SCHEMA
 from roadproof.library.alike import like_of
-from roadproof.library.bind import values_with
-from roadproof.library.dependence import digest_of
 from roadproof.library.elaborate import StatedQuery, read_claim
+from roadproof.library.scenarios import Scenario, applied
 from roadproof.logic.show import declared
 from roadproof.reasons import Reason
-from roadproof.runtime.budget import Effort
+from roadproof.runtime.canonical import digest
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
 
@@ -85,10 +83,15 @@ class WitnessStudy:
         return self.named
 
     def key(self, name: str) -> str:
+        """A scenario may take the drive of one that differs from it in its road sector only."""
         search = self.named[name]
-        values = values_with(search.specification.library, search.setting.values)
-        used = digest_of(search.specification, [search.query.text], values)
-        return f"{used} {_asked(search)} {search.search_options.effort!r}"
+        home, number, sibling = search.specification, search.scenario, None
+        if number is not None:
+            first = like_of(home, number)
+            query = applied(home, Scenario(first, home.set_name))
+            sibling = replace(search, query=query).claim.digest(), first
+        called = home.set_name, number, home.options
+        return digest(search.claim.digest(), search.query.text, sibling, called, search.search_options.effort)
 
     def prepare(self) -> None:
         from roadproof.engines.search import ask as ask  # for all processes that are forked
@@ -178,7 +181,5 @@ def name_of(number: int, search: Search) -> str:
 
 
 def _asked(search: Search) -> str:
-    """A short text that changes with formula, road, vehicles, limits and options, but not with the effort."""
-    options = replace(search.search_options, effort=Effort())
-    asked = repr((search.query.text, search.setting, options, search.count))
-    return hashlib.sha256(asked.encode()).hexdigest()[:16]
+    """A short text that changes with the claim of a search and its text, but not with the effort."""
+    return digest(search.claim.digest(), search.query.text)[:16]

@@ -14,8 +14,9 @@ from roadproof.errors import TextError, once_each, raise_all
 from roadproof.library import scopes
 from roadproof.library.arithmetic import ValueOfTermError
 from roadproof.library.elaborate import mistakes_in
-from roadproof.library.elaboration import Elaborator, Known, LostError
+from roadproof.library.elaboration import Elaborator
 from roadproof.library.loading import gather, gather_files, load_library, place_of, sources_of
+from roadproof.library.notes import Known, LostError
 from roadproof.library.quantity import Quantity
 from roadproof.library.scopes import Value, Vehicles
 from roadproof.library.specification import Library, Source, Specification, source_of

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 from roadproof.errors import TextError, once_each, raise_all
 from roadproof.library import scopes
-from roadproof.library.elaboration import Elaborator, Note
+from roadproof.library.elaboration import Elaborator
+from roadproof.library.notes import Entered, Note
 from roadproof.library.scopes import Value, Vehicles
 from roadproof.library.specification import Query, Specification, unknown
 from roadproof.logic import syntax
@@ -105,7 +106,10 @@ def elaborate(specification: Specification, claim: syntax.Claim, walk: Elaborato
 
     ``walk``, through the same specification, knows what others use.
     """
-    elaborator = Elaborator(specification) if walk is None else walk.again()
+    return _read(claim, Elaborator(specification) if walk is None else walk.again())
+
+
+def _read(claim: syntax.Claim, elaborator: Elaborator) -> Query:
     made = elaborator.formula(claim.body, elaborator.given(claim))
     elaborator.refuse_deeper(elaborator.deepest, claim.body.at)  # whatever the walk has read before
     declared = [b.name for b in claim.given if b.sort == "vehicle"]
@@ -120,6 +124,16 @@ def notes_of(specification: Specification, claim: syntax.Claim) -> list[Note]:
     elaborator = Elaborator(specification, notes=notes)
     elaborator.formula(claim.body, elaborator.given(claim))
     return notes
+
+
+def entered_in(specification: Specification, claim: syntax.Claim) -> tuple[Query, Entered]:
+    """What a claim means, and every definition, by set and name, whose body is part of that.
+
+    Raises ``TextError``.
+    """
+    elaborator = walk_of(specification).again()
+    query = _read(claim, elaborator)
+    return query, elaborator.entered
 
 
 def read_term(specification: Specification, text: str, source: str = "term") -> tuple[t.Term, Dimension]:
@@ -161,6 +175,19 @@ def signature(specification: Specification, name: str, walk: Elaborator | None =
 
     The size of a group is the smallest that the definitions below accept. ``walk`` knows what others use.
     """
+    return _applied_to_own(specification, name, walk)[0]
+
+
+def entered_below(specification: Specification, name: str) -> Entered:
+    """The definition of a name and every one that it is made of, by set and name. Raises ``TextError``."""
+    entered = _applied_to_own(specification, name, walk_of(specification))[1].entered
+    return {(specification.set_name, name): specification.definitions[name]} | entered
+
+
+def _applied_to_own(
+    specification: Specification, name: str, walk: Elaborator | None
+) -> tuple[tuple[str, ...], Elaborator]:
+    """The names of the arguments of a definition, and the walk through its body with them."""
     if name not in specification.definitions:
         raise TextError(unknown("definition", name, specification.definitions))
     parameters = specification.definitions[name].parameters
@@ -179,7 +206,7 @@ def signature(specification: Specification, name: str, walk: Elaborator | None =
         try:
             elaborator = Elaborator(specification) if walk is None else walk.again()
             elaborator.body_of(name, scope)
-            return tuple(roles)
+            return tuple(roles), elaborator
         except TextError as error:
             failure = failure or error
     assert failure is not None

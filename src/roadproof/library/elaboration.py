@@ -5,12 +5,14 @@ are names from the start, so what comes out speaks of SV, POV and L and nothing 
 """
 
 import re
+from collections.abc import Iterator
 from dataclasses import field
 from fractions import Fraction
-from typing import TypeAlias, TypeVar
+from typing import TypeVar
 
 from roadproof.errors import Position, TextError
 from roadproof.library import arithmetic, kinds, scopes
+from roadproof.library.notes import Entered, Known, LostError, Note
 from roadproof.library.quantity import Quantity, Sizes
 from roadproof.library.scopes import SORTS, Free, Ref, Scope, Value, Vehicles
 from roadproof.library.specification import BUILT_IN, Specification, source_of, unknown
@@ -28,22 +30,7 @@ DEEPEST_FORMULA = 100
 MOST_ERRORS = 200
 _ANY_NUMBER = Quantity(t.number(1), None)  # fits wherever a number is wrong
 
-# What definitions of a set mean, applied to values, and how deep expressions are nested in each.
-Known: TypeAlias = dict[tuple[str, str, tuple[Value, ...]], tuple[Formula | Quantity, int]]
 A = TypeVar("A")
-
-
-class LostError(TextError):
-    """What was asked for is declared by a text that could not be read, of which is told elsewhere."""
-
-
-@dataclass(frozen=True)
-class Note:
-    """That an expression at a place, in the text of a definition or of the claim (None), became a formula."""
-
-    definition: Definition | None
-    at: Position
-    formula: Formula
 
 
 @dataclass
@@ -52,7 +39,7 @@ class Elaborator:
 
     With ``errors`` mistakes are noted there and the walk goes on; nothing is said of names that are ``lost``,
     because what declares them could not be read. ``notes``: where it is a list, what each expression became
-    is added to it.
+    is added to it. ``entered``: every definition that has been applied so far, also from what is ``known``.
     """
 
     specification: Specification
@@ -66,6 +53,7 @@ class Elaborator:
     errors: list[TextError] | None = None
     lost: tuple[re.Pattern[str], ...] = ()
     notes: list[Note] | None = None
+    entered: Entered = field(default_factory=dict)
 
     def again(self) -> "Elaborator":
         """A walk over another claim in the same specification, which knows what this one has made."""
@@ -150,30 +138,55 @@ class Elaborator:
         )
         made = inner.call(syntax.Call(name, call.arguments, call.at), scope)
         self.deepest = max(self.deepest, inner.deepest)
+        self.entered = self.entered | inner.entered
         return made
 
     def apply(self, definition: Definition, bound: Scope, at: Position) -> Formula | Quantity:
+        around = self.entered
+        made, height, inside = self._known_body(definition, bound, at)
+        self.deepest = max(self.deepest, self.depth + height)
+        self.entered = around | inside
+        if isinstance(made, Quantity):
+            return made
+        if self.home is not None:
+            before = list(self._around())
+            here = self.home.apply(self.home.specification.definitions[definition.name], bound, at)
+            if isinstance(here, f.Application) and here.body == made:
+                self.entered = around
+                return here
+            for walk, entered in before:  # it was only compared
+                walk.entered = entered
+            return f.Application(
+                f"{definition.name}@{self.specification.set_name}", scopes.names_in(bound), made
+            )
+        return f.Application(definition.name, scopes.names_in(bound), made)
+
+    def _known_body(
+        self, definition: Definition, bound: Scope, at: Position
+    ) -> tuple[Formula | Quantity, int, Entered]:
+        """The body of a definition applied to values, how deep it is nested, and what it has entered."""
         key = (definition.name, self.specification.set_name, tuple(bound.values()))
         if key not in self.known:
             if definition.name in self.stack:
                 cycle = " -> ".join([*self.stack[self.stack.index(definition.name) :], definition.name])
                 raise TextError(f"'{definition.name}' is defined by itself: {cycle}", at)
-            before, self.deepest = self.deepest, self.depth
-            body = self.body_of(definition.name, bound)
-            self.known[key] = body, self.deepest - self.depth
+            before, around = self.deepest, self.entered
+            self.deepest = self.depth
+            self.entered = {(self.specification.set_name, definition.name): definition}
+            try:
+                body = self.body_of(definition.name, bound)
+                self.known[key] = body, self.deepest - self.depth, self.entered
+            finally:
+                self.entered = around
             self.deepest = max(before, self.deepest)
-        made, height = self.known[key]
-        self.deepest = max(self.deepest, self.depth + height)
-        if isinstance(made, Quantity):
-            return made
-        if self.home is not None:
-            here = self.home.apply(self.home.specification.definitions[definition.name], bound, at)
-            if isinstance(here, f.Application) and here.body == made:
-                return here
-            return f.Application(
-                f"{definition.name}@{self.specification.set_name}", scopes.names_in(bound), made
-            )
-        return f.Application(definition.name, scopes.names_in(bound), made)
+        return self.known[key]
+
+    def _around(self) -> Iterator[tuple["Elaborator", Entered]]:
+        """The walks that met this one, each with what it has entered so far."""
+        walk = self.home
+        while walk is not None:
+            yield walk, walk.entered
+            walk = walk.home
 
     def body_of(self, name: str, scope: Scope) -> Formula | Quantity:
         """The body of a definition, with mistakes in it located in its own text."""

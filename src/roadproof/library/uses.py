@@ -1,59 +1,47 @@
-"""What a text speaks of: definitions, parameters that occur in them, and where a part of it is said."""
+"""The definitions and parameters that a claim is made of, as elaboration reports them, and their places."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 from roadproof.errors import Position
-from roadproof.library.elaborate import notes_of
-from roadproof.library.specification import Library, Query, Specification, source_of
+from roadproof.library.elaborate import entered_in, notes_of
+from roadproof.library.specification import Query, Specification, source_of
 from roadproof.logic import syntax
 from roadproof.logic.formula import Formula, subformulas
 from roadproof.logic.parse import parse_claim
-from roadproof.logic.syntax import Definition, Expression, ParameterDeclaration
+from roadproof.logic.rewrite import parameters_of
+from roadproof.logic.syntax import Definition, ParameterDeclaration
 from roadproof.runtime.records import dataclass
 
 
-def definitions_used(specification: Specification, expression: Expression) -> tuple[Definition, ...]:
-    """Every definition that ``expression`` calls, and those that they call, once, in reading order.
+@dataclass(frozen=True)
+class Used:
+    """A claim as it is read, with the definitions, in reading order, and the parameters that it is made of.
 
-    One from another spec set that differs from ours is named ``name@set``. Names without a definition
-    are passed over: ``spec.elaborate`` complains about them.
+    ``named``: each definition as it is written, by name; one of another set that differs from ours is named
+    ``name@set``.
     """
+
+    query: Query
+    named: Mapping[str, Definition]
+    parameters: tuple[ParameterDeclaration, ...]
+
+    @property
+    def definitions(self) -> tuple[Definition, ...]:
+        """The definitions under their names."""
+        return tuple(replace(x, name=name) for name, x in self.named.items())
+
+
+def used_in(specification: Specification, claim: syntax.Claim) -> Used:
+    """Everything that a claim is made of. Raises ``TextError``."""
+    query, entered = entered_in(specification, claim)
     found: dict[str, Definition] = {}
-
-    def visit(home: Specification, current: Expression) -> None:
-        for call in syntax.walk(current):
-            if not isinstance(call, syntax.Call | syntax.Name):
-                continue
-            name, _, qualifier = call.name.partition("@")
-            there = home.in_set(qualifier) if qualifier else home
-            definition = there.definitions.get(name)
-            if definition is None or (isinstance(call, syntax.Name) and definition.parameters):
-                continue
-            ours = definition is specification.definitions.get(name)
-            shown = name if ours else f"{name}@{there.set_name}"
-            if shown not in found:
-                found[shown] = replace(definition, name=shown)
-                visit(there, definition.body)
-
-    visit(specification, expression)
-    return tuple(found.values())
-
-
-def parameters_used(
-    library: Library, claim: Expression, definitions: Iterable[Definition]
-) -> tuple[ParameterDeclaration, ...]:
-    """The parameters that occur in ``claim`` and ``definitions``, in the order of the library."""
-    names = _free_names(claim, ())
-    for definition in definitions:
-        names |= _free_names(definition.body, (binding.name for binding in definition.parameters))
-    return tuple(declared for name, declared in library.parameters.items() if name in names)
-
-
-def _free_names(expression: Expression, bound: Iterable[str]) -> set[str]:
-    walked = list(syntax.walk(expression))
-    names = {part.name for part in walked if isinstance(part, syntax.Name)}
-    return names - set(bound) - {part.variable for part in walked if isinstance(part, syntax.Quantified)}
+    for (set_name, name), definition in entered.items():
+        is_ours = definition is specification.definitions.get(name)
+        found.setdefault(name if is_ours else f"{name}@{set_name}", definition)
+    occurring = {*parameters_of(query.formula)}
+    parameters = (x for name, x in specification.library.parameters.items() if name in occurring)
+    return Used(query, found, tuple(parameters))
 
 
 @dataclass(frozen=True)
@@ -66,15 +54,16 @@ class Place:
 
 
 def places_of(specification: Specification, query: Query) -> list[Place]:
-    """Every formula in the text of ``query``, called "formula", and of the definitions that it uses.
+    """Every formula in the text of ``query``, called "formula", and of the definitions that it is made of.
 
     What has no place, as in a query that was put together, is left out. Raises ``TextError``.
     """
     claim = parse_claim(query.written) if query.written else query.claim
+    entered = [*entered_in(specification, claim)[1].values()]
     found: dict[tuple[str, Position, int, int, Formula], Place] = {}
     for note in notes_of(specification, claim):
-        if note.at.line:
-            inside = note.definition
+        inside = note.definition
+        if note.at.line and (inside is None or any(inside is x for x in entered)):
             name = "formula" if inside is None else source_of(specification.library, inside).name
             key = (name, note.at, note.at.end_line, note.at.end_column, note.formula)
             found[key] = Place(name, note.at, note.formula)

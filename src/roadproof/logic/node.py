@@ -45,6 +45,7 @@ def node(cls: type[T]) -> type[T]:
         return bool(fields(self) == fields(other))
 
     made.__eq__ = equals  # type: ignore[method-assign]
+    made.REMEMBERS = True  # type: ignore[attr-defined]  # its digest, too (runtime.canonical)
     made.__getstate__ = state  # type: ignore[method-assign]
     made.__hash__ = remembered  # type: ignore[method-assign]
     return made

@@ -25,6 +25,7 @@ from roadproof.logic.rewrite import with_values
 from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.recordings.evaluate.courses import BEGINS
 from roadproof.recordings.evaluate.one_trace import OneTrace
+from roadproof.runtime.canonical import digest
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.truth import Cut, TruthSet
@@ -110,9 +111,10 @@ class Drivers:
         return self._bound[text]
 
 
-def said_of(drivers: Drivers) -> str:
-    """A text that changes with the models, how their definitions are read, and parameters."""
-    return repr((drivers.models, drivers.specification.options, sorted(drivers.values.items())))
+def content_of(drivers: Drivers) -> str:
+    """A digest that changes with the models, with every definition in force, and with parameters."""
+    home = drivers.specification
+    return digest(drivers.models, home.set_name, home.options, drivers.values, home.library.fingerprint)
 
 
 def course_of(scenario: str) -> ManoeuvreName | None:

@@ -5,13 +5,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from roadproof.analysis.catalogue.asked import Questions
-from roadproof.analysis.catalogue.decisions import Drivers, said_of
+from roadproof.analysis.catalogue.decisions import Drivers, content_of
 from roadproof.analysis.catalogue.entries import Concrete, Freedom
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
 from roadproof.analysis.catalogue.traces import digest_of
 from roadproof.analysis.study.known import KnownAnswer, KnownAnswers
 from roadproof.errors import InputError
 from roadproof.evidence.codec import read, write
+from roadproof.runtime.canonical import digest
 
 SCHEMA = "roadproof/shown/1"
 _NOT_ALONE = ".xosc"
@@ -52,24 +53,16 @@ class EarlierAnswers:
 
     def _key(self, entry: Concrete, sha256: str) -> str:
         """What the answer depends on besides the question; empty where no digest says that."""
-        return "" if not sha256 or entry.place.endswith(_NOT_ALONE) else f"{sha256} {entry!r}"
+        return "" if not sha256 or entry.place.endswith(_NOT_ALONE) else digest(sha256, entry)
 
     @cached_property
     def _known(self) -> KnownAnswers:
         """A test may use any definition, and is told of all spec sets: so all of them count."""
         home = self.asked.specification
-        said = {
-            "set": home.set_name,
-            "options": repr(sorted(home.options.items())),
-            "values": repr(sorted(self.asked.values.items())),
-            "files": repr(home.library.files),
-            "scenarios": repr(self.asked.numbers),
-            "classes": repr(sorted(self.asked.named.items())),
-            "freedom": repr(self.freedom),
-        }
-        if self.drivers is not None:
-            said |= {"drivers": said_of(self.drivers), "read": repr(self.drivers.specification.library.files)}
-        return KnownAnswers.to(SCHEMA, said, {})
+        read = home.set_name, home.options, self.asked.values, home.library.fingerprint, home.library.titles
+        drivers = None if self.drivers is None else content_of(self.drivers)
+        asked = self.asked.numbers, self.asked.named, self.freedom, bool(home.library.files)
+        return KnownAnswers.to(SCHEMA, {"asked": digest(read, asked, drivers)}, {})
 
 
 def _name(entry: Concrete) -> str:

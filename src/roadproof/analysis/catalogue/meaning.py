@@ -3,8 +3,6 @@
 Each test is asked by itself (``formula_facts``), then pairs of tests and the sides of driver models.
 """
 
-import hashlib
-import json
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,7 +10,7 @@ from typing import ClassVar, TypeAlias, TypeVar
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Questions
-from roadproof.analysis.catalogue.decisions import Drivers, said_of
+from roadproof.analysis.catalogue.decisions import Drivers, content_of
 from roadproof.analysis.catalogue.entries import Abstract
 from roadproof.analysis.catalogue.fact import Fact, read_fact, record_of
 from roadproof.analysis.catalogue.formula_facts import FormulaFacts, facts_of_pair
@@ -20,6 +18,7 @@ from roadproof.analysis.catalogue.gaps import GapKinds
 from roadproof.analysis.catalogue.ranges import Reach, reached
 from roadproof.analysis.catalogue.sides import Sides, facts_on_sides, has_sides, unanswered_sides
 from roadproof.analysis.coverage import answers as survey
+from roadproof.analysis.coverage.found import mixed_definitions
 from roadproof.analysis.coverage.study import Coverage
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.analysis.study.frame import Unprepared
@@ -27,8 +26,9 @@ from roadproof.errors import InputError
 from roadproof.evidence.answers import catalogue_index as kept
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.strict import JsonObject
-from roadproof.library.scenarios import Scenario, definition_of, name_of, number_in
+from roadproof.library.scenarios import Scenario, applied, name_of, number_in
 from roadproof.reasons import Reason
+from roadproof.runtime.canonical import digest
 
 
 @dataclass(frozen=True)
@@ -89,9 +89,9 @@ class Meanings(Unprepared):
         """What is asked about gaps is kept by itself, and whether it is asked changes nothing else."""
         said: JsonObject = {"set": self.basis.specification.set_name, "scenarios": list(self.asked.numbers)}
         more = {f"set {x.specification.set_name}": "" for x in self.beside} | self.basis.models
-        of_some = {x.id: _said(x) for x in self.entries}
+        of_some = {x.id: _said(self.basis, x) for x in self.entries}
         if self.entries and self.drivers is not None:
-            of_some |= {"drivers": said_of(self.drivers)}
+            of_some |= {"drivers": content_of(self.drivers)}
         return Question(kept.SCHEMA, said | self.basis.said(), more, self.basis.library, of_some=of_some)
 
     @cached_property
@@ -135,10 +135,9 @@ class Meanings(Unprepared):
         if about is None or self.basis.effort.timeout is not None:  # a clock may cut off proofs
             return None
         tests, is_of_drivers = about
-        said = [self._said_of_all, *map(_said, tests)]
-        if is_of_drivers and self.drivers is not None:
-            said += [said_of(self.drivers), repr(self.drivers.specification.library.files)]
-        return f"{self.basis.key(*(x.query.text for x in tests))} {_digest(*said)}"
+        drivers = None if self.drivers is None or not is_of_drivers else content_of(self.drivers)
+        said = [_said(self.basis, x) for x in tests]
+        return self.basis.key((x.query for x in tests), self._said_of_all, said, drivers)
 
     @cached_property
     def _subjects(self) -> Mapping[str, tuple[tuple[Abstract, ...], bool]]:
@@ -162,10 +161,12 @@ class Meanings(Unprepared):
     @cached_property
     def _said_of_all(self) -> str:
         """All that tests are asked, with the definitions that it uses."""
-        asked = (self.asked, *self.beside)
-        scenarios = [Scenario(n, x.specification.set_name) for x in asked for n in x.numbers]
-        classes = [sorted(x.named.items()) for x in asked]
-        return repr((self.basis.key(*map(definition_of, scenarios)), classes))
+        home, asked = self.basis.specification, (self.asked, *self.beside)
+        queries = [applied(home, Scenario(n, x.specification.set_name)) for x in asked for n in x.numbers]
+        queries += [x.class_query(name) for x in asked for name in x.named.values()]
+        bodies = [sorted(mixed_definitions(x.specification, x.specification).items()) for x in asked]
+        classes = [x.named for x in asked]
+        return self.basis.key(queries, bodies, classes, self.basis.all_values(), bool(home.library.files))
 
     def _sides(self, entry: Abstract, facts: Facts) -> Iterator[Sides]:
         """A piece for each scenario of a test of which a driver model speaks."""
@@ -267,13 +268,9 @@ def gap_answers(known: Mapping[str, Kept]) -> dict[str, survey.Kept]:
 
 def _name(one: str, other: str = "") -> str:
     """A name for the answers about a test, or two, fit for a file."""
-    return f"test-{_digest(one, other)[:12]}"
+    return f"test-{digest(one, other)[:12]}"
 
 
-def _said(entry: Abstract) -> str:
-    """A test in a text that changes with all that its drives depend on."""
-    return repr((entry.query.text, entry.road, sorted(entry.vehicles.items())))
-
-
-def _digest(*parts: str) -> str:
-    return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
+def _said(basis: Basis, entry: Abstract) -> str:
+    """A digest that changes with all that drives of a test depend on, and with its text."""
+    return digest(basis.claim(entry.query), entry.query.text, entry.road, entry.vehicles)

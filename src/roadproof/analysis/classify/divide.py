@@ -20,7 +20,6 @@ from roadproof.evidence.answers.classify import Doubt
 from roadproof.evidence.codec import Doc
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.elaborate import StatedQuery
-from roadproof.library.scenarios import Scenario, definition_of
 from roadproof.library.specification import Query
 from roadproof.reasons import NO_REASON, Reason
 from roadproof.runtime.budget import BudgetExceeded
@@ -153,8 +152,16 @@ class Dividing(Unprepared):
         return [*self.axes, *(x.name for x in self.cells(known) if self.in_few_words)]
 
     def key(self, name: str) -> str:
-        scenarios = (Scenario(number, self.plan.set_name) for number in self.plan.numbers)
-        return self.basis.key(*map(definition_of, scenarios))
+        return self.basis.key(self._asked, self.plan, name)
+
+    @cached_property
+    def _asked(self) -> list[Query]:
+        """Everything that proofs about cells are made of: contexts, rows and their parts."""
+        found: list[Query] = []
+        for axis in self.axes.values():
+            found += [*axis.context, *axis.rows.values()]
+            found += [part for parts in axis.parts.values() for part in parts]
+        return found
 
     def record(self, name: str, answer: DivisionAnswer, shelf: EvidenceStore) -> DivisionRecord:
         match answer:

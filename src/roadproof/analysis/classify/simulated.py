@@ -12,7 +12,7 @@ from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.analysis.study.frame import Unprepared, conduct
 from roadproof.evidence.codec import Doc
 from roadproof.evidence.strict import JsonObject
-from roadproof.library.scenarios import Scenario, definition_of
+from roadproof.library.scenarios import Scenario, applied
 from roadproof.reasons import Reason
 from roadproof.recordings.simulate.simulate import simulate
 from roadproof.recordings.simulate.traffic import Traffic
@@ -65,8 +65,11 @@ class SimulatedShares(Unprepared):
     def key(self, name: str) -> str:
         """Classes and scenarios are asked with the definitions that they use."""
         plan = self.classes.plan
-        scenarios = (definition_of(Scenario(number, plan.set_name)) for number in plan.numbers)
-        return self.basis.key(*scenarios, *(one.formula for one in self.classes.all()))
+        home, classes = self.basis.specification, self.classes.all()
+        scenarios = (applied(home, Scenario(number, plan.set_name)) for number in plan.numbers)
+        asked = [*scenarios, *(one.query(home) for one in classes)]
+        called = [(x.name, x.vehicles, x.scenarios) for x in classes]
+        return self.basis.key(asked, plan, called, home.library.lanes, self.basis.all_values())
 
     def settle(self, piece: str) -> dict[str, Shares]:
         recording = simulate(Traffic(seconds=SECONDS), SEED)

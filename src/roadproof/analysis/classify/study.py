@@ -121,8 +121,12 @@ class Classification(Unprepared):
 
     def key(self, name: str) -> str:
         """A class is told from all scenarios, by a formula."""
-        one = self._named[name]
-        return self.basis.key(one.formula if isinstance(one, Class) else one.query.text)
+        one, home = self._named[name], self.basis.specification
+        if isinstance(one, ClassClaim):
+            return self.basis.key([one.query], name)
+        alike = next(x for x in self.classes.alike() if one in x)
+        called = [(x.name, x.vehicles, x.scenarios, x.what.holds, x.place, x.description) for x in alike]
+        return self.basis.key((x.query(home) for x in alike), name, called)
 
     def record(
         self, name: str, answer: Example | ProofResult[ClassClaim], shelf: EvidenceStore

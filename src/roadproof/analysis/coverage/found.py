@@ -26,7 +26,9 @@ from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.settled import Settled
 from roadproof.library.bind import bind
-from roadproof.library.scenarios import PAIR, danger_comes
+from roadproof.library.elaborate import entered_below
+from roadproof.library.notes import Entered
+from roadproof.library.scenarios import PAIR, danger_comes, name_of, numbers_of
 from roadproof.library.specification import Specification
 from roadproof.logic.custom_names import own_of
 from roadproof.logic.formula import Formula, transform
@@ -292,6 +294,22 @@ def replaced_by(specification: Specification) -> tuple[str, ...]:
     """The definitions that a set replaces in the set that it extends, if it does."""
     parent = parent_of(specification)
     return replaced_in(specification.in_set(parent), specification) if parent else ()
+
+
+def mixed_definitions(home: Specification, other: Specification) -> Entered:
+    """Every definition of a set, by set and name, that scenarios are made of where some definitions are those
+    of another set: below its scenarios, and below the definitions that differ between the two.
+
+    Raises ``TextError``.
+    """
+    names = [*map(name_of, numbers_of(other)), *map(name_of, numbers_of(home))]
+    names += [*replaced_in(home, other), *replaced_in(other, home)]
+    found: Entered = {}
+    for each in (home, other):
+        for name in dict.fromkeys(names):
+            if name in each.definitions:
+                found |= entered_below(each, name)
+    return found
 
 
 def find_need(basis: Basis, name: str) -> Need:

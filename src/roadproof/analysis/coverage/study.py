@@ -35,6 +35,7 @@ from roadproof.analysis.coverage.found import (
     Trials,
     find_among_simple,
     find_need,
+    mixed_definitions,
     parent_of,
     replaced_by,
 )
@@ -45,7 +46,6 @@ from roadproof.errors import InputError
 from roadproof.evidence.answers import coverage as kept
 from roadproof.evidence.answers.coverage import SCHEMA
 from roadproof.evidence.strict import JsonObject
-from roadproof.library.scenarios import Scenario, definition_of, numbers_of
 from roadproof.library.specification import Query
 from roadproof.reasons import Reason, Why, joined
 from roadproof.verdict import Verdict
@@ -167,14 +167,28 @@ class Coverage(Unprepared):
         return [*map(name_of, self.claims), *needs, *self.groups]
 
     def key(self, name: str) -> str:
-        """Every answer is about all scenarios of the set."""
-        home = self.survey.basis.specification
-        scenarios = (
-            definition_of(Scenario(number, each))
-            for each in (home.set_name, *self.survey.wider)
-            for number in numbers_of(home.in_set(each))
+        return self._key
+
+    @cached_property
+    def _key(self) -> str:
+        """A digest for all answers: each is about all scenarios of the set, and about sets put together.
+
+        Such a set takes some definitions of another one, so every definition that it may be made of counts,
+        with the values of all parameters.
+        """
+        basis, home = self.survey.basis, self.survey.basis.specification
+        parts = self._classes.parts
+        sets = [home.in_set(x) for x in (home.set_name, *self.survey.wider)]
+        if self.needed and parent_of(home):
+            sets.append(home.in_set(parent_of(home)))
+        bodies = [sorted(mixed_definitions(home, x).items()) for x in sets]
+        called = [(x.scenario, x.component, x.description, x.condition, x.finest) for x in parts]
+        library = home.library.freedom, bool(home.library.files)
+        roads = self.survey.roads, self.survey.elsewhere
+        asked = [*claims_of(home), *(x.without for x in parts)]
+        return basis.key(
+            asked, bodies, called, library, roads, self.survey.wider, self.needed, basis.all_values()
         )
-        return self.survey.basis.key(*scenarios) + repr((self.survey.roads, self.survey.elsewhere))
 
     def record(self, name: str, answer: Kept, shelf: EvidenceStore) -> kept.Record:
         match answer:

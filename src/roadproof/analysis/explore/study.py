@@ -30,10 +30,11 @@ from roadproof.engines.solve.milp import prepare
 from roadproof.errors import InputError
 from roadproof.evidence.answers import explore as kept
 from roadproof.evidence.answers.explore import SCHEMA
+from roadproof.evidence.claim import parameters_in
 from roadproof.evidence.codec import write
 from roadproof.evidence.drive_file import road_said
-from roadproof.library.dependence import digest_of
 from roadproof.reasons import Reason
+from roadproof.runtime.canonical import digest
 from roadproof.runtime.executors import Jobs
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import Verdict
@@ -116,13 +117,17 @@ class Exploration:
         return self.named
 
     def key(self, name: str) -> str:
+        """Besides the claim what is varied and measured counts, with the parameters of that."""
         asked = self.named[name]
-        texts = [
-            asked.search.query.text,
-            *(x.text for x in asked.measures),
-            *(x.when for x in asked.measures),
-        ]
-        return digest_of(asked.search.specification, texts, values_of(asked.search))
+        search, library = asked.search, asked.search.specification.library
+        moments = [x.moment.formula for x in asked.measures if x.moment is not None]
+        measured = parameters_in(library, moments, search.setting.values, (x.term for x in asked.measures))
+        measures = [(x.sense, x.text, x.term, x.dimension, x.when) for x in asked.measures]
+        looked_for = asked.knobs, asked.steps, asked.precision, measures, moments, measured
+        effort = search.search_options.effort
+        return digest(
+            search.claim.digest(), _asked_of(asked), search.specification.options, looked_for, effort
+        )
 
     def prepare(self) -> None:
         prepare()
@@ -164,7 +169,7 @@ def _more(named: Mapping[str, Explorable], first: Explorable) -> dict[str, str]:
         "precision": str(first.precision),
         "road": None if setting.road is None else write(road_said(setting.road)),
         "lanes": dict(setting.lanes),
-        "vehicles": {name: repr(vehicle) for name, vehicle in setting.vehicles.items()},
+        "vehicles": digest(setting.vehicles),
         "grid": [str(x) for x in (setting.horizon, setting.dt, setting.reach)],
         "collisions": setting.collisions,
         "means": [

@@ -24,7 +24,7 @@ from roadproof.evidence.answers.order import SCHEMA
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.elaborate import StatedQuery
-from roadproof.library.scenarios import Scenario, definition_of
+from roadproof.library.scenarios import Scenario, applied
 from roadproof.reasons import Reason
 
 
@@ -115,7 +115,12 @@ class Ordering(Unprepared):
 
     def key(self, name: str) -> str:
         """Drives of all families may settle a doubt about one."""
-        return self.basis.key(*(definition_of(node) for kind in self.kinds for node in kind.nodes))
+        home = self.basis.specification
+        return self.basis.key(
+            (applied(home, node) for kind in self.kinds for node in kind.nodes),
+            self.kinds,
+            self.families[name],
+        )
 
     def record(self, name: str, answer: Decisions, shelf: EvidenceStore) -> kept.Record:
         proved = tuple(

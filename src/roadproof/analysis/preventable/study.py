@@ -25,10 +25,11 @@ from roadproof.drivers.stepped import TOLD, beside_change, labels_of, places_of,
 from roadproof.engines.prove.prover import prove
 from roadproof.errors import InputError
 from roadproof.evidence.answers import plates as kept
+from roadproof.evidence.claim import valid_under
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.settled import Settled
 from roadproof.evidence.strict import JsonObject
-from roadproof.library.elaborate import read_tree
+from roadproof.library.elaborate import read_claim, read_tree
 from roadproof.library.motion import Assumption, value_texts
 from roadproof.reasons import NO_REASON, Reason
 from roadproof.runtime.budget import BudgetExceeded
@@ -258,8 +259,22 @@ class Preventable(Unprepared):
         return [*self.plates, *self.lemmas]
 
     def key(self, name: str) -> str:
-        """Driver models use definitions that no formula here names."""
-        return f"{self.basis.library.fingerprint} {self.basis.key()}"
+        """A plate has drives whose files name every parameter, and driver models use definitions that no
+        formula here names: so all values and the whole library count.
+        """
+        basis, home, vehicles = self.basis, self.basis.specification, self.manoeuvre.vehicles
+        if name in self.lemmas:
+            lemma = self.lemmas[name]
+            query = read_tree(home, lemma.tree, lemma.claim)
+            claim = valid_under(home, query, self._said(lemma))
+            return basis.key([query], claim.digest(), lemma.name, lemma.title, lemma.claim)
+        piece = self.plates[name]
+        boundary = boundary_of(self.manoeuvre.name, piece.model.name, vehicles)
+        asked = [read_claim(home, x) for x in (boundary, touched(vehicles), *self._parts)]
+        plane = self.manoeuvre.name, vehicles, self.along, self.across, self.rows, self.scenario
+        return basis.key(
+            asked, name, piece.model, piece.fixed, plane, basis.all_values(), basis.library.fingerprint
+        )
 
     # --- answers as plain data -------------------------------------------------------------------
 

@@ -6,8 +6,9 @@ parameter and every vehicle, so it rests on how a parameter is declared, and not
 assumes values or motion rests on them.
 """
 
-import hashlib
+import re
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
@@ -21,9 +22,14 @@ from roadproof.evidence.answers.trace_lock import Lock, LockedLink
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.strict import LARGEST_INDEX, JsonObject, read_json
 from roadproof.library.bind import default_values
-from roadproof.library.dependence import Used, used_by
+from roadproof.library.elaborate import apply_definition
+from roadproof.library.motion import split
 from roadproof.library.scenarios import name_of
 from roadproof.library.specification import Specification
+from roadproof.library.uses import Used, used_in
+from roadproof.logic.parse import parse_claim
+from roadproof.logic.rewrite import without_names
+from roadproof.runtime.canonical import digest
 from roadproof.runtime.version import VERSION
 from roadproof.world.vehicle import Vehicle
 
@@ -31,6 +37,8 @@ Parts: TypeAlias = dict[str, str]
 """Digests and values by name."""
 _FILES = ("file ", "answer ")
 _TOOL, _VALUE, _DRIVES = "roadproof", "value of ", ("scenario", "test", "plate")
+_MEANING, _WHY = "meaning of ", ("definition ", "parameter ")
+_NAME = re.compile(r"[A-Za-z_]\w*(?:@\w+)?")
 
 
 @dataclass(frozen=True)
@@ -50,8 +58,8 @@ def parts_of(
     requirement: Requirement, target: Target, evidence: Sequence[CheckedEvidence], around: Surroundings
 ) -> Parts:
     """All that a link rests on, by name."""
-    text = "\0".join((requirement.title, requirement.text))
-    parts = {_TOOL: VERSION, f"text of {requirement.id}": _digest(text)}
+    written = digest(requirement.title, requirement.text)[:16]
+    parts = {_TOOL: VERSION, f"text of {requirement.id}": written}
     link = target.link
     if link.kind == "claim" or link.kind == "scenario":
         name = link.target.partition("@")[0]
@@ -63,17 +71,40 @@ def parts_of(
         if x.digest:
             parts[f"file {_relative(x.path, around.folder)}"] = x.digest
         else:
-            shown = f"{x.finding.verdict} {x.finding.claim}"
-            parts[f"answer {x.finding.label} in {_relative(x.path, around.folder)}"] = _digest(shown)
+            shown = digest(x.finding.verdict, x.finding.claim)[:16]
+            parts[f"answer {x.finding.label} in {_relative(x.path, around.folder)}"] = shown
     if link.kind in _DRIVES or any(x.is_drive for x in evidence):
         parts |= dict(_models(evidence, target, around))
     return parts
 
 
 def _of_text(specification: Specification, text: str, around: Surroundings, has_values: bool) -> Parts:
-    """The definitions and parameters that a text uses. ``has_values``: their values count, too."""
-    used = used_by(specification, text)
-    return dict(_named(used, specification, _beside(specification, around.home), around, has_values))
+    """The meaning of a text, and the definitions and parameters that it is made of.
+
+    ``has_values``: their values count, too.
+    """
+    beside = _beside(specification, around.home)
+    parts: Parts = {}
+    for title, used in _read(specification, text):
+        parts[f"{_MEANING}{title}{beside}"] = digest(without_names(used.query.formula))[:16]
+        parts |= dict(_named(used, specification, beside, around, has_values))
+    return parts
+
+
+def _read(specification: Specification, text: str) -> Iterator[tuple[str, Used]]:
+    """A claim as it is elaborated; of another text, such as a label, each definition that it names."""
+    try:
+        claim = parse_claim(split(text)[1])
+        yield " ".join(text.split()), used_in(specification, claim)
+        return
+    except InputError:
+        names = dict.fromkeys(_NAME.findall(text))
+    for name in names:
+        home = specification.in_set(name.partition("@")[2] or specification.set_name)
+        if name.partition("@")[0] in home.definitions:
+            with suppress(InputError):
+                query = apply_definition(home, name.partition("@")[0])
+                yield name, used_in(home, query.claim)
 
 
 def _beside(specification: Specification, home: Specification) -> str:
@@ -88,10 +119,10 @@ def _named(
 ) -> Iterator[tuple[str, str]]:
     for x in used.definitions:
         name = x.name if "@" in x.name else x.name + beside
-        yield f"definition {name}", _digest(repr(replace(x, doc="")))
+        yield f"definition {name}", digest(replace(x, doc=""))[:16]
     values = default_values(specification.library) | dict(around.values)
     for p in used.parameters:
-        yield f"parameter {p.name}", _digest(repr(replace(p, doc="", value=Fraction(0))))
+        yield f"parameter {p.name}", digest(replace(p, doc="", value=Fraction(0)))[:16]
         if has_values:
             yield f"{_VALUE}{p.name}", str(values[p.name])
 
@@ -103,17 +134,13 @@ def _models(
     seen = {name for x in evidence for name in x.vehicles} or set(around.vehicles)
     for name, model in around.vehicles.items():
         if name in seen:
-            yield f"vehicle model of {name}", _digest(repr(model))
+            yield f"vehicle model of {name}", digest(model)[:16]
 
 
 def _relative(path: Path, folder: Path) -> str:
     """A path as seen from the folder of the requirements, which says the same on every machine."""
     here, base = path.resolve(), folder.resolve()
     return here.relative_to(base).as_posix() if here.is_relative_to(base) else path.as_posix()
-
-
-def _digest(text: str) -> str:
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 # --- the lock file -------------------------------------------------------------------------------
@@ -169,12 +196,19 @@ def differences(before: Parts, now: Parts) -> tuple[str, ...]:
     """What a link rested on and is another now, in words.
 
     What is new beside it changes nothing. A definition that nothing names any more is gone with the evidence,
-    or with a change of the definition that named it.
+    or with a change of the definition that named it. That a claim means something else is said where no
+    change of a definition or parameter tells why.
     """
-    return tuple(
-        _difference(name, value, now.get(name))
+    changed = [
+        name
         for name, value in before.items()
         if now.get(name) != value and (name in now or name.startswith(_FILES))
+    ]
+    why = [name for name in changed if name.startswith(_WHY)]
+    return tuple(
+        _difference(name, before[name], now.get(name))
+        for name in changed
+        if not (why and name.startswith(_MEANING))
     )
 
 

@@ -5,7 +5,6 @@ version, the question, its limits, and the definitions and parameters that it us
 makes only those answers unknown that depend on it. ``roadproof check`` reads none of this.
 """
 
-import hashlib
 import json
 import lzma
 import os
@@ -17,8 +16,9 @@ from typing import Literal
 from roadproof.errors import InputError
 from roadproof.evidence.strict import Fields, JsonObject
 from roadproof.runtime.cache import keep_bytes, kept_bytes, make_room
+from roadproof.runtime.canonical import digest
 from roadproof.runtime.files import write_whole
-from roadproof.runtime.package_data import shipped
+from roadproof.runtime.package_data import program, shipped
 from roadproof.runtime.records import dataclass
 from roadproof.runtime.version import ANSWERS, VERSION
 
@@ -103,7 +103,7 @@ class KnownAnswers:
         return folder / f"{self.kind}-{self.asked}.json.xz"
 
     def _cached(self, name: str, key: str) -> str:
-        return _digest(self.asked, self.entry(name, key), _sources())
+        return _digest(self.kind, self.asked, self.entry(name, key), program())
 
 
 def shipped_answers(kind: str) -> Iterator[KnownAnswer]:
@@ -119,7 +119,7 @@ def is_off() -> bool:
 
 
 def _digest(*parts: object) -> str:
-    return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()[:24]
+    return digest(parts)[:24]
 
 
 @cache
@@ -133,16 +133,6 @@ def _read(path: Path) -> Mapping[str, object]:
     except (OSError, EOFError, lzma.LZMAError, ValueError, InputError):
         return {}
     return answers if sound else {}
-
-
-@cache
-def _sources() -> str:
-    """A digest that changes when the program or a model does, so that no state of it answers for another."""
-    places = Path(__file__).parents[2], shipped("models")
-    walked = (x for place in places for x in os.walk(place) if not x[0].endswith("__pycache__"))
-    files = sorted(os.path.join(folder, x) for folder, _, names in walked for x in names)
-    stats = [(name, os.stat(name)) for name in files]
-    return _digest([(name, said.st_size, said.st_mtime_ns) for name, said in stats])
 
 
 def told(origins: Sequence[Origin], total: int) -> Iterator[str]:

@@ -5,8 +5,9 @@ from dataclasses import field
 from typing import TYPE_CHECKING
 
 from roadproof.engines.search.limits import Limits
-from roadproof.engines.search.question import SearchOptions, Setting, usual_road
+from roadproof.engines.search.question import SearchOptions, Setting, exists, usual_road
 from roadproof.evidence.answers import drives as kept
+from roadproof.evidence.claim import Claim, claim_of
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.specification import Query, Specification
 from roadproof.reasons import Reason, Why
@@ -27,6 +28,12 @@ class Search:
     search_options: SearchOptions = field(default_factory=SearchOptions)
     count: int = 1
     scenario: int | None = None
+
+    @property
+    def claim(self) -> Claim:
+        """The claim that there are such drives, without the effort of looking for them."""
+        mode = exists(self.setting, self.search_options, self.count)
+        return claim_of(self.specification.library, self.query, mode, self.setting.values)
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from roadproof.engines.encode.unroll import Grid, common_step
 from roadproof.engines.search.initial_conditions import Start
 from roadproof.engines.search.limits import Limits
 from roadproof.errors import UsageError
+from roadproof.evidence.claim import Exists
 from roadproof.library.bind import bind, values_with
 from roadproof.library.specification import Library, Query
 from roadproof.logic import formula as f
@@ -236,6 +237,15 @@ class SearchOptions:
     effort: Effort = field(default_factory=Effort)
     refinements: int = 2
     explain: bool = True
+
+
+def exists(setting: Setting, options: SearchOptions, count: int = 1) -> Exists:
+    """Return how drives are asked for: every field of both but the values of parameters and the effort.
+
+    A field that ``Exists`` lacks is an error, so none can be left out of the digest of a claim.
+    """
+    given = {**vars(setting), **vars(options), "count": count}
+    return Exists(**{name: value for name, value in given.items() if name not in ("values", "effort")})
 
 
 @dataclass(frozen=True)

@@ -11,11 +11,10 @@ from roadproof.frontends.atlas.notation import as_html, head_as_html, shown
 from roadproof.frontends.atlas.pictures import DrivePicture
 from roadproof.frontends.atlas.traffic import SOURCE, frequencies
 from roadproof.frontends.report.preventable import plane_of
-from roadproof.library.scenarios import name_of
+from roadproof.library.scenarios import Scenario, applied
 from roadproof.library.specification import Specification
-from roadproof.library.uses import definitions_used, parameters_used
+from roadproof.library.uses import Used, used_in
 from roadproof.library.words import Words
-from roadproof.logic import syntax
 from roadproof.logic.show import decimal
 from roadproof.verdict import Verdict
 
@@ -82,7 +81,7 @@ def scenario_values(answers: Answers, drawn: Mapping[str, DrivePicture], number:
 
 def unfolded(home: Specification, number: int) -> list[Unfolded]:
     """The definition of a scenario, and those that it uses, in reading order."""
-    used = definitions_used(home, syntax.Call(name_of(number), ()))
+    used = _used(home, number).definitions
     names = {x.name for x in used}
     return [
         Unfolded(x.name, head_as_html(x), home.describe(x), as_html(x.body, names - {x.name}, "d-"))
@@ -92,9 +91,12 @@ def unfolded(home: Specification, number: int) -> list[Unfolded]:
 
 def _parameters(home: Specification, number: int) -> list[tuple[str, str, str]]:
     """The parameters of a scenario: name as HTML, value with unit, and words."""
-    call = syntax.Call(name_of(number), ())
-    found = parameters_used(home.library, call, definitions_used(home, call))
+    found = _used(home, number).parameters
     return [(shown(x.name), f"{decimal(x.value)} {x.unit}", x.doc) for x in found]
+
+
+def _used(home: Specification, number: int) -> Used:
+    return used_in(home, applied(home, Scenario(number, home.set_name)).claim)
 
 
 # --- claims, pairs, implications, parts -------------------------------------------------------------

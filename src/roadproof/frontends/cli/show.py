@@ -21,7 +21,7 @@ from roadproof.library.elaborate import read_claim, signature
 from roadproof.library.scenario_references import numbers_called, one_called, refuse_unknown
 from roadproof.library.scenarios import name_of, number_in
 from roadproof.library.specification import Specification, unknown
-from roadproof.library.uses import definitions_used, parameters_used
+from roadproof.library.uses import used_in
 from roadproof.library.words import Words, words_of
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
@@ -112,8 +112,8 @@ def _find_claim(specification: Specification, what: str, expand: bool) -> Exhibi
     formula = read_claim(specification, what).formula
     if expand:
         return Exhibit(Claim(claim.given, as_syntax(formula, expand=True)))
-    definitions = _described(specification, definitions_used(specification, claim.body))
-    return Exhibit(claim, definitions, parameters_used(specification.library, claim.body, definitions))
+    used = used_in(specification, claim)
+    return Exhibit(claim, _described(specification, used.definitions), used.parameters)
 
 
 def _find_definition(specification: Specification, name: str, expand: bool) -> Exhibit:
@@ -121,9 +121,9 @@ def _find_definition(specification: Specification, name: str, expand: bool) -> E
         raise InputError(unknown("definition", name, specification.definitions))
     claim = _application(specification, specification.definitions[name])
     if not expand:
-        read_claim(specification, text(_compared(claim) if _is_number(specification, claim) else claim))
-        definitions = _described(specification, definitions_used(specification, claim.body))
-        return Exhibit(None, definitions, parameters_used(specification.library, claim.body, definitions))
+        stated = text(_compared(claim) if _is_number(specification, claim) else claim)
+        used = used_in(specification, read_claim(specification, stated).claim)
+        return Exhibit(None, _described(specification, used.definitions), used.parameters)
     if not _is_number(specification, claim):
         return Exhibit(Claim(claim.given, as_syntax(read_claim(specification, text(claim)).formula, True)))
     comparison = read_claim(specification, text(_compared(claim))).formula

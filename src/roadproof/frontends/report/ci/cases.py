@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Literal, TypeAlias
 
 from roadproof.library.specification import Specification, source_of
-from roadproof.library.uses import definitions_used
-from roadproof.logic.syntax import Definition, Expression
+from roadproof.library.uses import used_in
+from roadproof.logic.syntax import Claim, Definition
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
 
@@ -100,18 +100,14 @@ def definition_location(specification: Specification, definition: Definition) ->
     return Location(name if own else str(bundled), definition.at.line, definition.at.column)
 
 
-def named_definitions(
-    specification: Specification, expression: Expression
-) -> tuple[tuple[str, Location], ...]:
-    """The definitions that an expression uses with their places, those of the user first."""
+def named_definitions(specification: Specification, claim: Claim) -> tuple[tuple[str, Location], ...]:
+    """The definitions that a claim is made of with their places, those of the user first."""
     own = {x.name for x in specification.library.files}
-    found = []
-    for x in definitions_used(specification, expression):
-        source = specification.in_set(x.name.partition("@")[2] or specification.set_name)
-        written = source.definitions.get(x.name.partition("@")[0], x)
-        place = definition_location(source, written)
-        if place is not None:
-            found.append((x.name, place))
+    places = (
+        (name, definition_location(specification, x))
+        for name, x in used_in(specification, claim).named.items()
+    )
+    found = [(name, place) for name, place in places if place is not None]
     return tuple(sorted(found, key=lambda x: x[1].file not in own))
 
 

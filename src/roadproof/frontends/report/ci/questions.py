@@ -20,7 +20,7 @@ from roadproof.frontends.report.ci.cases import (
 )
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Specification
-from roadproof.logic.syntax import Expression
+from roadproof.logic.syntax import Claim
 from roadproof.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -32,9 +32,9 @@ if TYPE_CHECKING:
     from roadproof.evidence.answers.catalogue_index import Remark
 
 
-def written(case: Case, specification: Specification, expression: Expression) -> Case:
+def written(case: Case, specification: Specification, claim: Claim) -> Case:
     """The same, with the definitions that it names; it is at the first of them where it has no place."""
-    named = named_definitions(specification, expression)
+    named = named_definitions(specification, claim)
     first = named[0][1] if named else None
     return replace(case, place=case.place or first, related=named)
 
@@ -60,7 +60,7 @@ def claim_cases(
             evidence=files.get(task.name),
             seconds=x.settled.result.seconds,
         )
-        yield written(case, specification, read_claim(specification, task.claim).claim.body)
+        yield written(case, specification, read_claim(specification, task.claim).claim)
 
 
 def search_cases(searches: Iterable[tuple[Outcome, Specification, Path | None]]) -> Iterator[Case]:
@@ -76,7 +76,7 @@ def search_cases(searches: Iterable[tuple[Outcome, Specification, Path | None]])
             evidence=file,
             seconds=x.seconds.get("all"),
         )
-        yield written(case, specification, x.query.claim.body)
+        yield written(case, specification, x.query.claim)
 
 
 def coverage_cases(survey: Survey, specification: Specification, files: Mapping[str, Path]) -> Iterator[Case]:
@@ -93,7 +93,7 @@ def coverage_cases(survey: Survey, specification: Specification, files: Mapping[
             rule=claim.verdict,
             message=told,
         )
-        yield written(case, specification, claim.claim.claim.body)
+        yield written(case, specification, claim.claim.claim)
     for x in survey.classes:
         key = "" if x.part is None else x.part.key
         name = key or "no single condition"
@@ -176,7 +176,7 @@ def plate_cases(
             message=f"{x.verdict}: {x.lemma.name}{x.reason and f' ({x.reason})'}",
             evidence=files.get(f"lemma-{x.lemma.name}"),
         )
-        yield written(case, specification, x.lemma.tree.body)
+        yield written(case, specification, x.lemma.tree)
 
 
 def finding_cases(findings: Sequence[Finding], strict: bool) -> Iterator[Case]:

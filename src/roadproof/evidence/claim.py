@@ -1,0 +1,143 @@
+"""Claims: all that an engine is asked, as one closed value with a digest.
+
+A ``Claim`` holds the elaborated formula, in which every definition is written out, the bounds and values of
+exactly the parameters that occur in it, and how it is asked: of all traces, of drives to be found, or of a
+given trace. Two claims are equal where an engine cannot tell them apart, so a digest is a sound key for
+answers that are kept. ``text`` is for people: no answer depends on it.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import field
+from fractions import Fraction
+from typing import TypeAlias
+
+from roadproof.library.motion import is_moving, under_limits, values_said
+from roadproof.library.specification import Library, Query, Specification
+from roadproof.logic.formula import Application, Formula, children, intervals
+from roadproof.logic.rewrite import parameters_of
+from roadproof.logic.terms import Parameter, Term, leaves
+from roadproof.runtime.canonical import digest
+from roadproof.runtime.records import dataclass
+from roadproof.world.road import Road
+from roadproof.world.units import UNITS
+from roadproof.world.vehicle import Vehicle
+
+
+@dataclass(frozen=True)
+class OccurringParameter:
+    """A parameter that a formula mentions: its unit, its bound against 0, and its value in SI units."""
+
+    name: str
+    unit: str
+    bound: str
+    value: Fraction
+
+
+@dataclass(frozen=True)
+class Valid:
+    """The formula is to hold on all traces; on motions within limits where ``moving``.
+
+    ``restricted``: the formula under the limits and values that are assumed, where any are.
+    """
+
+    moving: bool = False
+    values: tuple[tuple[str, Fraction], ...] = ()
+    restricted: Formula | None = None
+
+
+@dataclass(frozen=True)
+class Exists:
+    """A drive is to be found on which the formula holds: where, with whom, for how long, and which one.
+
+    ``road`` None: the usual road of the formula; ``vehicles``: models by name, "" for all others; ``limits``:
+    other limits than theirs; ``dt`` None: the coarsest step that fits. The effort is no part of a claim.
+    """
+
+    road: Road | None = None
+    lanes: Mapping[str, str] = field(default_factory=dict)
+    vehicles: Mapping[str, Vehicle] = field(default_factory=dict)
+    limits: Mapping[str, Mapping[str, Fraction]] = field(default_factory=dict)
+    horizon: Fraction = Fraction(6)
+    dt: Fraction | None = None
+    reach: Fraction = Fraction(80)
+    collisions: bool = False
+    natural: bool = True
+    objective: str = "smooth"
+    engine: str = "milp"
+    solver: str = "highs"
+    refinements: int = 2
+    explain: bool = True
+    count: int = 1
+
+
+@dataclass(frozen=True)
+class On:
+    """The formula is to hold on a given trace. ``files``: SHA-256 of every file that it is read from."""
+
+    files: tuple[str, ...]
+
+
+Mode: TypeAlias = Valid | Exists | On
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A formula with its free names, how it is asked, and the parameters that occur in it."""
+
+    formula: Formula
+    vehicles: tuple[str, ...]
+    lanes: tuple[str, ...]
+    mode: Mode
+    parameters: tuple[OccurringParameter, ...]
+    text: str = field(default="", compare=False)
+
+    def digest(self) -> str:
+        """64 hexadecimal digits that no other claim has."""
+        return digest(self)
+
+
+def claim_of(library: Library, query: Query, mode: Mode, values: Mapping[str, Fraction]) -> Claim:
+    """Return the claim of a query. ``values``: parameters with another value than the declared one (SI)."""
+    more = [mode.restricted] if isinstance(mode, Valid) and mode.restricted is not None else []
+    occurring = parameters_in(library, (query.formula, *more), values)
+    return Claim(query.formula, query.vehicles, query.lanes, mode, occurring, query.written)
+
+
+def valid_under(specification: Specification, query: Query, assuming: tuple[str, ...] = ()) -> Claim:
+    """Return the claim that ``query`` holds on all traces under what is assumed. Raises ``InputError``."""
+    values = tuple(values_said(specification, assuming).items())
+    restricted = under_limits(specification, query, assuming).formula if assuming else None
+    return claim_of(specification.library, query, Valid(is_moving(assuming), values, restricted), {})
+
+
+def parameters_in(
+    library: Library,
+    formulas: Iterable[Formula],
+    values: Mapping[str, Fraction],
+    terms: Iterable[Term] = (),
+) -> tuple[OccurringParameter, ...]:
+    """The parameters that occur in formulas and terms, by name, with their values (SI)."""
+    names = {name for formula in formulas for name in _names_in(formula)}
+    names |= {leaf.name for term in terms for leaf in leaves(term) if isinstance(leaf, Parameter)}
+    return tuple(_occurring(library, name, values) for name in sorted(names))
+
+
+def _names_in(formula: Formula) -> set[str]:
+    """The names of the parameters that occur, as ``parameters_of``, which applied definitions remember."""
+    names, waiting = set[str](), [formula]
+    while waiting:
+        current = waiting.pop()
+        inside = () if isinstance(current, Application) else children(current)
+        waiting.extend(inside)
+        if not inside:
+            names.update(parameters_of(current))
+        for interval in intervals(current):
+            bounds = (interval.low, *(() if interval.high is None else (interval.high,)))
+            names.update(x.name for term in bounds for x in leaves(term) if isinstance(x, Parameter))
+    return names
+
+
+def _occurring(library: Library, name: str, values: Mapping[str, Fraction]) -> OccurringParameter:
+    declared = library.parameters[name]
+    value = values.get(name, declared.value * UNITS[declared.unit][0])
+    return OccurringParameter(name, declared.unit, declared.bound, value)
