@@ -15,8 +15,6 @@ from roadproof.evidence.codec import read, write
 from roadproof.runtime.canonical import digest
 
 SCHEMA = "roadproof/shown/1"
-_NOT_ALONE = ".xosc"
-"""How tests end that other files belong to, which their digest does not count."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +51,7 @@ class EarlierAnswers:
 
     def _key(self, entry: Concrete, sha256: str) -> str:
         """What the answer depends on besides the question; empty where no digest says that."""
-        return "" if not sha256 or entry.place.endswith(_NOT_ALONE) else digest(sha256, entry)
+        return digest(sha256, entry) if sha256 else ""
 
     @cached_property
     def _known(self) -> KnownAnswers:

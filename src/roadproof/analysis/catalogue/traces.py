@@ -24,7 +24,7 @@ from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.samples import ROAD_ENDING
 from roadproof.recordings.formats.source import beside, file_digest
 from roadproof.recordings.formats.sources import find_source
-from roadproof.recordings.formats.storyboard.distributions import read_distribution, split
+from roadproof.recordings.formats.storyboard.distributions import split
 from roadproof.world.motion import state_at
 from roadproof.world.road import Road
 
@@ -177,14 +177,17 @@ def digest_of(place: str) -> str:
 
 
 def files_of(place: str) -> tuple[Path, ...]:
-    """The files that a concrete test is read from; none where there is no recording of that name."""
-    if is_pair(place):
-        try:
-            return find_source(Path(place.rpartition(":")[0])).files
-        except InputError:
-            return ()
-    path = Path(place)
-    varied = split(path)
-    if varied is not None:
-        return varied[0], read_distribution(varied[0]).scenario
-    return (path, *(beside(path, ROAD_ENDING) if path.suffix in (".csv", ".parquet") else ()))
+    """Every file that a concrete test is read from; none where there is no recording of that name.
+
+    A file beside it that says more of its road is one of them where it is there.
+    """
+    path = Path(place.rpartition(":")[0]) if is_pair(place) else Path(place)
+    if path.suffix == ".json" and not is_pair(place):
+        return (path,)
+    if path.suffix in (".csv", ".parquet") and not is_pair(place):
+        return (path, *beside(path, ROAD_ENDING))
+    try:
+        files = find_source(path).files
+    except InputError:
+        return (path,) if path.is_file() else ()
+    return files[:-1] if split(path) is not None else files

@@ -16,7 +16,7 @@ from roadproof.analysis.study.evidence_store import specification_names
 from roadproof.errors import InputError, TextError, UsageError
 from roadproof.library import scenarios as s
 from roadproof.library.alike import likes_of
-from roadproof.library.elaborate import apply_definition
+from roadproof.library.elaborate import apply_definition, walk_of
 from roadproof.library.scenarios import disturbance, sector
 from roadproof.library.scenarios import name_of as scenario_name
 from roadproof.library.specification import Query, Specification
@@ -108,7 +108,8 @@ class Class:
 
     def query(self, specification: Specification) -> Query:
         """The class applied to its vehicles and L, in the set of the classes."""
-        return apply_definition(specification, self.name, (*self.vehicles, s.LANE))
+        roles = (*self.vehicles, s.LANE)
+        return apply_definition(specification, self.name, roles, walk_of(specification))
 
 
 @dataclass(frozen=True)

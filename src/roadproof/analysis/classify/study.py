@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import ClassVar
 
 from roadproof.analysis.basis import Basis, ProofResult
+from roadproof.analysis.classify.cells import Cell
 from roadproof.analysis.classify.classes import Class, Classes
 from roadproof.analysis.classify.divide import Division
 from roadproof.analysis.classify.drives import Example, find_examples
@@ -21,6 +22,7 @@ from roadproof.evidence.journal import ANSWERS, HEAD, Journal, head_of, read_kep
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.strict import LARGEST_INDEX, read_json
 from roadproof.reasons import Reason
+from roadproof.runtime.canonical import digest
 from roadproof.verdict import Verdict
 
 CLAIMS_IN_A_PIECE = 8
@@ -121,12 +123,19 @@ class Classification(Unprepared):
 
     def key(self, name: str) -> str:
         """A class is told from all scenarios, by a formula."""
-        one, home = self._named[name], self.basis.specification
+        one = self._named[name]
         if isinstance(one, ClassClaim):
             return self.basis.key([one.query], name)
-        alike = next(x for x in self.classes.alike() if one in x)
-        called = [(x.name, x.vehicles, x.scenarios, x.what.holds, x.place, x.description) for x in alike]
-        return self.basis.key((x.query(home) for x in alike), name, called)
+        return digest(name, self._alike_keys[one.what])
+
+    @cached_property
+    def _alike_keys(self) -> dict[Cell, str]:
+        """By what happens, a digest of all classes with that: a drive of one may do for another."""
+        home, found = self.basis.specification, dict[Cell, str]()
+        for alike in self.classes.alike():
+            called = [(x.name, x.vehicles, x.scenarios, x.what.holds, x.place, x.description) for x in alike]
+            found[alike[0].what] = self.basis.key((x.query(home) for x in alike), called)
+        return found
 
     def record(
         self, name: str, answer: Example | ProofResult[ClassClaim], shelf: EvidenceStore

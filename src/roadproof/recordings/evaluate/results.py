@@ -30,8 +30,9 @@ from roadproof.recordings.evaluate.foretelling import LABELS
 from roadproof.recordings.evaluate.matching import Match
 from roadproof.recordings.evaluate.questions import Settings
 from roadproof.recordings.formats.repeats import FramePair
+from roadproof.runtime.canonical import digest
 from roadproof.runtime.files import make_folder, whole_file
-from roadproof.runtime.version import VERSION
+from roadproof.runtime.package_data import program
 
 RECORDING_SCHEMA = "roadproof/recording-findings/4"
 MATCH_COLUMNS = tuple(
@@ -43,19 +44,14 @@ PAIR_COLUMNS = tuple(
 
 
 def question_mark(settings: Settings) -> str:
-    """Changes whenever the settings, the specification or the version of this program do."""
-    told = {
-        "schema": RECORDING_SCHEMA,
-        "version": VERSION,
-        "settings": write(_kept_settings(settings)),
-        "specification": {name: source.text for name, source in sorted(settings.library.sources.items())},
-    }
-    return _digest(told)
+    """Changes whenever the settings, a declaration of the library or a file of this program do."""
+    told = {x.name: getattr(settings, x.name) for x in fields(settings) if x.name != "library"}
+    return digest(RECORDING_SCHEMA, program(), told, settings.library.fingerprint)
 
 
 def fingerprint(question: str, digests: Sequence[str]) -> str:
     """Changes whenever the question's mark or the content of a file of the recording does."""
-    return _digest([question, *digests])
+    return digest(question, digests)
 
 
 def _digest(told: object) -> str:

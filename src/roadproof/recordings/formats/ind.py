@@ -30,7 +30,7 @@ from roadproof.recordings.formats.levelx import (
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.reliable import left_out_note, reliable
 from roadproof.recordings.formats.selected_roads import chart_of, place_on_road
-from roadproof.recordings.formats.source import Files, Format
+from roadproof.recordings.formats.source import Files, Format, beside
 from roadproof.recordings.formats.table import Table
 from roadproof.recordings.formats.tracks import (
     RATE_AT,
@@ -40,6 +40,7 @@ from roadproof.recordings.formats.tracks import (
     read_tracks,
     usable,
 )
+from roadproof.world.maps.network import ZONES_ENDING
 
 NO_VEHICLES: Mapping[str, str] = {"pedestrian": "pedestrians", "bicycle": "cyclists", "animal": "animals"}
 """Classes that are no vehicles in traffic."""
@@ -93,7 +94,8 @@ def _find(path: Path, road: str | None = None) -> dict[str, Files]:
     chart = Path(road.partition("#")[0])
     numbers = {int(x) for x in re.findall(r"\d+", chart.stem)}
     there = {name: x for name, x in found.items() if _location(x[0]) in numbers} or found
-    return {name: (*((chart,) if chart.is_file() else ()), *x) for name, x in there.items()}
+    charts = (*beside(chart, ZONES_ENDING), *((chart,) if chart.is_file() else ()))
+    return {name: (*charts, *x) for name, x in there.items()}
 
 
 def _location(about: Path) -> int:

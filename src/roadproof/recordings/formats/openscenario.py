@@ -11,6 +11,7 @@ vehicles that drive against the others move in a storyboard, but are no part of 
 
 import math
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,8 +25,9 @@ from roadproof.recordings.formats.storyboard.box import Box
 from roadproof.recordings.formats.storyboard.conditions import TICKS
 from roadproof.recordings.formats.storyboard.curves import curve
 from roadproof.recordings.formats.storyboard.distributions import read_distribution, scenarios_of, split
+from roadproof.recordings.formats.storyboard.document import catalogues_of, open_document
 from roadproof.recordings.formats.storyboard.run import Play
-from roadproof.recordings.formats.storyboard.stage import number_of, open_stage, played, text_of
+from roadproof.recordings.formats.storyboard.stage import map_of, number_of, open_stage, played, text_of
 from roadproof.recordings.formats.straight import of_road
 from roadproof.recordings.formats.table import Column, Table
 from roadproof.runtime.xml_reader import Element
@@ -294,15 +296,21 @@ def _joined(path: Path, tables: list[dict[str, Column]]) -> Table:
 def _find(path: Path) -> dict[str, Files]:
     """The scenarios of a folder or a file, and those of distributions."""
     if split(path) is not None:
-        return {path.stem: _files(path)}
+        return {path.stem: files_of(path)}
     files = (y for x in with_suffix(path, ".xosc") for y in scenarios_of(x))
-    return {x.stem: _files(x) for x in files}
+    return {x.stem: files_of(x) for x in files}
 
 
-def _files(path: Path) -> Files:
-    """The files that a scenario is read from, but for maps and catalogues."""
+def files_of(path: Path) -> Files:
+    """Every file that a scenario is read from, itself last: map, catalogues, and what varies it."""
     found = split(path)
-    return (path,) if found is None else (found[0], read_distribution(found[0]).scenario, path)
+    varied = () if found is None else (found[0], read_distribution(found[0]).scenario)
+    named: Files = ()
+    with suppress(InputError):  # a scenario that cannot be read says why when it is
+        document = open_document(path)
+        named = catalogues_of(document)
+        named = (map_of(document), *named)
+    return (*dict.fromkeys((*named, *varied)), path)
 
 
 FORMAT = Format(

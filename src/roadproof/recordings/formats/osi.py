@@ -32,9 +32,10 @@ from roadproof.recordings.formats.recording import Floats, Integers, Recording
 from roadproof.recordings.formats.reliable import left_out_note, named, rate_of_change, reliable
 from roadproof.recordings.formats.samples import LARGEST_RATE
 from roadproof.recordings.formats.selected_roads import chart_of, place_on_road
-from roadproof.recordings.formats.source import Files, Format, with_suffix
+from roadproof.recordings.formats.source import Files, Format, beside, with_suffix
 from roadproof.recordings.formats.table import CellError
 from roadproof.recordings.formats.tracks import Rule, without_bad
+from roadproof.world.maps.network import ZONES_ENDING
 
 ENDING = ".osi"
 SENSOR_VIEW = "_sv_"
@@ -274,8 +275,9 @@ def _check_plausible(
 
 
 def _find(path: Path, road: str | None = None) -> dict[str, Files]:
-    chart = () if road is None else (Path(road.partition("#")[0]),)
-    return {x.stem: (*(y for y in chart if y.is_file()), x) for x in with_suffix(path, ENDING)}
+    chart = None if road is None else Path(road.partition("#")[0])
+    charts = () if chart is None else (*beside(chart, ZONES_ENDING), chart)
+    return {x.stem: (*(y for y in charts if y.is_file()), x) for x in with_suffix(path, ENDING)}
 
 
 def _on(road: str) -> Format:

@@ -135,8 +135,8 @@ def _entry(document: Document, reference: Element) -> Element:
         document.text(x, "parameterRef").lstrip("$"): document.text(x, "value")
         for x in reference.findall("ParameterAssignments/ParameterAssignment")
     }
-    folders = [document.folder / document.text(x, "path") for x in document.root.findall(_FOLDERS)]
-    for file in (file for folder in dict.fromkeys(folders) for file in _files(folder)):
+    folders = _folders(document)
+    for file in catalogues_of(document):
         for known in read_xml(file, "OpenSCENARIO").findall("Catalog"):
             entry = next((x for x in known if x.get("name") == name), None)
             if known.get("name") == catalog and entry is not None:
@@ -148,6 +148,16 @@ def _entry(document: Document, reference: Element) -> Element:
                 return entry
     shown = ", ".join(map(str, folders)) or "CatalogLocations"
     raise document.error(reference, f"no {name} in a catalogue {catalog} in {shown}")
+
+
+def _folders(document: Document) -> list[Path]:
+    return [document.folder / document.text(x, "path") for x in document.root.findall(_FOLDERS)]
+
+
+def catalogues_of(document: Document) -> tuple[Path, ...]:
+    """Every file that an entry of a catalogue may be in, in the order in which they are read."""
+    folders = dict.fromkeys(_folders(document))
+    return tuple(x for folder in folders for x in _files(folder))
 
 
 def _files(folder: Path) -> list[Path]:

@@ -41,7 +41,7 @@ class Stage:
 def open_stage(path: Path) -> Stage:
     """The stage of a file. Raises ``InputError``."""
     document = open_document(path)
-    road_path = _road_path(document)
+    road_path = map_of(document)
     boxes = dict(_boxes(path, document.root))
     if not any(x.recorded for x in boxes.values()):
         raise InputError(f"{path}: no ScenarioObject is a motor vehicle")
@@ -62,7 +62,7 @@ def played(stage: Stage) -> tuple[Stage, Play]:
     return stage, play
 
 
-def _road_path(document: Document) -> Path:
+def map_of(document: Document) -> Path:
     """The map that the file names, or that of the name beside it, as CARLA names maps."""
     path, node = document.path, document.root.find("RoadNetwork/LogicFile")
     found = document.folder / text_of(path, node, "filepath", "a LogicFile")
