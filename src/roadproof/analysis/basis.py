@@ -54,9 +54,9 @@ class Basis:
     vehicles: Mapping[str, Vehicle] = field(default_factory=dict)
 
     @property
-    def models(self) -> dict[str, str]:
-        """The models, for those on which answers depend besides what an index says."""
-        return {"vehicles": digest(self.vehicles)} if self.vehicles else {}
+    def limits(self) -> dict[str, str]:
+        """Limits of searches on which answers depend besides what an index says, but for the effort."""
+        return {"limits": digest(self.vehicles, self.horizon, self.objective)}
 
     @property
     def library(self) -> Library:

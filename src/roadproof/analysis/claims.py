@@ -21,6 +21,7 @@ from roadproof.evidence.codec import ABSENT, read, write
 from roadproof.evidence.countermodel import read_trace, trace_data
 from roadproof.evidence.heading import library_of
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.evidence.refutation import judge_trace
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, JsonObject, read_json
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library, Query, Specification, read_specification
@@ -218,6 +219,10 @@ class Claims(Unprepared):
         certificate = None if refuted else shelf.read_certificate(said.evidence)
         drive = shelf.read_drive(said.evidence) if refuted else None
         trace = read_trace(said.counterexample, name) if refuted and drive is None else None
+        if trace is not None:
+            home = next(iter(self.specifications.values())).in_set(said.set)
+            if judge_trace(said.counterexample, home, said.claim, name, said.assuming)[1]:
+                raise InputError(f"the answer '{name}' has a trace that does not refute it")
         if refuted and name in self.named:
             self._check_refuted(name, record.asked, drive)
         result = Result(

@@ -151,7 +151,7 @@ class Overlap:
     def question(self) -> Question:
         meeting = {"lanes": self.meeting.lanes, "roles": self.meeting.roles, "start": self.meeting.start}
         said = {"set": ",".join(self.basis.set_names), **meeting, **self.basis.said()}
-        return Question(SCHEMA, said, self.basis.models, self.basis.library)
+        return Question(SCHEMA, said, self.basis.limits, self.basis.library)
 
     def pieces(self, known: Mapping[str, PairVerdict]) -> Sequence[Group]:
         """Groups of the pairs that are left. Within one set a pair may be turned around."""

@@ -188,7 +188,7 @@ class Redundancy(Unprepared):
     @property
     def question(self) -> Question:
         said = {"set": self.basis.specification.set_name, **self.basis.said()}
-        more = {"whole": str(self.whole), "effort": f"{self.basis.effort.units:g}", **self.basis.models}
+        more = {"whole": str(self.whole), "effort": f"{self.basis.effort.units:g}", **self.basis.limits}
         return Question(SCHEMA, said, more, self.basis.library)
 
     def pieces(self, known: Mapping[str, ChangeFindings]) -> Sequence[ScenarioTask]:
@@ -223,18 +223,13 @@ class Redundancy(Unprepared):
         return all(x.verdict is not Verdict.UNKNOWN for x in answer)
 
     def wanted(self, known: Mapping[str, ChangeFindings]) -> Collection[str]:
-        return self._named
-
-    @cached_property
-    def _named(self) -> dict[str, int]:
-        return {name_of(number): number for number in self.numbers}
+        return [name_of(number) for number in self.numbers]
 
     def key(self, name: str) -> str:
-        """What the first scenario that differs in its road sector only has taught counts, too."""
-        home, number = self.basis.specification, self._named[name]
-        leader = next(n for n in self.numbers if self._likes[n] == self._likes[number])
-        asked = [s.applied(home, self._scenario(n)) for n in (number, leader)]
-        return self.basis.key(asked, number, leader, self.whole)
+        home, number = self.basis.specification, int(name.rpartition("-")[2])
+        teacher = next(n for n in self.numbers if self._likes[n] == self._likes[number])
+        asked = (s.applied(home, self._scenario(n)) for n in (number, teacher))
+        return self.basis.key(asked, number, teacher, self.whole)
 
     def record(self, name: str, answer: ChangeFindings, shelf: EvidenceStore) -> Record:
         number = int(name.rpartition("-")[2])

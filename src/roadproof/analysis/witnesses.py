@@ -91,7 +91,7 @@ class WitnessStudy:
             query = applied(home, Scenario(first, home.set_name))
             sibling = replace(search, query=query).claim.digest(), first
         called = home.set_name, number, home.options
-        return digest(search.claim.digest(), search.query.text, sibling, called, search.search_options.effort)
+        return digest(_asked(search), sibling, called, search.search_options.effort)
 
     def prepare(self) -> None:
         from roadproof.engines.search import ask as ask  # for all processes that are forked
@@ -181,5 +181,7 @@ def name_of(number: int, search: Search) -> str:
 
 
 def _asked(search: Search) -> str:
-    """A short text that changes with the claim of a search and its text, but not with the effort."""
-    return digest(search.claim.digest(), search.query.text)[:16]
+    """A short text that changes with the claim of a search, and with its text and the values that are kept
+    with its answer; not with the effort.
+    """
+    return digest(search.claim.digest(), search.query.text, search.setting.values)[:16]

@@ -88,7 +88,7 @@ class Meanings(Unprepared):
     def question(self) -> Question:
         """What is asked about gaps is kept by itself, and whether it is asked changes nothing else."""
         said: JsonObject = {"set": self.basis.specification.set_name, "scenarios": list(self.asked.numbers)}
-        more = {f"set {x.specification.set_name}": "" for x in self.beside} | self.basis.models
+        more = {f"set {x.specification.set_name}": "" for x in self.beside} | self.basis.limits
         of_some = {x.id: _said(self.basis, x) for x in self.entries}
         if self.entries and self.drivers is not None:
             of_some |= {"drivers": content_of(self.drivers)}

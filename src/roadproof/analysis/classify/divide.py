@@ -99,7 +99,7 @@ class Dividing(Unprepared):
     @property
     def question(self) -> Question:
         said: JsonObject = {"set": self.plan.set_name, "scenarios": [*self.plan.numbers], **self.basis.said()}
-        return Question(SCHEMA, said, self.basis.models, self.basis.library)
+        return Question(SCHEMA, said, self.basis.limits, self.basis.library)
 
     @cached_property
     def axes(self) -> dict[str, Axis]:

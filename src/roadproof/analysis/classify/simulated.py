@@ -54,7 +54,7 @@ class SimulatedShares(Unprepared):
     def question(self) -> Question:
         plan = self.classes.plan
         said: JsonObject = {"set": plan.set_name, "scenarios": [*plan.numbers], "source": self.source}
-        return Question(SCHEMA, said | self.basis.said(), self.basis.models, self.basis.library)
+        return Question(SCHEMA, said | self.basis.said(), self.basis.limits, self.basis.library)
 
     def pieces(self, known: Mapping[str, Shares]) -> Sequence[str]:
         return [] if NAME in known else [NAME]

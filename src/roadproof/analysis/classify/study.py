@@ -74,7 +74,7 @@ class Classification(Unprepared):
         return Question(
             SCHEMA,
             {**said, "scenarios": list(self.classes.plan.numbers)},
-            self.basis.models,
+            self.basis.limits,
             self.basis.library,
         )
 

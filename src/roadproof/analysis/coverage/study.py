@@ -70,7 +70,7 @@ class Coverage(Unprepared):
         """Without the roads: what was decided on some of them stays so, and doubts are asked again."""
         basis = self.survey.basis
         said: JsonObject = {"set": basis.specification.set_name, "wider": list(self.survey.wider)}
-        return Question(SCHEMA, said | basis.said(), basis.models, basis.library)
+        return Question(SCHEMA, said | basis.said(), basis.limits, basis.library)
 
     @cached_property
     def claims(self) -> tuple[CoverageClaim, ...]:

@@ -1,6 +1,5 @@
 """Explorations of several formulas: each is a piece with an answer of its own, kept and taken up again."""
 
-import json
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -31,8 +30,6 @@ from roadproof.errors import InputError
 from roadproof.evidence.answers import explore as kept
 from roadproof.evidence.answers.explore import SCHEMA
 from roadproof.evidence.claim import parameters_in
-from roadproof.evidence.codec import write
-from roadproof.evidence.drive_file import road_said
 from roadproof.reasons import Reason
 from roadproof.runtime.canonical import digest
 from roadproof.runtime.executors import Jobs
@@ -72,7 +69,8 @@ class Exploration:
         varied = {knob.name for knob in first.knobs}
         values = sorted((n, str(v)) for n, v in values_of(first.search).items() if n not in varied)
         said = readings(specification, parameters=dict(values))
-        return Question(SCHEMA, said, _more(self.named, first), specification.library)
+        asked = digest([_content_of(x) for x in self.named.values()])
+        return Question(SCHEMA, said, {"asked": asked}, specification.library)
 
     def pieces(self, known: Mapping[str, ExplorationResult]) -> Sequence[str]:
         return [name for name in self.named if name not in known]
@@ -117,17 +115,8 @@ class Exploration:
         return self.named
 
     def key(self, name: str) -> str:
-        """Besides the claim what is varied and measured counts, with the parameters of that."""
         asked = self.named[name]
-        search, library = asked.search, asked.search.specification.library
-        moments = [x.moment.formula for x in asked.measures if x.moment is not None]
-        measured = parameters_in(library, moments, search.setting.values, (x.term for x in asked.measures))
-        measures = [(x.sense, x.text, x.term, x.dimension, x.when) for x in asked.measures]
-        looked_for = asked.knobs, asked.steps, asked.precision, measures, moments, measured
-        effort = search.search_options.effort
-        return digest(
-            search.claim.digest(), _asked_of(asked), search.specification.options, looked_for, effort
-        )
+        return digest(_content_of(asked), asked.search.search_options.effort)
 
     def prepare(self) -> None:
         prepare()
@@ -158,25 +147,12 @@ def _asked_of(asked: Explorable) -> tuple[int | None, str, str]:
     return search.scenario, search.specification.set_name, search.query.text
 
 
-def _more(named: Mapping[str, Explorable], first: Explorable) -> dict[str, str]:
-    """What else all answers depend on, of which ``first`` is one."""
-    setting, search_options = first.search.setting, first.search.search_options
-    more = {
-        "formulas": {name: _asked_of(asked) for name, asked in named.items()},
-        "vary": [(x.name, str(x.low), str(x.high)) for x in first.knobs],
-        "measures": [(x.sense, x.text, x.when) for x in first.measures],
-        "steps": first.steps,
-        "precision": str(first.precision),
-        "road": None if setting.road is None else write(road_said(setting.road)),
-        "lanes": dict(setting.lanes),
-        "vehicles": digest(setting.vehicles),
-        "grid": [str(x) for x in (setting.horizon, setting.dt, setting.reach)],
-        "collisions": setting.collisions,
-        "means": [
-            search_options.engine,
-            search_options.solver,
-            search_options.objective,
-            f"{search_options.effort.units:g}",
-        ],
-    }
-    return {name: json.dumps(value, sort_keys=True) for name, value in more.items()}
+def _content_of(asked: Explorable) -> str:
+    """A digest of a claim with what is varied and measured, the parameters of that, and the work."""
+    search, library = asked.search, asked.search.specification.library
+    moments = [x.moment.formula for x in asked.measures if x.moment is not None]
+    measured = parameters_in(library, moments, search.setting.values, (x.term for x in asked.measures))
+    measures = [(x.sense, x.text, x.term, x.dimension, x.when) for x in asked.measures]
+    units = search.search_options.effort.units
+    looked_for = asked.knobs, asked.steps, asked.precision, measures, moments, measured, units
+    return digest(search.claim, _asked_of(asked), search.specification.options, looked_for)

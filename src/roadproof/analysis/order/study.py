@@ -71,7 +71,7 @@ class Ordering(Unprepared):
     @property
     def question(self) -> Question:
         said: JsonObject = {"sets": list(self.basis.set_names), **self.basis.said()}
-        more = {"order": " ".join(str(kind.node) for kind in self.kinds), **self.basis.models}
+        more = {"order": " ".join(str(kind.node) for kind in self.kinds), **self.basis.limits}
         return Question(SCHEMA, said, more, self.basis.library)
 
     @property

@@ -202,7 +202,8 @@ class EvidenceStore:
 
 
 class EvidenceTexts(EvidenceStore):
-    """Evidence held as the texts of its files; drives among them were judged when they were made.
+    """Evidence held as the texts of its files; drives that are read are judged by ``judge``, or when they are
+    looked at.
 
     Unless it is ``whole``, certificates have no tableau, whose search can take longer than the proof.
     """
@@ -212,6 +213,7 @@ class EvidenceTexts(EvidenceStore):
     ) -> None:
         super().__init__(None, question)
         self.files, self.whole = dict(files or {}), whole
+        self.drives: list[JudgedDrive] = []
 
     def certificate(self, name: str, certificate: Certificate | None) -> str | None:
         if certificate is None:
@@ -226,7 +228,15 @@ class EvidenceTexts(EvidenceStore):
         return None if drive is None else self._hold(name, json_bytes(drive.as_data()).decode())
 
     def read_drive(self, kept: object) -> JudgedDrive | None:
-        return None if kept is None else KnownDrive(partial(self._get, kept), str(kept)[:60], self.library)
+        if kept is None:
+            return None
+        self.drives.append(KnownDrive(partial(self._get, kept), str(kept)[:60], self.library))
+        return self.drives[-1]
+
+    def judge(self) -> None:
+        """Judge every drive that was read. Raises ``InputError`` where the judge rejects one."""
+        for drive in self.drives:
+            _ = drive.judgement
 
     def inside(self, data: Any) -> Any:
         """``data`` with evidence in place of the names of its files, as without a folder."""

@@ -278,16 +278,19 @@ def _known(
     """An answer that is known, put on the shelf as if it had been computed."""
     key = study.key(name)
     found = None if key is None else known.find(name, key)
-    if found is None:
+    if key is None or found is None:
         return None
     texts = EvidenceTexts(study.question, found.files)
     content = found.record if shelf.folder is not None else texts.inside(found.record)
     try:
         record = read(study.record_type, content, "a known answer")
         said, answer = study.recall(read(study.record_type, found.record, "a known answer"), texts)
-    except InputError:  # the program has changed since, which versions do not tell
-        return None
-    if said != name:
+        if said != name:
+            return None
+        if texts.drives and not known.is_judged(key, found):
+            texts.judge()
+            known.note_judged(key, found)
+    except InputError:  # it is no answer any more: it is computed again
         return None
     shelf.adopt(found.files, whole=found.origin == "shipped")
     shelf.keep(name, write(record, timed=False), study.is_sure(answer))

@@ -24,7 +24,7 @@ from roadproof.runtime.version import ANSWERS, VERSION
 
 SCHEMA = "roadproof/known/1"
 SWITCH = "ROADPROOF_KNOWN"
-CACHE = "answers"
+CACHE, JUDGED = "answers", "judged"
 Origin = Literal["shipped", "cache"]
 
 
@@ -78,9 +78,21 @@ class KnownAnswers:
             data = lzma.compress(json.dumps(answer.content).encode(), preset=0)
             keep_bytes(CACHE, self._cached(name, key), data)
 
+    def is_judged(self, key: str, answer: KnownAnswer) -> bool:
+        """Whether this program has judged the drives of this answer for this key before."""
+        return kept_bytes(JUDGED, self._judged(key, answer)) is not None
+
+    def note_judged(self, key: str, answer: KnownAnswer) -> None:
+        """Remember that this program has judged the drives of this answer for this key."""
+        keep_bytes(JUDGED, self._judged(key, answer), b"")
+
+    def _judged(self, key: str, answer: KnownAnswer) -> str:
+        return _digest(self.kind, self.asked, key, answer.content, program())
+
     def make_room(self) -> None:
         """Keep the cache within its bounds."""
-        make_room(CACHE)
+        for folder in (CACHE, JUDGED):
+            make_room(folder)
 
     @staticmethod
     def entry(name: str, key: str) -> str:

@@ -24,7 +24,7 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import HALF, code_of, kind_of
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import leaves_of, vehicles_of, without_names
+from roadproof.logic.rewrite import leaves_of, parameters_of, vehicles_of, without_names
 from roadproof.semantics.exact import TruthSet
 from roadproof.world.road import Zone
 from roadproof.world.signals import FIXED
@@ -284,7 +284,7 @@ def realise(
         return None
     states = place(query.formula, atoms, model, fixed)
     times = tuple(model.states)
-    parameters = {name: fixed[name] for name in defaults}
+    parameters = {name: fixed[name] for name in parameters_of(query.formula)}
     for strict in (True, False):
         layout = layout_of(query.formula, atoms, model, states, strict)
         road = None if layout is None else lay_road(layout)
