@@ -224,6 +224,35 @@ def test_each_kind_of_change_makes_exactly_its_links_stale(
     assert changes == ({told} if told else set())
 
 
+def test_a_definition_that_two_sets_share_makes_links_stale(home: Path) -> None:
+    shared = """
+def leaf(SV, POV: vehicle) := near(SV, POV)
+def reach(SV, POV: vehicle) := leaf(SV, POV)
+def both(SV, POV: vehicle) := reach@mine(SV, POV) and reach(SV, POV)
+set mine extends base "mine" { def leaf(SV, POV: vehicle) := true }
+"""
+    (home / "ours.spec").write_text(SPEC + shared, "utf-8")
+    change(home / "requirements.toml", "F near(SV,POV)", "F both(SV,POV)")
+    change(home / "drives" / "near.json", "F near(SV,POV)", "F both(SV,POV)")
+    assert ask(home, accept=True).exit_code == 0
+    change(home / "ours.spec", "leaf(SV, POV: vehicle) := near", "leaf(SV, POV: vehicle) := not not near")
+    assert link_of(ask(home), "NEAR")[::2] == ("stale", ("definition leaf changed",))
+
+
+def test_a_claim_that_means_something_else_is_stale_though_no_definition_tells_why(home: Path) -> None:
+    shared = """
+def leaf(SV, POV: vehicle) := near(SV, POV)
+set mine extends base "mine" { def leaf(SV, POV: vehicle) := true }
+"""
+    (home / "ours.spec").write_text(SPEC + shared, "utf-8")
+    for file in ("requirements.toml", "drives/near.json"):
+        change(home / file, "F near(SV,POV)", "F leaf@mine(SV,POV)")
+    assert ask(home, accept=True).exit_code == 0
+    change(home / "ours.spec", "{ def leaf(SV, POV: vehicle) := true }", "{}")
+    state, _, changes = link_of(ask(home), "NEAR")
+    assert (state, changes) == ("stale", ("meaning of F leaf@mine(SV,POV) changed",))
+
+
 def test_another_version_makes_every_link_stale(home: Path) -> None:
     ask(home, accept=True)
     change(home / "requirements.lock.json", f'"roadproof": "{rp.__version__}"', '"roadproof": "0.0.1"')

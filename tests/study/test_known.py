@@ -15,8 +15,13 @@ from roadproof.analysis.overlap import Overlap
 from roadproof.analysis.study import known
 from roadproof.analysis.study.known import SWITCH, KnownAnswers
 from roadproof.errors import InputError
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.finding import Acceptance
+from roadproof.evidence.judged import Ruling, judge_file
 from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.cli.main import main
+from roadproof.library.specification import Library
+from roadproof.reasons import Why
 from roadproof.verdict import Verdict
 from shipping.__main__ import FOLDER, answers_of, archive_of
 from shipping.questions import QUESTIONS
@@ -147,14 +152,41 @@ def test_a_planted_change_is_noticed(home: Path) -> None:
     assert drive().found.known == ()
 
 
-def test_a_drive_is_judged_again_when_it_is_looked_at(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_recalled_drive_is_judged_once_and_refused_ones_are_computed_again(
+    home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     drive()
-    again = drive()
-    assert again.found.known == ("cache",)
-    monkeypatch.setattr("roadproof.evidence.judged.judge_file", lambda *_: pytest.fail("it is judged again"))
-    assert again.verdict is Verdict.WITNESSED
-    with pytest.raises(pytest.fail.Exception, match="judged again"):
-        _ = again.drives[0].judgement
+    judged: list[object] = []
+
+    def reject(file: DriveFile, library: Library) -> Ruling:
+        judged.append(file)
+        return (
+            Ruling(None, Why.TOLD("it is rejected here")) if len(judged) == 1 else judge_file(file, library)
+        )
+
+    with monkeypatch.context() as patch:
+        patch.setattr("roadproof.evidence.judged.judge_file", reject)
+        again = drive()
+        assert again.found.known == ()
+        assert again.verdict is Verdict.WITNESSED
+    assert drive().found.known == ("cache",)
+    with monkeypatch.context() as patch:
+        patch.setattr("roadproof.evidence.judged.judge_file", lambda *_: pytest.fail("it is judged again"))
+        assert drive().found.known == ("cache",), "this program has judged the same bytes for the same claim"
+
+
+def test_a_recalled_trace_is_judged_and_a_refused_one_is_computed_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    claims, using = ("careless(SV) -> v_lon(SV) > 40 m/s",), rp.load(specs=[RULE])
+    for known_here in ((), ("cache",)):
+        assert rp.prove(*claims, using=using, jobs=1, drive=False).found.known == known_here
+    monkeypatch.setattr(
+        "roadproof.analysis.claims.judge_trace", lambda *_: (Acceptance.REJECTED, Why.TOLD("rejected"))
+    )
+    again = rp.prove(*claims, using=using, jobs=1, drive=False)
+    assert again.found.known == ()
+    assert again.verdict is Verdict.REFUTED
 
 
 def test_what_is_in_doubt_is_not_kept(home: Path) -> None:
@@ -168,7 +200,7 @@ def test_the_cache_is_shown_and_removed(home: Path, capsys: pytest.CaptureFixtur
     assert main(["cache"]) == 0
     assert "     1 answers" in capsys.readouterr().out
     assert main(["cache", "--clear"]) == 0
-    assert capsys.readouterr().out.count("removed") == 2
+    assert capsys.readouterr().out.count("removed") == 3
     assert not [*home.iterdir()]
     assert drive().found.known == ()
 
