@@ -182,7 +182,7 @@ CHOICES: Mapping[str, Change] = {
     },
     "set mine": lambda x: replace(x, sets=("mine",)),
 }
-_SEARCH = {"horizon": 5, "effort": 50, "objective": "mild", "vehicle": {"": "truck"}}
+_SEARCH = {"horizon": 5, "effort": 50, "objective": "mild", "vehicles": {"": "truck"}}
 MORE: Mapping[str, Mapping[str, Any]] = {
     "prove": {"effort": 50, "drive": False},
     "witness": {**_SEARCH, "road": "main-3", "reach": 60, "dt": "3/10", "collisions": True, "count": 2},
@@ -190,9 +190,9 @@ MORE: Mapping[str, Mapping[str, Any]] = {
     "overlap": {"horizon": 5, "effort": 50, "lanes": "any", "roles": "any", "start": "any"},
     "explore": {"horizon": 5, "effort": 50, "steps": 3, "precision": 4, "when": "v_lon(SV) < 18 m/s"},
     "preventable": {"lines": 3, "at": {"Vy": "1 m/s", "Ve0": "90 km/h"}, "along": (0, 60), "lemmas": True},
-    "order": {"effort": 50, "horizon": 5},
+    "order": {"effort": 50},
     "redundancy": {"effort": 2, "whole": True},
-    "classify": {"effort": 50, "horizon": 5},
+    "classify": {"effort": 50},
     "coverage": {"effort": 50, "needed": True},
 }
 DRIVER = {

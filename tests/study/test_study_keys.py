@@ -1,0 +1,160 @@
+"""The keys of answers change with everything that their question depends on, and with nothing else of it.
+
+No engine is asked: each question is stopped before its study is conducted.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+import roadproof as rp
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.classify.cells import Outline
+from roadproof.analysis.classify.divide import Dividing
+from roadproof.analysis.study import known
+from roadproof.analysis.study.known import KnownAnswers
+from roadproof.errors import InputError
+from roadproof.runtime.budget import Effort
+from study.test_keys import DRIVER, EVERY, LEAF, MORE, NEAR, Asking, changes_of
+
+SURVEYS = ("overlap", "order", "redundancy", "coverage", "classify")
+SEEN_BY = {
+    LEAF: {"prove", "witness", "witness_scenarios", "preventable", *SURVEYS},
+    "text: bar of a set": {"prove", "witness"},
+    NEAR: {"prove", "witness", "witness_scenarios", "explore", *SURVEYS},
+    "text: paced, which an option replaces": {"prove", "witness", "witness_scenarios", *SURVEYS},
+    "text: a value that is declared": {"prove", "witness", "witness_scenarios", "explore", *SURVEYS},
+    "text: a bound": {"prove", "witness", "witness_scenarios", "explore", *SURVEYS},
+    "text: danger": {"coverage"},
+    "text: apart, which nothing uses": {"preventable"},
+    "text: a spare value": {"preventable", "coverage"},
+    "param gap": {"witness", "witness_scenarios", "explore", "overlap", "order", "redundancy", "coverage"},
+    "param spare": {"preventable", "coverage"},
+    "option pace": {"prove", "witness", "witness_scenarios", *SURVEYS},
+}
+"""By a change the questions whose keys change, at least; other answers may stay known."""
+STAYS = {
+    "text: apart, which nothing uses": {"prove", "witness", "witness_scenarios", "explore", *SURVEYS},
+    "text: a spare value": {"prove", "explore", "overlap", "order", "redundancy"},
+    "text: bar of a set": {"overlap", "order", "redundancy", "explore"},
+    "param spare": {"overlap", "order", "redundancy"},
+}
+
+
+class Stopped(Exception):
+    """Nothing more is to be computed."""
+
+
+def study_of(name: str, asking: Asking) -> Any:
+    found: list[Any] = []
+
+    def stop(study: Any, *_: object, **__: object) -> None:
+        found.append(study)
+        raise Stopped
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("roadproof.frontends.api.studied.conduct", stop)
+        patch.setattr("roadproof.analysis.classify.divide.conduct", stop)
+        with pytest.raises(Stopped):
+            EVERY[name](asking, True)
+    return found[0]
+
+
+def keys_of(name: str, asking: Asking) -> dict[str, str]:
+    """The entry of each answer that the question wants, with where it is looked for."""
+    study = study_of(name, asking)
+    question = study.question
+    place = KnownAnswers.to(question.schema, question.said, question.more)
+    return {x: f"{place.asked} {place.entry(x, study.key(x))}" for x in study.wanted({})}
+
+
+@pytest.fixture(scope="module")
+def first() -> dict[str, dict[str, str]]:
+    return {name: keys_of(name, Asking()) for name in EVERY}
+
+
+@pytest.mark.parametrize(("change", "name"), [(x, y) for x, those in SEEN_BY.items() for y in sorted(those)])
+def test_a_change_that_a_question_sees_changes_keys(
+    change: str, name: str, first: Mapping[str, Mapping[str, str]]
+) -> None:
+    now = keys_of(name, changes_of(name)[change](Asking()))
+    assert now.keys() == first[name].keys()
+    assert any(now[x] != first[name][x] for x in now)
+
+
+@pytest.mark.parametrize(("change", "name"), [(x, y) for x, those in STAYS.items() for y in sorted(those)])
+def test_a_change_that_a_question_does_not_see_leaves_keys(
+    change: str, name: str, first: Mapping[str, Mapping[str, str]]
+) -> None:
+    if name != "coverage":  # it counts all values, and definitions put together
+        assert keys_of(name, changes_of(name)[change](Asking())) == first[name]
+
+
+@pytest.mark.parametrize(("name", "more"), [(x, y) for x in MORE for y in MORE[x] if y != "lemmas"])
+def test_every_option_of_a_question_changes_its_keys(
+    name: str, more: str, first: Mapping[str, Mapping[str, str]]
+) -> None:
+    now = keys_of(name, changes_of(name)[f"--{more}"](Asking()))
+    assert all(now[x] != first[name].get(x) for x in now)
+
+
+@pytest.mark.parametrize("name", DRIVER)
+def test_every_parameter_of_a_driver_changes_the_keys_of_plates(
+    name: str, first: Mapping[str, Mapping[str, str]]
+) -> None:
+    now = keys_of("preventable", changes_of("preventable")[f"driver {name}"](Asking()))
+    assert all(now[x] != first["preventable"][x] for x in now)
+
+
+def test_lemmas_depend_on_the_values_that_they_assume() -> None:
+    asked = Asking(more={"lemmas": True})
+    before, after = (keys_of("preventable", replace(asked, params=x)) for x in ({}, {"cc_braking": 4}))
+    assert all(before[x] != after[x] for x in before if x in after and "careful" in x)
+
+
+def test_no_two_answers_of_a_question_have_one_key(first: Mapping[str, Mapping[str, str]]) -> None:
+    for name, keys in first.items():
+        if name != "coverage":
+            assert len({*keys.values()}) == len(keys)
+
+
+def test_cells_have_keys_of_their_axes() -> None:
+    def keys(text: str) -> dict[str, str]:
+        study = study_of("classify", Asking().edited("v_lon(SV) < 40 m/s", text))
+        assert isinstance(study, Dividing)
+        cells = Outline((((90,), (91,)), ((91,), (90,))), ())
+        return {x: study.key(x) for x in study.wanted(dict.fromkeys(study.axes, cells))}
+
+    one, other = keys("v_lon(SV) < 40 m/s"), keys("v_lon(SV) < 39 m/s")
+    assert len(one) > 1
+    assert len({*one.values()}) == len(one)
+    assert not {*one.values()} & {*other.values()}
+
+
+def test_the_program_and_the_version_are_part_of_keys(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = KnownAnswers("overlap", "0")
+    before = asked._cached("a", "key")
+    monkeypatch.setattr(known, "program", lambda: "another program")
+    assert asked._cached("a", "key") != before
+
+
+def test_a_key_about_nothing_is_refused() -> None:
+    home = rp.load().specification
+    with pytest.raises(ValueError, match="needs the claims"):
+        Basis(home).key([])
+
+
+@pytest.mark.parametrize(
+    "more",
+    [{"horizon": 5}, {"effort": Effort(1)}, {"proof": 1.0}, {"objective": "mild"}, {"values": {"rho": 1}}],
+)
+def test_limits_of_a_basis_are_part_of_its_keys(more: Mapping[str, Any]) -> None:
+    from roadproof.library.scenarios import Scenario, applied
+
+    basis = Basis(rp.load().specification)
+    query = applied(basis.specification, Scenario(4, "base"))
+    assert replace(basis, **more).key([query]) != basis.key([query])
+    with pytest.raises((InputError, TypeError)):
+        basis.key([query], object())
