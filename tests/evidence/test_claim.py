@@ -115,7 +115,9 @@ def test_every_setting_of_a_search_but_values_and_effort_is_part_of_its_claim() 
     assert {x.name for x in fields(Exists)} == names | {"count"}
     home = specification()
     search = Search(home, read_claim(home, TEXT), Setting(horizon=Fraction(5)), SearchOptions("mild"), 2)
-    assert search.claim.mode == exists(Setting(horizon=Fraction(5)), SearchOptions("mild"), 2)
+    assert search.claim.mode == Exists(horizon=Fraction(5), objective="mild", count=2)
+    others = [replace(Setting(), collisions=True), replace(Setting(), natural=False)]
+    assert len({digest(exists(x, SearchOptions())) for x in (Setting(), *others)}) == 3
     more = replace(search, search_options=replace(search.search_options, effort=Effort(1)))
     assert more.claim.digest() == search.claim.digest()
     assert replace(search, count=3).claim.digest() != search.claim.digest()

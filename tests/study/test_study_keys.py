@@ -17,6 +17,8 @@ from roadproof.analysis.study import known
 from roadproof.analysis.study.known import KnownAnswers
 from roadproof.errors import InputError
 from roadproof.runtime.budget import Effort
+from shipping.__main__ import FOLDER
+from shipping.questions import QUESTIONS
 from study.test_keys import DRIVER, EVERY, LEAF, MORE, NEAR, Asking, changes_of
 
 SURVEYS = ("overlap", "order", "redundancy", "coverage", "classify")
@@ -158,3 +160,37 @@ def test_limits_of_a_basis_are_part_of_its_keys(more: Mapping[str, Any]) -> None
     assert replace(basis, **more).key([query]) != basis.key([query])
     with pytest.raises((InputError, TypeError)):
         basis.key([query], object())
+
+
+SHIPPED = [x for x in QUESTIONS if x not in ("classify", "shares of classes")]
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_shipped_archives_have_the_keys_of_their_questions(name: str) -> None:
+    """An archive that a question names has an answer to each part of it, under the key of today."""
+    found: list[Any] = []
+
+    def stop(study: Any, *_: object, **__: object) -> None:
+        found.append(study)
+        raise Stopped
+
+    with pytest.MonkeyPatch.context() as patch:
+        for place in ("frontends.api.studied", "analysis.classify.divide"):
+            patch.setattr(f"roadproof.{place}.conduct", stop)
+        patch.setattr("shipping.questions.conduct", stop)
+        with pytest.raises(Stopped):
+            QUESTIONS[name](jobs=1)
+    [study] = found
+    question = study.question
+    place = KnownAnswers.to(question.schema, question.said, question.more)
+    there = place.read(FOLDER)
+    assert not there or all(place.entry(x, study.key(x)) in there for x in study.wanted({}))
+    assert there or name not in ALWAYS_SHIPPED
+
+
+ALWAYS_SHIPPED = (
+    *("prove", "order", "division of classes", "redundancy --set base", "coverage --set base"),
+    *(f"witness --objective {x}" for x in ("smooth", "mild", "severe")),
+    *(f"overlap --set {x} --lanes same --roles same" for x in ("base", "extA", "ext")),
+    *(f"preventable {x}" for x in ("cut-in", "cut-out", "deceleration")),
+)
