@@ -84,7 +84,7 @@ def test_it_is_a_folder_of_recordings(tmp_path: Path) -> None:
     sources = find_sources(tmp_path)
     assert [x.name for x in sources] == ["cars#1", "cars#2", "cars#3", "cars#4"]
     assert sources == find_sources(path)
-    assert [len(x.files) for x in sources] == [3] * 4
+    assert [len(x.files) for x in sources] == [4] * 4, "map, distribution, scenario, and its own name"
     assert find_source(tmp_path / "cars#3.xosc").read().vehicles == 1
     notes = read_recording(tmp_path / "cars#3.xosc").notes
     assert "values: v=10.2; 4 of 4 scenarios of cars.xosc are read" in notes

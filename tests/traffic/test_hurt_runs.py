@@ -215,12 +215,12 @@ def test_results_are_kept_by_content_not_by_time(folder: Path, tmp_path: Path) -
     assert evaluated() == 0
 
 
-def test_results_of_another_version_are_not_kept(
+def test_results_of_another_program_are_not_kept(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     told: list[str] = []
     run_experiment(Experiment(folder, tmp_path, default_settings()))
-    monkeypatch.setattr(results, "VERSION", "0.0.0")
+    monkeypatch.setattr(results, "program", lambda: "another program")
     run_experiment(Experiment(folder, tmp_path, default_settings()), told.append)
     assert sum(line.startswith("[") for line in told) == 2
 
