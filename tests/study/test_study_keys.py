@@ -13,6 +13,8 @@ import roadproof as rp
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.classify.cells import Outline
 from roadproof.analysis.classify.divide import Dividing
+from roadproof.analysis.coverage.classes import GapSurvey
+from roadproof.analysis.coverage.study import Coverage
 from roadproof.analysis.study import known
 from roadproof.analysis.study.known import KnownAnswers
 from roadproof.errors import InputError
@@ -131,6 +133,13 @@ def test_cells_have_keys_of_their_axes() -> None:
     assert len(one) > 1
     assert len({*one.values()}) == len(one)
     assert not {*one.values()} & {*other.values()}
+
+
+def test_gaps_depend_on_definitions_of_wider_sets() -> None:
+    def key(asking: Asking) -> str:
+        return Coverage(GapSurvey(Basis(asking.using.specification), ("mine",))).key("behaviourSV_1")
+
+    assert key(Asking().edited("v_lon(a) > 5 m/s", "v_lon(a) > 6 m/s")) != key(Asking())
 
 
 def test_the_program_and_the_version_are_part_of_keys(monkeypatch: pytest.MonkeyPatch) -> None:
