@@ -135,6 +135,12 @@ def test_cells_have_keys_of_their_axes() -> None:
     assert not {*one.values()} & {*other.values()}
 
 
+def test_parameters_of_a_measure_count() -> None:
+    asked = Asking(more={"greatest": "v_lon(SV) - spare*1 m/s^2"})
+    before, after = (keys_of("explore", x) for x in (asked, replace(asked, params={"spare": 3})))
+    assert all(before[x] != after[x] for x in before)
+
+
 def test_gaps_depend_on_definitions_of_wider_sets() -> None:
     def key(asking: Asking) -> str:
         return Coverage(GapSurvey(Basis(asking.using.specification), ("mine",))).key("behaviourSV_1")
