@@ -7,8 +7,9 @@ from xml.parsers import expat
 
 from roadproof.errors import InputError
 from roadproof.runtime.file_kind import other_format
+from roadproof.runtime.xml_element import Element, Unread, parse, summary_of, unread
 
-Element = ElementTree.Element
+__all__ = ["Element", "Unread", "by_id", "number_in", "read_xml", "summary_of", "unread"]
 DEEPEST = 100
 """Elements inside each other; the formats that are read have about ten."""
 
@@ -28,7 +29,7 @@ def read_xml(path: Path, root_tag: str) -> Element:
         raise InputError(f"{path}: the file {other}")
     try:
         _refuse_tricks(path, content)
-        root = ElementTree.fromstring(content)
+        root = parse(content)
     except (ElementTree.ParseError, expat.ExpatError, ValueError, LookupError) as error:
         raise InputError(
             f"{path}: no well-formed XML ({error}); get the file again from its source"

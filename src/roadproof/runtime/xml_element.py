@@ -1,0 +1,182 @@
+"""XML elements that record what was read of them, so that a reader can name what it passed over.
+
+An attribute is read by ``get``, a text by ``text`` or ``findtext``. An element is read if a reader asks for
+it by tag (``find``, ``findall``, ``iter``) or reads one of its attributes. Iterating over children reads none
+of them. ``unread`` lists all the rest, apart from parts that a table of the format declares harmless.
+"""
+
+import xml.etree.ElementTree as ElementTree
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, TypeVar, overload
+
+from roadproof.runtime.records import dataclass
+
+_Plain = ElementTree.Element
+_TEXT_OF: Any = _Plain.__dict__["text"]
+"""The text that an element of the standard library holds."""
+_ITSELF, _TEXT, _ALL = ".", "text()", "*"
+_NAMES = ("name", "id", "entityRef")
+"""Attributes that say in messages which of several elements is meant."""
+_T = TypeVar("_T")
+SHOWN = 12
+"""At most so many kinds of unread parts are named one by one."""
+
+
+def parse(content: bytes) -> "Element":
+    """The root of a document, of which nothing was read. Raises ``ParseError``."""
+    parser = ElementTree.XMLParser(target=ElementTree.TreeBuilder(element_factory=Element))
+    parser.feed(content)
+    root: Element = parser.close()  # type: ignore[assignment]
+    for node in root.iter():
+        if node.is_read:  # the parser has read its text
+            del node._read
+    return root
+
+
+class Element(_Plain):
+    """An element that records the attributes, texts and children that are read."""
+
+    __slots__ = ("_read",)
+    _read: set[str]
+
+    def note(self, name: str = _ITSELF) -> None:
+        """Record that an attribute, the text, or the element itself was read."""
+        try:
+            self._read.add(name)
+        except AttributeError:
+            self._read = {name}
+
+    def read_all(self) -> None:
+        """Record that the element was read with everything below it."""
+        self.note(_ALL)
+
+    def has_read(self, name: str) -> bool:
+        """Whether an attribute or the text was read."""
+        read = getattr(self, "_read", ())
+        return name in read or _ALL in read
+
+    @property
+    def is_read(self) -> bool:
+        """Whether anything of the element was read."""
+        return hasattr(self, "_read")
+
+    if TYPE_CHECKING:
+
+        def __iter__(self) -> "Iterator[Element]": ...
+
+        def __getitem__(self, index: int) -> "Element": ...  # type: ignore[override]
+
+    @overload
+    def get(self, key: str, default: None = None) -> str | None: ...
+
+    @overload
+    def get(self, key: str, default: _T) -> str | _T: ...
+
+    def get(self, key: str, default: Any = None) -> Any:
+        self.note(key)
+        return _Plain.get(self, key, default)
+
+    @property
+    def text(self) -> str | None:
+        self.note(_TEXT)
+        return text_of(self)
+
+    @text.setter
+    def text(self, value: str | None) -> None:
+        _TEXT_OF.__set__(self, value)
+
+    def find(self, path: str, namespaces: Any = None) -> "Element | None":
+        return next(iter(self.findall(path)), None)
+
+    def findall(self, path: str, namespaces: Any = None) -> "list[Element]":  # type: ignore[override]
+        """The elements at a path of tags joined by ``/``, all of which count as read, and ``*`` as not."""
+        found: list[Element] = [self]
+        for tag in path.split("/"):
+            if tag == _ALL:
+                found = [child for node in found for child in node]
+                continue
+            found = [child for node in found for child in _Plain.findall(node, tag)]  # type: ignore[misc]
+            for node in found:
+                node.note()
+        return found
+
+    def findtext(self, path: str, default: Any = None, namespaces: Any = None) -> str | None:  # type: ignore[override]
+        node = self.find(path)
+        return default if node is None else node.text or ""
+
+    def iter(self, tag: str | None = None) -> "Iterator[Element]":  # type: ignore[override]
+        for node in _Plain.iter(self, tag):
+            if tag is not None:
+                node.note()  # type: ignore[attr-defined]
+            yield node  # type: ignore[misc]
+
+
+def text_of(node: _Plain) -> str | None:
+    """The text of an element, which does not count as read."""
+    text: str | None = _TEXT_OF.__get__(node)
+    return text
+
+
+@dataclass(frozen=True)
+class Unread:
+    """A part of a file that a reader passed over.
+
+    ``part``: ``Tag`` of an element, ``Tag@attribute`` or ``Tag/text()``. ``where``: the path of the element.
+    """
+
+    part: str
+    where: str
+
+    def __str__(self) -> str:
+        return f"{self.part} at {self.where}"
+
+
+def unread(root: Element, harmless: Mapping[str, str]) -> tuple[Unread, ...]:
+    """The parts of a file that were not read and that no rule declares harmless, in the order of the file.
+
+    ``harmless``: reasons by ``Tag``, ``Tag@attribute``, ``@attribute`` of any element, or ``Tag/text()``.
+    Nothing below an unread element is listed.
+    """
+    return tuple(_unread(root, harmless, ""))
+
+
+def _unread(node: Element, harmless: Mapping[str, str], above: str) -> Iterator[Unread]:
+    if node.tag in harmless or node.has_read(_ALL):
+        return
+    where = f"{above}/{_label(node)}" if above else _label(node)
+    if not node.is_read and above and not any(x.is_read for x in _below(node)):
+        yield Unread(str(node.tag), where)
+        return
+    for name in node.keys():  # noqa: SIM118
+        part = f"{node.tag}@{name}"
+        if not (node.has_read(name) or part in harmless or f"@{name}" in harmless):
+            yield Unread(part, where)
+    part = f"{node.tag}/{_TEXT}"
+    if (text_of(node) or "").strip() and not node.has_read(_TEXT) and part not in harmless:
+        yield Unread(part, where)
+    for child in node:
+        yield from _unread(child, harmless, where)
+
+
+def _below(node: Element) -> Iterator[Element]:
+    """All elements below one."""
+    yield from (x for x in node.iter() if x is not node)
+
+
+def _label(node: Element) -> str:
+    """The tag of an element, with its name if it has one."""
+    name = next((x for x in (_Plain.get(node, key) for key in _NAMES) if x), "")
+    return f"{node.tag} {name}" if name else str(node.tag)
+
+
+def summary_of(parts: tuple[Unread, ...]) -> tuple[str, ...]:
+    """A line for each kind of unread part: how often it occurs, and where first."""
+    counts = Counter(x.part for x in parts)
+    first = {x.part: x.where for x in reversed(parts)}
+    lines = [
+        f"{part}, {f'{count} times, first ' if count > 1 else ''}at {first[part]}"
+        for part, count in counts.items()
+    ]
+    more = len(lines) - SHOWN
+    return (*lines[:SHOWN], f"{more} more kinds") if more > 0 else tuple(lines)
