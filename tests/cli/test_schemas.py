@@ -49,7 +49,7 @@ DRIVE = ROOT / "examples" / "traffic" / "drives" / "scenario-04-base.json"
 # version, which alone reads it; answers that are known, cells of classes, and shares of classes.
 INTERNAL = {
     "roadproof/recording-findings/4",
-    "roadproof/recording/2",
+    "roadproof/recording/3",
     "roadproof/viewer/1",
     "roadproof/known/1",
     "roadproof/division/1",

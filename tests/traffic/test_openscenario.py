@@ -178,7 +178,7 @@ def test_what_is_wrong_is_said(change: Callable[[str], str], told: str, tmp_path
 
 def the_reference_point_is_the_centre(monkeypatch: pytest.MonkeyPatch) -> None:
     made = stage.Box
-    monkeypatch.setattr(stage, "Box", lambda *told: made(*told[:4], (0, 0)))
+    monkeypatch.setattr(stage, "Box", lambda *told, **limits: made(*told[:4], (0, 0)))
 
 
 def the_corner_is_the_centre(monkeypatch: pytest.MonkeyPatch) -> None:

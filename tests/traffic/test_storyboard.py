@@ -49,7 +49,10 @@ def test_braking_by_hand(tmp_path: Path) -> None:
 
 def test_a_cut_in_by_hand(tmp_path: Path) -> None:
     """The other car, 5 m/s faster, is 20 m ahead after 6 s: at a headway of 1 s it changes lane in 4 s."""
-    headway = '<TimeHeadwayCondition entityRef="Other" value="1" freespace="false" rule="greaterOrEqual"/>'
+    headway = (
+        '<TimeHeadwayCondition entityRef="Other" value="1" freespace="false" rule="greaterOrEqual" '
+        'coordinateSystem="road" relativeDistanceType="longitudinal"/>'
+    )
     change = event(
         "cut in", to_lane('<RelativeTargetLane entityRef="Ego" value="0"/>'), when(of("Ego", headway))
     )

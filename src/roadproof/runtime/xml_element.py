@@ -77,6 +77,10 @@ class Element(_Plain):
         self.note(key)
         return _Plain.get(self, key, default)
 
+    def peek(self, key: str) -> str | None:
+        """An attribute, which does not count as read."""
+        return _Plain.get(self, key)
+
     @property
     def text(self) -> str | None:
         self.note(_TEXT)
@@ -166,7 +170,7 @@ def _below(node: Element) -> Iterator[Element]:
 
 def _label(node: Element) -> str:
     """The tag of an element, with its name if it has one."""
-    name = next((x for x in (_Plain.get(node, key) for key in _NAMES) if x), "")
+    name = next((x for x in map(node.peek, _NAMES) if x), "")
     return f"{node.tag} {name}" if name else str(node.tag)
 
 

@@ -237,15 +237,16 @@ def read_samples(path: Path, road: Road | None = None) -> OneTrace:
     """
     if path.suffix == ".xosc":
         scenario = openscenario.read_scenario(path)
-        table, road, notes = scenario.table, road or scenario.road, scenario.otherwise
+        table, road, notes = scenario.table, road or scenario.road, (*scenario.otherwise, *scenario.faults)
+        computed = scenario.computed
     else:
-        table, notes = samples.read_columns(path), ()
+        table, notes, computed = samples.read_columns(path), (), False
     if road is None:
         known = beside(path, samples.ROAD_ENDING)
         road = load_recorded_road(known[0])[0] if known else load_road("main-2")
     lists = {name: values.tolist() for name, values in table.columns.items()}
     made = of_columns(lists, road, str(path))
-    doubts = samples.doubts_in(table, of_road(road, samples.DIRECTION, path))
+    doubts = samples.doubts_in(table, of_road(road, samples.DIRECTION, path), computed)
     return replace(made, notes=(*notes, *doubts, *_overlaps(made)))
 
 

@@ -41,7 +41,7 @@ from roadproof.runtime.version import VERSION
 from roadproof.world.road import Lanelet
 from roadproof.world.signals import RECORDED
 
-SCHEMA = "roadproof/recording/2"
+SCHEMA = "roadproof/recording/3"
 HEAD, SAMPLES = ".recording.json", CONVERTED
 _UNFIT = (ValueError, KeyError, TypeError, AttributeError, RecursionError)
 _NEAR = 100_000  # rows between those of two vehicles that are read with them
@@ -281,6 +281,7 @@ def _said(recording: Recording) -> Head:
         "counts": np.diff(recording.start).tolist(),
         "vehicles": {name: getattr(recording, name).tolist() for name in _OF_VEHICLES},
         "notes": list(recording.notes),
+        "computed": recording.computed,
     }
 
 
@@ -328,6 +329,7 @@ def _recording(said: Head, columns: Mapping[str, Column]) -> Recording:
         beside=frozenset(frozenset(pair) for pair in said["beside"]),
         start=offsets(counts),
         notes=tuple(said["notes"]),
+        computed=bool(said["computed"]),
         lanelets=lanelets,
         slack=Slack(**slack) if slack else None,
         own=group("own:"),

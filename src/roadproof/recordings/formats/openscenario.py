@@ -19,13 +19,15 @@ import numpy as np
 
 from roadproof.errors import InputError
 from roadproof.recordings.formats.recording import Floats, Recording
+from roadproof.recordings.formats.reliable import LEFT_OUT
 from roadproof.recordings.formats.samples import DIRECTION, LABEL, recording_of
 from roadproof.recordings.formats.source import Files, Format, with_suffix
 from roadproof.recordings.formats.storyboard.box import Box
 from roadproof.recordings.formats.storyboard.conditions import TICKS
 from roadproof.recordings.formats.storyboard.curves import curve
 from roadproof.recordings.formats.storyboard.distributions import read_distribution, scenarios_of, split
-from roadproof.recordings.formats.storyboard.document import catalogues_of, open_document
+from roadproof.recordings.formats.storyboard.document import Document, catalogues_of, open_document
+from roadproof.recordings.formats.storyboard.faults import faults_of
 from roadproof.recordings.formats.storyboard.run import Play
 from roadproof.recordings.formats.storyboard.stage import map_of, number_of, open_stage, played, text_of
 from roadproof.recordings.formats.straight import of_road
@@ -65,6 +67,7 @@ class Scenario:
     """Samples of all vehicles, RATE a second, the road with its file, and notes on them.
 
     ``otherwise``: those of the notes that say what was left out, or taken otherwise than it is written.
+    ``faults``: parts of the motion that no vehicle drives. ``computed``: a storyboard was run.
     """
 
     table: Table
@@ -72,6 +75,8 @@ class Scenario:
     road_path: Path
     notes: tuple[str, ...]
     otherwise: tuple[str, ...] = ()
+    faults: tuple[str, ...] = ()
+    computed: bool = False
 
 
 def read_scenario(path: Path) -> Scenario:
@@ -83,9 +88,10 @@ def read_scenario(path: Path) -> Scenario:
     follows = (_FOLLOWS,) if "follow" in modes else ()
     varied = (document.told,) if document.told else ()
     if _follows_polylines(root, boxes):
+        _read_init(root)
         ways = {name: _in_road(x, boxes[name], road) for name, x in _vertices(path, root, boxes)}
         note = f"speeds and accelerations are those of curves through the vertices, {RATE} samples a second"
-        otherwise = (*follows, *varied)
+        otherwise = (*follows, *varied, *_unread(document))
         return Scenario(_sampled(path, boxes, ways), road, road_path, (note, *otherwise), otherwise)
     stage, play = played(stage)
     if len(play.states) < 2 * TICKS // RATE:
@@ -93,19 +99,40 @@ def read_scenario(path: Path) -> Scenario:
     told = f"the storyboard ends at {(len(play.states) - 1) / TICKS:g} s: {play.ending}"
     note = f"the storyboard was run with conditions evaluated {TICKS} times a second, {RATE} samples a second"
     table, left_out = _of_play(path, boxes, play)
-    otherwise = (*follows, *varied, *left_out)
-    return Scenario(table, stage.road, road_path, (note, told, *otherwise), otherwise)
+    otherwise = (*follows, *varied, *left_out, *_unread(document))
+    faults = faults_of(play, boxes)
+    idle = (f"events that never start: {', '.join(play.idle)}",) if play.idle else ()
+    notes = (note, told, *idle, *otherwise, *faults)
+    return Scenario(table, stage.road, road_path, notes, otherwise, faults, computed=True)
+
+
+def _unread(document: Document) -> tuple[str, ...]:
+    """A note on parts of a file that were not read and may have an effect."""
+    parts = document.left_out()
+    return (f"{LEFT_OUT}, as it is not supported: {'; '.join(parts)}",) if parts else ()
+
+
+def _read_init(root: Element) -> None:
+    """Pass over actions of Init that trajectories replace, from the first vertex on."""
+    for action in root.findall("Storyboard/Init/Actions/Private/PrivateAction"):
+        if (
+            action.find("TeleportAction") is not None
+            or action.find("LongitudinalAction/SpeedAction") is not None
+        ):
+            action.read_all()
 
 
 def read_recording(path: Path, strict: bool = True) -> Recording:
     """The vehicles of a file as a recording; unless ``strict``, without bad ones. Raises ``InputError``."""
     found = read_scenario(path)
     road = of_road(found.road, DIRECTION, found.road_path)
-    return recording_of(found.table, road, path.stem, found.notes, strict)
+    return recording_of(found.table, road, path.stem, found.notes, strict, found.computed)
 
 
 def _follows_polylines(root: Element, boxes: Mapping[str, Box]) -> bool:
     """Whether all that happens is that each vehicle follows a polyline with times."""
+    if any(str(x.tag).endswith("ControllerAction") for x in root.iter()):
+        return False
     actions = root.findall("Storyboard/Story/Act/ManeuverGroup/Maneuver/Event/Action")
     actors = {x.get("entityRef") for x in root.findall("Storyboard/Story/Act/ManeuverGroup/Actors/EntityRef")}
     return bool(actions) and {*boxes} <= actors and all(map(_is_timed_polyline, actions))
@@ -126,6 +153,7 @@ def _vertices(path: Path, root: Element, boxes: Mapping[str, Box]) -> Iterator[t
     seen: set[str] = set()
     acts = root.findall("Storyboard/Story/Act")
     for act, group in ((x, y) for x in acts for y in x.findall("ManeuverGroup")):
+        _read_counts(group)
         actors = [text_of(path, x, "entityRef", "an EntityRef") for x in group.findall("Actors/EntityRef")]
         for event, action in ((x, y) for x in group.findall("Maneuver/Event") for y in x.findall("Action")):
             told = f"Action {action.get('name')} of {', '.join(actors)}"
@@ -142,6 +170,19 @@ def _vertices(path: Path, root: Element, boxes: Mapping[str, Box]) -> Iterator[t
                     raise InputError(f"{path}: {name} follows two trajectories; one is needed")
                 seen.add(name)
                 yield name, found
+
+
+def _read_counts(group: Element) -> None:
+    """Read attributes of a maneuver group and its events that have no effect on one trajectory."""
+    for node, name, plain in (
+        (group, "maximumExecutionCount", "1"),
+        *((x, "selectTriggeringEntities", "false") for x in group.findall("Actors")),
+        *((x, "maximumExecutionCount", "1") for x in group.findall("Maneuver/Event")),
+    ):
+        if node.peek(name) == plain:
+            node.note(name)
+    for event in group.findall("Maneuver/Event"):
+        event.note("priority")  # it is the only one of its actors
 
 
 def _check_begin(path: Path, node: Element, first: float, told: str) -> None:
@@ -235,7 +276,7 @@ def _of_play(path: Path, boxes: Mapping[str, Box], play: Play) -> tuple[Table, l
     tables, notes = [], []
     against = sorted(x for x in boxes if any(x in now and not now[x].forward for now in play.states))
     for name, box in boxes.items():
-        parts = [*_presences(name, play, step)] if box.recorded else []
+        parts = [x for x in _presences(name, play, step) if len(x) > 1] if box.recorded else []
         for k, ticks in enumerate(parts):
             states = [play.states[tick][name] for tick in ticks]
             moving = np.array([[getattr(x, y) for x in states] for y in map(str, RECORDED)])
@@ -247,7 +288,11 @@ def _of_play(path: Path, boxes: Mapping[str, Box], play: Play) -> tuple[Table, l
         if not parts and box.recorded and name not in against:
             notes.append(
                 f"left out, as no TeleportAction, AddEntityAction or trajectory says where it is: {name}"
+                if name not in play.controlled
+                else f"{LEFT_OUT}, as the file does not say where it is: {name}, {play.controlled[name]}"
             )
+        elif name in play.controlled:
+            notes.append(f"{LEFT_OUT} from then on: {name}, {play.controlled[name]}")
     for rule, names in (
         ("they are no motor vehicles", sorted(x for x, box in boxes.items() if not box.recorded)),
         ("they drive against the others", [x for x in against if boxes[x].recorded]),

@@ -346,6 +346,16 @@ class ContradictionChecks:
         """The vehicles that follow those that were added, in the order of the whole."""
         if not len(recording.s):
             return
+        if not recording.computed:
+            self._add_motion(recording)
+        self.places.add(recording, self.rows)
+        of = (recording.length, recording.width, recording.kind, recording.direction)
+        self.vehicles.append(_Vehicles(*of, recording.start[:-1] + self.rows))
+        self.on_road.append(np.logical_or.reduceat(recording.occupancy != 0, recording.start[:-1]))
+        self.rows += len(recording.s)
+
+    def _add_motion(self, recording: Recording) -> None:
+        """Compare places, speeds and accelerations with each other."""
         seconds = _seconds(recording, self.rows)
         way, *_ = [rule.add(recording, self.rows, seconds) for rule in self.motion]
         self.scale.add(recording, self.rows, way)
@@ -356,11 +366,6 @@ class ContradictionChecks:
         first = 0 if self.rows else 1  # the first of all is no step
         hard = blockwise(lambda a_lon: np.abs(a_lon) > self.hard.limit, recording.a_lon[first:])
         self.hard.add(hard, self.rows + first, int(np.count_nonzero(inner)))
-        self.places.add(recording, self.rows)
-        of = (recording.length, recording.width, recording.kind, recording.direction)
-        self.vehicles.append(_Vehicles(*of, recording.start[:-1] + self.rows))
-        self.on_road.append(np.logical_or.reduceat(recording.occupancy != 0, recording.start[:-1]))
-        self.rows += len(recording.s)
 
     def doubts(self) -> list[Implausible]:
         """Everything that was found, the gravest first."""

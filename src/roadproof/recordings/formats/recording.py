@@ -111,7 +111,8 @@ class Recording:
     tell them apart. ``slack``: what projecting a measured road on a line does to places; None where s and d
     are measured themselves. ``own``: columns that are no signals of the list, an entry a sample: true and
     false as 1 and 0, NaN where there is no number. ``label``: what the file calls each vehicle, where
-    ``kind`` puts several together.
+    ``kind`` puts several together. ``computed``: a storyboard gives places, speeds and accelerations as one
+    motion, so that they are not compared with each other.
     """
 
     name: str
@@ -141,6 +142,7 @@ class Recording:
     slack: Slack | None = None
     own: Mapping[str, Floats] = field(default_factory=dict)
     label: npt.NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, np.str_))
+    computed: bool = False
 
     @cached_property
     def kind_code(self) -> Integers:

@@ -199,13 +199,20 @@ def road_beside(path: Path) -> StraightRoad:
 
 
 def recording_of(
-    columns: Table, road: StraightRoad, name: str, notes: tuple[str, ...] = (), strict: bool = True
+    columns: Table,
+    road: StraightRoad,
+    name: str,
+    notes: tuple[str, ...] = (),
+    strict: bool = True,
+    computed: bool = False,
 ) -> Recording:
     """The recording of columns called as in ``HEADER``, and ``kind``, on a road. Raises ``InputError``.
 
     Unless it is ``strict``, vehicles of which a cell breaks a rule, and bad ones, are left out.
+    ``computed``: places, speeds and accelerations are those of one motion, and are not compared.
     """
     table, recording, told = _readable_part(columns, road, name, strict)
+    recording = replace(recording, computed=computed)
     return reliable(with_notes(recording, (*notes, *told)), strict, partial(_check_plausible, table))
 
 
@@ -234,11 +241,11 @@ def _readable_part(
     return table, recording, (*left_out, *numbered, *clock.notes)
 
 
-def doubts_in(columns: Table, road: StraightRoad) -> tuple[str, ...]:
+def doubts_in(columns: Table, road: StraightRoad, computed: bool = False) -> tuple[str, ...]:
     """Notes on what samples contradict themselves in, as a recording of them has.
 
     Samples that are not a whole number a second have one note: that nothing was compared. Raises
-    ``InputError`` where the contradictions are too large or too many.
+    ``InputError`` where the contradictions are too large or too many. ``computed``: as in ``recording_of``.
     """
     table, ids, clock, _ = _in_order(columns)
     if abs(clock.rate * clock.step - 1) > _UNEVEN:
@@ -247,7 +254,8 @@ def doubts_in(columns: Table, road: StraightRoad) -> tuple[str, ...]:
             "accelerations were not compared with each other",
         )
     recording = vehicles_of(table, ids, clock, road, columns.path.stem)
-    return tuple(_check_plausible(table, check(recording), np.arange(table.rows)))
+    checks = check(replace(recording, computed=computed))
+    return tuple(_check_plausible(table, checks, np.arange(table.rows)))
 
 
 def vehicles_of(table: Table, ids: Integers, clock: "Clock", road: StraightRoad, name: str) -> Recording:

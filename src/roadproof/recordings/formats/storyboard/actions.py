@@ -14,9 +14,11 @@ from roadproof.recordings.formats.storyboard.controllers import (
     Arrive,
     Axis,
     DistanceGoal,
+    FollowSpeed,
     KeepDistance,
     Limits,
     Phases,
+    SpeedGoal,
 )
 from roadproof.recordings.formats.storyboard.courses import (
     SHAPES,
@@ -27,6 +29,7 @@ from roadproof.recordings.formats.storyboard.courses import (
     Point,
     SpeedTransition,
     Steady,
+    capped,
 )
 from roadproof.recordings.formats.storyboard.document import Document
 from roadproof.recordings.formats.storyboard.positions import Positions, State, States
@@ -142,6 +145,7 @@ class ActionReader:
         return Actor(name, {"along": Steady(scene.time, s, now), "across": Steady(scene.time, d)}, forward)
 
     def _speed(self, node: Element, actor: Actor, scene: Scene) -> Course:
+        """At most the largest speed of the vehicle, at which a change of speed ends."""
         read, state = self.document, scene.states[actor.name]
         target = read.only(read.child(node, "SpeedActionTarget"))
         if target.tag == "AbsoluteTargetSpeed":
@@ -150,27 +154,54 @@ class ActionReader:
             speed = self._relative_speed(target, scene)
         else:
             raise read.error(target, "this target is not supported")
-        low, change = state.v_lon, speed - state.v_lon
+        low, most = state.v_lon, self.boxes[actor.name].limits[0]
         dynamics = read.child(node, "SpeedActionDynamics")
         shape, dimension, value = self._dynamics(dynamics)
-        if shape == "step" or not change:
-            return Steady(scene.time, state.s, speed)
-        if dimension == "distance":
+        if dimension == "distance" and shape != "step" and speed != low:
             if low + speed <= 0:
                 raise read.error(dynamics, f"no distance is gone from {low:g} to {speed:g} m/s")
             value = 2 * value / (low + speed)
-        elif dimension == "rate":
-            value = SHAPES[shape].steepest * abs(change) / value
-        return SpeedTransition(scene.time, state.s, (low, speed), value, SHAPES[shape])
+        elif dimension == "rate" and shape != "step":
+            value = SHAPES[shape].steepest * abs(speed - low) / value
+        if target.tag == "RelativeTargetSpeed" and read.flag(target, "continuous"):
+            return self._follow_speed(target, actor, scene, (0.0 if shape == "step" else value, shape))
+        if shape == "step" or speed == low:
+            return Steady(scene.time, state.s, min(max(speed, -most), most))
+        return capped(SpeedTransition(scene.time, state.s, (low, speed), value, SHAPES[shape]), most)
 
     def _relative_speed(self, target: Element, scene: Scene) -> float:
         """That of the other vehicle at the start of the action, plus or times a value."""
+        factor, more = self._relation(target)
+        other = self._state(target, scene)
+        return (other.v_lon if other.forward else -other.v_lon) * factor + more
+
+    def _relation(self, target: Element) -> tuple[float, float]:
+        """The factor and the sum that give a speed that is relative to another one."""
         read = self.document
-        other, value = self._state(target, scene).v_lon, read.number(target, "value")
-        kind = read.text(target, "speedTargetValueType")
+        value, kind = read.number(target, "value"), read.text(target, "speedTargetValueType")
         if kind not in ("delta", "factor"):
             raise read.error(target, f"speedTargetValueType={kind}: one of delta, factor is needed")
-        return other + value if kind == "delta" else other * value
+        return (1.0, value) if kind == "delta" else (value, 0.0)
+
+    def _follow_speed(
+        self, target: Element, actor: Actor, scene: Scene, transition: tuple[float, str]
+    ) -> Course:
+        """The speed relative to another vehicle at any time, reached in a duration (s) by a shape."""
+        if isinstance(actor.courses["along"], OnPath):
+            rule = "continuous=true is not supported on a trajectory without times"
+            raise self.document.error(target, rule)
+        state, (duration, shape) = scene.states[actor.name], transition
+        goal = SpeedGoal(
+            self.document.text(target, "entityRef"),
+            *self._relation(target),
+            scene.time,
+            state.v_lon,
+            duration,
+            SHAPES.get(shape, SHAPES["linear"]),
+            self.boxes[actor.name].limits[0],
+        )
+        now = Steady(scene.time, state.s, state.v_lon)
+        return FollowSpeed(now, actor.name, goal).next(scene.time, scene.states)
 
     def _speed_profile(self, node: Element, actor: Actor, scene: Scene) -> Course:
         """Speeds that are reached linearly, each in its time; the first one at once where its time is 0."""
@@ -180,9 +211,12 @@ class ActionReader:
         if node.get("entityRef"):
             raise read.error(node, "speeds that are relative to a vehicle are not supported")
         begin = speed = state.v_lon
-        phases = []
+        phases, most = [], self.boxes[actor.name].limits[0]
         for k, entry in enumerate(node.findall("SpeedProfileEntry")):
             target, duration = (read.number(entry, x) for x in ("speed", "time"))
+            if abs(target) > most:
+                told = f"speed={target:g} is above maxSpeed={most:g} of the Performance of {actor.name}"
+                raise read.error(entry, told)
             if duration > 0:
                 phases.append((duration, (target - speed) / duration))
             elif k or duration < 0:
@@ -217,7 +251,7 @@ class ActionReader:
         beyond = other.s < state.s if axis == "along" else True
         beyond = beyond if kind == "any" else kind in _AHEAD
         apart = 0.0
-        if node.get("freespace") in ("true", "1"):
+        if read.flag(node, "freespace"):
             box, far = self.boxes[actor.name], self.boxes[name]
             sizes = (box.length, far.length) if axis == "along" else (box.width, far.width)
             which = 0 if axis == "along" else 1
@@ -227,7 +261,7 @@ class ActionReader:
         if axis == "across":
             limits = replace(limits, deceleration=limits.acceleration)
         now = Steady(scene.time, state.s, state.v_lon) if axis == "along" else Steady(scene.time, state.d)
-        continuous = read.text(node, "continuous") in ("true", "1")
+        continuous = read.flag(node, "continuous")
         signed = math.copysign(distance, -1.0 if beyond else 1.0)
         goal = DistanceGoal(axis, name, signed, seconds, apart, limits, continuous)
         return KeepDistance(now, actor.name, goal).next(scene.time, scene.states)

@@ -1,5 +1,7 @@
 """Vehicles and other objects of an OpenSCENARIO file."""
 
+import math
+
 from roadproof.runtime.records import dataclass
 
 
@@ -7,6 +9,7 @@ from roadproof.runtime.records import dataclass
 class Box:
     """An object's class, what the file calls it, and its box.
 
+    ``limits``: of its speed (m/s), acceleration and deceleration (m/s²), by its Performance.
     ``centre`` is that of the box, ahead and left of the reference point (m). ``recorded``: it is a motor
     vehicle; others move too, but are no part of the recording.
     """
@@ -17,3 +20,4 @@ class Box:
     width: float
     centre: tuple[float, float]
     recorded: bool = True
+    limits: tuple[float, float, float] = (math.inf, math.inf, math.inf)

@@ -1,14 +1,16 @@
 """Conditions of triggers, evaluated TICKS times a second.
 
-Distances along the road are those between reference points, or between boxes where ``freespace`` is true. A
-time to collision needs vehicles that come closer. Headway and distance have no sign, as in esmini.
+Distances have no sign. A time to collision needs vehicles that come closer; a time headway needs a vehicle
+that drives forwards, and another one that is not behind it, as in esmini.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import field
 
 from roadproof.recordings.formats.storyboard.box import Box
+from roadproof.recordings.formats.storyboard.control import REMEDY
+from roadproof.recordings.formats.storyboard.distances import distance_between, gaps_on_road, measure_of
 from roadproof.recordings.formats.storyboard.document import Document
 from roadproof.recordings.formats.storyboard.positions import Positions, State, States
 from roadproof.recordings.formats.storyboard.rules import RULES, texts_compare
@@ -18,6 +20,12 @@ from roadproof.runtime.xml_reader import Element
 TICKS = 100
 """A second is divided into so many steps, at which conditions are evaluated."""
 _TYPES = {"Pedestrian": "pedestrian", "MiscObject": "miscellaneous"}
+_ENTITY_RULES: Mapping[str, Callable[[int, int], bool]] = {
+    "any": lambda found, names: found > 0,
+    "all": lambda found, names: found == names,
+    "none": lambda found, names: found == 0,
+}
+_LOOK_AT_ALL = ("RelativeClearanceCondition", "CollisionCondition")
 _EDGES = ("none", "rising", "falling", "risingOrFalling")
 _CRITERION = "criteria_"
 """Names of conditions that CARLA's scenario_runner takes as criteria of a test, not as conditions."""
@@ -31,6 +39,7 @@ class Situation:
 
     ``still``: since when each vehicle stands, in ticks. ``elements``: their states and
     transitions by type and name. ``values``: of parameters and variables, which actions may change.
+    ``controlled``: objects that a controller moves, and from when on, in words.
     """
 
     tick: int
@@ -39,6 +48,7 @@ class Situation:
     still: Mapping[str, int]
     elements: Mapping[tuple[str, str], frozenset[str]]
     values: Mapping[str, str]
+    controlled: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -51,25 +61,37 @@ class ConditionReader:
     off_road: dict[tuple[Element, str], int] = field(default_factory=dict)
     """Since which tick an object is beside the road, as seen by a condition."""
 
-    def holds(self, condition: Element, now: Situation) -> bool:
-        """Whether a Condition holds, without its edge and delay. Raises ``InputError``."""
+    def triggering(self, condition: Element, now: Situation) -> frozenset[str] | None:
+        """The entities for which a Condition holds; None where it does not hold. Raises ``InputError``.
+
+        Edge and delay are left to the trigger. A condition on a value holds for no entity.
+        """
+        if (condition.get("name") or "").startswith(_CRITERION):
+            condition.read_all()
+            return None
         kind = self.document.only(condition)
-        if condition.get("name", "").startswith(_CRITERION):
-            return False
         if kind.tag == "ByValueCondition":
-            return self._by_value(self.document.only(kind), now)
+            return frozenset() if self._by_value(self.document.only(kind), now) else None
         if kind.tag != "ByEntityCondition":
             raise self.document.error(kind, "this condition is not supported")
         triggering = self.document.child(kind, "TriggeringEntities")
+        rule = self.document.text(triggering, "triggeringEntitiesRule")
+        if rule not in _ENTITY_RULES:
+            told = f"triggeringEntitiesRule={rule}: one of {', '.join(_ENTITY_RULES)} is needed"
+            raise self.document.error(triggering, told)
         names = [self.document.text(x, "entityRef") for x in triggering.findall("EntityRef")]
         node = self.document.only(self.document.child(kind, "EntityCondition"))
-        others = [x.get("entityRef", "") for x in node.iter() if x.get("entityRef")]
+        others = [x.get("entityRef", "") for x in node.iter() if x.peek("entityRef")]
         for name in (*names, *others):
             if name not in self.boxes:
                 raise self.document.error(triggering, f"there is no ScenarioObject {name}")
+        looks = [*now.controlled] if node.tag in _LOOK_AT_ALL else [*names, *others]
+        for name in looks:
+            if name in now.controlled:
+                raise self.document.error(node, f"it looks at {name}, {now.controlled[name]}; {REMEDY}")
         there = all(x in now.states for x in others)
-        found = [there and name in now.states and self._by_entity(node, name, now) for name in names]
-        return all(found) if triggering.get("triggeringEntitiesRule") == "all" else any(found)
+        found = frozenset(x for x in names if there and x in now.states and self._by_entity(node, x, now))
+        return found if _ENTITY_RULES[rule](len(found), len(names)) else None
 
     def _by_value(self, node: Element, now: Situation) -> bool:
         read = self.document
@@ -127,9 +149,7 @@ class ConditionReader:
                 other, there = self._other(node, now)
                 return self._compare(node, self._distance(node, name, there, other, now))
             case "TimeHeadwayCondition":
-                other, there = self._other(node, now)
-                distance = self._distance(node, name, there, other, now)
-                return abs(state.v_lon) > _SLOWEST and self._compare(node, distance / abs(state.v_lon))
+                return self._time_headway(node, name, now)
             case "CollisionCondition":
                 return any(self._touch(name, x, now) for x in self._hit(node, name, now))
             case "TimeToCollisionCondition":
@@ -145,13 +165,14 @@ class ConditionReader:
         return [x for x in now.states if x != name and _TYPES.get(self.boxes[x].kind, "vehicle") == wanted]
 
     def _touch(self, name: str, other: str, now: Situation) -> bool:
-        one, there = now.states[name], now.states[other]
-        return all(x <= 0 for x in self._gaps(name, other, (there.s - one.s, there.d - one.d)))
+        one, far = ((self.boxes[x], now.states[x]) for x in (name, other))
+        return all(x <= 0 for x in gaps_on_road(one, far, free=True))
 
     def _is_clear(self, node: Element, name: str, now: Situation) -> bool:
         """Whether lanes beside an object exist and no other object is near on them, as in esmini."""
         read, state = self.document, now.states[name]
         way = 1 if state.forward else -1
+        opposite, free = read.flag(node, "oppositeLanes"), read.flag(node, "freeSpace")
         back, ahead = (read.number(node, f"distance{x}", 0.0) for x in ("Backward", "Forward"))
         ranges = node.findall("RelativeLaneRange")
         spans = [(read.number(x, "from", -99.0), read.number(x, "to", 99.0)) for x in ranges]
@@ -163,10 +184,10 @@ class ConditionReader:
         for other, there in now.states.items():
             if other == name or (named and other not in named):
                 continue
-            if there.forward != state.forward and node.get("oppositeLanes") not in ("true", "1"):
+            if there.forward != state.forward and not opposite:
                 continue
             apart, length = (there.s - state.s) * way, 0.0
-            if node.get("freeSpace") in ("true", "1"):
+            if free:
                 length = (self.boxes[name].length + self.boxes[other].length) / 2
             beside = (self.positions.lane_at(node, (there.s, there.d))[0] - here) * way
             if -back - length <= apart <= ahead + length and any(x <= beside <= y for x, y in spans):
@@ -202,30 +223,19 @@ class ConditionReader:
         closing = (state.v_lon - there.v_lon) * math.copysign(1.0, there.s - state.s)
         return closing > _SLOWEST and self._compare(node, distance / closing)
 
-    def _distance(self, node: Element, name: str, there: State, other: str | None, now: Situation) -> float:
-        """The distance as ``relativeDistanceType``, ``freespace`` and ``alongRoute`` say, at least 0."""
+    def _time_headway(self, node: Element, name: str, now: Situation) -> bool:
+        """That to another vehicle, unless that one is behind, or this one stands or drives backwards."""
         state = now.states[name]
-        kind = node.get("relativeDistanceType") or (
-            "longitudinal" if node.get("alongRoute", "true") in ("true", "1") else "euclidianDistance"
-        )
-        s, d = there.s - state.s, there.d - state.d
-        if node.get("freespace") in ("true", "1"):
-            s, d = (max(x, 0.0) for x in self._gaps(name, other, (s, d)))
-        match kind:
-            case "longitudinal":
-                return abs(s)
-            case "lateral":
-                return abs(d)
-            case "euclidianDistance" | "cartesianDistance" | "euclideanDistance":
-                return math.hypot(s, d)
-        raise self.document.error(node, f"relativeDistanceType={kind} is not supported")
+        other, there = self._other(node, now)
+        speed, way = _speeds(state)[0], 1 if state.forward else -1
+        headway = self._distance(node, name, there, other, now) / max(speed, _SLOWEST)
+        holds = self._compare(node, headway)
+        return holds and speed > _SLOWEST and (there.s - state.s) * way >= 0
 
-    def _gaps(self, name: str, other: str | None, apart: tuple[float, float]) -> tuple[float, float]:
-        """Gaps between boxes whose reference points are so far apart; negative where they overlap."""
-        box = self.boxes[name]
-        beyond = self.boxes[other] if other else Box("", "", 0.0, 0.0, (0.0, 0.0))
-        s, d = (abs(x + b - a) for x, a, b in zip(apart, box.centre, beyond.centre, strict=True))
-        return s - (box.length + beyond.length) / 2, d - (box.width + beyond.width) / 2
+    def _distance(self, node: Element, name: str, there: State, other: str | None, now: Situation) -> float:
+        """The distance to another object or to a place, as the condition says, at least 0."""
+        measure, far = measure_of(self.document, node), None if other is None else self.boxes[other]
+        return distance_between(self.positions, measure, (self.boxes[name], now.states[name]), (far, there))
 
     def _other(self, node: Element, now: Situation) -> tuple[str, State]:
         name = self.document.text(node, "entityRef")
@@ -248,13 +258,17 @@ def _accelerations(state: State) -> tuple[float, float]:
 
 
 class Trigger:
-    """A trigger with what its conditions were: one group of which all conditions hold fires it."""
+    """A trigger with what its conditions were: one group of which all conditions hold fires it.
+
+    ``entities``: those for which the conditions of the group that fired last hold.
+    """
 
     def __init__(self, node: Element, reader: ConditionReader) -> None:
         self._reader = reader
         self._groups = [x.findall("Condition") for x in node.findall("ConditionGroup")]
-        self._was: dict[Element, bool] = {}
-        self._fired: dict[Element, set[int]] = {}
+        self._was: dict[Element, frozenset[str] | None] = {}
+        self._fired: dict[Element, dict[int, frozenset[str]]] = {}
+        self.entities: frozenset[str] = frozenset()
 
     @property
     def can_fire(self) -> bool:
@@ -263,24 +277,30 @@ class Trigger:
     def fires(self, now: Situation) -> bool:
         """Whether it fires now; to be asked at every tick, as edges and delays need what was before."""
         found = [[self._now(x, now) for x in group] for group in self._groups]
-        return any(group and all(group) for group in found)
+        firing = [[x for x in group if x is not None] for group in found]
+        whole = [x for x, group in zip(firing, found, strict=True) if group and len(x) == len(group)]
+        if whole:
+            self.entities = frozenset().union(*(x for group in whole for x in group))
+        return bool(whole)
 
-    def _now(self, condition: Element, now: Situation) -> bool:
+    def _now(self, condition: Element, now: Situation) -> frozenset[str] | None:
+        """The entities for which a condition fires, with its edge and delay; None where it does not."""
         document = self._reader.document
         edge = condition.get("conditionEdge", "none")
         if edge not in _EDGES:
             raise document.error(condition, f"conditionEdge={edge}: one of {', '.join(_EDGES)} is needed")
-        holds = self._reader.holds(condition, now)
+        holds = self._reader.triggering(condition, now)
         was = self._was.get(condition, holds)
         self._was[condition] = holds
+        rises, falls = holds is not None and was is None, was is not None and holds is None
         fired = {
             "none": holds,
-            "rising": holds and not was,
-            "falling": was and not holds,
-            "risingOrFalling": holds != was,
+            "rising": holds if rises else None,
+            "falling": was if falls else None,
+            "risingOrFalling": holds if rises else was if falls else None,
         }[edge]
         delay = round(document.number(condition, "delay", 0.0) * TICKS)
-        ticks = self._fired.setdefault(condition, set())
-        if fired:
-            ticks.add(now.tick)
-        return now.tick - delay in ticks if delay else fired
+        known = self._fired.setdefault(condition, {})
+        if fired is not None:
+            known[now.tick] = fired
+        return known.get(now.tick - delay) if delay else fired

@@ -8,7 +8,7 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import Literal, TypeAlias
 
-from roadproof.recordings.formats.storyboard.courses import Course, Point, Steady
+from roadproof.recordings.formats.storyboard.courses import Course, Point, Shape, Steady
 from roadproof.recordings.formats.storyboard.positions import State, States
 from roadproof.runtime.records import dataclass
 
@@ -189,6 +189,59 @@ class Arrive:
                 phases = arrival(way, duration, (state.v_lon, final))
                 course = Phases(time, state.s, state.v_lon, phases)
         return replace(self, now=course, planned=other.v_lon)
+
+
+@dataclass(frozen=True)
+class SpeedGoal:
+    """A speed that is relative to that of another vehicle at any time: plus ``more``, ``factor`` times it.
+
+    It is reached in ``duration`` s as ``shape`` says, from ``begin`` (s) and a speed on; at most ``most``.
+    """
+
+    other: str
+    factor: float
+    more: float
+    begin: float
+    start: float
+    duration: float
+    shape: Shape
+    most: float
+
+    def speed(self, time: float, states: States) -> float:
+        """The speed to be had at ``time``, where all vehicles are as ``states`` say a step earlier."""
+        other = states[self.other]
+        speed = other.v_lon + other.a_lon * _STEP
+        goal = (speed if other.forward else -speed) * self.factor + self.more
+        goal = min(max(goal, -self.most), self.most)
+        if self.duration <= 0 or time >= self.begin + self.duration:
+            return goal
+        return self.start + (goal - self.start) * self.shape.value((time - self.begin) / self.duration)
+
+
+@dataclass(frozen=True)
+class FollowSpeed:
+    """Has the speed of a ``goal`` for ever."""
+
+    now: Course
+    name: str
+    goal: SpeedGoal
+
+    def at(self, time: float, along: Point) -> Point:
+        return self.now.at(time, along)
+
+    def ended(self, time: float, along: Point) -> bool:
+        return False
+
+    def next(self, time: float, states: States) -> "FollowSpeed":
+        """From ``time`` on, where all vehicles are as ``states`` say."""
+        here, goal = states[self.name], self.goal
+        speed = goal.speed(time, states) if goal.duration <= 0 and time <= goal.begin else here.v_lon
+        change = (goal.speed(time + _STEP, states) - speed) / _STEP
+        return replace(self, now=Phases(time, here.s, speed, ((_STEP, change),)))
+
+
+Reacting: TypeAlias = KeepDistance | Arrive | FollowSpeed
+"""Courses that look at another vehicle at each tick."""
 
 
 def arrival(way: float, duration: float, speeds: tuple[float, float]) -> tuple[Phase, ...]:

@@ -114,6 +114,36 @@ class SpeedTransition:
 
 
 @dataclass(frozen=True)
+class Capped:
+    """A change of speed up to a time (s) at which the largest speed of a vehicle is reached, then steady."""
+
+    course: SpeedTransition
+    until: float
+
+    def at(self, time: float, along: Point) -> Point:
+        if time < self.until:
+            return self.course.at(time, along)
+        last = self.course.at(self.until, along)
+        return Point(last.place + last.speed * (time - self.until), last.speed)
+
+    def ended(self, time: float, along: Point) -> bool:
+        return time >= self.until - _SOON
+
+
+def capped(course: SpeedTransition, most: float) -> SpeedTransition | Capped:
+    """A change of speed that ends where ``most`` (m/s) is reached, forwards or backwards."""
+    low, high = course.speeds
+    if abs(high) <= most or abs(low) >= abs(high):
+        return course
+    share = (math.copysign(most, high) - low) / (high - low)
+    begin, end = 0.0, 1.0
+    for _ in range(60):  # f ascends
+        middle = (begin + end) / 2
+        begin, end = (middle, end) if course.shape.value(middle) < share else (begin, middle)
+    return Capped(course, course.begin + end * course.duration)
+
+
+@dataclass(frozen=True)
 class PlaceTransition:
     """From one place to another in ``duration`` s, at rest afterwards."""
 

@@ -109,24 +109,46 @@ class Distribution:
         """Whether each value keeps all constraints of one of its parameter's groups."""
         known: dict[str, str] = {}
         for node in root.findall("ParameterDeclarations/ParameterDeclaration"):
-            name, groups = (node.get("name") or "").lstrip("$"), node.findall("ConstraintGroup")
-            known[name] = self._value(node, values.get(name, node.get("value") or ""), known)
-            if groups and not any(all(self._keeps(known, name, x) for x in group) for group in groups):
+            name = (node.get("name") or "").lstrip("$")
+            known[name] = _value(self.scenario, node, values.get(name, node.get("value") or ""), known)
+            if not _keeps_constraints(self.scenario, node, name, known):
                 return False
         return True
 
-    def _value(self, node: Element, text: str, known: Values) -> str:
-        try:
-            return replaced(text, known)
-        except ValueError as error:
-            raise InputError(f"{self.scenario}: {node.tag} {node.get('name', '')}={text}: {error}") from None
 
-    def _keeps(self, known: Values, name: str, constraint: Element) -> bool:
-        limit = self._value(constraint, constraint.get("value", ""), known)
-        try:
-            return texts_compare(constraint.get("rule", ""), known[name], limit)
-        except ValueError as error:
-            raise InputError(f"{self.scenario}: {constraint.tag}: {error}") from None
+def check_constraints(path: Path, node: Element, name: str, known: Values) -> None:
+    """Raise ``InputError`` for a parameter whose value, one of those ``known``, breaks its constraints."""
+    if _keeps_constraints(path, node, name, known):
+        return
+    groups = " or ".join(
+        " and ".join(f"{x.get('rule')} {x.get('value')}" for x in group.findall("ValueConstraint"))
+        for group in node.findall("ConstraintGroup")
+    )
+    told = f"parameter {name}: value={known[name]} breaks its ConstraintGroup"
+    raise InputError(f"{path}: {told}: {groups} is needed; change the value or the constraint")
+
+
+def _keeps_constraints(path: Path, node: Element, name: str, known: Values) -> bool:
+    """Whether a parameter keeps all constraints of one of its groups, or has none."""
+    groups = node.findall("ConstraintGroup")
+    return not groups or any(
+        all(_keeps(path, known, name, x) for x in group.findall("ValueConstraint")) for group in groups
+    )
+
+
+def _value(path: Path, node: Element, text: str, known: Values) -> str:
+    try:
+        return replaced(text, known)
+    except ValueError as error:
+        raise InputError(f"{path}: {node.tag} {node.get('name', '')}={text}: {error}") from None
+
+
+def _keeps(path: Path, known: Values, name: str, constraint: Element) -> bool:
+    limit = _value(path, constraint, constraint.get("value", ""), known)
+    try:
+        return texts_compare(constraint.get("rule", ""), known[name], limit)
+    except ValueError as error:
+        raise InputError(f"{path}: {constraint.tag}: {error}") from None
 
 
 def read_distribution(path: Path) -> Distribution:

@@ -5,17 +5,26 @@ World positions of files whose description begins with ``CARLA:`` have y to the 
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from roadproof.errors import InputError
-from roadproof.recordings.formats.storyboard.distributions import Values, numbered, read_distribution, split
+from roadproof.recordings.formats.storyboard.distributions import (
+    Values,
+    check_constraints,
+    numbered,
+    read_distribution,
+    split,
+)
 from roadproof.recordings.formats.storyboard.expressions import replaced
+from roadproof.recordings.formats.storyboard.harmless import HARMLESS
 from roadproof.runtime.records import dataclass
-from roadproof.runtime.xml_reader import Element, number_in, read_xml
+from roadproof.runtime.xml_reader import Element, number_in, read_xml, summary_of, unread
 
 _OWNERS = ("ScenarioObject", "ManeuverGroup", "TrajectoryRef", "RouteRef")
 """Elements that may have a CatalogReference in place of an element that is written out."""
 _FOLDERS = "CatalogLocations/*/Directory"
+_TRUTHS = {"true": True, "1": True, "false": False, "0": False}
 
 
 @dataclass(frozen=True)
@@ -23,6 +32,7 @@ class Document:
     """A file and, for each of its elements, where it is in the file.
 
     ``folder``: where it names other files from. ``told``: which scenario of a distribution it is, if any.
+    ``references``: elements that entries of catalogues have replaced.
     """
 
     path: Path
@@ -30,6 +40,7 @@ class Document:
     places: dict[Element, str]
     folder: Path
     told: str
+    references: tuple[Element, ...] = ()
 
     def error(self, node: Element, rule: str) -> InputError:
         """The error for an element that breaks a rule."""
@@ -57,7 +68,22 @@ class Document:
         """The only element inside ``node``."""
         if len(node) != 1:
             raise self.error(node, f"it has {len(node)} elements; one is needed")
+        node[0].note()
         return node[0]
+
+    def flag(self, node: Element, name: str, default: bool = False) -> bool:
+        """A truth value. Raises ``InputError`` for other texts."""
+        text = node.get(name)
+        if not text:
+            return default
+        if text not in _TRUTHS:
+            raise self.error(node, f"{name}={text}: true or false is needed")
+        return _TRUTHS[text]
+
+    def left_out(self) -> tuple[str, ...]:
+        """Parts of the file that were not read and that may have an effect, a line for each kind."""
+        parts = [part for root in (self.root, *self.references) for part in unread(root, HARMLESS)]
+        return summary_of(tuple(parts))
 
 
 def open_document(path: Path) -> Document:
@@ -78,11 +104,14 @@ def open_document(path: Path) -> Document:
     places = dict[Element, str]()
     _put_values(path, root, {}, "", places)
     document = Document(path, root, places, file.parent, told)
+    references = []
     for owner in [x for x in root.iter() if x.tag in _OWNERS]:
         reference = owner.find("CatalogReference")
         if reference is not None:
             owner.remove(reference)
             owner.append(_entry(document, reference))
+            references.append(reference)
+    document = replace(document, references=tuple(references))
     header = root.find("FileHeader")
     if header is not None and header.get("description", "").startswith("CARLA:"):
         for place in root.iter("WorldPosition"):
@@ -108,7 +137,7 @@ def _put_values(
     path: Path, node: Element, values: Mapping[str, str], where: str, places: dict[Element, str]
 ) -> None:
     """Replace parameters below ``node``, and note where each element is."""
-    name = node.get("name") or node.get("entityRef")
+    name = node.peek("name") or node.peek("entityRef")
     places[node] = where = f"{where}/{node.tag}{f' {name}' if name else ''}" if where else node.tag
     for key, text in node.attrib.items():
         if "$" in text and key != "parameterRef" and node.tag != "ParameterDeclaration":
@@ -124,6 +153,7 @@ def _put_values(
             values = {**values, declared: replaced(value, values)}
         except ValueError as error:
             raise InputError(f"{path}: {where}: parameter {declared}={value}: {error}") from None
+        check_constraints(path, declaration, declared, values)
     for child in node:
         _put_values(path, child, values, where, places)
 
@@ -138,11 +168,13 @@ def _entry(document: Document, reference: Element) -> Element:
     folders = _folders(document)
     for file in catalogues_of(document):
         for known in read_xml(file, "OpenSCENARIO").findall("Catalog"):
-            entry = next((x for x in known if x.get("name") == name), None)
+            entry = next((x for x in known if x.peek("name") == name), None)
             if known.get("name") == catalog and entry is not None:
                 for declaration in entry.findall("ParameterDeclarations/ParameterDeclaration"):
                     declared = (declaration.get("name") or "").lstrip("$")
-                    declaration.set("value", given.get(declared, declaration.get("value") or ""))
+                    declaration.set("value", given.pop(declared, declaration.get("value") or ""))
+                if given:
+                    raise document.error(reference, f"{name} declares no parameter {', '.join(given)}")
                 where = f"{document.places[reference]} {name}"
                 _put_values(file, entry, {}, where, document.places)
                 return entry

@@ -16,8 +16,14 @@ from roadproof.errors import InputError
 from roadproof.recordings.formats.storyboard.actions import Actor
 from roadproof.recordings.formats.storyboard.box import Box
 from roadproof.recordings.formats.storyboard.conditions import TICKS
-from roadproof.recordings.formats.storyboard.controllers import Arrive, KeepDistance, Phases
-from roadproof.recordings.formats.storyboard.courses import Course, PlaceTransition, Point, SpeedTransition
+from roadproof.recordings.formats.storyboard.controllers import Phases, Reacting
+from roadproof.recordings.formats.storyboard.courses import (
+    Capped,
+    Course,
+    PlaceTransition,
+    Point,
+    SpeedTransition,
+)
 from roadproof.recordings.formats.storyboard.positions import State
 from roadproof.recordings.formats.storyboard.run import Play
 from roadproof.recordings.formats.storyboard.stage import open_stage, played
@@ -165,13 +171,15 @@ def _goes_on(before: Actor | None, now: Actor) -> bool:
     if before is None:
         return False
     pairs = [(before.courses[x], now.courses[x]) for x in now.courses]
-    return all(x is y or (isinstance(x, KeepDistance | Arrive) and type(x) is type(y)) for x, y in pairs)
+    return all(x is y or (isinstance(x, Reacting) and type(x) is type(y)) for x, y in pairs)
 
 
 def _breaks(courses: list[Course]) -> Iterator[float]:
     """Times at which courses change their form."""
     for course in courses:
         match course:
+            case Capped():
+                yield course.until
             case SpeedTransition() | PlaceTransition():
                 yield course.begin + course.duration
             case Phases():

@@ -27,12 +27,13 @@ _BELOW = {
 class StoryElement:
     """An element in one of the states standby, running and complete.
 
-    ``actors``: the vehicles that its actions move. ``left``: how often it may still start. ``changes``: the
-    transitions at a tick.
+    ``actors``: the vehicles that its actions move; ``selects``: those that trigger its events act, too.
+    ``left``: how often it may still start. ``changes``: the transitions at a tick.
     """
 
     node: Element
     actors: tuple[str, ...]
+    selects: bool
     start: Trigger
     stop: Trigger
     children: list["StoryElement"]
@@ -67,16 +68,27 @@ class StoryElement:
         """Its state, and the transitions of the tick before."""
         return frozenset({f"{self.state}State", *self.changes.get(tick - 1, ())})
 
+    @property
+    def has_started(self) -> bool:
+        """Whether it has ever run."""
+        return any("startTransition" in x for x in self.changes.values())
+
     def walk(self) -> Iterator["StoryElement"]:
         yield self
         for child in self.children:
             yield from child.walk()
 
 
-def read_element(node: Element, reader: ConditionReader, actors: tuple[str, ...] = ()) -> StoryElement:
+def read_element(
+    node: Element, reader: ConditionReader, actors: tuple[str, ...] = (), selects: bool = False
+) -> StoryElement:
     """An element with those below it."""
     document = reader.document
     if node.tag == "ManeuverGroup":
+        selects = document.flag(document.child(node, "Actors"), "selectTriggeringEntities")
+        if document.number(node, "maximumExecutionCount", 1.0) != 1:
+            told = f"maximumExecutionCount={node.get('maximumExecutionCount')}: 1 is supported"
+            raise document.error(node, told)
         actors = tuple(document.text(x, "entityRef") for x in node.findall("Actors/EntityRef"))
         for name in actors:
             if name not in reader.boxes:
@@ -85,9 +97,10 @@ def read_element(node: Element, reader: ConditionReader, actors: tuple[str, ...]
     return StoryElement(
         node,
         actors,
+        selects,
         Trigger(_trigger(node, "StartTrigger"), reader),
         Trigger(_trigger(node, "StopTrigger"), reader),
-        [read_element(x, reader, actors) for x in node.findall(below)] if below else [],
+        [read_element(x, reader, actors, selects) for x in node.findall(below)] if below else [],
         round(document.number(node, "maximumExecutionCount", 1.0)) if node.tag == "Event" else 1,
     )
 

@@ -125,7 +125,8 @@ class Positions:
                 d = self.lane_beside(place, (s, other.d), way * round(read.number(place, "dLane")))
                 return s, d + way * read.number(place, "offset", 0.0)
             case "RelativeRoadPosition":
-                return other.s + way * read.number(place, "ds"), other.d + way * read.number(place, "dt")
+                ahead, left = (read.number(place, x) * self._road_way(place, other) for x in ("ds", "dt"))
+                return other.s + ahead, other.d + left
             case "RelativeObjectPosition":
                 return other.s + way * read.number(place, "dx"), other.d + way * read.number(place, "dy")
             case "RelativeWorldPosition" if self.road.line is not None:
@@ -145,6 +146,8 @@ class Positions:
             side = self.document.number(place, "laneId" if place.tag == _LANE else "t")
             road, s = self._road(place), self.document.number(place, "s")
             right = side < 0 if road.rule == "RHT" else side > 0
+            if place.tag != _LANE and orientation is not None:  # relative to the s axis of the road
+                right, side = True, 1.0
             return side == 0 or (right != turned) == (self._heading_sign(road, s) > 0)
         if place.tag.startswith("Relative"):
             return states[self.document.text(place, "entityRef")].forward != turned
@@ -220,6 +223,12 @@ class Positions:
         s, lane = read.number(place, "s"), round(read.number(place, "laneId"))
         offset = read.number(place, "offset", 0.0)
         return self._on_map(road, s, self._middle(place, road, s, lane) + offset)
+
+    def _road_way(self, node: Element, other: State) -> float:
+        """1 where the map's road at a vehicle goes along s of these coordinates, else -1."""
+        if self.road.line is None or not self.roads:
+            return self.sign
+        return self._heading_sign(*self._road_at(node, (other.s, other.d)))
 
     def _heading_sign(self, road: MapRoad, s: float) -> float:
         """1 where the map's road goes the way that is driven, else -1."""

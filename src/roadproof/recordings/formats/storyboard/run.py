@@ -9,11 +9,13 @@ conditions on it do not hold.
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import field, replace
 
 from roadproof.recordings.formats.storyboard.actions import ActionReader, Actor, Scene, turned
 from roadproof.recordings.formats.storyboard.box import Box
 from roadproof.recordings.formats.storyboard.conditions import TICKS, ConditionReader, Situation, Trigger
-from roadproof.recordings.formats.storyboard.controllers import Arrive, Axis, KeepDistance
+from roadproof.recordings.formats.storyboard.control import Control
+from roadproof.recordings.formats.storyboard.controllers import Axis, Reacting
 from roadproof.recordings.formats.storyboard.courses import Course, OnPath, Point, Steady
 from roadproof.recordings.formats.storyboard.document import Document
 from roadproof.recordings.formats.storyboard.elements import StoryElement, read_element, starts
@@ -37,13 +39,16 @@ class Play:
     """States of the objects' reference points at each tick from 0 on, and why it ended.
 
     ``at_end``: as a vehicle came to the end of the road. ``history``: the objects with their courses, each
-    from a tick on.
+    from a tick on. ``controlled``: those that controllers move, and from when on. ``idle``: events that never
+    start.
     """
 
     states: tuple[Mapping[str, State], ...]
     ending: str
     history: Mapping[str, Sequence[tuple[int, Actor]]]
     at_end: bool = False
+    controlled: Mapping[str, str] = field(default_factory=dict)
+    idle: tuple[str, ...] = ()
 
     def state_at(self, name: str, time: float) -> State:
         """Of an object that is on the road, at any time (s)."""
@@ -69,7 +74,9 @@ class Play:
 
 def run_storyboard(document: Document, boxes: Mapping[str, Box], road: Road) -> Play:
     """The motions that a storyboard describes. Raises ``InputError`` for what is not supported."""
-    return _Runner(document, boxes, road).run()
+    runner = _Runner(document, boxes, road)
+    play = runner.run()
+    return replace(play, controlled=runner.control.told, idle=tuple(runner.leave_idle()))
 
 
 class _Runner:
@@ -90,7 +97,9 @@ class _Runner:
         self.travelled: dict[str, float] = {}
         self.still: dict[str, int] = {}
         self.values = initial_values(document)
+        self.control = Control(document)
         self.history: dict[str, list[tuple[int, Actor]]] = {}
+        self.act: StoryElement | None = None
         self.tick = 0
 
     def run(self) -> Play:
@@ -120,6 +129,14 @@ class _Runner:
                 return Play(tuple(found), f"all is complete for {REST} s", self.history)
         return Play(tuple(found), f"it does not end by itself within {LONGEST} s", self.history)
 
+    def leave_idle(self) -> Iterator[str]:
+        """Pass over elements that never started, which have no effect, and return the names of events."""
+        for element in (y for story in self.stories for y in story.walk()):
+            if not element.has_started:
+                element.node.read_all()
+                if element.node.tag == "Event":
+                    yield element.key[1]
+
     def _remember(self) -> None:
         for name, actor in self.actors.items():
             known = self.history.setdefault(name, [])
@@ -140,7 +157,8 @@ class _Runner:
         for name, actor in self.actors.items():
             seen = states if actor.forward else turned(states)
             for axis, course in actor.courses.items():
-                if isinstance(course, KeepDistance | Arrive) and not course.ended(0.0, _ANYWHERE):
+                if isinstance(course, Reacting) and not course.ended(0.0, _ANYWHERE):
+                    self.control.check_course(name, course)
                     self._set(name, {axis: course.next(self.tick / TICKS, seen)})
 
     def _set(self, name: str, courses: Mapping[Axis, Course]) -> None:
@@ -161,7 +179,9 @@ class _Runner:
         elements: dict[tuple[str, str], frozenset[str]] = {}
         for x in (y for story in self.stories for y in story.walk()):
             elements[x.key] = elements.get(x.key, frozenset()) | x.seen(self.tick)
-        return Situation(self.tick, states, self.travelled, self.still, elements, self.values)
+        return Situation(
+            self.tick, states, self.travelled, self.still, elements, self.values, self.control.told
+        )
 
     def _place(self) -> None:
         """Put the vehicles where Init says, and begin its actions."""
@@ -177,13 +197,17 @@ class _Runner:
         for name, action in actions:
             if name not in self.boxes:
                 raise self.document.error(action, f"there is no ScenarioObject {name}")
-        teleports = [x for x in actions if x[1].find("TeleportAction") is not None]
-        self._begin_all(teleports)
-        self._begin_all(
-            [x for x in actions if x not in teleports and (x[0] in self.actors or _places(x[1]) is not None)]
-        )
+        placing = {name for name, action in actions if _places(action) is not None}
+        for first in (True, False):
+            self._begin_all([x for x in actions if x[0] in placing and (_places(x[1]) is not None) == first])
         for action in () if self.init is None else self.init.findall("GlobalAction"):
             self._act_globally(action)
+        self._hand_over()
+
+    def _hand_over(self) -> None:
+        """Let go of the vehicles that controllers move from now on."""
+        for name in self.control.told:
+            self.actors.pop(name, None)
 
     def _begin_all(self, actions: list[tuple[str, Element]]) -> None:
         """Begin actions of Init, those that refer to another vehicle after that one has its place."""
@@ -203,6 +227,8 @@ class _Runner:
     def _act(self, name: str, action: Element) -> tuple[Axis, ...]:
         """Let a vehicle begin a PrivateAction; the axes along which this moves it. Raises ``KeyError``."""
         time, states = self.tick / TICKS, self._states()
+        if self.control.takes(name, action, time):
+            return ()
         teleport = action.find("TeleportAction")
         if teleport is not None:
             self._put(name, self.document.child(teleport, "Position"))
@@ -239,6 +265,7 @@ class _Runner:
 
     def _advance(self, element: StoryElement, now: Situation) -> None:
         """Start, go on with or end an element and those below it."""
+        self.act = element if element.node.tag == "Act" else self.act
         if element.stop.fires(now) and element.state != "complete":
             self._finish(element, "stopTransition")
         if element.node.tag == "Event" and element.state == "running":
@@ -272,11 +299,20 @@ class _Runner:
             for other in others if priority in ("overwrite", "override") else ():
                 self._finish(other, "stopTransition")
             event.change("running", "startTransition", self.tick)
+            selected = self._selected(event) if event.selects else ()
             for action in event.children:
-                self._begin(action)
+                self._begin(action, selected)
 
-    def _begin(self, action: StoryElement) -> None:
-        """Begin an action of an event for all its actors."""
+    def _selected(self, event: StoryElement) -> tuple[str, ...]:
+        """The entities that trigger an event, or its act where the event has no trigger on entities."""
+        found = event.start.entities or (self.act.start.entities if self.act else frozenset())
+        if not found:
+            rule = "selectTriggeringEntities=true needs a StartTrigger with a ByEntityCondition"
+            raise self.document.error(event.node, rule)
+        return tuple(sorted(found))
+
+    def _begin(self, action: StoryElement, selected: tuple[str, ...]) -> None:
+        """Begin an action of an event for all its actors, and for the entities that were selected."""
         action.change("running", "startTransition", self.tick)
         kind = self.document.only(action.node)
         if kind.tag == "GlobalAction":
@@ -284,8 +320,12 @@ class _Runner:
             return
         if kind.tag != "PrivateAction":
             raise self.document.error(kind, "this action is not supported")
-        for name in action.actors:
-            if name not in self.actors and _places(kind) is None:
+        actors = tuple(dict.fromkeys((*action.actors, *selected)))
+        if not actors:
+            raise self.document.error(kind, "no entity is an actor; name one in Actors")
+        self.control.check_action(kind)
+        for name in actors:
+            if name in self.control.told or (name not in self.actors and _places(kind) is None):
                 continue
             try:
                 axes = self._act(name, kind)
@@ -293,6 +333,7 @@ class _Runner:
                 raise self.document.error(kind, f"there is no {error} on the road") from None
             for axis in axes:
                 self.owners[name, axis] = action
+        self._hand_over()
 
     def _courses(self, action: StoryElement) -> Iterator[tuple[str, Axis, Course]]:
         """The courses of an action that no other one has ended."""

@@ -1,5 +1,6 @@
 """What a storyboard is played on and by: the road, and the vehicles and other objects with their boxes."""
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -65,7 +66,10 @@ def played(stage: Stage) -> tuple[Stage, Play]:
 def map_of(document: Document) -> Path:
     """The map that the file names, or that of the name beside it, as CARLA names maps."""
     path, node = document.path, document.root.find("RoadNetwork/LogicFile")
-    found = document.folder / text_of(path, node, "filepath", "a LogicFile")
+    named = text_of(path, node, "filepath", "a LogicFile")
+    found = document.folder / named
+    if "\\" in named and not found.exists():  # written on Windows
+        found = document.folder / named.replace("\\", "/")
     if not found.suffix:
         found = found.with_suffix(".xodr")
     if found.suffix != ".xodr":
@@ -109,9 +113,24 @@ def _boxes(path: Path, root: Element) -> Iterator[tuple[str, Box]]:
         size, centre = vehicle.find("BoundingBox/Dimensions"), vehicle.find("BoundingBox/Center")
         length, width = (number_of(path, size, x, f"the Dimensions of {told}") for x in ("length", "width"))
         ahead, left = (number_of(path, centre, x, f"the Center of {told}") for x in ("x", "y"))
-        yield name, Box(_KINDS[category], category, length, width, (ahead, left))
+        yield (
+            name,
+            Box(
+                _KINDS[category], category, length, width, (ahead, left), limits=_limits(path, vehicle, told)
+            ),
+        )
     if not seen:
         raise InputError(f"{path}: there is no ScenarioObject")
+
+
+def _limits(path: Path, vehicle: Element, told: str) -> tuple[float, float, float]:
+    """The largest speed, acceleration and deceleration of a vehicle, infinite where it has no Performance."""
+    node = vehicle.find("Performance")
+    if node is None:
+        return math.inf, math.inf, math.inf
+    names = ("maxSpeed", "maxAcceleration", "maxDeceleration")
+    speed, *rates = (number_of(path, node, x, f"the Performance of {told}") for x in names)
+    return speed, rates[0], rates[1]
 
 
 def _other_box(path: Path, node: Element, told: str) -> Box:
