@@ -218,7 +218,7 @@ def test_a_speed_profile(tmp_path: Path) -> None:
 
 
 def test_a_trajectory_within_a_story(tmp_path: Path) -> None:
-    """Relative times: from 2 s to 6 s along s with 15 m/s and 1 m/s to the right; then straight on."""
+    """Relative times: from 2 s to 6 s along s with 15 m/s and 1 m/s to the right; then on with that speed."""
 
     def vertex(k: int) -> str:
         s, d = 140 + 15 * k, -6 - k
@@ -238,7 +238,7 @@ def test_a_trajectory_within_a_story(tmp_path: Path) -> None:
     assert at(found, 4, "s") == pytest.approx(142 + 30, abs=1e-6)
     assert at(found, 4, "d") == pytest.approx(-5 - 2, abs=1e-6)
     assert at(found, 4, "v_lat") == pytest.approx(-1, abs=1e-6)
-    assert at(found, 8, "s") == pytest.approx(142 + 60 + 30, abs=1e-6)
+    assert at(found, 8, "s") == pytest.approx(142 + 60 + 2 * math.hypot(15, 1), abs=1e-6)
     assert at(found, 8, "d") == pytest.approx(-5 - 4, abs=1e-6)
 
 

@@ -235,6 +235,7 @@ class ActionReader:
         if dimension not in ("time", "distance", "rate"):
             raise read.error(node, f"dynamicsDimension={dimension}: one of time, distance, rate is needed")
         value = abs(read.number(node, "value"))
+        read.pass_over(node, "followingMode", "position")
         return (shape if value else "step"), dimension, value
 
     def _keep_distance(self, node: Element, actor: Actor, scene: Scene, axis: Axis) -> Course:
@@ -257,6 +258,8 @@ class ActionReader:
             which = 0 if axis == "along" else 1
             shift = box.centre[which] - far.centre[which]
             apart = sum(sizes) / 2 + (-shift if beyond else shift)
+        for system in ("entity", "lane", "road"):
+            read.pass_over(node, "coordinateSystem", system)
         limits = self._limits(node)
         if axis == "across":
             limits = replace(limits, deceleration=limits.acceleration)
@@ -327,23 +330,26 @@ class ActionReader:
 
     def _lane_offset(self, node: Element, actor: Actor, scene: Scene) -> Course:
         read, state = self.document, scene.states[actor.name]
+        read.pass_over(node, "continuous", "false")
         target = read.only(read.child(node, "LaneOffsetTarget"))
         value = read.number(target, "value")
         if target.tag == "AbsoluteTargetLaneOffset":
             d = self.positions.lane_beside(target, (state.s, state.d), 0) + value
         elif target.tag == "RelativeTargetLaneOffset":
+            if read.flag(node, "continuous"):
+                rule = "continuous=true is not supported beside another vehicle"
+                raise read.error(node, rule)
             other = self._state(target, scene)
-            offset = other.d - self.positions.lane_beside(target, (other.s, other.d), 0)
-            d = self.positions.lane_beside(target, (state.s, state.d), 0) + offset + value
+            d = other.d + (value if other.forward else -value)
         else:
             raise read.error(target, "this target is not supported")
         dynamics = read.child(node, "LaneOffsetActionDynamics")
         shape, change = read.text(dynamics, "dynamicsShape"), d - state.d
+        most = read.number(dynamics, "maxLateralAcc", _LATERAL)
         if shape == "step" or not change:
             return Steady(scene.time, d)
         if shape not in SHAPES:
             raise read.error(dynamics, f"dynamicsShape={shape}: one of step, {', '.join(SHAPES)} is needed")
-        most = read.number(dynamics, "maxLateralAcc", _LATERAL)
         if most <= 0:
             raise read.error(dynamics, f"maxLateralAcc={most:g} must be above 0")
         bend = SHAPES[shape if SHAPES[shape].most_bent else "cubic"].most_bent

@@ -248,14 +248,14 @@ class OnPath:
 class Guided:
     """The motion of a trajectory from ``begin`` to ``end`` (s); ``before`` until then, steady afterwards.
 
-    ``rests``: without speed afterwards.
+    ``speed``: that afterwards.
     """
 
     before: Course
     begin: float
     end: float
     point: Callable[[float], Point]
-    rests: bool
+    speed: float
 
     def at(self, time: float, along: Point) -> Point:
         if time < self.begin - _SOON:
@@ -263,7 +263,7 @@ class Guided:
         if time <= self.end + _SOON:
             return self.point(min(max(time, self.begin), self.end))
         last = self.point(self.end)
-        return Steady(self.end, last.place, 0.0 if self.rests else last.speed).at(time, along)
+        return Steady(self.end, last.place, self.speed).at(time, along)
 
     def ended(self, time: float, along: Point) -> bool:
         return time >= self.end - _SOON

@@ -80,6 +80,11 @@ class Document:
             raise self.error(node, f"{name}={text}: true or false is needed")
         return _TRUTHS[text]
 
+    def pass_over(self, node: Element, name: str, value: str) -> None:
+        """Count an attribute as read if it has the value that the reader supports; others are named."""
+        if node.peek(name) == value:
+            node.note(name)
+
     def left_out(self) -> tuple[str, ...]:
         """Parts of the file that were not read and that may have an effect, a line for each kind."""
         parts = [part for root in (self.root, *self.references) for part in unread(root, HARMLESS)]

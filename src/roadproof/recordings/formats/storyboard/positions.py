@@ -128,7 +128,12 @@ class Positions:
                 ahead, left = (read.number(place, x) * self._road_way(place, other) for x in ("ds", "dt"))
                 return other.s + ahead, other.d + left
             case "RelativeObjectPosition":
-                return other.s + way * read.number(place, "dx"), other.d + way * read.number(place, "dy")
+                ahead, left = read.number(place, "dx"), read.number(place, "dy")
+                if self.road.line is None:
+                    return other.s + way * ahead, other.d + way * left
+                x, y, heading = self.pose_of(other)
+                c, s = math.cos(heading), math.sin(heading)
+                return self.place(x + ahead * c - left * s, y + ahead * s + left * c)
             case "RelativeWorldPosition" if self.road.line is not None:
                 x, y = self.road.line.place(self.sign * other.s, self.sign * other.d)
                 return self.place(x + read.number(place, "dx"), y + read.number(place, "dy"))

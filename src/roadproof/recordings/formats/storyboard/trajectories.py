@@ -68,7 +68,8 @@ class TrajectoryReader:
         trajectory = next(node.iter("Trajectory"), None)
         if trajectory is None:
             raise read.error(node, "a Trajectory is needed")
-        if trajectory.get("closed") in ("true", "1"):
+        read.text(read.child(node, "TrajectoryFollowingMode"), "followingMode")  # both as position: see notes
+        if read.flag(trajectory, "closed"):
             raise read.error(node, "closed=true: write out the way back as vertices with times")
         if read.number(node, "initialDistanceOffset", 0.0):
             raise read.error(node, "initialDistanceOffset is not supported; begin at the first point")
@@ -82,11 +83,14 @@ class TrajectoryReader:
         if times[0] < begin - _LATE:
             told = f"it begins at {begin:g} s, after the first point at {times[0]:g} s"
             raise read.error(node, told)
-        along, across = (
-            Guided(x, float(times[0]), float(times[-1]), _at(times, y), rests)
-            for x, y, rests in ((before[0], s, False), (before[1], d, True))
+        first, last = float(times[0]), float(times[-1])
+        ahead, beside = _at(times, s), _at(times, d)
+        speeds = ahead(last).speed, beside(last).speed
+        speed = math.copysign(math.hypot(*speeds), speeds[0])  # it goes on along the road
+        return (
+            Guided(before[0], first, last, ahead, speed),
+            Guided(before[1], first, last, beside, 0.0),
         )
-        return along, across
 
     def first(self, node: Element, states: States) -> tuple[float, float]:
         """s and d of the reference point of a vehicle at the first point of an action's trajectory."""
