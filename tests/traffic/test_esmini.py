@@ -41,7 +41,7 @@ def kept() -> Any:
 
 
 def ways(play: Play, name: str, curvature: float, lags: bool) -> list[tuple[float, float]]:
-    """By tick, how far s lags behind if speeds are taken on the way, 0 unless it ``lags``; change of speed."""
+    """By tick, how far s lags behind with speeds on the way, if it ``lags``, and the change of speed."""
     found, lag, begin = list[tuple[float, float]](), 0.0, 0.0
     for tick, states in enumerate(play.states):
         state = states.get(name)
