@@ -139,6 +139,13 @@ def at(found: Rows, time: float, signal: str) -> float:
     return float(found[signal][k])
 
 
+def first_time(found: Rows, holds: np.ndarray) -> float:
+    """When something holds first, which it does, and not from the beginning."""
+    assert holds.any(), "it never happens"
+    assert not holds[0], "it holds from the beginning"
+    return float(found["time"][np.argmax(holds)])
+
+
 EGO = init("Ego", lane(-2, 100), 20)
 
 

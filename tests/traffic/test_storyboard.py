@@ -17,6 +17,7 @@ from traffic.board import (
     element_is,
     event,
     facing,
+    first_time,
     init,
     lane,
     longitudinal,
@@ -266,7 +267,7 @@ def test_oncoming_vehicles_trigger_others(tmp_path: Path) -> None:
     faster = event("faster", to_speed(25, "linear", "time", 2), when(speed, delay=2))
     begin = {"Ego": EGO, "Other": init("Other", facing(lane(-1, 420)), 15)}
     found = rows(put(tmp_path, begin, maneuver("Ego", brake), maneuver("Other", faster)))["Ego"]
-    changed = found["time"][np.argmax(found["v_lon"] < 15)]
+    changed = first_time(found, found["v_lon"] < 15)
     assert changed == pytest.approx(250 / 45, abs=0.051)
 
 
@@ -421,7 +422,7 @@ def test_pedestrians_move_and_trigger(tmp_path: Path) -> None:
     path.write_text(text.replace(man, man.replace("Vehicle", "Pedestrian")), "utf-8")
     found = rows(path)
     assert set(found) == {"Ego"}
-    changed = found["Ego"]["time"][np.argmax(found["Ego"]["v_lon"] < 15)]
+    changed = first_time(found["Ego"], found["Ego"]["v_lon"] < 15)
     assert changed == pytest.approx(2.5, abs=0.051)
 
 
@@ -459,7 +460,6 @@ def test_a_collision_ends_it(tmp_path: Path) -> None:
             "</DistanceCondition>",
             4,
         ),
-        ('<RelativeSpeedCondition entityRef="Other" value="9" rule="greaterThan"/>', 0),
     ],
 )
 def test_triggers_fire_when_they_should(condition: str, time: float, tmp_path: Path) -> None:
@@ -467,8 +467,22 @@ def test_triggers_fire_when_they_should(condition: str, time: float, tmp_path: P
     brake = event("brake", to_speed(10, "step"), when(of("Ego", condition)))
     begin = {"Ego": EGO, "Other": init("Other", lane(-2, 150), 10)}
     found = rows(put(tmp_path, begin, maneuver("Ego", brake)))["Ego"]
-    changed = found["time"][np.argmax(found["v_lon"] < 15)]
+    changed = first_time(found, found["v_lon"] < 15)
     assert changed == pytest.approx(time, abs=0.051)
+
+
+@pytest.mark.parametrize(
+    ("value", "rule", "time"), [(13, "greaterThan", 2.5), (13, "equalTo", 2.5), (6, "lessThan", 4)]
+)
+def test_a_relative_speed_triggers(value: float, rule: str, time: float, tmp_path: Path) -> None:
+    """Ego drives 10 m/s faster; the other one slows down by 2 m/s² from 1 s on, and speeds up by 8 m/s² from 3 s."""
+    condition = f'<RelativeSpeedCondition entityRef="Other" value="{value}" rule="{rule}"/>'
+    brake = event("brake", to_speed(10, "step"), when(of("Ego", condition)))
+    slow = event("slow", to_speed(6, "linear", "time", 2), when(at_time(1)))
+    fast = event("fast", to_speed(30, "linear", "rate", 8), when(at_time(3)))
+    begin = {"Ego": EGO, "Other": init("Other", lane(-2, 250), 10)}
+    found = rows(put(tmp_path, begin, maneuver("Ego", brake), maneuver("Other", slow, fast)))["Ego"]
+    assert first_time(found, found["v_lon"] < 15) == pytest.approx(time, abs=0.06)
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,7 @@ from traffic.board import (
     at_time,
     element_is,
     event,
+    first_time,
     init,
     lane,
     longitudinal,
@@ -141,7 +142,7 @@ def test_a_pedestrian_crosses_on_a_path(tmp_path: Path) -> None:
     text = path.read_text("utf-8")
     path.write_text(text.replace(man, man.replace("Vehicle", "Pedestrian")), "utf-8")
     found = rows(path)["Ego"]
-    assert found["time"][np.argmax(found["v_lon"] < 15)] == pytest.approx(1 + 4, abs=0.06)
+    assert first_time(found, found["v_lon"] < 15) == pytest.approx(1 + 4, abs=0.06)
 
 
 def test_a_clothoid_is_that_of_an_integration(tmp_path: Path) -> None:
@@ -283,7 +284,7 @@ def test_a_variable_triggers(tmp_path: Path) -> None:
         event("brake", to_speed(10), when(seven)),
     )
     found = rows(put(tmp_path, {"Ego": EGO}, maneuver("Ego", *events), more=more, stop=END))["Ego"]
-    changed = found["time"][np.argmax(found["v_lon"] < 15)]
+    changed = first_time(found, found["v_lon"] < 15)
     assert changed == pytest.approx(2.04, abs=0.041)
 
 
@@ -298,7 +299,7 @@ def test_parameters_may_be_texts(tmp_path: Path) -> None:
     events = event("set", act, when(at_time(3))), event("brake", to_speed(10), when(said))
     path = put(tmp_path, {"Ego": EGO}, maneuver("Ego", *events), more=more, stop=END)
     found = rows(path)["Ego"]
-    assert found["time"][np.argmax(found["v_lon"] < 15)] == pytest.approx(3.04, abs=0.041)
+    assert first_time(found, found["v_lon"] < 15) == pytest.approx(3.04, abs=0.041)
     path.write_text(path.read_text("utf-8").replace('rule="equalTo"', 'rule="lessThan"'), "utf-8")
     with pytest.raises(InputError, match="ParameterCondition: rule=lessThan: no or yes is no number"):
         rows(path)
@@ -315,7 +316,7 @@ def test_beside_the_road(tmp_path: Path) -> None:
     events = event("aside", aside, when(at_time(1))), event("brake", to_speed(10), off)
     begin = {"Ego": init("Ego", lane(-3, 100), 20)}
     found = rows(put(tmp_path, begin, maneuver("Ego", *events), stop=END))["Ego"]
-    assert found["time"][np.argmax(found["v_lon"] < 15)] == pytest.approx(1 + 1 + 1, abs=0.06)
+    assert first_time(found, found["v_lon"] < 15) == pytest.approx(1 + 1 + 1, abs=0.06)
 
 
 @pytest.mark.parametrize(("direction", "time"), [("longitudinal", 4), ("lateral", 2)])
@@ -458,7 +459,7 @@ def test_a_lane_is_clear(free: str, time: float, tmp_path: Path) -> None:
     change = event("left", to_speed(35, "step"), when(of("Ego", clear)))
     begin = {"Ego": EGO, "Other": init("Other", lane(-1, 110), 10), "Third": init("Third", lane(-3, 105), 20)}
     found = rows(put(tmp_path, begin, maneuver("Ego", change), stop=END))["Ego"]
-    assert found["time"][np.argmax(found["v_lon"] > 30)] == pytest.approx(time, abs=0.051)
+    assert first_time(found, found["v_lon"] > 30) == pytest.approx(time, abs=0.051)
 
 
 def test_there_must_be_a_lane_to_be_clear(tmp_path: Path) -> None:

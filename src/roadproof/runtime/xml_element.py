@@ -53,8 +53,7 @@ class Element(_Plain):
 
     def has_read(self, name: str) -> bool:
         """Whether an attribute or the text was read."""
-        read = getattr(self, "_read", ())
-        return name in read or _ALL in read
+        return name in getattr(self, "_read", ())
 
     @property
     def is_read(self) -> bool:

@@ -43,7 +43,17 @@ def roles_in(entry: Concrete, vehicles: Sequence[str], known: Collection[str]) -
 
 
 def traces_of(entry: Concrete, known: Collection[str]) -> Iterator[tuple[OneTrace, Mapping[str, str]]]:
-    """The traces of a test, each with what the test calls the vehicles; ``known``: the roles of scenarios."""
+    """The traces of a test, each with what the test calls the vehicles; ``known``: the roles of scenarios.
+
+    Raises ``InputError`` for a test that cannot be read, and for a motion that no vehicle drives.
+    """
+    for trace, told in _traces_of(entry, known):
+        if trace.faults:
+            raise InputError(f"{entry.place}: no vehicle drives so: {'; '.join(trace.faults)}")
+        yield trace, told
+
+
+def _traces_of(entry: Concrete, known: Collection[str]) -> Iterator[tuple[OneTrace, Mapping[str, str]]]:
     path = Path(entry.place)
     if is_pair(entry.place):
         if entry.roles:

@@ -40,6 +40,7 @@ from roadproof.recordings.evaluate.one_trace import (
     refuse_unmeasured,
     sample_drive,
 )
+from roadproof.recordings.formats.reliable import LEFT_OUT
 from roadproof.recordings.formats.sources import has_numbers
 from roadproof.recordings.formats.storyboard.drives import read_storyboard_drive
 from roadproof.recordings.formats.table import Frame, columns_of
@@ -71,6 +72,11 @@ class MonitorAnswer(Table):
     def length_error(self) -> LengthError | None:
         """How far lengths in lanes of the road are from those in s; None where it is straight."""
         return length_error_of(self.road)
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """The notes on vehicles and parts of the file that were left out."""
+        return tuple(x for x in self.notes if x.startswith(LEFT_OUT))
 
     @property
     def verdict(self) -> Truth:
@@ -119,6 +125,7 @@ class MonitorAnswer(Table):
                 for strip in x.strips
             ),
             notes=self.notes,
+            left_out=self.left_out,
             **vars(self.place),
         )
         return write(answer)
@@ -191,7 +198,7 @@ def _read(on: "str | Path | OneTrace | Mapping[str, Any] | Frame", given: Monito
     if not isinstance(on, str | Path):
         return trace(on, road or "main-2")
     if Path(on).suffix in (".csv", ".parquet", ".xosc") and not has_numbers(Path(on)):
-        return read_samples(Path(on), None if road is None else as_road(road))
+        return read_samples(Path(on), None if road is None else as_road(road), given.strict)
     if isinstance(road, Road):
         raise UsageError(f"--road: {on} is a recording; name a road of a map, or omit it")
     chart = None if road is None else str(road)

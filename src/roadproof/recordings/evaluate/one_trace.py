@@ -44,7 +44,7 @@ class OneTrace:
 
     ``first`` is the time of the first sample as the source counts it: seconds, or a frame. ``notes``: what is
     odd in the recording that it is from. ``names``: what the source calls vehicles that have other names
-    here.
+    here. ``faults``: parts of motions that no vehicle drives; such a trace shows nothing.
     """
 
     source: str
@@ -54,6 +54,7 @@ class OneTrace:
     first: str
     notes: tuple[str, ...] = ()
     names: Mapping[str, str] = field(default_factory=dict)
+    faults: tuple[str, ...] = ()
 
 
 def is_pair(text: str) -> bool:
@@ -170,7 +171,8 @@ def cut_trace(
             own.setdefault(column, {})[name] = values[rows, None]
     signals = {**made.signals, **dict(by_vehicle(own))}
     batch = Batch(made.dt, made.lengths, signals, made.sizes, given, source)
-    return OneTrace(source, batch, road, lanes, f"frame {frames[0]}", recording.notes)
+    first = f"frame {frames[0]}"
+    return OneTrace(source, batch, road, lanes, first, recording.notes, faults=recording.faults)
 
 
 def _lanelets(recording: Recording, way: int, rows: slice) -> Iterator[tuple[Lanelet, Bools]]:
@@ -228,26 +230,26 @@ def refuse_unmeasured(trace: OneTrace, formula: Formula) -> None:
     refuse_missing(((x.name, x.vehicle) for x in own_of([formula])), trace.batch.signals, trace.source)
 
 
-def read_samples(path: Path, road: Road | None = None) -> OneTrace:
+def read_samples(path: Path, road: Road | None = None, strict: bool = False) -> OneTrace:
     """The trace of a file in which every vehicle is seen all the time: CSV, Parquet, OpenSCENARIO.
 
-    ``road``: by default that which the file names or that beside it, or else main-2. ``notes`` of the
-    trace say in what the file contradicts itself. Raises ``InputError`` with file, row, column, value and
-    rule, also where it contradicts itself too much.
+    ``road``: by default that which the file names or that beside it, or else main-2. ``strict``: nothing of
+    the file may be left out. ``notes`` of the trace say in what the file contradicts itself. Raises
+    ``InputError`` with file, row, column, value and rule, also where it contradicts itself too much.
     """
     if path.suffix == ".xosc":
-        scenario = openscenario.read_scenario(path)
+        scenario = openscenario.read_scenario(path, strict)
         table, road, notes = scenario.table, road or scenario.road, (*scenario.otherwise, *scenario.faults)
-        computed = scenario.computed
+        computed, faults = scenario.computed, scenario.faults
     else:
-        table, notes, computed = samples.read_columns(path), (), False
+        table, notes, computed, faults = samples.read_columns(path), (), False, ()
     if road is None:
         known = beside(path, samples.ROAD_ENDING)
         road = load_recorded_road(known[0])[0] if known else load_road("main-2")
     lists = {name: values.tolist() for name, values in table.columns.items()}
     made = of_columns(lists, road, str(path))
     doubts = samples.doubts_in(table, of_road(road, samples.DIRECTION, path), computed)
-    return replace(made, notes=(*notes, *doubts, *_overlaps(made)))
+    return replace(made, notes=(*notes, *doubts, *_overlaps(made)), faults=faults)
 
 
 def of_columns(columns: Mapping[str, Sequence[object]], road: Road, source: str = "columns") -> OneTrace:

@@ -282,6 +282,7 @@ def _said(recording: Recording) -> Head:
         "vehicles": {name: getattr(recording, name).tolist() for name in _OF_VEHICLES},
         "notes": list(recording.notes),
         "computed": recording.computed,
+        "faults": list(recording.faults),
     }
 
 
@@ -330,6 +331,7 @@ def _recording(said: Head, columns: Mapping[str, Column]) -> Recording:
         start=offsets(counts),
         notes=tuple(said["notes"]),
         computed=bool(said["computed"]),
+        faults=tuple(map(str, said["faults"])),
         lanelets=lanelets,
         slack=Slack(**slack) if slack else None,
         own=group("own:"),

@@ -12,7 +12,7 @@ vehicles that drive against the others move in a storyboard, but are no part of 
 import math
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -40,6 +40,7 @@ from roadproof.world.signals import RECORDED, SIZES
 RATE = 25
 """Samples a second."""
 _FOLLOWS = "followingMode=follow is taken as position: vehicles are on their trajectories, as in esmini"
+_LATER = ("greaterThan", "greaterOrEqual")
 _PLACES = "PrivateAction/RoutingAction/FollowTrajectoryAction"
 
 
@@ -67,7 +68,8 @@ class Scenario:
     """Samples of all vehicles, RATE a second, the road with its file, and notes on them.
 
     ``otherwise``: those of the notes that say what was left out, or taken otherwise than it is written.
-    ``faults``: parts of the motion that no vehicle drives. ``computed``: a storyboard was run.
+    ``faults``: parts of the motion that no vehicle drives. ``computed``: a storyboard was run. ``unread``:
+    notes on parts of the file that were left out, and on vehicles that controllers move.
     """
 
     table: Table
@@ -77,10 +79,21 @@ class Scenario:
     otherwise: tuple[str, ...] = ()
     faults: tuple[str, ...] = ()
     computed: bool = False
+    unread: tuple[str, ...] = ()
 
 
-def read_scenario(path: Path) -> Scenario:
-    """The vehicles of a file. Raises ``InputError`` that names element and rule."""
+def read_scenario(path: Path, strict: bool = False) -> Scenario:
+    """The vehicles of a file; if ``strict``, nothing of it may be left out.
+
+    Raises ``InputError`` that names element and rule.
+    """
+    found = _read_scenario(path)
+    if strict and found.unread:
+        raise InputError(f"{path}: {'; '.join(found.unread)}; without --strict the rest is read")
+    return found
+
+
+def _read_scenario(path: Path) -> Scenario:
     stage = open_stage(path)
     document, boxes, road, road_path = stage.document, stage.boxes, stage.road, stage.road_path
     root = document.root
@@ -90,20 +103,25 @@ def read_scenario(path: Path) -> Scenario:
     if _follows_polylines(root, boxes):
         _read_init(root)
         ways = {name: _in_road(x, boxes[name], road) for name, x in _vertices(path, root, boxes)}
+        _read_stop(path, root, max(float(x.time[-1]) for x in ways.values()))
         note = f"speeds and accelerations are those of curves through the vertices, {RATE} samples a second"
-        otherwise = (*follows, *varied, *_unread(document))
-        return Scenario(_sampled(path, boxes, ways), road, road_path, (note, *otherwise), otherwise)
+        unread = _unread(document)
+        otherwise = (*follows, *varied, *unread)
+        table = _sampled(path, boxes, ways)
+        return Scenario(table, road, road_path, (note, *otherwise), otherwise, unread=unread)
     stage, play = played(stage)
     if len(play.states) < 2 * TICKS // RATE:
         raise InputError(f"{path}: the storyboard ends at {len(play.states) / TICKS:g} s: {play.ending}")
     told = f"the storyboard ends at {(len(play.states) - 1) / TICKS:g} s: {play.ending}"
     note = f"the storyboard was run with conditions evaluated {TICKS} times a second, {RATE} samples a second"
     table, left_out = _of_play(path, boxes, play)
-    otherwise = (*follows, *varied, *left_out, *_unread(document))
+    controlled = tuple(x for x in left_out if any(told in x for told in play.controlled.values()))
+    unread = (*controlled, *_unread(document))
+    otherwise = (*follows, *varied, *(x for x in left_out if x not in controlled), *unread)
     faults = faults_of(play, boxes)
     idle = (f"events that never start: {', '.join(play.idle)}",) if play.idle else ()
     notes = (note, told, *idle, *otherwise, *faults)
-    return Scenario(table, stage.road, road_path, notes, otherwise, faults, computed=True)
+    return Scenario(table, stage.road, road_path, notes, otherwise, faults, computed=True, unread=unread)
 
 
 def _unread(document: Document) -> tuple[str, ...]:
@@ -124,9 +142,10 @@ def _read_init(root: Element) -> None:
 
 def read_recording(path: Path, strict: bool = True) -> Recording:
     """The vehicles of a file as a recording; unless ``strict``, without bad ones. Raises ``InputError``."""
-    found = read_scenario(path)
+    found = read_scenario(path, strict)
     road = of_road(found.road, DIRECTION, found.road_path)
-    return recording_of(found.table, road, path.stem, found.notes, strict, found.computed)
+    made = recording_of(found.table, road, path.stem, found.notes, strict, found.computed)
+    return replace(made, faults=found.faults)
 
 
 def _follows_polylines(root: Element, boxes: Mapping[str, Box]) -> bool:
@@ -172,6 +191,19 @@ def _vertices(path: Path, root: Element, boxes: Mapping[str, Box]) -> Iterator[t
                 yield name, found
 
 
+def _read_stop(path: Path, root: Element, last: float) -> None:
+    """Pass over a StopTrigger that fires only after the last vertex; another one is left out."""
+    for trigger in root.findall("Storyboard/StopTrigger"):
+        clocks = [x for x in trigger.iter() if x.tag == "SimulationTimeCondition"]
+        conditions = [x for x in trigger.iter() if x.tag == "Condition"]
+        late = all(
+            x.peek("rule") in _LATER and number_of(path, x, "value", "a StopTrigger") >= last - 1 / RATE
+            for x in clocks
+        )
+        if late and len(clocks) == len(conditions):
+            trigger.read_all()
+
+
 def _read_counts(group: Element) -> None:
     """Read attributes of a maneuver group and its events that have no effect on one trajectory."""
     for node, name, plain in (
@@ -190,10 +222,12 @@ def _check_begin(path: Path, node: Element, first: float, told: str) -> None:
 
     def in_time(condition: Element) -> bool:
         clock = condition.find("ByValueCondition/SimulationTimeCondition")
-        if clock is None or clock.get("rule") not in ("greaterThan", "greaterOrEqual"):
+        if clock is None or clock.get("rule") not in _LATER:
             return False
         trigger = f"a StartTrigger of {told}"
         begin = number_of(path, clock, "value", trigger)
+        if condition.peek("conditionEdge") in ("none", "rising"):
+            condition.note("conditionEdge")
         delay = number_of(path, condition, "delay", trigger) if condition.get("delay") else 0.0
         return begin + delay <= first
 

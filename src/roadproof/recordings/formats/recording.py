@@ -112,7 +112,7 @@ class Recording:
     are measured themselves. ``own``: columns that are no signals of the list, an entry a sample: true and
     false as 1 and 0, NaN where there is no number. ``label``: what the file calls each vehicle, where
     ``kind`` puts several together. ``computed``: a storyboard gives places, speeds and accelerations as one
-    motion, so that they are not compared with each other.
+    motion, so that they are not compared with each other. ``faults``: motions that no vehicle drives.
     """
 
     name: str
@@ -143,6 +143,7 @@ class Recording:
     own: Mapping[str, Floats] = field(default_factory=dict)
     label: npt.NDArray[np.str_] = field(default_factory=lambda: np.zeros(0, np.str_))
     computed: bool = False
+    faults: tuple[str, ...] = ()
 
     @cached_property
     def kind_code(self) -> Integers:

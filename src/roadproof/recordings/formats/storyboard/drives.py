@@ -13,9 +13,11 @@ from pathlib import Path
 from typing import TypeAlias
 
 from roadproof.errors import InputError
+from roadproof.recordings.formats.reliable import LEFT_OUT
 from roadproof.recordings.formats.storyboard.actions import Actor
 from roadproof.recordings.formats.storyboard.box import Box
 from roadproof.recordings.formats.storyboard.conditions import TICKS
+from roadproof.recordings.formats.storyboard.control import REMEDY
 from roadproof.recordings.formats.storyboard.controllers import Phases, Reacting
 from roadproof.recordings.formats.storyboard.courses import (
     Capped,
@@ -49,7 +51,10 @@ Axis: TypeAlias = Callable[[float], Point]
 
 @dataclass(frozen=True)
 class StoryboardDrive:
-    """A drive on a road up to its end (s), and how far it is from the storyboard's motion (m, m/s)."""
+    """A drive on a road up to its end (s), and how far it is from the storyboard's motion (m, m/s).
+
+    ``unread``: parts of the file that were left out.
+    """
 
     drive: Drive
     road: Road
@@ -57,6 +62,7 @@ class StoryboardDrive:
     place_error: float
     speed_error: float
     ending: str
+    unread: tuple[str, ...] = ()
 
     @property
     def note(self) -> str:
@@ -64,7 +70,8 @@ class StoryboardDrive:
         ends = f"the storyboard ends at {float(self.horizon):g} s: {self.ending}"
         goes_on = "in dense time vehicles then go on with constant speeds"
         error = f"{self.place_error:.1g} m and {self.speed_error:.1g} m/s of the storyboard"
-        return f"{ends}; {goes_on}. The drive is within {error}"
+        left_out = f". {LEFT_OUT.capitalize()}: {'; '.join(self.unread)}" if self.unread else ""
+        return f"{ends}; {goes_on}. The drive is within {error}{left_out}"
 
 
 @dataclass
@@ -82,6 +89,7 @@ def read_storyboard_drive(path: Path) -> StoryboardDrive:
     All of them have to be on the road, and to drive along it, all the time, without jumps of place or speed.
     """
     stage, play = played(open_stage(path))
+    unread = stage.document.left_out()
     error, vehicles, where = _Error(), dict[str, Motion](), str(path)
     end = len(play.states) - 1
     for name, box in stage.boxes.items():
@@ -89,11 +97,15 @@ def read_storyboard_drive(path: Path) -> StoryboardDrive:
             _check_presence(play, name, where)
             vehicles[name] = _motion(play, name, box, error, where)
     horizon = Fraction(end, TICKS)
-    return StoryboardDrive(Drive(vehicles), stage.road, horizon, error.place, error.speed, play.ending)
+    return StoryboardDrive(
+        Drive(vehicles), stage.road, horizon, error.place, error.speed, play.ending, unread
+    )
 
 
 def _check_presence(play: Play, name: str, where: str) -> None:
     rule = "in dense time every vehicle drives along the road all the time"
+    if name in play.controlled:
+        raise InputError(f"{where}: vehicle {name}, {play.controlled[name]}: {rule}; {REMEDY}")
     for tick, states in enumerate(play.states):
         if name not in states or not states[name].forward or play.jumps(name, tick):
             raise InputError(f"{where}: vehicle {name} at {tick / TICKS:g} s: {rule}")
