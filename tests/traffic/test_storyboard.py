@@ -475,7 +475,7 @@ def test_triggers_fire_when_they_should(condition: str, time: float, tmp_path: P
     ("value", "rule", "time"), [(13, "greaterThan", 2.5), (13, "equalTo", 2.5), (6, "lessThan", 4)]
 )
 def test_a_relative_speed_triggers(value: float, rule: str, time: float, tmp_path: Path) -> None:
-    """Ego drives 10 m/s faster; the other one slows down by 2 m/s² from 1 s on, and speeds up by 8 m/s² from 3 s."""
+    """Ego is 10 m/s faster; the other one slows down by 2 m/s² from 1 s to 3 s, then speeds up by 8."""
     condition = f'<RelativeSpeedCondition entityRef="Other" value="{value}" rule="{rule}"/>'
     brake = event("brake", to_speed(10, "step"), when(of("Ego", condition)))
     slow = event("slow", to_speed(6, "linear", "time", 2), when(at_time(1)))
