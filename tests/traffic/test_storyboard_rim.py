@@ -275,6 +275,13 @@ def test_parts_that_nothing_reads_are_named(tmp_path: Path) -> None:
         rp.monitor("v_lon(SV) > 1 m/s", path, strict=True)
 
 
+def test_parts_of_an_action_that_still_runs_are_named(tmp_path: Path) -> None:
+    slow = to_speed(10, "linear", "time", 60).replace("<SpeedAction>", '<SpeedAction strange="1">')
+    group = maneuver("Ego", event("slow", slow, when(at_time(1))))
+    (note,) = read_scenario(put(tmp_path, BOTH, group, stop=STOP)).unread
+    assert "SpeedAction@strange" in note
+
+
 @pytest.mark.parametrize(("rule", "limit"), [("lessThan", 20), ("greaterThan", 20), ("equalTo", 19)])
 def test_a_parameter_keeps_its_own_constraints(rule: str, limit: float, tmp_path: Path) -> None:
     more = (
