@@ -393,13 +393,19 @@ def test_what_is_no_expression(text: str) -> None:
         expression_value(text)
 
 
+def _misc_object(vehicle: str) -> str:
+    return vehicle.replace("Vehicle", "MiscObject").replace(
+        'vehicleCategory="car"', 'miscObjectCategory="obstacle"'
+    )
+
+
 def test_objects_that_are_no_vehicles_are_left_out(tmp_path: Path) -> None:
     begin = {"Ego": EGO, "Box": init("Box", lane(-2, 400), 0)}
     path = put(tmp_path, begin)
     text = path.read_text("utf-8")
     thing = f'<ScenarioObject name="Box">{CAR}'
     assert thing in text
-    path.write_text(text.replace(thing, thing.replace("Vehicle", "MiscObject")), "utf-8")
+    path.write_text(text.replace(thing, _misc_object(thing)), "utf-8")
     recording = read_recording(path)
     assert recording.vehicles == 1
     assert "left out, as they are no motor vehicles: Box" in recording.notes

@@ -27,7 +27,7 @@ from traffic.board import (
     to_speed,
     when,
 )
-from traffic.storyboards import follow, polyline
+from traffic.storyboards import follow, place, polyline, write
 
 OTHER = init("Other", lane(-1, 140), 16)
 BOTH = {"Ego": EGO, "Other": OTHER}
@@ -193,6 +193,15 @@ def test_a_speed_of_init_holds_for_a_vehicle_that_a_trajectory_places(order: int
     assert at(found, 2, "s") - at(found, 0, "s") == pytest.approx(40, abs=1e-3)
 
 
+def test_a_relative_road_position_is_along_the_road(tmp_path: Path) -> None:
+    """Both drive against the map's road: 30 m along it is 30 m behind, 1 m to its right is to their left."""
+    beside = place('RelativeRoadPosition entityRef="Ego" ds="30" dt="-1"')
+    begin = {"Ego": init("Ego", lane(1, 800), 20), "Other": init("Other", beside, 20)}
+    found = rows(write(tmp_path, begin, (), "straight"))
+    assert at(found["Ego"], 0, "s") - at(found["Other"], 0, "s") == pytest.approx(30)
+    assert at(found["Other"], 0, "d") - at(found["Ego"], 0, "d") == pytest.approx(1)
+
+
 # --- motions that are none, and parts that are left out -------------------------------------------------
 
 
@@ -238,10 +247,10 @@ def test_a_step_of_speed_is_a_fault_that_all_readers_name(tmp_path: Path) -> Non
     recording = read_recording(path)
     assert recording.faults == (rule,)
     formula = "F[1, 1] v_lon(SV) = 20 m/s and F[3, 3] v_lon(SV) = 10 m/s"
-    for place in (path, f"{path}:1,2"):
-        answer = rp.monitor(formula, place)
+    for where in (path, f"{path}:1,2"):
+        answer = rp.monitor(formula, where)
         assert answer.verdict == "true"
-        assert any(rule in x for x in answer.notes), place
+        assert any(rule in x for x in answer.notes), where
 
 
 def test_a_smooth_change_of_speed_is_no_fault(tmp_path: Path) -> None:
