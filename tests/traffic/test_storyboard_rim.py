@@ -1,6 +1,7 @@
 """Parts of storyboards that move vehicles otherwise than actions do, or that say that a motion is none."""
 
 import json
+import math
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,10 @@ import pytest
 import roadproof as rp
 from roadproof.errors import InputError
 from roadproof.recordings.formats.openscenario import read_recording, read_scenario
+from roadproof.recordings.formats.storyboard.distances import Measure, distance_between
 from roadproof.recordings.formats.storyboard.drives import read_storyboard_drive
+from roadproof.recordings.formats.storyboard.positions import State, positions_on
+from roadproof.recordings.formats.storyboard.stage import open_stage
 from traffic.board import (
     CAR,
     EGO,
@@ -200,6 +204,26 @@ def test_a_relative_road_position_is_along_the_road(tmp_path: Path) -> None:
     found = rows(write(tmp_path, begin, (), "straight"))
     assert at(found["Ego"], 0, "s") - at(found["Other"], 0, "s") == pytest.approx(30)
     assert at(found["Other"], 0, "d") - at(found["Ego"], 0, "d") == pytest.approx(1)
+
+
+@pytest.mark.parametrize("free", [False, True])
+def test_distances_on_a_bend_follow_their_coordinate_system(free: bool, tmp_path: Path) -> None:
+    """60 m ahead on a left bend of radius 400 m: 60 m along the road, less along the vehicle."""
+    stage = open_stage(write(tmp_path, BOTH, (), "bend"))
+    positions = positions_on(stage.document, stage.road)
+    one, other = State(100, -6, 20, 0, 0, 0), State(160, -6, 20, 0, 0, 0)
+    turn, radius, length = 60 / 400, 406.0, 5.0
+    ahead = radius * math.sin(turn)
+    for system, expected in (("road", 60.0), ("lane", 60.0), ("entity", ahead)):
+        box = stage.boxes["Ego"]
+        more = 0.0
+        if free and system != "entity":
+            more = length
+        elif free:  # the other box is turned, with its centre 1.4 m ahead of the reference point
+            extent = length * math.cos(turn) + 2 * math.sin(turn)
+            more = (length + extent) / 2 + 1.4 - 1.4 * math.cos(turn)
+        found = distance_between(positions, Measure("longitudinal", system, free), (box, one), (box, other))
+        assert found == pytest.approx(expected - more, abs=1e-3), system
 
 
 # --- motions that are none, and parts that are left out -------------------------------------------------
