@@ -6,6 +6,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar
 
+from roadproof.analysis.shipped_drives import shipped_drives
 from roadproof.analysis.study.evidence_store import INDEX, EvidenceStore, Question, readings, write_index
 from roadproof.analysis.study.frame import Unprepared
 from roadproof.engines.prove.doubt import Cause, Doubt, Stop, doubt_of
@@ -151,7 +152,7 @@ class Claims(Unprepared):
         if self.within is not None:
             from roadproof.engines.search.outcome import Search
 
-            settled = settle_bounded(Search(specification, query, *self.within))
+            settled = settle_bounded(Search(specification, query, *self.within), shipped_drives())
         else:
             label = piece.id + (f"-{piece.part}" if piece.part else "")
             more = piece.scenario, self.seek_drive, piece.assuming

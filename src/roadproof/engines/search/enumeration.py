@@ -3,7 +3,7 @@
 The monitor looks at all of them in floating point; the judge decides. The rows are the same in every run.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
@@ -12,7 +12,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from roadproof.engines.search.ask import telling_values
-from roadproof.engines.search.patterns import Menu, Patterns, Shares, spread
+from roadproof.engines.search.patterns import PIECES, Menu, Patterns, Shares, spread
 from roadproof.engines.search.question import SearchProblem, Setting, pose
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import DriveFile
@@ -63,6 +63,22 @@ def small_drive(
         return None
 
 
+def drive_within(
+    specification: Specification, question: SearchProblem, keeps: Callable[[Drive], bool]
+) -> JudgedDrive | None:
+    """A short drive on which the formula of ``question`` holds, judged; None where none was found.
+
+    ``keeps``: whether a drive is one of those that are asked for.
+    """
+    if not question.vehicles or own_of([question.query.formula]):
+        return None
+    bound = tuple(question.bound(lanes) for lanes in question.lanes)
+    try:
+        return _Search(specification, question, bound, "model", keeps).run(1)
+    except (InputError, UsageError):
+        return None
+
+
 def _search(specification: Specification, claim: Query, within: Within) -> "_Search | None":
     if not claim.vehicles or own_of([claim.formula]):
         return None
@@ -82,6 +98,7 @@ class _Search:
     question: SearchProblem
     formulas: tuple[Formula, ...]
     within: Within
+    keeps: Callable[[Drive], bool] | None = None
 
     def run(self, rounds: int) -> JudgedDrive | None:
         """Judge some drives unseen, then those that the monitor chooses, in rounds around the best so far."""
@@ -142,6 +159,8 @@ class _Search:
         return judge(self.formulas[number], drive).holds and self._keeps_limits(drive)
 
     def _keeps_limits(self, drive: Drive) -> bool:
+        if self.keeps is not None:
+            return self.keeps(drive)
         if self.within == "claim":
             return True
         if self.within == "model":
@@ -166,6 +185,7 @@ class _Search:
         accelerations = _inside([*mild, *self._numbers((1, -2))], acceleration) or (hard, fierce)
         still = hard <= 0 <= fierce
         last = (*(Fraction(0),) * 4 * still, *(accelerations if self.within == "claim" or not still else ()))
+        last = last if self.keeps is None else (Fraction(0),)
         edges = sorted({edge for x in self.question.road.lanelets for edge in x.d})
         middles = [(x.d[0] + x.d[1] + model.width) / 2 for x in self.question.road.lanelets]
         sides = tuple(dict.fromkeys([*middles, *(x + model.width / 2 for x in edges[1:-1])]))
@@ -220,7 +240,11 @@ class _Search:
 
     def _durations(self) -> tuple[Fraction, ...]:
         bounds = [x for interval in intervals_of(self._formula) for x in bounds_of(interval) if x]
-        return (*map(Fraction, (1, 2, 3)), *dict.fromkeys(x for x in bounds if 0 < x <= 6))[:8]
+        usual = (*map(Fraction, (1, 2, 3)), *dict.fromkeys(x for x in bounds if 0 < x <= 6))[:8]
+        if self.keeps is None:
+            return usual
+        most = self.question.grid.horizon / PIECES
+        return tuple(x for x in usual if x <= most) or (most,)
 
 
 def _speaks_of(part: Formula, signal: str, vehicle: str) -> bool:

@@ -3,7 +3,7 @@
 What searches for drives is imported when one is looked for: most claims are proved without.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal
@@ -25,6 +25,7 @@ from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.runtime.records import dataclass
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import ClaimVerdict, Verdict
+from roadproof.world.drive import Drive
 
 if TYPE_CHECKING:
     from roadproof.engines.search.outcome import Search
@@ -208,13 +209,16 @@ def _proved(
     return found.called(*called)
 
 
-def settle_bounded(search: "Search") -> Settlement:
-    """Look for a drive that refutes the claim within bounds; where none is possible at all, prove it."""
+def settle_bounded(search: "Search", given: Iterable[Drive] = ()) -> Settlement:
+    """Look for a drive that refutes the claim within bounds; where none is possible at all, prove it.
+
+    ``given``: drives that are judged before PROVED-BOUNDED.
+    """
     from roadproof.engines.search.bounded import check_bounded
 
     begun = now()
     try:
-        found = check_bounded(search)
+        found = check_bounded(search, given)
     except BudgetExceeded as late:
         return replace(in_doubt(late.reason, begun), bounded=True)
     if found.verdict is Verdict.PROVED:
