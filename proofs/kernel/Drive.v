@@ -146,12 +146,9 @@ Section World.
   Definition rectangle_of (e : element_of) : rectangle := nth (proj1_sig e) rectangles (first_rectangle D).
   Definition lane_of (e : element_of) : string := lane (rectangle_of e).
 
-  (* A box is in a lanelet where they overlap; touching is not enough. *)
-  Definition is_in (a : vehicle) (e : element_of) (t : R) : Prop :=
-    match from_s (rectangle_of e) with None => True | Some b => Q2R b < value_of Place_lon a t end
-    /\ match to_s (rectangle_of e) with None => True | Some b => value_of Place_lon a t - measure_of Length a < Q2R b end
-    /\ Q2R (right_d (rectangle_of e)) < value_of Place_lat a t
-    /\ value_of Place_lat a t - measure_of Width a < Q2R (left_d (rectangle_of e)).
+  Definition shape_of (e : element_of) : extent :=
+    {| s_from := option_map Q2R (from_s (rectangle_of e)); s_to := option_map Q2R (to_s (rectangle_of e));
+       d_from := Q2R (right_d (rectangle_of e)); d_to := Q2R (left_d (rectangle_of e)) |}.
 
   Definition are_beside (e f : element_of) : Prop :=
     lane_of e <> lane_of f
@@ -180,7 +177,7 @@ Section World.
     value := value_of;
     measure := measure_of;
     measure_positive := measure_of_positive;
-    occupies := is_in;
+    shape := shape_of;
     adjacent := are_beside;
     adjacent_irreflexive := are_beside_irreflexive;
     adjacent_symmetric := are_beside_symmetric;

@@ -1,11 +1,15 @@
 (* Functions that grow by integrals.  NOT TRUSTED: proved.
 
-   What the schemas of motion (Schemas.v) need of `is_integral` and `lingers` of Motion.v: sums and multiples, bounds
+   What the schemas of motion (Schemas.v) need of `is_integral` of Motion.v, and of `lingers`: sums and multiples, bounds
    on growth, continuity, and the first and last instants of what is true for a while.  Functions are of times from 0
    on: they are continued before 0 by their value at 0, so that Coq's library of continuous functions is of use. *)
 From Coq Require Import Reals RList Lra Lia Classical FunctionalExtensionality.
-From Roadproof Require Import Motion.
+From Roadproof Require Import Meaning Motion.
 Open Scope R_scope.
+
+(* What is true at an instant is true for a while before and after it. *)
+Definition lingers (p : R -> Prop) : Prop :=
+  forall t, 0 <= t -> p t -> exists while, 0 < while /\ forall u, 0 <= u -> t - while < u < t + while -> p u.
 
 Lemma same_integral F f G g : (forall t, F t = G t) -> (forall t, f t = g t) -> is_integral F f -> is_integral G g.
 Proof.
@@ -225,6 +229,31 @@ Proof.
   intros t. split; [intros X e; apply X, F|intros X e _; apply X].
 Qed.
 
+Lemma below_lingers F f c : is_integral F f -> lingers (fun t => c < F t).
+Proof.
+  intros H. apply (lingers_same (fun t => 0 < F t - c)); [intros t; lra|]. apply steady_lingers.
+  apply (integral_steady _ (fun t => f t - 0)), integral_minus; [exact H|apply integral_constant].
+Qed.
+Lemma behind_lingers F f c : is_integral F f -> lingers (fun t => F t < c).
+Proof.
+  intros H. apply (lingers_same (fun t => 0 < c - F t)); [intros t; lra|]. apply steady_lingers.
+  apply (integral_steady _ (fun t => 0 - f t)), integral_minus; [apply integral_constant|exact H].
+Qed.
+(* The box moves as its position does and the lanelet stands still, so that those that overlap go on to overlap. *)
+Theorem overlaps W : motion W -> forall a l, lingers (occupies W a l).
+Proof.
+  intros M a l. pose proof (grows W M Place_lon Speed_lon a eq_refl) as A.
+  pose proof (grows W M Place_lat Speed_lat a eq_refl) as B.
+  unfold occupies. apply lingers_and; [|apply lingers_and; [|apply lingers_and]].
+  - destruct (s_from (shape W l)); [apply (below_lingers _ _ _ A)|apply lingers_always].
+  - destruct (s_to (shape W l)) as [b|]; [|apply lingers_always].
+    apply (lingers_same (fun t => value W Place_lon a t < b + measure W Length a));
+      [intros t; lra|apply (behind_lingers _ _ _ A)].
+  - apply (below_lingers _ _ _ B).
+  - apply (lingers_same (fun t => value W Place_lat a t < d_to (shape W l) + measure W Width a));
+      [intros t; lra|apply (behind_lingers _ _ _ B)].
+Qed.
+
 (* What lingers goes on for ever, or has a first instant at which it is over. *)
 Lemma first_after (p : R -> Prop) s : lingers p -> 0 <= s -> p s ->
   (forall t, s <= t -> p t) \/ exists t, s <= t /\ ~ p t /\ forall u, s <= u < t -> p u.
@@ -232,7 +261,7 @@ Proof.
   intros L S P. destruct (classic (forall t, s <= t -> p t)) as [A|A]; [left; exact A|right].
   apply not_all_ex_not in A as [e A]. apply imply_to_and in A as [Ee A].
   set (E := fun t => s <= t <= e /\ forall u, s <= u < t -> p u).
-  assert (B : bound E). { exists e. intros t [T _]. apply T. }
+  assert (B : Raxioms.bound E). { exists e. intros t [T _]. apply T. }
   assert (N : exists t, E t). { exists s. split; [lra|]. intros u U. lra. }
   destruct (completeness E B N) as [r [R1 R2]].
   assert (Sr : s <= r). { apply R1. split; [lra|]. intros u U. lra. }
@@ -255,7 +284,7 @@ Lemma last_before F s t : steady F -> 0 <= s <= t -> F s <= 0 -> 0 < F t ->
 Proof.
   intros C T A B. pose proof (steady_lingers F C) as L.
   set (E := fun u => s <= u <= t /\ F u <= 0).
-  assert (Bd : bound E). { exists t. intros u [U _]. apply U. }
+  assert (Bd : Raxioms.bound E). { exists t. intros u [U _]. apply U. }
   assert (N : exists u, E u). { exists s. split; [lra|exact A]. }
   destruct (completeness E Bd N) as [r [R1 R2]].
   assert (sr : s <= r). { apply R1. split; [lra|exact A]. }

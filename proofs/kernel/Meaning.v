@@ -73,9 +73,13 @@ Definition every_in (d : domain) (f : road -> formula) : formula :=
 
 (* --- meaning ------------------------------------------------------------------------------------------ *)
 
+(* A rectangle along and across the road; an end along it is None where it goes on for ever. *)
+Record extent := { s_from : option R; s_to : option R; d_from : R; d_to : R }.
+
 (* A world: signals are any functions of time, sizes are above zero, and the road is any.
    An element of the road is a lanelet, and stands for the lane that it belongs to as well: so every element
-   stands for a lane, and is one of the lanelets of that lane.  No lane is beside itself. *)
+   stands for a lane, and is one of the lanelets of that lane.  Every lanelet is a rectangle in one zone.  No lane is
+   beside itself. *)
 Record world := {
   element : Type;
   somewhere : element;
@@ -84,13 +88,21 @@ Record world := {
   value : signal -> vehicle -> R -> R;
   measure : size -> vehicle -> R;
   measure_positive : forall n a, 0 < measure n a;
-  occupies : vehicle -> element -> R -> Prop;
+  shape : element -> extent;
   adjacent : element -> element -> Prop;
   adjacent_irreflexive : forall l, ~ adjacent l l;
   adjacent_symmetric : forall l m, adjacent l m -> adjacent m l;
   lanelets : element -> element -> Prop;
   lanelets_reflexive : forall l, lanelets l l;
   zone_of : element -> zone }.
+
+(* A box reaches from its front-left corner back by the length and to the right by the width.  A vehicle occupies a
+   lanelet where the insides of both overlap: touching is not enough. *)
+Definition occupies (W : world) (a : vehicle) (e : element W) (t : R) : Prop :=
+  match s_from (shape W e) with None => True | Some b => b < value W Place_lon a t end
+  /\ match s_to (shape W e) with None => True | Some b => value W Place_lon a t - measure W Length a < b end
+  /\ d_from (shape W e) < value W Place_lat a t
+  /\ value W Place_lat a t - measure W Width a < d_to (shape W e).
 
 Section Meaning.
   Variable W : world.

@@ -23,16 +23,10 @@ Definition rate_of (n : signal) : option signal :=
 Definition is_integral (F f : R -> R) : Prop :=
   forall s t, 0 <= s <= t -> exists integrable : Riemann_integrable f s t, F t - F s = RiemannInt integrable.
 
-(* What is true at an instant is true for a while before and after it. *)
-Definition lingers (p : R -> Prop) : Prop :=
-  forall t, 0 <= t -> p t -> exists while, 0 < while /\ forall u, 0 <= u -> t - while < u < t + while -> p u.
-
-(* A vehicle is in a lanelet where the insides of its box and of the lanelet overlap.  The box moves as its position
-   does and the lanelet stands still, so that one that overlap go on to overlap for a while.  There are finitely many
-   lanelets. *)
+(* There are finitely many lanelets.  That a vehicle which occupies one goes on to do so for a while follows from
+   Meaning.v (`overlaps` in Integral.v). *)
 Record motion (W : world) : Prop := {
   grows : forall n rate a, rate_of n = Some rate -> is_integral (value W n a) (value W rate a);
-  overlaps : forall a l, lingers (occupies W a l);
   finite : exists road : list (element W), forall l, In l road }.
 
 (* The claim holds at time 0 in every motion, for all parameters within their bounds. *)

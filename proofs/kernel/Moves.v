@@ -161,16 +161,6 @@ Section Drive.
     - apply find_some in E as [E _]. unfold all_last in L. rewrite Forall_forall in L. exact (L entry E).
     - split; constructor.
   Qed.
-  Lemma below_lingers F f c : is_integral F f -> lingers (fun t => c < F t).
-  Proof.
-    intros H. apply (lingers_same (fun t => 0 < F t - c)); [intros t; lra|]. apply steady_lingers.
-    apply (integral_steady _ (fun t => f t - 0)), integral_minus; [exact H|apply integral_constant].
-  Qed.
-  Lemma behind_lingers F f c : is_integral F f -> lingers (fun t => F t < c).
-  Proof.
-    intros H. apply (lingers_same (fun t => 0 < c - F t)); [intros t; lra|]. apply steady_lingers.
-    apply (integral_steady _ (fun t => 0 - f t)), integral_minus; [apply integral_constant|exact H].
-  Qed.
   Theorem drives_move : motion (world_of D).
   Proof.
     split.
@@ -178,17 +168,6 @@ Section Drive.
       apply course_moves in B as [B1 B2].
       destruct n; cbn in E; try discriminate; injection E as <-; cbn [value world_of];
         unfold value_of, folded; rewrite !not_in_steps by exact (fun H => H); rewrite once; assumption.
-    - intros a l. destruct (body_keeps a) as [A B]. apply course_moves in A as [A _]. apply course_moves in B as [B _].
-      cbn [occupies world_of]. unfold is_in, value_of, folded. rewrite !not_in_steps by exact (fun H => H).
-      rewrite once. cbn [moved_to]. set (r := rectangle_of D l).
-      apply lingers_and; [|apply lingers_and; [|apply lingers_and]].
-      + destruct (from_s r); [apply (below_lingers _ _ _ A)|apply lingers_always].
-      + destruct (to_s r) as [b|]; [|apply lingers_always].
-        apply (lingers_same (fun t => place_ (at_time (along (body_of D a)) t) < Q2R b + measure_of D Length a));
-          [intros t; lra|apply (behind_lingers _ _ _ A)].
-      + apply (below_lingers _ _ _ B).
-      + apply (lingers_same (fun t => place_ (at_time (across (body_of D a)) t) < Q2R (left_d r) + measure_of D Width a));
-          [intros t; lra|apply (behind_lingers _ _ _ B)].
     - exists (map (element_number D) (seq 0 (List.length (rectangles D)))). intros [k K].
       apply in_map_iff. exists k. split; [|apply in_seq; apply Nat.ltb_lt in K; lia].
       unfold element_number. destruct (bool_dec _ true) as [H|H]; [|exfalso; apply H, K].
@@ -199,26 +178,3 @@ End Drive.
 Theorem refuted bounds claim D : all_last D -> own_in_steps D -> repeats D = None ->
   shows D bounds (Not claim) -> ~ valid_of_motions bounds claim.
 Proof. intros L O N [B H] V. apply H. exact (V (world_of D) _ (drives_move D L O N) B). Qed.
-
-(* Where lanelets are any sets of points that stand still, and boxes move, `overlaps` of a motion follows. *)
-Theorem boxes_overlap W (points : element W -> R -> R -> Prop) :
-  (forall n rate a, rate_of n = Some rate -> is_integral (value W n a) (value W rate a)) ->
-  (forall a l t, occupies W a l t <-> exists x y, points l x y
-    /\ value W Place_lon a t - measure W Length a < x < value W Place_lon a t
-    /\ value W Place_lat a t - measure W Width a < y < value W Place_lat a t) ->
-  forall a l, lingers (occupies W a l).
-Proof.
-  intros I O a l. pose proof (I Place_lon Speed_lon a eq_refl) as A. pose proof (I Place_lat Speed_lat a eq_refl) as B.
-  apply (lingers_same (fun t => exists p, points l (fst p) (snd p)
-    /\ (value W Place_lon a t < fst p + measure W Length a /\ fst p < value W Place_lon a t)
-    /\ value W Place_lat a t < snd p + measure W Width a /\ snd p < value W Place_lat a t)).
-  - intros t. rewrite O. split.
-    + intros [[x y] H]. exists x, y. cbn [fst snd] in H. split; [tauto|lra].
-    + intros [x [y H]]. exists (x, y). cbn [fst snd]. split; [tauto|lra].
-  - apply (lingers_some (fun p => points l (fst p) (snd p))). intros [x y]. cbn [fst snd].
-    apply lingers_and; apply lingers_and.
-    + apply (behind_lingers _ _ _ A).
-    + apply (below_lingers _ _ _ A).
-    + apply (behind_lingers _ _ _ B).
-    + apply (below_lingers _ _ _ B).
-Qed.

@@ -99,7 +99,7 @@ Section Worlds.
     value := fun n a t => value W n a (last_sample t);
     measure := measure W;
     measure_positive := measure_positive W;
-    occupies := fun a l t => occupies W a l (last_sample t);
+    shape := shape W;
     adjacent := adjacent W;
     adjacent_irreflexive := adjacent_irreflexive W;
     adjacent_symmetric := adjacent_symmetric W;

@@ -511,8 +511,19 @@ Section Check.
     end.
   Lemma pneg_eval p t : eval (pneg p) t = - eval p t.
   Proof. unfold pneg. rewrite pscale_eval. replace (Q2R (-1)) with (-1) by (unfold Q2R; simpl; lra). ring. Qed.
+  (* As Meaning.v says it of the world of a drive *)
+  Definition is_in (a : vehicle) (e : element_of D) (t : R) : Prop :=
+    match from_s (rectangle_of D e) with None => True | Some b => Q2R b < value_of D Place_lon a t end
+    /\ match to_s (rectangle_of D e) with None => True | Some b => value_of D Place_lon a t - measure_of D Length a < Q2R b end
+    /\ Q2R (right_d (rectangle_of D e)) < value_of D Place_lat a t
+    /\ value_of D Place_lat a t - measure_of D Width a < Q2R (left_d (rectangle_of D e)).
+  Lemma occupies_is_in a e t : occupies (world_of D) a e t <-> is_in a e t.
+  Proof.
+    unfold occupies, is_in. cbn [Meaning.shape value measure world_of shape_of s_from s_to d_from d_to].
+    destruct (from_s (rectangle_of D e)), (to_s (rectangle_of D e)); cbn [option_map]; tauto.
+  Qed.
   Lemma edges_right a e I ps t : edges a (number_of e) I = Some ps -> inside I t ->
-    is_in D a e t <-> Forall (fun p => 0 < eval p t) ps.
+    is_in a e t <-> Forall (fun p => 0 < eval p t) ps.
   Proof.
     unfold edges, is_in. intros H T. rewrite rectangle_number. set (r := at_number (number_of e)) in *.
     pose proof (signal_right Place_lon a I t T) as P. pose proof (signal_right Place_lat a I t T) as Q'.
@@ -528,10 +539,10 @@ Section Check.
       (split; [intros [A [B [C E]]]; repeat split; try lra; auto|intros [A [B [C [E _]]]]; repeat split; try tauto; lra]).
   Qed.
   Lemma occupies_right pol a e I t : occupies_on pol a (number_of e) I = true -> inside I t ->
-    says pol (is_in D a e t).
+    says pol (occupies (world_of D) a e t).
   Proof.
     unfold occupies_on. intros H T. destruct (edges a (number_of e) I) as [ps|] eqn:E; [|discriminate].
-    pose proof (edges_right a e I ps t E T) as R. destruct pol; simpl.
+    pose proof (edges_right a e I ps t E T) as R. rewrite <- occupies_is_in in R. destruct pol; cbn [says].
     - apply R. rewrite forallb_forall in H. apply Forall_forall. intros p P.
       apply (above_right true p I t (H p P) T).
     - intros N. apply R in N. rewrite Forall_forall in N. apply existsb_exists in H as [p [P A]].
@@ -911,7 +922,7 @@ Section Check.
       - assert (E : forall s, extended_number W (t + p) s = extended_number W t s)
           by (intros [x|x]; cbn [extended_number]; rewrite (number_again x t T); reflexivity).
         rewrite !E. tauto.
-      - cbn [occupies world_of]. unfold is_in. rewrite !(value_again _ _ t T). tauto.
+      - unfold occupies. cbn [Meaning.shape value measure world_of]. rewrite !(value_again _ _ t T). tauto.
       - split; intros [e [M E]]; exists e; (split; [exact M|apply IHf; assumption]).
       - split; intros E e M; apply IHf; auto.
       - rewrite (IHf H c t T). tauto.

@@ -126,7 +126,7 @@ Section Reads.
   Proof.
     refine {| element := bool; somewhere := true; parameter := fun p => Q2R (parametric T p); variable := fun _ => 0;
               value := fun n a t => Q2R (step n a (piece t)); measure := fun n a => Q2R (positive_size n a);
-              measure_positive := sizes_positive; occupies := fun _ _ _ => False;
+              measure_positive := sizes_positive; shape := fun _ => {| s_from := None; s_to := None; d_from := 0; d_to := 1 |};
               adjacent := fun l m => l <> m; adjacent_irreflexive := _; adjacent_symmetric := _;
               lanelets := fun l m => l = m; lanelets_reflexive := _; zone_of := fun _ => main |}.
     - intros l H. apply H. reflexivity.

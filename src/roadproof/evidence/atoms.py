@@ -6,9 +6,8 @@ are quantifiers over lanes. Two atoms are the same when their bodies are built a
 and their bound variables are called.
 """
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
-from itertools import combinations
 
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
@@ -19,15 +18,17 @@ from roadproof.logic.rewrite import leaves_of, rename, road_names, without_names
 from roadproof.logic.show import text
 from roadproof.logic.terms import Varying
 
-ZONES = ("main", "merge", "depart")
-
 
 @dataclass
 class Atoms:
-    """The atoms met so far: what they are called, by what they mean up to bound variables; and back."""
+    """The atoms met so far: what they are called, by what they mean up to bound variables; and back.
+
+    ``by_lanelets``: quantifiers over lanelets are no atoms, and are looked through like all others.
+    """
 
     names: dict[Formula, str] = field(default_factory=dict)
     named: dict[str, Formula] = field(default_factory=dict)
+    by_lanelets: bool = False
 
     def abstract(self, formula: Formula) -> Formula:
         """``formula`` with each atom as ``Application(unique text, (), meaning)`` and no other names.
@@ -38,7 +39,7 @@ class Atoms:
 
         def visit(current: Formula) -> Formula:
             if current not in done:
-                done[current] = self._atom(current) if is_atom(current) else descend(current)
+                done[current] = self._atom(current) if self._is_atom(current) else descend(current)
             return done[current]
 
         def descend(current: Formula) -> Formula:
@@ -49,6 +50,9 @@ class Atoms:
             return f.with_children(current, tuple(visit(c) for c in f.children(current)))
 
         return visit(formula)
+
+    def _is_atom(self, formula: Formula) -> bool:
+        return is_atom(formula) and not (self.by_lanelets and has_quantifier(formula))
 
     def meaning(self, name: str) -> Formula:
         """What an atom says. Raises ``InputError`` for a name that no atom has."""
@@ -86,6 +90,12 @@ def is_atom(formula: Formula) -> bool:
             )
         case _:
             return False
+
+
+@once
+def has_quantifier(formula: Formula) -> bool:
+    """Whether ``formula`` quantifies over the road, through the names of definitions."""
+    return isinstance(formula, f.Some | f.Every) or any(map(has_quantifier, f.children(formula)))
 
 
 @once
@@ -134,38 +144,3 @@ def _numbered(current: Formula, depth: int) -> Formula:
             return type(current)(f"#{depth}", domain, _numbered(inner, depth + 1))
         case _:
             return f.with_children(current, tuple(_numbered(c, depth) for c in f.children(current)))
-
-
-def membership(domain: f.Domain, element: str) -> str:
-    """A name for the fact that ``element`` belongs to ``domain``, which time does not change."""
-    return f"{element} in {domain.kind}({domain.of})"
-
-
-def true_of_roads(memberships: Collection[tuple[f.Domain, str]]) -> list[str]:
-    """What holds of ``memberships`` on every road, as SMT-LIB: their names are ``membership(…)``.
-
-    A name stands for a lanelet and for the lane that it belongs to: that of a lane stands for one of
-    its lanelets, too. Every lanelet has one zone; lanes are beside each other, and none beside itself.
-    """
-    found: list[str] = []
-    known = dict.fromkeys(memberships)
-    zones: dict[str, list[str]] = {}
-    for domain, element in known:
-        fact = f"|{membership(domain, element)}|"
-        converse = f.Domain("adjacent", element), domain.of
-        match domain.kind:
-            case "lanelets" if domain.of == element:
-                found.append(fact)
-            case "adjacent" if domain.of == element:
-                found.append(f"(not {fact})")
-            case "adjacent" if domain.of < element and converse in known:
-                found.append(f"(= {fact} |{membership(*converse)}|)")
-            case "zone":
-                zones.setdefault(element, []).append(fact)
-            case _:
-                pass
-    for facts in zones.values():
-        found += [f"(not (and {a} {b}))" for a, b in combinations(sorted(facts), 2)]
-        if len(facts) == len(ZONES):
-            found.append(f"(or {' '.join(sorted(facts))})")
-    return found

@@ -37,6 +37,7 @@ class Certificate:
 
     ``pinned``: values of parameters that the claim's own premise demands, as words (``minDanger = 0.6 s``);
     they are put in before anything is asked (``logic.pins``).
+    ``by_lanelets``: whether quantifiers over lanelets are looked through (``atoms.Atoms``).
     ``tableau``: the same proof for Coq (``kernel.tableau``), as lines; None where there is none. Certificates
     that differ in it alone are equal: it can be found again. ``query``: the claim as it was proved, for the
     search of a tableau, on which nobody rests; None where a file was read, which has the text alone.
@@ -54,6 +55,7 @@ class Certificate:
     queries: tuple[tuple[str, str], ...]
     assumed: motion.Assumption = motion.NOTHING
     pinned: tuple[str, ...] = ()
+    by_lanelets: bool = False
     tableau: tuple[str, ...] | None = field(default=None, compare=False)
     query: Query | None = field(default=None, compare=False, repr=False)
 
@@ -66,16 +68,18 @@ def certify(
     label: str = "",
     scenario: int | None = None,
     assumed: motion.Assumption = motion.NOTHING,
-    pinned: tuple[str, ...] = (),
+    reading: tuple[tuple[str, ...], bool] = ((), False),
 ) -> Certificate:
     """The certificate for a claim, its queries derived here and not by the finder of the proof.
 
-    ``sites``: the instances and the names of sites. Raises ``InputError`` where the text of a query that was
-    put together reads as another formula, and where the claim does not pin what is ``pinned``.
+    ``sites``: the instances and the names of sites; ``reading``: what is pinned, and whether it is read
+    by lanelets. Raises ``InputError`` where the text of a query that was put together reads as another
+    formula, and where the claim does not pin what is said to be pinned.
     """
     if not query.written and read_claim(specification, query.text).formula != query.formula:
         raise InputError(f"the claim's text does not mean what was proved: {query.text}")
-    atoms, (instances, names) = Atoms(), sites
+    pinned, by_lanelets = reading
+    atoms, (instances, names) = Atoms(by_lanelets=by_lanelets), sites
     abstracted = f.implication(*goal_of(specification, query, assumed, atoms, pinned))
     bounds = specification.library.bounds
     ground = derive_query(abstracted, atoms, instances, names, lemmas, bounds, query.lanes)
@@ -97,6 +101,7 @@ def certify(
         tuple(queries),
         assumed,
         pinned,
+        by_lanelets,
         query=query,
     )
 
@@ -156,7 +161,7 @@ def rule(certificate: Certificate, library: Library, ask: Callable[[str], str]) 
             certificate.property,
             certificate.scenario,
             certificate.assumed,
-            certificate.pinned,
+            (certificate.pinned, certificate.by_lanelets),
         )
     except RoadproofError as error:
         return Acceptance.REJECTED, Why.NOT_DERIVED(error)
@@ -228,6 +233,7 @@ def certificate_data(certificate: Certificate) -> JsonObject:
             else None,
             unused=assumed.unused if is_assumed else (),
             pinned=certificate.pinned,
+            by_lanelets=certificate.by_lanelets,
             set=certificate.set_name,
             options=certificate.options,
             view="dense",
@@ -273,6 +279,7 @@ def read_certificate_data(content: object, where: str) -> Certificate:
         tuple((x.title, "\n".join(x.smtlib) + "\n") for x in said.queries),
         _assumed(said, where),
         said.pinned,
+        said.by_lanelets,
         said.tableau,
     )
 

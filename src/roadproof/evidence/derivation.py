@@ -14,8 +14,9 @@ from typing import TypeAlias, assert_never
 
 from roadproof.errors import InputError
 from roadproof.evidence import state
-from roadproof.evidence.atoms import Atoms, is_rigid, membership, true_of_roads
+from roadproof.evidence.atoms import Atoms, is_rigid
 from roadproof.evidence.cases import split
+from roadproof.evidence.road_axioms import membership, true_of_roads
 from roadproof.evidence.sites import Lemma, Site, prefix_form
 from roadproof.evidence.times import (
     ZERO,

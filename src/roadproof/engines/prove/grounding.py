@@ -13,7 +13,8 @@ from typing import TypeAlias, assert_never
 
 from roadproof.engines.prove.roads import Roster
 from roadproof.engines.solve.recall import RecallingSession
-from roadproof.evidence.atoms import ZONES, Atoms, is_rigid, membership, true_of_roads
+from roadproof.evidence.atoms import Atoms, is_rigid
+from roadproof.evidence.road_axioms import ZONES, membership, true_of_roads
 from roadproof.evidence.sites import Lemma, Site, prefix_form
 from roadproof.evidence.times import ZERO, Moment, at, compared_times, constant, moment_of
 from roadproof.logic import formula as f

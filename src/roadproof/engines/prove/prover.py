@@ -1,12 +1,13 @@
 """One claim, one verdict: PROVED with a certificate, REFUTED with a judged countermodel, or UNKNOWN."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import closing
 from dataclasses import field, replace
 from fractions import Fraction
 from functools import lru_cache
 
+from roadproof.engines.prove.claim_parts import conjuncts, premise_of
 from roadproof.engines.prove.countermodel import realise, with_truths
 from roadproof.engines.prove.doubt import Doubt, Stop
 from roadproof.engines.prove.lasso import find_lasso
@@ -15,7 +16,7 @@ from roadproof.engines.prove.search import GaveUp, InstanceSearch, Model, Proof
 from roadproof.engines.prove.states import Learnt, StateChecker
 from roadproof.engines.solve.recall import ask
 from roadproof.errors import InputError
-from roadproof.evidence.atoms import Atoms
+from roadproof.evidence.atoms import Atoms, is_atom
 from roadproof.evidence.certificate import Certificate, certify, goal_of
 from roadproof.evidence.countermodel import Countermodel
 from roadproof.evidence.derivation import derive_query, met_sites
@@ -26,7 +27,6 @@ from roadproof.library import motion
 from roadproof.library.bind import default_values
 from roadproof.library.specification import Query, Specification, is_within
 from roadproof.logic import formula as f
-from roadproof.logic import syntax
 from roadproof.logic.formula import Formula
 from roadproof.logic.initial_conditions import pins
 from roadproof.logic.rewrite import with_values
@@ -49,6 +49,9 @@ TURNS: tuple[tuple[bool, float], ...] = (
 ON_FEW_LANES = 1.0
 REPEATING = 1.0
 VACUITY = 0.5
+# Where a search stops that predicates about lanelets may have misled, and units of work to look through them.
+LOST_BY_LANELETS = (Stop.PLACE, Stop.FACTS, Stop.ROUNDS, Stop.LANES)
+BY_LANELETS = 5.0
 
 
 @dataclass(frozen=True)
@@ -97,14 +100,36 @@ def prove(
     instants need be no motion. ``shared``: of the claim's own premise, where a drive satisfies it. Raises
     ``BudgetExceeded``; ``InputError`` for forbidden assumptions.
     """
+    begun, effort = now(), effort or Effort()
+    found = _prove(specification, query, effort, assumed, shared)
+    if found.verdict is not Verdict.UNKNOWN or found.stop not in LOST_BY_LANELETS or not _has_lanelets(query):
+        return found
+    again = _prove(specification, query, effort.of(min(BY_LANELETS, effort.units)), assumed, shared, True)
+    return replace(again if again.holds else found, seconds=since(begun), work=found.work + again.work)
+
+
+def _has_lanelets(query: Query) -> bool:
+    """Whether the claim speaks of lanelets as one predicate that can be looked through."""
+    return any(isinstance(x, f.Some | f.Every) and is_atom(x) for x in f.subformulas(query.formula))
+
+
+def _prove(
+    specification: Specification,
+    query: Query,
+    effort: Effort,
+    assumed: motion.Assumption,
+    shared: SharedPremise | None,
+    by_lanelets: bool = False,
+) -> Result:
+    """As ``prove``; ``by_lanelets``: quantifiers over lanelets are looked through, and only proofs count."""
     begun = now()
-    meter = (effort or Effort()).meter()
+    meter = effort.meter()
     here = motion.values_said(specification, assumed.said)
     demanded = _demanded(specification, query, here)
     pinned = motion.value_texts(specification, demanded)
     values = {**here, **demanded}
     learnt = None if shared is None else shared.learnt.setdefault(pinned, Learnt())
-    states = _states(specification, values, learnt)
+    states = _states(specification, values, learnt, by_lanelets)
     premise, claim = goal_of(specification, query, assumed, states.atoms, pinned)
     attempt = _Attempt(specification, query, states, meter, motion.is_moving(assumed.said))
 
@@ -122,7 +147,7 @@ def prove(
         proofs.append(found)
     fewer = attempt.needed(assumed, values, proofs)
     if fewer != assumed:
-        again = prove(specification, query, meter.effort(), fewer)
+        again = _prove(specification, query, meter.effort(), fewer, None, by_lanelets)
         if again.verdict is Verdict.PROVED and attempt.never_holds(premise, f.TRUE):
             again = replace(again, verdict=Verdict.VACUOUS, reason=Why.CONTRADICTION())
         if again.holds:
@@ -136,7 +161,7 @@ def prove(
         return replace(result(*rejected), stop=Stop.CERTIFICATE if rejected[0] is Verdict.UNKNOWN else None)
     if premise != f.TRUE and attempt.never_holds(premise, f.TRUE):
         return result(Verdict.VACUOUS, Why.CONTRADICTION(), certificate)
-    condition = None if shared is not None else _premise(query, claim)
+    condition = None if shared is not None else premise_of(query, claim)
     if condition is not None and attempt.never_holds(premise, condition):
         return result(Verdict.VACUOUS, Why.PREMISE(), certificate)
     return result(Verdict.PROVED, NO_REASON, certificate)
@@ -184,11 +209,16 @@ class ProofHeuristic:
 
 
 def _states(
-    specification: Specification, values: Mapping[str, Fraction], learnt: Learnt | None = None
+    specification: Specification,
+    values: Mapping[str, Fraction],
+    learnt: Learnt | None = None,
+    by_lanelets: bool = False,
 ) -> StateChecker:
     """Which states there are where parameters have ``values``, for a claim of its own atoms."""
     library = specification.library
-    return StateChecker(Atoms(), library.bounds, {**default_values(library), **values}, learnt)
+    return StateChecker(
+        Atoms(by_lanelets=by_lanelets), library.bounds, {**default_values(library), **values}, learnt
+    )
 
 
 def _demanded(
@@ -198,27 +228,6 @@ def _demanded(
     library = specification.library
     found = pins(with_values(query.formula, here))
     return {name: x for name, x in found.items() if is_within(library.bounds[name], x)}
-
-
-def conjuncts(formula: Formula) -> Iterator[Formula]:
-    """The parts of a conjunction, of its conjunctions, and so on."""
-    if isinstance(formula, f.And):
-        for part in formula.parts:
-            yield from conjuncts(part)
-    else:
-        yield formula
-
-
-def _premise(query: Query, formula: Formula) -> Formula | None:
-    """A of a claim ``A -> B``, which is built as ``not A or B``, and as ``not A`` where B is ``false``."""
-    match query.claim.body:
-        case syntax.Binary("->", _, syntax.Literal_(value)) if value is False:
-            return f.negation(formula)
-    match formula:
-        case f.Or((f.Not(premise), _)):
-            return premise
-        case _:
-            return None
 
 
 @lru_cache(maxsize=256)
@@ -256,18 +265,23 @@ class _Attempt:
     moving: bool
     names: dict[Site, str] = field(default_factory=dict)
 
+    @property
+    def refutes(self) -> bool:
+        """Whether a model is made into a trace."""
+        return not (self.moving or self.states.atoms.by_lanelets)
+
     def decide(self, goal: Formula) -> Proof | Countermodel | GaveUp:
         """Look for a proof and for a countermodel in turns, until one is found or the work is used up."""
         last = GaveUp(self.meter.reason())
         turns = TURNS[-1:] if f.is_state(goal) else TURNS
-        roster = None if self.moving else roster_for(goal, self.query.lanes)
+        roster = roster_for(goal, self.query.lanes) if self.refutes else None
         for number, (wishful, units) in enumerate(turns, 1):
             begin("prove", f"turn {number} of {len(turns)}")
             if roster is not None and number == len(turns[:2]):
                 few = self._run(self._search(goal, {}, True, roster), self.meter.part(ON_FEW_LANES))
                 if isinstance(few, Countermodel):
                     return few
-            if number == len(turns[:3]) and not self.moving:
+            if number == len(turns[:3]) and self.refutes:
                 repeating = find_lasso(self.query, goal, self.states, self.meter.part(REPEATING))
                 if repeating is not None:
                     return repeating
@@ -287,7 +301,7 @@ class _Attempt:
     def _found(self, search: InstanceSearch, meter: Budget) -> Proof | Countermodel | GaveUp:
         found = search.run(meter)
         while not isinstance(found, Proof | GaveUp):
-            countermodel = None if self.moving else self._realised(found)
+            countermodel = self._realised(found) if self.refutes else None
             if countermodel is not None:
                 return countermodel
             if not search.widen():
@@ -320,11 +334,18 @@ class _Attempt:
             for lemma in proof.lemmas:
                 before = lemmas.get(lemma.literals, ())
                 lemmas[lemma.literals] = tuple(dict.fromkeys([*before, *lemma.moments]))
-        atoms = Atoms()
+        atoms = Atoms(by_lanelets=self.states.atoms.by_lanelets)
         claim = f.implication(*goal_of(self.specification, self.query, assumed, atoms, pinned))
         met = self._met(claim, atoms, proofs)
         made = tuple(Lemma(literals, moments) for literals, moments in lemmas.items())
-        return certify(self.specification, self.query, met, made, assumed=assumed, pinned=pinned)
+        return certify(
+            self.specification,
+            self.query,
+            met,
+            made,
+            assumed=assumed,
+            reading=(pinned, self.states.atoms.by_lanelets),
+        )
 
     def needed(
         self, assumed: motion.Assumption, values: Mapping[str, Fraction], proofs: Sequence[Proof]
@@ -335,7 +356,7 @@ class _Attempt:
         """
         if not assumed.axioms and not motion.limits_said(assumed.said):
             return motion.Assumption(assumed.said)
-        instances, atoms = _instances(proofs), Atoms()
+        instances, atoms = _instances(proofs), Atoms(by_lanelets=self.states.atoms.by_lanelets)
         own, _ = self._met(atoms.abstract(with_values(self.query.formula, values)), atoms, proofs)
 
         def is_used(formula: Formula) -> bool:

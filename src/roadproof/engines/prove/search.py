@@ -16,8 +16,8 @@ from roadproof.engines.prove.grounding import Grounding, Universal
 from roadproof.engines.prove.roads import Roster, open_quantifiers
 from roadproof.engines.prove.states import CASE, StateChecker, is_plain, reason
 from roadproof.engines.solve.smt import Satisfiability
-from roadproof.evidence.atoms import membership
 from roadproof.evidence.derivation import free_prefix
+from roadproof.evidence.road_axioms import membership
 from roadproof.evidence.sites import Lemma, Site
 from roadproof.evidence.times import ZERO, Moment, at, bound_parameters, constant, moment_of, read_moment
 from roadproof.logic import formula as f

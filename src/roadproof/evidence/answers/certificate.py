@@ -122,6 +122,14 @@ class Certificate:
             "put in before the queries are derived."
         ),
     ] = ()
+    by_lanelets: Annotated[
+        bool,
+        LEFT_OUT,
+        Doc(
+            "Whether the proof looks through quantifiers over lanelets; else one about one instant is a "
+            "predicate."
+        ),
+    ] = False
     set: SetName
     options: Options
     view: Annotated[Dense, Remedy("a certificate is about dense time")]

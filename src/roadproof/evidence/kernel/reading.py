@@ -2,8 +2,9 @@
 
 from collections.abc import Sequence
 
-from roadproof.evidence.atoms import ZONES, is_rigid, up_to_variables
+from roadproof.evidence.atoms import is_rigid, up_to_variables
 from roadproof.evidence.kernel import branch as b
+from roadproof.evidence.road_axioms import ZONES
 from roadproof.evidence.sites import Site, prefix_form
 from roadproof.evidence.times import ZERO, Moment, at, compared_times, moment_of
 from roadproof.logic import formula as f
