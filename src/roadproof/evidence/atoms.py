@@ -8,6 +8,7 @@ and their bound variables are called.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import Literal, TypeAlias, assert_never
 
 from roadproof.errors import InputError
 from roadproof.logic import formula as f
@@ -18,17 +19,20 @@ from roadproof.logic.rewrite import leaves_of, rename, road_names, without_names
 from roadproof.logic.show import text
 from roadproof.logic.terms import Varying
 
+Reading: TypeAlias = Literal["states", "lanelets", "names"]
+
 
 @dataclass
 class Atoms:
     """The atoms met so far: what they are called, by what they mean up to bound variables; and back.
 
-    ``by_lanelets``: quantifiers over lanelets are no atoms, and are looked through like all others.
+    ``reading``: by ``lanelets``, quantifiers over these are no atoms, and are looked through like all others;
+    by ``names``, definitions that speak of several instants are atoms, too.
     """
 
     names: dict[Formula, str] = field(default_factory=dict)
     named: dict[str, Formula] = field(default_factory=dict)
-    by_lanelets: bool = False
+    reading: Reading = "states"
 
     def abstract(self, formula: Formula) -> Formula:
         """``formula`` with each atom as ``Application(unique text, (), meaning)`` and no other names.
@@ -52,7 +56,15 @@ class Atoms:
         return visit(formula)
 
     def _is_atom(self, formula: Formula) -> bool:
-        return is_atom(formula) and not (self.by_lanelets and has_quantifier(formula))
+        match self.reading:
+            case "states":
+                return is_atom(formula)
+            case "lanelets":
+                return is_atom(formula) and not has_quantifier(formula)
+            case "names":
+                return is_atom(formula) or is_temporal_name(formula)
+            case _:
+                assert_never(self.reading)
 
     def meaning(self, name: str) -> Formula:
         """What an atom says. Raises ``InputError`` for a name that no atom has."""
@@ -90,6 +102,11 @@ def is_atom(formula: Formula) -> bool:
             )
         case _:
             return False
+
+
+def is_temporal_name(formula: Formula) -> bool:
+    """Whether ``formula`` is a definition that speaks of several instants."""
+    return isinstance(formula, Application) and not f.is_state(formula)
 
 
 @once

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers import certificate as kept
-from roadproof.evidence.atoms import Atoms
+from roadproof.evidence.atoms import Atoms, Reading
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.derivation import derive_lemma_queries, derive_query
 from roadproof.evidence.finding import Acceptance
@@ -37,7 +37,7 @@ class Certificate:
 
     ``pinned``: values of parameters that the claim's own premise demands, as words (``minDanger = 0.6 s``);
     they are put in before anything is asked (``logic.pins``).
-    ``by_lanelets``: whether quantifiers over lanelets are looked through (``atoms.Atoms``).
+    ``reading``: which parts of the claim are predicates (``atoms.Atoms``).
     ``tableau``: the same proof for Coq (``kernel.tableau``), as lines; None where there is none. Certificates
     that differ in it alone are equal: it can be found again. ``query``: the claim as it was proved, for the
     search of a tableau, on which nobody rests; None where a file was read, which has the text alone.
@@ -55,7 +55,7 @@ class Certificate:
     queries: tuple[tuple[str, str], ...]
     assumed: motion.Assumption = motion.NOTHING
     pinned: tuple[str, ...] = ()
-    by_lanelets: bool = False
+    reading: Reading = "states"
     tableau: tuple[str, ...] | None = field(default=None, compare=False)
     query: Query | None = field(default=None, compare=False, repr=False)
 
@@ -68,18 +68,18 @@ def certify(
     label: str = "",
     scenario: int | None = None,
     assumed: motion.Assumption = motion.NOTHING,
-    reading: tuple[tuple[str, ...], bool] = ((), False),
+    read_with: tuple[tuple[str, ...], Reading] = ((), "states"),
 ) -> Certificate:
     """The certificate for a claim, its queries derived here and not by the finder of the proof.
 
-    ``sites``: the instances and the names of sites; ``reading``: what is pinned, and whether it is read
-    by lanelets. Raises ``InputError`` where the text of a query that was put together reads as another
-    formula, and where the claim does not pin what is said to be pinned.
+    ``sites``: the instances and the names of sites; ``read_with``: what is pinned, and the reading. Raises
+    ``InputError`` where the text of a query that was put together reads as another formula, and where the
+    claim does not pin what is said to be pinned.
     """
     if not query.written and read_claim(specification, query.text).formula != query.formula:
         raise InputError(f"the claim's text does not mean what was proved: {query.text}")
-    pinned, by_lanelets = reading
-    atoms, (instances, names) = Atoms(by_lanelets=by_lanelets), sites
+    pinned, reading = read_with
+    atoms, (instances, names) = Atoms(reading=reading), sites
     abstracted = f.implication(*goal_of(specification, query, assumed, atoms, pinned))
     bounds = specification.library.bounds
     ground = derive_query(abstracted, atoms, instances, names, lemmas, bounds, query.lanes)
@@ -101,7 +101,7 @@ def certify(
         tuple(queries),
         assumed,
         pinned,
-        by_lanelets,
+        reading,
         query=query,
     )
 
@@ -161,7 +161,7 @@ def rule(certificate: Certificate, library: Library, ask: Callable[[str], str]) 
             certificate.property,
             certificate.scenario,
             certificate.assumed,
-            (certificate.pinned, certificate.by_lanelets),
+            (certificate.pinned, certificate.reading),
         )
     except RoadproofError as error:
         return Acceptance.REJECTED, Why.NOT_DERIVED(error)
@@ -233,7 +233,7 @@ def certificate_data(certificate: Certificate) -> JsonObject:
             else None,
             unused=assumed.unused if is_assumed else (),
             pinned=certificate.pinned,
-            by_lanelets=certificate.by_lanelets,
+            reading=None if certificate.reading == "states" else certificate.reading,
             set=certificate.set_name,
             options=certificate.options,
             view="dense",
@@ -279,7 +279,7 @@ def read_certificate_data(content: object, where: str) -> Certificate:
         tuple((x.title, "\n".join(x.smtlib) + "\n") for x in said.queries),
         _assumed(said, where),
         said.pinned,
-        said.by_lanelets,
+        said.reading or "states",
         said.tableau,
     )
 

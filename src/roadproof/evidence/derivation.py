@@ -123,6 +123,9 @@ def derive_lemma_queries(
 
     There is one for each way in which the maxima and minima of the clause can fall.
     """
+    for name, _ in literals:
+        if not f.is_state(atoms.meaning(name)):
+            raise InputError(f"'{name[:60]}' speaks of several instants, and a lemma of one")
     against = [
         f.negation(atoms.meaning(name)) if positive else atoms.meaning(name) for name, positive in literals
     ]

@@ -38,20 +38,29 @@ class BudgetExceeded(RoadproofError):
 class Effort:
     """What one search may cost: ``units`` of work, and ``timeout`` seconds of wall clock as a backstop.
 
-    Without ``timeout`` the backstop follows from the units.
+    Without ``timeout`` the backstop follows from the units. ``begun``: since when the seconds of a
+    ``timeout`` run, which several searches share; None where they run from each meter on.
     """
 
     units: float = 60.0
     timeout: float | None = None
+    begun: float | None = field(default=None, repr=False, compare=False)
+
+    def running(self) -> "Effort":
+        """The same limits, with the seconds of a ``timeout`` running from now on, if not before."""
+        if self.timeout is None or self.begun is not None:
+            return self
+        return replace(self, begun=time.monotonic())
 
     def of(self, units: float) -> "Effort":
         """Other units under the same backstop."""
         return replace(self, units=units)
 
     def meter(self) -> "Budget":
-        """A meter that begins to count now."""
+        """A meter that begins to count units now, and seconds too unless they run already."""
         seconds = self.timeout if self.timeout is not None else backstop(self.units)
-        return Budget(self.units, seconds)
+        begun = time.monotonic() if self.begun is None else self.begun
+        return Budget(self.units, seconds, begun=begun)
 
 
 @dataclass

@@ -1,7 +1,9 @@
-"""The parts of a claim that are proved one at a time, and its premise."""
+"""The parts of a claim that are proved one at a time, its premise, and readings that may bring a proof."""
 
+from collections import Counter
 from collections.abc import Iterator
 
+from roadproof.evidence.atoms import Reading, is_atom, is_temporal_name
 from roadproof.library.specification import Query
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
@@ -27,3 +29,23 @@ def premise_of(query: Query, formula: Formula) -> Formula | None:
             return premise
         case _:
             return None
+
+
+def other_readings(formula: Formula) -> Iterator[Reading]:
+    """Readings other than the usual one that the claim gives a reason to try.
+
+    By names where a definition about several instants is met twice; by lanelets where a predicate hides them.
+    """
+    if any(count > 1 for count in Counter(_temporal_names(formula)).values()):
+        yield "names"
+    if any(isinstance(x, f.Some | f.Every) and is_atom(x) for x in f.subformulas(formula)):
+        yield "lanelets"
+
+
+def _temporal_names(formula: Formula) -> Iterator[Formula]:
+    """Definitions about several instants that are part of no other, as often as they are met."""
+    if is_temporal_name(formula):
+        yield formula
+    else:
+        for part in f.children(formula):
+            yield from _temporal_names(part)

@@ -45,7 +45,8 @@ def prove_of_motions(
     Returns PROVED, VACUOUS or UNKNOWN; counterexamples are searched among drives.
     Raises ``BudgetExceeded``, ``InputError``.
     """
-    begun, meter = now(), effort.meter()
+    begun, effort = now(), effort.running()
+    meter = effort.meter()
     none, *choices = stages(specification, under_limits(specification, query, said))
     others = [x for x in choices if x] or [none]
     result = None

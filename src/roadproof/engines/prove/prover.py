@@ -7,7 +7,7 @@ from dataclasses import field, replace
 from fractions import Fraction
 from functools import lru_cache
 
-from roadproof.engines.prove.claim_parts import conjuncts, premise_of
+from roadproof.engines.prove.claim_parts import conjuncts, other_readings, premise_of
 from roadproof.engines.prove.countermodel import realise, with_truths
 from roadproof.engines.prove.doubt import Doubt, Stop
 from roadproof.engines.prove.lasso import find_lasso
@@ -16,7 +16,7 @@ from roadproof.engines.prove.search import GaveUp, InstanceSearch, Model, Proof
 from roadproof.engines.prove.states import Learnt, StateChecker
 from roadproof.engines.solve.recall import ask
 from roadproof.errors import InputError
-from roadproof.evidence.atoms import Atoms, is_atom
+from roadproof.evidence.atoms import Atoms, Reading
 from roadproof.evidence.certificate import Certificate, certify, goal_of
 from roadproof.evidence.countermodel import Countermodel
 from roadproof.evidence.derivation import derive_query, met_sites
@@ -49,9 +49,7 @@ TURNS: tuple[tuple[bool, float], ...] = (
 ON_FEW_LANES = 1.0
 REPEATING = 1.0
 VACUITY = 0.5
-# Where a search stops that predicates about lanelets may have misled, and units of work to look through them.
-LOST_BY_LANELETS = (Stop.PLACE, Stop.FACTS, Stop.ROUNDS, Stop.LANES)
-BY_LANELETS = 5.0
+OTHERWISE = 2.0  # for each other reading of what is a predicate
 
 
 @dataclass(frozen=True)
@@ -100,17 +98,15 @@ def prove(
     instants need be no motion. ``shared``: of the claim's own premise, where a drive satisfies it. Raises
     ``BudgetExceeded``; ``InputError`` for forbidden assumptions.
     """
-    begun, effort = now(), effort or Effort()
+    begun, effort = now(), (effort or Effort()).running()
     found = _prove(specification, query, effort, assumed, shared)
-    if found.verdict is not Verdict.UNKNOWN or found.stop not in LOST_BY_LANELETS or not _has_lanelets(query):
-        return found
-    again = _prove(specification, query, effort.of(min(BY_LANELETS, effort.units)), assumed, shared, True)
-    return replace(again if again.holds else found, seconds=since(begun), work=found.work + again.work)
-
-
-def _has_lanelets(query: Query) -> bool:
-    """Whether the claim speaks of lanelets as one predicate that can be looked through."""
-    return any(isinstance(x, f.Some | f.Every) and is_atom(x) for x in f.subformulas(query.formula))
+    brief = effort.of(min(OTHERWISE, effort.units))
+    for reading in other_readings(query.formula):
+        if found.verdict is not Verdict.UNKNOWN or found.stop is Stop.CERTIFICATE:
+            break
+        again = _prove(specification, query, brief, assumed, shared, reading)
+        found = replace(again if again.holds else found, work=found.work + again.work)
+    return replace(found, seconds=since(begun))
 
 
 def _prove(
@@ -119,9 +115,9 @@ def _prove(
     effort: Effort,
     assumed: motion.Assumption,
     shared: SharedPremise | None,
-    by_lanelets: bool = False,
+    reading: Reading = "states",
 ) -> Result:
-    """As ``prove``; ``by_lanelets``: quantifiers over lanelets are looked through, and only proofs count."""
+    """As ``prove``, in one reading; in others than the usual one only proofs count."""
     begun = now()
     meter = effort.meter()
     here = motion.values_said(specification, assumed.said)
@@ -129,7 +125,7 @@ def _prove(
     pinned = motion.value_texts(specification, demanded)
     values = {**here, **demanded}
     learnt = None if shared is None else shared.learnt.setdefault(pinned, Learnt())
-    states = _states(specification, values, learnt, by_lanelets)
+    states = _states(specification, values, learnt, reading)
     premise, claim = goal_of(specification, query, assumed, states.atoms, pinned)
     attempt = _Attempt(specification, query, states, meter, motion.is_moving(assumed.said))
 
@@ -147,7 +143,7 @@ def _prove(
         proofs.append(found)
     fewer = attempt.needed(assumed, values, proofs)
     if fewer != assumed:
-        again = _prove(specification, query, meter.effort(), fewer, None, by_lanelets)
+        again = _prove(specification, query, meter.effort(), fewer, None, reading)
         if again.verdict is Verdict.PROVED and attempt.never_holds(premise, f.TRUE):
             again = replace(again, verdict=Verdict.VACUOUS, reason=Why.CONTRADICTION())
         if again.holds:
@@ -212,13 +208,11 @@ def _states(
     specification: Specification,
     values: Mapping[str, Fraction],
     learnt: Learnt | None = None,
-    by_lanelets: bool = False,
+    reading: Reading = "states",
 ) -> StateChecker:
     """Which states there are where parameters have ``values``, for a claim of its own atoms."""
     library = specification.library
-    return StateChecker(
-        Atoms(by_lanelets=by_lanelets), library.bounds, {**default_values(library), **values}, learnt
-    )
+    return StateChecker(Atoms(reading=reading), library.bounds, {**default_values(library), **values}, learnt)
 
 
 def _demanded(
@@ -268,7 +262,7 @@ class _Attempt:
     @property
     def refutes(self) -> bool:
         """Whether a model is made into a trace."""
-        return not (self.moving or self.states.atoms.by_lanelets)
+        return not self.moving and self.states.atoms.reading == "states"
 
     def decide(self, goal: Formula) -> Proof | Countermodel | GaveUp:
         """Look for a proof and for a countermodel in turns, until one is found or the work is used up."""
@@ -334,7 +328,7 @@ class _Attempt:
             for lemma in proof.lemmas:
                 before = lemmas.get(lemma.literals, ())
                 lemmas[lemma.literals] = tuple(dict.fromkeys([*before, *lemma.moments]))
-        atoms = Atoms(by_lanelets=self.states.atoms.by_lanelets)
+        atoms = Atoms(reading=self.states.atoms.reading)
         claim = f.implication(*goal_of(self.specification, self.query, assumed, atoms, pinned))
         met = self._met(claim, atoms, proofs)
         made = tuple(Lemma(literals, moments) for literals, moments in lemmas.items())
@@ -344,7 +338,7 @@ class _Attempt:
             met,
             made,
             assumed=assumed,
-            reading=(pinned, self.states.atoms.by_lanelets),
+            read_with=(pinned, self.states.atoms.reading),
         )
 
     def needed(
@@ -356,7 +350,7 @@ class _Attempt:
         """
         if not assumed.axioms and not motion.limits_said(assumed.said):
             return motion.Assumption(assumed.said)
-        instances, atoms = _instances(proofs), Atoms(by_lanelets=self.states.atoms.by_lanelets)
+        instances, atoms = _instances(proofs), Atoms(reading=self.states.atoms.reading)
         own, _ = self._met(atoms.abstract(with_values(self.query.formula, values)), atoms, proofs)
 
         def is_used(formula: Formula) -> bool:

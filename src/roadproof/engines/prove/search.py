@@ -253,7 +253,7 @@ class InstanceSearch:
         for ((name, moment), _), true in zip(applied, truths, strict=True):
             instant = moment.value(values)
             # A time that no obligation of the model speaks of may lie before 0, where there is nothing.
-            if instant >= 0:
+            if instant >= 0 and f.is_state(self.states.atoms.meaning(name)):
                 states.setdefault(instant, {})[name] = bool(true)
         return dict(sorted(states.items()))
 

@@ -55,6 +55,8 @@ def _called(search: Search) -> str:
 
 def _ask(search: Search) -> Outcome:
     begun = now()
+    options = replace(search.search_options, effort=search.search_options.effort.running())
+    search = replace(search, search_options=options)
     library = search.specification.library
     question = pose(library, search.query, search.setting)
     answers = list(_answers(question, search))

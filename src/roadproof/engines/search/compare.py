@@ -7,6 +7,7 @@ from dataclasses import replace
 from roadproof.engines.prove.prover import prove
 from roadproof.engines.search.ask import ask, reads_all
 from roadproof.engines.search.constant_motion import steady_drive
+from roadproof.engines.search.dense_candidates import falsifying_drive
 from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.refute import sampled_drive
 from roadproof.evidence.answers import compare as kept
@@ -182,21 +183,23 @@ def _at_values(against: Search, claim: Query, effort: Effort) -> Direction | Non
 
 def _decide(against: Search, claim: Query) -> Direction:
     """Ask for a proof first, which takes a moment where there is one, then for a drive against the claim."""
-    effort = against.search_options.effort
-    meter = effort.meter()
+    effort = against.search_options.effort.running()
+    against = replace(against, search_options=replace(against.search_options, effort=effort))
     drive = _constant(against, claim)
     if drive is not None:
         return Direction(claim, verdict=Verdict.REFUTED, drive=drive)
     proof = prove(against.specification, claim, effort.of(min(PROOF, effort.units)))
     if proof.holds and proof.certificate is not None:
         return Direction(claim, verdict=Verdict.PROVED, reason=proof.reason, certificate=proof.certificate)
-    left = Effort(effort.units, meter.seconds_left())
     if is_state(claim.formula) and not reads_all(against):
-        direction = _at_values(against, claim, left)
+        direction = _at_values(against, claim, effort)
         return direction or Direction(claim, verdict=Verdict.UNKNOWN, reason=Why.NO_STATE())
-    found = ask(replace(against, search_options=replace(against.search_options, effort=left)))
-    if found.drives:
-        return Direction(claim, verdict=Verdict.REFUTED, drive=found.drives[0])
+    found = ask(against)
+    drive = found.drives[0] if found.drives else None
+    if found.verdict is Verdict.NONE_WITHIN:
+        drive = falsifying_drive(against)
+    if drive is not None:
+        return Direction(claim, verdict=Verdict.REFUTED, drive=drive)
     if found.impossibility is not None:
         return Direction(claim, verdict=Verdict.PROVED, certificate=found.impossibility.certificate)
     verdict: ClaimVerdict = (

@@ -60,16 +60,20 @@ def falsifying_drive(search: Search, given: Iterable[Drive] = ()) -> JudgedDrive
     """
     question = pose(search.specification.library, search.query, search.setting)
     begin("judge", "drives within the limits, in dense time")
+    clock = search.search_options.effort.meter()
     has_own = bool(own_of([search.query.formula]))
     for drive in () if has_own else _cast(given, tuple(question.vehicles)):
+        clock.seconds_left()
         found = _judged(search, question, drive)
         if found is not None:
             return found
     if not has_own:
-        sampled = drive_within(search.specification, question, lambda drive: keeps_limits(question, drive))
+        sampled = drive_within(
+            search.specification, question, lambda drive: keeps_limits(question, drive), clock
+        )
         if sampled is not None:
             return sampled
-    meter = search.search_options.effort.meter().part(WEAKER)
+    meter = clock.part(WEAKER)
     for drive in _weaker_solutions(search, question, meter):
         found = _judged(search, question, drive)
         if found is not None:

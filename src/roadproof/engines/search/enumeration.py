@@ -25,6 +25,7 @@ from roadproof.logic.custom_names import own_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.initial_conditions import conjuncts, pins
 from roadproof.logic.rewrite import bounds_of, intervals_of, leaves_of, terms_of, with_values
+from roadproof.runtime.budget import Budget
 from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.replay import first_breach, first_overlap
@@ -46,7 +47,11 @@ TYPICAL_PLACES = tuple(map(Fraction, (0, 0, 6, -6, 10, -10, 20, -20, 40, -40, 70
 
 
 def small_drive(
-    specification: Specification, claim: Query, within: Within, rounds: int = 1
+    specification: Specification,
+    claim: Query,
+    within: Within,
+    rounds: int = 1,
+    clock: Budget | None = None,
 ) -> JudgedDrive | None:
     """A drive on which ``claim`` is false at time 0, judged; None where none was found, which says nothing.
 
@@ -54,27 +59,30 @@ def small_drive(
     claim says: in the first no vehicle reverses, in the second boxes may overlap, too. After the first of
     ``rounds`` each looks
     around the drives that came nearest. None too for claims about no vehicle, about own signals, or with
-    numbers that have no value.
+    numbers that have no value. Raises ``BudgetExceeded`` where the seconds of the ``clock`` have passed.
     """
     search = _search(specification, claim, within)
     try:
-        return None if search is None else search.run(rounds)
+        return None if search is None else replace(search, clock=clock).run(rounds)
     except (InputError, UsageError):
         return None
 
 
 def drive_within(
-    specification: Specification, question: SearchProblem, keeps: Callable[[Drive], bool]
+    specification: Specification,
+    question: SearchProblem,
+    keeps: Callable[[Drive], bool],
+    clock: Budget | None = None,
 ) -> JudgedDrive | None:
     """A short drive on which the formula of ``question`` holds, judged; None where none was found.
 
-    ``keeps``: whether a drive is one of those that are asked for.
+    ``keeps``: whether a drive is one of those that are asked for; ``clock`` as in ``small_drive``.
     """
     if not question.vehicles or own_of([question.query.formula]):
         return None
     bound = tuple(question.bound(lanes) for lanes in question.lanes)
     try:
-        return _Search(specification, question, bound, "model", keeps).run(1)
+        return _Search(specification, question, bound, "model", keeps, clock).run(1)
     except (InputError, UsageError):
         return None
 
@@ -99,6 +107,7 @@ class _Search:
     formulas: tuple[Formula, ...]
     within: Within
     keeps: Callable[[Drive], bool] | None = None
+    clock: Budget | None = None
 
     def run(self, rounds: int) -> JudgedDrive | None:
         """Judge some drives unseen, then those that the monitor chooses, in rounds around the best so far."""
@@ -115,6 +124,8 @@ class _Search:
                         return found
         monitor = compile(dict(enumerate(self.formulas)))
         for turn in range(1, rounds + 1):
+            if self.clock is not None:
+                self.clock.seconds_left()
             batch = patterns.batch(rows, grid.dt, grid.steps)
             answers = monitor.evaluate(batch, "clip").answers
             for number in range(len(self.formulas)):
@@ -134,6 +145,8 @@ class _Search:
         return Patterns(menus, self._durations())
 
     def _judged(self, patterns: Patterns, row: Shares, number: int) -> JudgedDrive | None:
+        if self.clock is not None:
+            self.clock.seconds_left()
         drive = patterns.drive([float(x) for x in row])
         if not self._refutes(drive, number):
             return None

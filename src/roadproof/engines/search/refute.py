@@ -20,7 +20,7 @@ from roadproof.logic.formula import is_state
 from roadproof.logic.initial_conditions import pins
 from roadproof.logic.rewrite import is_cubic_state
 from roadproof.logic.terms import Signal
-from roadproof.runtime.budget import Effort
+from roadproof.runtime.budget import Budget, Effort
 from roadproof.semantics.exact.replay import first_breach, first_overlap
 from roadproof.world.vehicle import Range, Vehicle
 
@@ -32,17 +32,22 @@ ROUNDS = 3
 FASTEST, HARDEST = Fraction(80), Fraction(12)  # m/s and m/s^2
 
 
-def quick_drive(specification: Specification, claim: Query) -> JudgedDrive | None:
+def quick_drive(
+    specification: Specification, claim: Query, clock: Budget | None = None
+) -> JudgedDrive | None:
     """A short drive on which ``claim`` is false, within the limits of the usual models, else without them.
 
-    Found without a solver, in some tenths of a second; None where none was found.
+    Found without a solver, in some tenths of a second; None where none was found. Raises ``BudgetExceeded``
+    where the seconds of the ``clock`` have passed.
     """
-    return _small(specification, claim, 1)
+    return _small(specification, claim, 1, clock)
 
 
-def _small(specification: Specification, claim: Query, rounds: int) -> JudgedDrive | None:
+def _small(
+    specification: Specification, claim: Query, rounds: int, clock: Budget | None = None
+) -> JudgedDrive | None:
     for within in WITHIN:
-        found = small_drive(specification, claim, within, rounds)
+        found = small_drive(specification, claim, within, rounds, clock)
         if found is not None:
             return found
     return None
@@ -63,7 +68,7 @@ def refuting_drive(
     within = _searched(specification, claim, setting, effort.of(units))
     if within is not None or known is not None:
         return within or known
-    small = _small(specification, claim, ROUNDS)
+    small = _small(specification, claim, ROUNDS, effort.meter())
     if small is not None:
         return small
     wide = {name: _without_limits(usual_model(negation(claim).formula, name)) for name in claim.vehicles}

@@ -80,7 +80,7 @@ def settle(
     ``said``: what is assumed, in words; of motions only a drive refutes. UNKNOWN where the clock cuts the
     search off.
     """
-    begun = now()
+    begun, effort = now(), effort.running()
     if seek_drive:
         return _Settler(specification, query, effort, (label, scenario), tuple(said), begun).run()
     try:
@@ -161,7 +161,7 @@ class _Settler:
         if not self.against.vehicles:
             return self._empty() if is_moving(self.said) else None
         try:
-            found = quick_drive(self.specification, self.against)
+            found = quick_drive(self.specification, self.against, self.effort.meter())
             if found is None and is_cubic_state(self.against.formula):
                 values = pins(self.against.formula)
                 return sampled_drive(self.specification, self.against, values, Setting())
@@ -217,6 +217,8 @@ def settle_bounded(search: "Search", given: Iterable[Drive] = ()) -> Settlement:
     from roadproof.engines.search.bounded import check_bounded
 
     begun = now()
+    options = replace(search.search_options, effort=search.search_options.effort.running())
+    search = replace(search, search_options=options)
     try:
         found = check_bounded(search, given)
     except BudgetExceeded as late:

@@ -122,14 +122,15 @@ class Certificate:
             "put in before the queries are derived."
         ),
     ] = ()
-    by_lanelets: Annotated[
-        bool,
+    reading: Annotated[
+        Literal["lanelets", "names"] | None,
         LEFT_OUT,
         Doc(
-            "Whether the proof looks through quantifiers over lanelets; else one about one instant is a "
-            "predicate."
+            "Which parts of the claim are predicates. Left out: definitions and quantifiers over lanelets "
+            "about one instant. lanelets: the proof looks through these quantifiers. names: definitions "
+            "about several instants are predicates, too."
         ),
-    ] = False
+    ] = None
     set: SetName
     options: Options
     view: Annotated[Dense, Remedy("a certificate is about dense time")]

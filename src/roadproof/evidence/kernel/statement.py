@@ -105,7 +105,7 @@ def state(certificate: Certificate, library: Library, query: Query | None = None
         for premises in (limits, [*limits, *axioms])
     )
     demanded = values_said(specification, certificate.pinned)
-    atoms, proved = Atoms(by_lanelets=certificate.by_lanelets), with_values(supposed, demanded)
+    atoms, proved = Atoms(reading=certificate.reading), with_values(supposed, demanded)
     atoms.abstract(with_values(query.formula, {**here, **demanded}))  # named first, as in the certificate
     abstracted = atoms.abstract(proved)
     if any(name not in atoms.named for lemma in certificate.lemmas for name, _ in lemma.literals):
