@@ -164,8 +164,12 @@ class Claims(Unprepared):
         result = settled.result
         if settled.verdict is not Verdict.UNKNOWN or result.stop is None:
             return settled
+        from roadproof.engines.search.remedy import remedy_of
+
         asked = query, piece.assuming, result.stop, self.effort, self.seek_drive
         doubt = doubt_of(*asked, result.reason)
+        option = remedy_of(self.specification_of(piece), query, piece.assuming, doubt.cause)
+        doubt = replace(doubt, option=option)
         return replace(settled, result=replace(result, reason=Why.TOLD(doubt), doubt=doubt))
 
     def doubt(self, piece: Task, reason: Reason) -> dict[str, ClaimResult]:

@@ -36,46 +36,33 @@ class Stop(StrEnum):
     CERTIFICATE = "certificate"
 
 
+# What helps where no option does (``engines.search.remedy`` looks for one).
+WEAKER = "state a weaker claim, with more in its premise"
 # Each cause as a clause, and what helps.
 _WORDS: Mapping[Cause, tuple[str, str]] = {
     Cause.WORK: ("the work limit ended the search", "raise --effort"),
     Cause.CLOCK: ("the clock ended the search", "raise --timeout, or ask on an idle machine"),
     Cause.PROCESS: ("the process of this claim ended", "ask this claim alone, with --jobs 1"),
-    Cause.SOLVER: (
-        "z3 could not decide the arithmetic",
-        "fix parameters with --declared or --param, or bound the signals in the premise",
-    ),
-    Cause.PLACE: (
-        "candidate counterexamples were found, but none could be placed on a road",
-        "ask about drives on one road: --engine smt --road NAME",
-    ),
+    Cause.SOLVER: ("z3 could not decide the arithmetic", WEAKER),
+    Cause.PLACE: ("candidate counterexamples were found, but none could be placed on a road", WEAKER),
     Cause.FACTS: (
         "the facts about motion give no proof, and no drive was found that refutes the claim",
-        "add the limits of the vehicles: --vehicle SV=car",
+        WEAKER,
     ),
-    Cause.CERTIFICATE: (
-        "a proof was found, but its certificate could not be confirmed",
-        "state the parts of the conclusion as claims of their own",
-    ),
-    Cause.LANES: (
-        "the claim asks for more and more lanes and lanelets",
-        "name the lanes (L, L1) instead of quantifying over them",
-    ),
+    Cause.CERTIFICATE: ("a proof was found, but its certificate could not be confirmed", WEAKER),
+    Cause.LANES: ("the claim asks for more and more lanes and lanelets", WEAKER),
     Cause.INDUCTION: (
         "the claim repeats a step of bounded time for ever; the prover has no induction that fits it",
-        "bound the time, such as F[0, 10 s] and G[0, 10 s]",
+        WEAKER,
     ),
-    Cause.ALTERNATION: (
-        "a counterexample would have to change infinitely often; none was found",
-        "bound the time, such as F[0, 10 s] and G[0, 10 s]",
-    ),
+    Cause.ALTERNATION: ("a counterexample would have to change infinitely often; none was found", WEAKER),
     Cause.FIRST_INSTANT: (
         "the claim asks for a first instant of what it compares, and signals that jump need not have one",
-        "add --assume motion, so that positions and speeds are continuous",
+        WEAKER,
     ),
     Cause.SECOND_ORDER: (
         "the claim relates positions to accelerations beyond the facts of second order",
-        "add a bound of the speed in between, such as G[0, 2 s] v_lon(SV) <= 20 m/s, to the premise",
+        WEAKER,
     ),
 }
 
@@ -86,12 +73,16 @@ _TRIES: Mapping[kept.Tried, str] = {"proof": "a proof", "traces": "traces", "dri
 
 @dataclass(frozen=True)
 class Doubt:
-    """Why a claim ends UNKNOWN. ``units``: the work limit; ``detail``: what a solver said, or empty."""
+    """Why a claim ends UNKNOWN. ``units``: the work limit; ``detail``: what a solver said, or empty.
+
+    ``option``: what helps this very claim, where more is known than the cause.
+    """
 
     cause: Cause
     tried: tuple[kept.Tried, ...]
     units: float
     detail: str = ""
+    option: str | None = None
 
     @property
     def effort_helps(self) -> bool:
@@ -102,7 +93,7 @@ class Doubt:
     def remedy(self) -> str:
         """The option or premise that helps, as an imperative; with the work limit where more can help."""
         more = f" (now {self.units:g})" if self.cause is Cause.WORK else ""
-        return f"{_WORDS[self.cause][1]}{more}"
+        return self.option or f"{_WORDS[self.cause][1]}{more}"
 
     @property
     def kept(self) -> kept.Doubt:

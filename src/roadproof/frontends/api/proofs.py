@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from roadproof.frontends.api.kernel import KernelAnswer
     from roadproof.frontends.settings.value_types import KernelName
 
+REQUIRES_MOTION = "limits of vehicles require assume=motion, or 'assuming motion:' before the claim"
 _PROPERTY = re.compile(r"[A-Z]\d+")
 
 
@@ -229,8 +230,6 @@ def claims_asked(
     Raises as ``prove``.
     """
     dense = given.engine == "dense"
-    if dense and given.vehicles and given.assume is None:
-        raise UsageError("limits of vehicles require assume=motion")
     values = home.all_values() if given.declared else dict(home.values)
     limits = (models_of(given.vehicles), values) if dense else ()
     said = Assumptions(given.assume is not None, *limits)
@@ -271,6 +270,8 @@ class Assumptions:
         models = {x: self.vehicles.get(x, self.vehicles.get("")) for x in query.vehicles}
         limits = [x for name, y in models.items() if y is not None for x in limits_of(query, name, y)]
         said = claim.said if is_moving(claim.said) else ((MOTION,) * self.motion + claim.said)
+        if self.vehicles and not is_moving(said):
+            raise UsageError(REQUIRES_MOTION)
         return at_values(home.specification, AssumedClaim(query, (*said, *limits)), self.values)
 
     def of_list(self, specification: Specification, task: Task) -> Task:
@@ -313,6 +314,8 @@ def claims_of(
         raise UsageError(
             "assume=motion requires claims of your own: template properties are about all traces"
         )
+    if not own and assumed.vehicles:
+        raise UsageError(REQUIRES_MOTION)
     tasks = _own(home, own, expected)
     if not tasks:
         listed = [x for x in template_properties() if not (assumed.values and x.of_all_values)]
