@@ -83,6 +83,13 @@ class Observation(PlainHeading):
         tuple[float | None, float | None],
         Doc("Bounds of the margin by which it holds, in the SI units of what is compared; null is no bound."),
     ]
+    decides: Annotated[
+        bool,
+        Doc(
+            "Whether the robustness has a sign, which is then that of the verdict; of a drive it is 0 where "
+            "samples and judge disagree."
+        ),
+    ]
     seconds: Annotated[float, Rule(minimum=0), Doc("How long the trace is, in s; of a drive its horizon.")]
     dt: Annotated[Rational, Doc("Time between samples, in s; of a drive those of the margin.")]
     parts: Annotated[tuple[Part, ...], Rule(least=1), Doc("The formula, then the definitions in it.")]

@@ -113,6 +113,7 @@ class MonitorAnswer(Table):
             verdict=x.verdict,
             under_the_other_end=x.other,
             robustness=(_finite(x.margin[0]), _finite(x.margin[1])),
+            decides=x.decides,
             seconds=x.seconds,
             dt=str(x.dt),
             parts=tuple(

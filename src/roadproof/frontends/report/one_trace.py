@@ -36,9 +36,10 @@ def _promise(observed: FirstAnswer) -> str:
 def _margin(observed: FirstAnswer) -> str:
     low, high = observed.margin
     grid = f", on a grid of {float(observed.dt):g} s" if observed.view == "dense" else ""
+    whether = "" if observed.decides else "; it does not decide"
     if low == high:
-        return f"robustness {low:.6g}{grid}"
-    return f"robustness between {low:.6g} and {high:.6g}, whatever comes after the trace{grid}"
+        return f"robustness {low + 0.0:.6g}{grid}{whether}"
+    return f"robustness between {low:.6g} and {high:.6g}, whatever comes after the trace{grid}{whether}"
 
 
 def _interval(span: tuple[float, float]) -> str:

@@ -11,7 +11,7 @@ from roadproof.logic.formula import Application, Formula, nesting
 from roadproof.recordings.formats.recording import Bools
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.exact import judge
-from roadproof.semantics.exact.robust import robustness
+from roadproof.semantics.exact.robust import agreeing, robustness
 from roadproof.semantics.exact.truth import TruthSet
 from roadproof.semantics.sampled.answers import Convention, Margin, TruthArrays
 from roadproof.semantics.sampled.batch import Batch
@@ -53,6 +53,12 @@ class FirstAnswer:
     convention: Convention | None = None
     other: Truth | None = None
 
+    @property
+    def decides(self) -> bool:
+        """Whether the margin has a sign whatever comes after the trace, which is then that of the verdict."""
+        low, high = self.margin
+        return low > 0 or high < 0
+
 
 def observe_samples(text: str, formula: Formula, batch: Batch, convention: Convention) -> FirstAnswer:
     """The monitor's answer on the one trace of ``batch``. Raises ``InputError``."""
@@ -84,12 +90,14 @@ def observe_samples(text: str, formula: Formula, batch: Batch, convention: Conve
 
 
 def observe_drive(text: str, formula: Formula, drive: Drive, horizon: Fraction, dt: Fraction) -> FirstAnswer:
-    """The exact judge's answer on a drive, in dense and unbounded time; the margin is on the grid of dt.
+    """The exact judge's answer on a drive, in dense and unbounded time; the margin is on the grid of dt, and
+    0 where its sign there is not that of the verdict.
 
     Raises ``InputError`` and ``UsageError``.
     """
     judgement = judge(formula, drive)
-    margin = robustness(formula, drive, dt, int(horizon / dt) * dt).value
+    sampled = robustness(formula, drive, dt, int(horizon / dt) * dt).value
+    margin = agreeing(sampled, judgement.holds)
     strips = [_exact_strip(text, judgement.truth(formula))]
     depths = _depths(formula)
     named = [(part, truth) for part, truth in judgement.named() if part != formula]

@@ -47,6 +47,15 @@ class Robustness:
         return float(self.margins[self.formula][0])
 
 
+def agreeing(margin: float, holds: bool) -> float:
+    """A margin on samples, cut off at 0 where the judge says the opposite of its sign.
+
+    In dense time the margin of what holds is not below 0, and that of what does not hold not above: samples
+    pass over what happens between them, and over the first instant that an open condition has not.
+    """
+    return max(margin, 0.0) if holds else min(margin, 0.0)
+
+
 def robustness(formula: Formula, drive: Drive, dt: Fraction, horizon: Fraction) -> Robustness:
     """Margins of a bound formula on a drive, sampled every ``dt`` s over [0, horizon].
 
