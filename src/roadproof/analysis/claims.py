@@ -27,6 +27,7 @@ from roadproof.evidence.strict import LARGEST_INDEX, Fields, JsonObject, read_js
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library, Query, Specification, read_specification
 from roadproof.logic.custom_names import told_freedom
+from roadproof.logic.first_instant import told_first_instants
 from roadproof.reasons import Reason, Why
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.canonical import digest
@@ -122,8 +123,9 @@ class Claims(Unprepared):
         return self.specifications[task.set_name]
 
     def supposed(self, task: Task) -> tuple[str, ...]:
-        """What an answer supposes of the own signals of a claim, in words."""
-        return told_freedom(read_claim(self.specification_of(task), task.claim).formula)
+        """What an answer supposes of the own signals of a claim, and first instants that it asks for."""
+        formula = read_claim(self.specification_of(task), task.claim).formula
+        return (*told_freedom(formula), *told_first_instants(formula))
 
     @cached_property
     def named(self) -> dict[str, Task]:

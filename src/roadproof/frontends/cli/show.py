@@ -25,6 +25,7 @@ from roadproof.library.uses import used_in
 from roadproof.library.words import Words, words_of
 from roadproof.logic import formula as f
 from roadproof.logic import syntax
+from roadproof.logic.first_instant import told_first_instants
 from roadproof.logic.latex import align, latex
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.restore import as_syntax, term_as_syntax
@@ -59,13 +60,14 @@ class About:
 class Exhibit:
     """What is on show: a claim, or definitions with the parameters that they speak of, or all three.
 
-    ``about``: the scenario that it is, in words.
+    ``about``: the scenario that it is, in words; ``hints``: first instants that it asks for.
     """
 
     claim: Claim | None
     definitions: tuple[Definition, ...] = ()
     parameters: tuple[ParameterDeclaration, ...] = ()
     about: About | None = None
+    hints: tuple[str, ...] = ()
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -111,9 +113,11 @@ def _find_claim(specification: Specification, what: str, expand: bool) -> Exhibi
     claim = parse_claim(what)
     formula = read_claim(specification, what).formula
     if expand:
-        return Exhibit(Claim(claim.given, as_syntax(formula, expand=True)))
+        shown = Claim(claim.given, as_syntax(formula, expand=True))
+        return Exhibit(shown, hints=told_first_instants(formula))
     used = used_in(specification, claim)
-    return Exhibit(claim, _described(specification, used.definitions), used.parameters)
+    described = _described(specification, used.definitions)
+    return Exhibit(claim, described, used.parameters, hints=told_first_instants(formula))
 
 
 def _find_definition(specification: Specification, name: str, expand: bool) -> Exhibit:
@@ -169,6 +173,7 @@ def _as_text(exhibit: Exhibit) -> str:
         "" if exhibit.claim is None else text(exhibit.claim, width),
         "\n".join(text(definition, width) for definition in exhibit.definitions),
         "\n".join(_declaration(parameter) for parameter in exhibit.parameters),
+        "\n".join(f"# {hint}" for hint in exhibit.hints),
     ]
     return "\n\n".join(block for block in blocks if block)
 

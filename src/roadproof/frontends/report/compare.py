@@ -8,6 +8,7 @@ from roadproof.library.scenarios import scenario_number
 from roadproof.library.specification import Query, Specification
 from roadproof.library.words import words_of
 from roadproof.logic.custom_names import told_freedom
+from roadproof.logic.first_instant import told_first_instants
 from roadproof.logic.formula import conjunction
 
 _SENTENCES = {
@@ -29,8 +30,8 @@ def as_text(comparison: Comparison, specification: Specification) -> str:
         *_called(comparison.second, specification.in_set(sets[1])),
         _SENTENCES[comparison.relation],
     ]
-    both = told_freedom(conjunction(comparison.first.formula, comparison.second.formula))
-    lines += [f"  {said}" for said in both]
+    both = conjunction(comparison.first.formula, comparison.second.formula)
+    lines += [f"  {said}" for said in (*told_freedom(both), *told_first_instants(both))]
     return "\n".join([*lines, *as_outline(sheet_of(comparison))])
 
 

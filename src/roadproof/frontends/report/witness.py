@@ -11,6 +11,7 @@ from roadproof.library.scenarios import LANE
 from roadproof.library.specification import Library, Specification
 from roadproof.library.words import words_of
 from roadproof.logic.custom_names import told_freedom
+from roadproof.logic.first_instant import told_first_instants
 from roadproof.runtime.records import dataclass
 
 SearchedFor: TypeAlias = tuple[Outcome, Specification]
@@ -32,7 +33,8 @@ def as_line(outcome: Outcome, specification: Specification, verbose: bool = Fals
     if outcome.scenario is not None:
         name = words_of(specification, outcome.scenario).name
         shown += f"\n  {name}" if name else ""
-    shown += "".join(f"\n  {said}" for said in told_freedom(outcome.query.formula))
+    asked = outcome.query.formula
+    shown += "".join(f"\n  {said}" for said in (*told_freedom(asked), *told_first_instants(asked)))
     if outcome.reason:
         shown += f"\n  {outcome.reason}"
     if outcome.impossibility is not None:

@@ -9,6 +9,7 @@ from roadproof.library.scenario_references import read_query
 from roadproof.library.scenarios import number_in, scenario_number
 from roadproof.library.specification import Specification, source_of
 from roadproof.library.words import words_of
+from roadproof.logic.first_instant import told_first_instants
 from roadproof.logic.show import as_syntax, decimal, text
 from roadproof.logic.syntax import Definition, ParameterDeclaration
 from roadproof.world.signals import SIGNALS, SIZES
@@ -119,7 +120,7 @@ def _about(ask: Ask) -> Answer:
         about[name] = {
             "text": query.text,
             "name": "" if words is None else words.name,
-            "sentence": "" if words is None else words.sentence,
+            "sentence": "; ".join(told_first_instants(query.formula)) if words is None else words.sentence,
             "vehicles": list(query.vehicles),
             "lanes": list(query.lanes),
         }
