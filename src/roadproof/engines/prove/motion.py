@@ -245,7 +245,7 @@ def _grown(formula: Formula, sides: Sequence[Sides]) -> Iterator[Axiom]:
         if faster is None:
             continue
         for start in known:
-            for speed in (x for x in bounds.get(faster, {}) if t.constant_value(x) != 0):
+            for speed in (x for x in _bounds_of(faster, bounds) if t.constant_value(x) != 0):
                 for duration in times:
                     arguments = _texts(*_two_sides(moving, start), speed, duration)
                     yield Axiom("within", arguments)
