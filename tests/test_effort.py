@@ -1,8 +1,11 @@
 """Work is counted, the clock is a backstop that an answer names."""
 
 import pickle
+import time
 
 import pytest
+
+import roadproof as rp
 
 from roadproof.runtime import budget
 from roadproof.runtime.budget import Budget, BudgetExceeded, Effort, backstop
@@ -81,3 +84,43 @@ def test_lateness_comes_back_from_another_process():
     assert isinstance(late, BudgetExceeded)
     assert str(late) == str(BudgetExceeded(2.5))
     assert late.exit_code == 20
+
+
+def test_the_seconds_of_a_timeout_run_over_all_meters_of_a_running_effort(clock):
+    running = Effort(10, timeout=20).running()
+    clock.now = 12
+    assert running.of(1).meter().seconds_left() == running.running().meter().seconds_left() == 8
+    clock.now = 21
+    with pytest.raises(BudgetExceeded, match="after 20 s"):
+        running.of(5).meter().is_out()
+    assert Effort(10, timeout=20).meter().seconds_left() == 20
+
+
+def test_without_a_timeout_each_meter_has_its_own_backstop(clock):
+    running = Effort(10).running()
+    clock.now = 500
+    assert running.meter().seconds_left() == backstop(10)
+
+
+def test_when_an_effort_began_is_no_part_of_it(clock):
+    clock.now = 7
+    effort = Effort(10, timeout=20)
+    assert effort.running() == effort
+    assert repr(effort.running()) == repr(effort)
+
+
+@pytest.mark.parametrize(
+    ("claim", "options"),
+    [
+        ("G F scenario_4(SV,POV,L) -> G F G F scenario_5(SV,POV,L)", {}),
+        ("G F scenario_4(SV,POV,L) -> G F G F scenario_5(SV,POV,L)", {"engine": "smt"}),
+        ("scenario_4(SV,POV,L) -> F G scenario_9(SV,POV,L)", {"engine": "milp"}),
+        ("scenario_4(SV,POV,L) -> G s(SV) < s(POV) + 9 m", {"assume": "motion"}),
+    ],
+)
+def test_a_claim_ends_with_its_timeout_whatever_is_tried(claim, options):
+    """Proofs, sampled drives and searches share the seconds; one step may be under way when they end."""
+    begun = time.monotonic()
+    found = rp.prove(claim, jobs=1, timeout=2, effort=500, fresh=True, **options)
+    assert "after 2 s" in found.answers[0].settled.result.reason
+    assert time.monotonic() - begun < 2 + 6
