@@ -6,7 +6,6 @@ import time
 import pytest
 
 import roadproof as rp
-
 from roadproof.runtime import budget
 from roadproof.runtime.budget import Budget, BudgetExceeded, Effort, backstop
 

@@ -5,6 +5,8 @@ from dataclasses import replace
 import pytest
 
 from kernel.needs import needs_coq
+from roadproof.engines.prove import prover
+from roadproof.engines.prove.doubt import Stop
 from roadproof.engines.prove.prover import prove
 from roadproof.engines.solve.recall import ask
 from roadproof.evidence.certificate import certificate_data, read_certificate_data, refusal
@@ -13,6 +15,7 @@ from roadproof.evidence.kernel.coq import ready
 from roadproof.evidence.sites import Lemma
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
+from roadproof.library.motion import NOTHING
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 
@@ -52,6 +55,13 @@ def test_a_scenario_that_is_met_twice_is_a_predicate(shape):
 def test_what_is_not_valid_is_not_proved_by_names(shape):
     for scenario in SCENARIOS[:2]:
         assert decided(shape.format(scenario, scenario)).verdict is not Verdict.PROVED
+
+
+def test_a_model_in_which_definitions_are_predicates_is_no_answer():
+    """Nothing is said of states by a definition about several instants, whether it is true or false."""
+    query = read_claim(HOME, f"F {SCENARIOS[1]} -> G {SCENARIOS[1]}")
+    found = prover._prove(HOME, query, Effort(2), NOTHING, None, "names")
+    assert (found.verdict, found.stop) == (Verdict.UNKNOWN, Stop.PLACE)
 
 
 def test_different_scenarios_are_different_predicates():

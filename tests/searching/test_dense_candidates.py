@@ -1,6 +1,7 @@
 """PROVED-BOUNDED is given only after drives within its limits were judged in dense time."""
 
 import random
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -114,7 +115,22 @@ def test_a_drive_outside_the_limits_is_no_candidate():
     assert not keeps_limits(posed(elsewhere), type(drive)(moved))
 
 
-def _moved(motion, by):
-    from dataclasses import replace
+@pytest.mark.parametrize(
+    ("claim", "changes"),
+    [
+        ("v_lon(SV) <= 41 m/s", {"v_lon": Fraction(50)}),
+        ("d(SV) <= 8 m", {"d": Fraction(20)}),
+        ("length(SV) <= 5 m", {"length": Fraction(9)}),
+        ("F[6 s, 6 s] s(SV) - s(POV) >= -500 m", {"s": Fraction(-700)}),
+    ],
+)
+def test_a_given_drive_outside_the_limits_refutes_nothing(claim, changes):
+    drive = next(shipped_drives())
+    outside = type(drive)({**drive.vehicles, "SV": replace(drive.vehicles["SV"], **changes)})
+    search = asked(claim, road="main-2")
+    found = check_bounded(search, [drive, outside])
+    assert found.verdict in (Verdict.PROVED_BOUNDED, Verdict.PROVED)
 
+
+def _moved(motion, by):
     return replace(motion, s=motion.s + by, d=motion.d + 100)

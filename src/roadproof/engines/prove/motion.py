@@ -11,6 +11,7 @@ from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 
+from roadproof.engines.prove.doubt import Stop
 from roadproof.engines.prove.prover import Result, prove
 from roadproof.errors import InputError
 from roadproof.evidence.atoms import is_atom, up_to_variables
@@ -62,6 +63,8 @@ def prove_of_motions(
         if result.verdict is not Verdict.UNKNOWN or meter.is_out():
             break
     assert result is not None, "something is always tried"
+    if result.verdict is Verdict.UNKNOWN and result.stop is Stop.FACTS and meter.left() <= 0:
+        result = replace(result, stop=Stop.WORK, reason=meter.reason())
     return replace(result, seconds=since(begun), work=meter.spent)
 
 
