@@ -15,6 +15,7 @@ from roadproof.evidence.judged import judge_file
 from roadproof.library.loading import bundled_library
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
+from roadproof.world.motion import starts_of
 
 LIBRARY = bundled_library()
 OPEN = (
@@ -109,6 +110,10 @@ def test_a_drive_outside_the_limits_is_no_candidate():
     ):
         other = asked(search.query.text, **({"road": "main-2"} | changes))
         assert not keeps_limits(posed(other), drive.cast(same))
+    last = max(starts_of(motion)[-1].time for motion in drive.vehicles.values())
+    for horizon, kept in ((last, True), (last - Fraction(3, 5), False)):
+        within = posed(asked(search.query.text, road="main-2", horizon=horizon, dt=Fraction(3, 5)))
+        assert keeps_limits(within, drive) == kept
     elsewhere = asked("F atLane(POV,L) and inMergeZone(SV)", road="merge")
     far = drive.vehicles["SV"].s + 10_000
     moved = {name: _moved(motion, far) for name, motion in drive.vehicles.items()}
