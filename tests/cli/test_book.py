@@ -27,6 +27,7 @@ PAGES = [
     ROOT / "docs/reference/language.md",
     *(ROOT / "docs/how-to" / f"{name}.md" for name in GUIDES),
     ROOT / "docs/explanation/motion.md",
+    ROOT / "docs/explanation/entering.md",
 ]
 
 

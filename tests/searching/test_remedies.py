@@ -69,6 +69,12 @@ def test_limits_are_those_of_a_vehicle_that_the_claim_mentions():
         assert f"--vehicle {name}=car" in remedy_of(HOME, query, ("motion",), Cause.FACTS)
 
 
+def test_motion_that_is_assumed_is_not_named_again():
+    query = read_claim(HOME, CLAIMS[0])
+    assert "--assume motion" in remedy_of(HOME, query, (), Cause.FIRST_INSTANT)
+    assert "--assume motion" not in remedy_of(HOME, query, ("motion",), Cause.FIRST_INSTANT)
+
+
 def test_limits_that_are_there_are_not_named_again():
     query = read_claim(HOME, "s(SV) <= 0 m -> G[1 s, 1 s] s(SV) <= 9 m")
     assert "--vehicle" not in remedy_of(HOME, query, ("motion", "v_lon(SV) <= 30 m/s"), Cause.FACTS)
