@@ -4,12 +4,14 @@ Tests that take long (``lengthy.txt``) are marked ``long``.
 
 A module that is imported while a test has replaced something would keep the replacement for good. New
 random cases are for ``make fuzz``. Answers are computed, not taken from those that are known. Compiled files
-are kept, whatever the shell says: tests start hundreds of commands.
+are kept, whatever the shell says: tests start hundreds of commands. Ctrl-C is heard by the commands that tests
+start, also where the shell has the tests ignore it (``nohup make test &``): what is ignored is inherited.
 """
 
 import gc
 import os
 import pkgutil
+import signal
 import sys
 from collections.abc import Iterator
 from importlib import import_module
@@ -29,6 +31,8 @@ from studio.browser import browsing
 os.environ["ROADPROOF_KNOWN"] = "off"
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 work_here()
 gc.disable()  # until all tests are collected: what is imported stays
 settings.register_profile("same", derandomize=True, deadline=None)

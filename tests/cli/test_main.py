@@ -5,6 +5,7 @@ import json
 import os
 import pty
 import re
+import shutil
 import struct
 import subprocess
 import sys
@@ -203,6 +204,39 @@ def test_an_interrupt_ends_quietly() -> None:
     _, said = process.communicate()
     assert process.returncode == 130
     assert said == "roadproof: interrupted\n"
+
+
+IGNORING = ("bash", "-c", "trap '' INT; exec \"$@\"", "bash")
+"""Runs a command as ``nohup COMMAND &`` does: Ctrl-C is ignored, and so by all that it starts."""
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="bash is not installed")
+def test_the_tests_hear_an_interrupt_where_the_shell_ignores_it() -> None:
+    test = f"{__file__}::test_an_interrupt_ends_quietly"
+    command = [*IGNORING, sys.executable, "-m", "pytest", "-q", "-p", "no:xdist", "-p", "no:cacheprovider"]
+    environment = {k: v for k, v in os.environ.items() if not k.startswith("PYTEST_")}
+    done = subprocess.run([*command, test], capture_output=True, text=True, env=environment)
+    assert "1 passed" in done.stdout, done.stdout
+    assert done.returncode == 0
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="bash is not installed")
+def test_a_command_goes_on_where_the_shell_ignores_interrupts() -> None:
+    """As all programs in the background of a shell do."""
+    import signal
+
+    code = (
+        "import sys\nfrom roadproof.frontends.cli import main as m\n"
+        "def wait(_):\n    print('ready', flush=True)\n    sys.stdin.readline()\n    return 0\n"
+        "m._run = wait\nsys.argv[1:] = ['list']\nraise SystemExit(m.main())"
+    )
+    pipe = subprocess.PIPE
+    process = subprocess.Popen([*IGNORING, sys.executable, "-c", code], stdin=pipe, stdout=pipe, text=True)
+    assert process.stdout is not None
+    assert process.stdout.readline() == "ready\n"
+    process.send_signal(signal.SIGINT)
+    process.communicate("\n", timeout=60)
+    assert process.returncode == 0
 
 
 # --- Colours and widths are for terminals: in a pipe every byte is as it was ------------------------
