@@ -144,7 +144,7 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record], Result, BuildRe
 
     def to_junit(self) -> str:
         """Tests that fail where they are not what they claim, and what is to be tested, as JUnit XML."""
-        return as_junit(f"roadproof {self.command}", tuple(self.cases()), self.in_force)
+        return as_junit(f"roadproof {self.command}", tuple(self.all_cases()), self.in_force)
 
     def __str__(self) -> str:
         drivers = report.driver_lines(self.decisions)

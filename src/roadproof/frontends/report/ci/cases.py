@@ -10,7 +10,7 @@ from roadproof.library.specification import Specification, source_of
 from roadproof.library.uses import used_in
 from roadproof.logic.syntax import Claim, Definition
 from roadproof.runtime.records import dataclass
-from roadproof.verdict import Verdict
+from roadproof.verdict import ExitCode, Verdict
 
 _LIBRARY = Path(__file__).parents[3] / "library" / "sets"
 
@@ -88,6 +88,22 @@ def state_of(verdict: Verdict, expected: Iterable[Verdict]) -> State:
     if verdict in expected:
         return "passed"
     return "undecided" if verdict is Verdict.UNKNOWN else "failed"
+
+
+def whole_case(command: str, cases: Iterable[Case], code: ExitCode) -> Case | None:
+    """A case for a whole answer, where ``code`` is not 0 and no case of its parts says why; else None."""
+    if code is ExitCode.AS_EXPECTED:
+        return None
+    state: State = "undecided" if code is ExitCode.UNKNOWN else "failed"
+    if any(x.state == state for x in cases):
+        return None
+    rules: dict[ExitCode, Verdict | Rule] = {
+        ExitCode.UNKNOWN: Verdict.UNKNOWN,
+        ExitCode.CROSSCHECK_FAILED: Verdict.CROSSCHECK_FAILED,
+    }
+    told = f"the exit code is {int(code)}, which no part of the answer alone has"
+    rule = rules.get(code, Rule.REJECTED)
+    return Case(suite="the answer", name=f"roadproof {command}", state=state, rule=rule, message=told)
 
 
 def definition_location(specification: Specification, definition: Definition) -> Location | None:

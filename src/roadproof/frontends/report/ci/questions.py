@@ -180,11 +180,15 @@ def plate_cases(
 
 
 def finding_cases(findings: Sequence[Finding], strict: bool) -> Iterator[Case]:
-    """A case for each claim of a file or of an index that was checked."""
+    """A case for each claim of a file or of an index that was checked.
+
+    Answers without evidence are undecided if ``strict``, and where nothing else was checked.
+    """
     rules = {Acceptance.REJECTED: Rule.REJECTED, Acceptance.UNREADABLE: Rule.UNREADABLE}
+    nothing = all(x.kind == NO_EVIDENCE for x in findings)
     for x in findings:
         state: State = "passed" if x.outcome is Acceptance.ACCEPTED else "failed"
-        without = strict and x.kind == NO_EVIDENCE
+        without = (strict or nothing) and x.kind == NO_EVIDENCE
         if x.outcome is Acceptance.UNDECIDED or without:
             state = "undecided"
         file = x.where.partition(", ")[0]
