@@ -12,9 +12,11 @@ from typing import Any, ClassVar
 
 import pytest
 
+import roadproof as rp
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding, exit_code
 from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.report.ci.cases import Case, State
+from roadproof.frontends.report.ci.cases import test_location as location_of
 from roadproof.frontends.report.ci.junit import as_junit
 from roadproof.frontends.report.ci.questions import finding_cases, recording_cases
 from roadproof.reasons import NO_REASON, Why
@@ -210,3 +212,102 @@ def test_drives_that_were_found_and_that_were_not() -> None:
     fields: dict[str, Any] = {"query": query, "scenario": None, "set_name": "base", "reason": NO_REASON}
     searches = [(answer(**fields, verdict=x, seconds={}), home, None) for x in verdicts]
     assert [x.state for x in search_cases(searches)] == ["passed", "failed", "failed", "undecided"]
+
+
+FAST, FALSE = "v_lon(SV) > 30 m/s -> v_lon(SV) > 20 m/s", "v_lon(SV) > 20 m/s -> v_lon(SV) > 30 m/s"
+
+
+def test_claims_that_are_expected_to_be_false() -> None:
+    for what, expect in product(((FAST,), (FALSE,), (FAST, FALSE)), ("PROVED", "REFUTED")):
+        found = rp.prove(*what, expect=expect, drive=False, jobs=1)
+        right = {FAST: "PROVED", FALSE: "REFUTED"}
+        states = ["passed" if right[x] == expect else "failed" for x in what]
+        assert [x.state for x in found.cases()] == states
+        messages = [x.message for x in found.cases()]
+        assert [f", expected {expect}" in x for x in messages] == [x == "failed" for x in states]
+        agree(found.to_junit(), found.to_sarif(), found.exit_code)
+        assert found.exit_code == (10 if "failed" in states else 0)
+
+
+def test_claims_and_classes_of_coverage() -> None:
+    """A claim that is refuted passes, since the classes say why; a class with a drive is a gap."""
+    from roadproof.frontends.report.ci.questions import coverage_cases
+    from roadproof.library.elaborate import read_claim
+    from roadproof.library.loading import bundled_library
+
+    home = bundled_library().select()
+    query = read_claim(home, "danger(SV,POV)")
+    claims = {PROVED: "passed", REFUTED: "passed", UNKNOWN: "undecided"}
+    classes = {
+        Verdict.WITNESSED: ("failed", Verdict.GAPS),
+        Verdict.IMPOSSIBLE: ("passed", Verdict.IMPOSSIBLE),
+        UNKNOWN: ("undecided", UNKNOWN),
+        Verdict.CROSSCHECK_FAILED: ("failed", Verdict.CROSSCHECK_FAILED),
+    }
+    for claim, gap in product(claims, classes):
+        survey = answer(
+            claims=[answer(claim=query, verdict=claim, reason=NO_REASON)],
+            classes=[answer(part=None, verdict=gap, reason=NO_REASON)],
+        )
+        one, other = coverage_cases(survey, home, {})
+        assert (one.state, one.rule) == (claims[claim], claim)
+        assert (other.state, other.rule) == classes[gap]
+
+
+def test_tests_and_targets_of_a_catalogue() -> None:
+    from roadproof.frontends.report.ci.questions import catalogue_cases
+
+    remark = {name: [answer(tests=(name,), told=name)] for name in ("doubt", "fault", "contradiction")}
+    targets = [answer(name=x, words=x) for x in ("tested", "missing")]
+    gaps = [answer(name=x, words=x) for x in ("gap", "open gap", "missing gap")]
+    for asked in (False, True):
+        found = answer(
+            doubts=remark["doubt"],
+            faults=remark["fault"],
+            contradictions=remark["contradiction"],
+            targets=targets,
+            missing=[targets[1], *([gaps[2]] if asked else [])],
+            gaps=answer(asked=asked, targets=gaps, open={"open gap": "late"} if asked else {}),
+        )
+        cases = [*catalogue_cases(["doubt", "fault", "contradiction", "good"], found)]
+        states = {x.name: x.state for x in cases}
+        expected = {"doubt": "undecided", "fault": "failed", "contradiction": "failed", "good": "passed"}
+        expected |= {"tested": "passed", "missing": "failed"}
+        if asked:
+            expected |= {"gap": "passed", "open gap": "undecided", "missing gap": "failed"}
+        assert states == expected
+
+
+def test_where_a_test_is_written(tmp_path: Path) -> None:
+    path = tmp_path / "catalogue.toml"
+    path.write_text('[[test]]\ntitle = "after A-1"\nid = "A-10"\n[[test]]\n   id = \'A-1\'\n')
+    places = {name: str(location_of(str(path), name)) for name in ("A-1", "A-10", "A")}
+    assert places == {"A-1": f"{path}:5:4", "A-10": f"{path}:3:1", "A": f"{path}:1:1"}
+
+
+def test_definitions_of_the_user_come_first() -> None:
+    from roadproof.frontends.report.ci.cases import named_definitions
+    from roadproof.logic.parse import parse_claim
+
+    home = rp.load(specs=["def mine(a, b: vehicle) := danger(a, b)\n"]).specification
+    named = named_definitions(home, parse_claim("danger(SV,POV) and mine(SV,POV)").body)
+    assert named[0][0] == "mine"
+    assert {x for x, _ in named} > {"mine", "danger"}
+
+
+def test_links_of_requirements() -> None:
+    from roadproof.evidence.answers.trace import LinkState
+    from roadproof.frontends.report.ci.requirements import requirement_cases
+
+    place = answer(file="requirements.toml", line=3, column=1)
+    for state, outcome in product(LinkState, Acceptance):
+        link = answer(kind="claim", target="P4", state=state, reason=NO_REASON, changes=(), evidence=())
+        fields: dict[str, Any] = {"place": place, "text": "", "title": ""}
+        one = answer(id="A", links=(link,), parents=("P",), state=state, **fields)
+        bare = answer(id="B", links=(), parents=(), state=LinkState.MISSING, **fields)
+        whole = answer(id="P", links=(), parents=(), state=state, **fields)
+        beside = answer(where="a.json", label="", outcome=outcome, reason=NO_REASON)
+        cases = [*requirement_cases(answer(requirements=(one, bare, whole), unlinked=(beside,)))]
+        shown = "passed" if state.is_shown else "undecided" if state is LinkState.UNKNOWN else "failed"
+        rest = {Acceptance.ACCEPTED: [], Acceptance.UNDECIDED: ["undecided"]}.get(outcome, ["failed"])
+        assert [x.state for x in cases] == [shown, "failed", *rest]

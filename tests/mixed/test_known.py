@@ -13,6 +13,8 @@ import pytest
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.study import known
 from roadproof.analysis.study.known import SWITCH, KnownAnswer, KnownAnswers, told
+from roadproof.frontends.api.definitions import load
+from roadproof.frontends.api.proofs import claims_of
 from roadproof.library.loading import build_library, bundled_library
 from roadproof.library.specification import Source
 from roadproof.runtime.budget import Effort
@@ -193,6 +195,52 @@ def test_a_digest_changes_with_all_that_an_answer_depends_on(other: Any) -> None
     assert HERE.key(text) == Basis(LIBRARY.select()).key(text)
     assert other().key(text) != HERE.key(text)
     assert HERE.key("scenario_4") != HERE.key("scenario_3")
+
+
+def studies(basis: Basis) -> dict[str, Any]:
+    from roadproof.analysis.classify.classes import plan_of
+    from roadproof.analysis.classify.divide import Dividing
+    from roadproof.analysis.coverage.classes import GapSurvey
+    from roadproof.analysis.coverage.study import Coverage
+    from roadproof.analysis.order.deciding import kinds_of
+    from roadproof.analysis.order.study import Ordering
+    from roadproof.analysis.overlap import Overlap, pairs_of
+    from roadproof.analysis.redundancy import Redundancy
+
+    home = basis.specification
+    return {
+        "overlap": Overlap(basis, pairs_of(basis, (3, 4))),
+        "order": Ordering(basis, kinds_of(home, ("base",), (3, 4))),
+        "redundancy": Redundancy(basis, (3,)),
+        "coverage": Coverage(GapSurvey(basis)),
+        "division": Dividing(basis, plan_of(home, (3, 4))),
+    }
+
+
+@pytest.mark.parametrize("name", ["overlap", "order", "redundancy", "coverage", "division"])
+def test_answers_for_one_model_are_none_for_another(name: str) -> None:
+    truck = Basis(LIBRARY.select(), vehicles={"POV": load_vehicle("truck")})
+    car = Basis(LIBRARY.select(), vehicles={"POV": CAR})
+    questions = [studies(x)[name].question.fingerprint for x in (HERE, truck, car)]
+    assert len({*questions}) == 3
+    both = [studies(x)[name].question for x in (HERE, truck)]
+    assert len({KnownAnswers.to(x.schema, x.said, x.more).asked for x in both}) == 2
+
+
+def test_a_known_answer_under_another_name_is_none() -> None:
+    from roadproof.analysis.study.frame import conduct, known_answer, look_up
+
+    claims = [claims_of(load(), [f"v_lon(SV) > {k} m/s -> v_lon(SV) > 1 m/s"], None) for k in (2, 3)]
+    one, other = claims
+    [(name, answer)] = conduct(one, hands=1).answers.items()
+    [wanted] = other.named
+    question = other.question
+    store = KnownAnswers.to(question.schema, question.said, question.more)
+    assert look_up(other) == {}
+    key = other.key(wanted)
+    assert key is not None
+    store.remember(wanted, key, known_answer(one, name, answer))
+    assert look_up(other) == {}
 
 
 def test_an_index_says_the_values_of_all_parameters() -> None:

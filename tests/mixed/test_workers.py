@@ -5,16 +5,18 @@ import signal
 from collections.abc import Callable
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from roadproof.analysis.study.pool import in_order, work
 from roadproof.errors import InputError, LostError, UsageError
 from roadproof.reasons import Reason, Why
-from roadproof.runtime import dask_executor, executors
+from roadproof.runtime import dask_executor, executors, process_pool, worker
 from roadproof.runtime.budget import Budget, BudgetExceeded, Effort
 from roadproof.runtime.executors import Cluster, Executor, LostJob, Shard, answers_of, try_again
 from roadproof.runtime.process_pool import answers_of as in_processes
+from roadproof.runtime.worker import ended_by
 
 OURS = "1.0.0"
 
@@ -114,6 +116,27 @@ def test_lost_jobs_are_doubts_of_themselves(tmp_path: Path) -> None:
     assert raised.value.exit_code == 20
 
 
+def squares(job: int) -> list[int]:
+    """A job that has jobs of its own: they are done in its process."""
+    here = os.getpid()
+    return [x if pid == here else -1 for _, (x, pid) in work(square_here, range(job), 2)]
+
+
+def square_here(job: int) -> tuple[int, int]:
+    return job * job, os.getpid()
+
+
+def test_a_worker_does_the_jobs_of_its_job_itself() -> None:
+    found = dict(work(squares, [2, 3], 2))
+    assert found == {0: [0, 1], 1: [0, 1, 4]}
+
+
+def test_progress_counts_what_needed_no_work() -> None:
+    said: list[tuple[int, int, str]] = []
+    list(work(square_here, range(2), 2, progress=lambda *x: said.append(x), what="pieces", known=3))
+    assert said == [(3, 5, "pieces"), (4, 5, "pieces"), (5, 5, "pieces")]
+
+
 def test_answers_come_in_the_order_of_their_jobs() -> None:
     came = ((place, f"answer {place}") for place in (2, 0, 4, 1, 3))
     assert list(in_order(came)) == [f"answer {place}" for place in range(5)]
@@ -137,6 +160,44 @@ def test_a_lost_job_has_its_last_attempt_alone() -> None:
         **dict.fromkeys((0, 2, 4), False),
         **dict.fromkeys((1, 3), True),
     }
+
+
+def test_a_single_lost_job_is_tried_once_more() -> None:
+    asked: list[list[int]] = []
+
+    def attempt(places, died):  # type: ignore[no-untyped-def]
+        asked.append(list(places))
+        died.update((x, "SIGKILL") for x in places if x == 1)
+        yield from ((x, x) for x in places if x != 1)
+
+    found = dict(try_again(attempt, 3, Why.PROCESS))
+    assert asked == [[0, 1, 2], [1]]
+    assert isinstance(found[1], LostJob)
+
+
+def test_how_a_process_ended_is_told() -> None:
+    assert [ended_by(x) for x in (0, 3, -9, -11)] == ["exited with 0", "exited with 3", "SIGKILL", "SIGSEGV"]
+    [(_, lost)] = in_processes(os._exit, [0], 1)  # type: ignore[type-var]
+    assert isinstance(lost, LostJob)
+    assert "exited with 0" in lost.reason
+
+
+def test_a_process_that_works_for_another_divides_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(worker, "_ends_here", False)
+    assert not worker.is_worker()
+    worker.end_here()
+    assert worker.is_worker()
+
+
+def test_where_no_further_process_can_be_started_the_others_go_on() -> None:
+    def start() -> Any:
+        raise OSError(11, "Resource temporarily unavailable")
+
+    busy: Any = object()
+    assert process_pool._free({busy: 3}, 2, start) is None
+    with pytest.raises(UsageError, match="use fewer with --jobs"):
+        process_pool._free({}, 2, start)
+    assert process_pool._free({busy: 3}, 1, lambda: pytest.fail("one too many")) is None
 
 
 def test_a_cluster_is_not_this_machine(monkeypatch: pytest.MonkeyPatch) -> None:

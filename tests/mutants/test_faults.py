@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from mutants.__main__ import ROOT, within
-from mutants.by_hand import listed
+from mutants.by_hand import Fault, conditions, listed, plant, planted
 from mutants.choose import FOLDERS, choose, faults_of, noticing_tests, targets
 from mutants.edits import edits_of, is_fault
 from mutants.places import places_of
@@ -138,11 +138,25 @@ def test_tests_of_a_line_are_the_near_ones_and_then_the_fastest() -> None:
 
 def test_faults_by_hand_fit_the_code_and_name_their_tests() -> None:
     """Each text is there once, and its room has tests; a change of the code has to keep its faults."""
-    faults = listed()
-    assert len(faults) == len({(x.file, x.before, x.after) for x in faults}) >= 60
+    faults = [*listed(), *(x for each in conditions() for x in each.faults if x.equivalent)]
+    assert len(faults) == len({(x.file, x.before, x.after) for x in faults}) >= 600
     for fault in faults:
-        text = (PACKAGE / fault.file).read_text("utf-8")
-        assert text.count(fault.before) == 1, fault
+        _, wrong = planted(fault, PACKAGE)
         if fault.file.endswith(".py"):
-            ast.parse(text.replace(fault.before, fault.after))
+            ast.parse(wrong)
         assert [x for x in fault.tests if (ROOT / x).exists()], fault
+
+
+def test_every_condition_has_faults() -> None:
+    for each in conditions():
+        assert each.given, each
+        assert each.when, each
+        assert any(not x.equivalent for x in each.faults), each
+
+
+@pytest.mark.parametrize("before", ["never there", "import"])
+def test_a_fault_that_does_not_fit_is_refused_before_any_is_planted(before: str, tmp_path: Path) -> None:
+    wrong = Fault("room", "verdict.py", before, "", ("tests/test_verdict.py",))
+    with pytest.raises(ValueError, match=r"verdict\.py has .* times, not once"):
+        next(plant([listed()[0], wrong], ROOT, tmp_path / "copy"))
+    assert not (tmp_path / "copy").exists()
