@@ -3,6 +3,7 @@
 import errno
 import json
 import os
+import shutil
 import stat
 import subprocess
 import sys
@@ -18,9 +19,11 @@ from api.doors import FALSE, SYMMETRIC
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question, inside, specification_names
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.journal import ANSWERS
+from roadproof.frontends.api.proofs import claims_of
 from roadproof.library.loading import build_library, bundled_library
 from roadproof.library.specification import Source
 from roadproof.runtime import files
+from roadproof.runtime.budget import Effort
 from roadproof.runtime.files import hold_folder, read_limited, utf8, whole_file, write_whole
 
 FAST = "v_lon(SV) > 30 m/s -> v_lon(SV) > 20 m/s"
@@ -246,10 +249,97 @@ def test_claims_read_otherwise_go_into_another_folder(other: Any, tmp_path: Path
 
 
 def test_a_folder_of_another_command_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "index.json").write_text('{"schema": "roadproof/overlap/1"}')
-    with pytest.raises((UsageError, InputError)):
-        claims(tmp_path, FAST)
-    assert not (tmp_path / ANSWERS).exists() or not [*(tmp_path / ANSWERS).iterdir()]
+    rp.overlap("5,6", out=tmp_path, jobs=1)
+    shutil.rmtree(tmp_path / ANSWERS)
+    before = (tmp_path / "index.json").read_bytes()
+    with pytest.raises(UsageError, match="belongs to another command"):
+        claims(tmp_path, NEAR)
+    assert (tmp_path / "index.json").read_bytes() == before
+
+
+def only_the_index(folder: Path, **changes: Any) -> None:
+    """A folder as it is shipped: evidence and an index, and no answers to go on with."""
+    shutil.rmtree(folder / ANSWERS)
+    path = folder / "index.json"
+    content = json.loads(path.read_text("utf-8"))
+    path.write_text(json.dumps({**content, **changes}), "utf-8")
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"options": {"lateral_sign": "literal"}},
+        {"library": "0" * 16},
+        {"specs": ["mine.spec"]},
+    ],
+    ids=["options", "library", "files"],
+)
+def test_an_index_that_was_read_otherwise_does_not_grow(changes: Any, tmp_path: Path) -> None:
+    claims(tmp_path, FAST)
+    (tmp_path / "mine.spec").write_text("def mine(a: vehicle) := v_lon(a) > 3 m/s\n")
+    only_the_index(tmp_path)
+    assert claims(tmp_path, NEAR) == {NEAR: "PROVED"}
+    only_the_index(tmp_path, **changes)
+    with pytest.raises(UsageError, match="holds claims for other options, specification files or another"):
+        claims(tmp_path, SYMMETRIC)
+
+
+def test_evidence_that_no_entry_names_any_more_is_removed(tmp_path: Path) -> None:
+    claims(tmp_path, FAST)
+    index = json.loads((tmp_path / "index.json").read_text("utf-8"))
+    [entry] = index["claims"]
+    (tmp_path / "old.json").write_bytes((tmp_path / entry["evidence"]).read_bytes())
+    (tmp_path / "mine.json").write_text("{}")
+    only_the_index(tmp_path, claims=[{**entry, "evidence": "old.json"}])
+    claims(tmp_path, FAST)
+    assert not (tmp_path / "old.json").exists()
+    assert (tmp_path / "mine.json").exists()
+    assert index_of(tmp_path) == {FAST: "PROVED"}
+
+
+def test_what_is_assumed_is_assumed_in_every_answer(tmp_path: Path) -> None:
+    overtaking = "s(SV) < s(POV) and not F s(SV) = s(POV) -> G s(SV) < s(POV)"
+    dense = rp.prove(overtaking, drive=False, jobs=1, out=tmp_path)
+    moving = rp.prove(overtaking, assume="motion", drive=False, jobs=1, out=tmp_path)
+    assert (dense.verdict, moving.verdict) == ("REFUTED", "PROVED")
+    again = rp.prove(overtaking, drive=False, jobs=1, out=tmp_path)
+    assert again.verdict == "REFUTED"
+
+
+def test_a_digest_of_a_claim_changes_with_all_that_is_asked() -> None:
+    def key(claim: str, **more: Any) -> str | None:
+        asked = replace(claims_of(rp.load(), [claim], None), **more)
+        return asked.key(*asked.named)
+
+    usual = key(FAST)
+    assert usual is not None
+    assert usual == key(f"  {FAST}  ")
+    task = claims_of(rp.load(), [FAST], None).tasks[0]
+    others = [
+        key(NEAR),
+        key(FAST, effort=Effort(3.0)),
+        key(FAST, seek_drive=False),
+        key(FAST, tasks=(replace(task, assuming=("motion",)),)),
+    ]
+    assert len({usual, *others}) == 1 + len(others)
+    assert key(FAST, within=(None, None)) is None, "an answer within limits has no evidence"
+
+
+def test_an_answer_to_another_claim_is_not_taken_for_this_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Names are digests of claims, and two may be the same."""
+    monkeypatch.setattr("roadproof.analysis.claims.name_of_claim", lambda *_: "claim-one")
+    assert claims(tmp_path, FAST) == {FAST: "PROVED"}
+    assert claims(tmp_path, FALSE) == {FALSE: "REFUTED"}
+
+
+def test_each_claim_of_the_list_is_read_in_its_set() -> None:
+    asked = claims_of(rp.load(), ["P1", "P2", "P3", "P4", "P5", "P6"], None)
+    sets = {x.set_name for x in asked.tasks}
+    assert len(sets) > 1
+    for task in asked.tasks:
+        assert asked.specification_of(task).set_name == task.set_name
 
 
 def test_a_bounded_answer_is_that_of_its_limits(tmp_path: Path) -> None:
@@ -264,5 +354,7 @@ def test_a_bounded_answer_is_that_of_its_limits(tmp_path: Path) -> None:
     assert (car.verdict, car.exit_code) == ("REFUTED", 10)
     limits = truck.as_data()["verdicts"]
     assert [(x["view"], x["limits"]["horizon"]) for x in limits] == [("grid", "3")]  # type: ignore[union-attr,index]
+    again = rp.prove(slow, out=tmp_path, horizon=3, **common)
+    assert [(x.verdict, x.expected) for x in again.answers] == [("REFUTED", "PROVED-BOUNDED")]
     dense = rp.prove(slow, out=tmp_path, jobs=1)
     assert (dense.verdict, dense.exit_code) == ("REFUTED", 10)
