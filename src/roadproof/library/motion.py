@@ -28,7 +28,7 @@ from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.logic.initial_conditions import pins
 from roadproof.logic.restore import as_syntax, term_as_syntax
-from roadproof.logic.rewrite import leaves_of, parameters_of, vehicles_of
+from roadproof.logic.rewrite import leaves_of, map_terms, parameters_of, vehicles_of
 from roadproof.logic.show import text
 from roadproof.logic.terms import Term
 from roadproof.runtime.records import dataclass
@@ -210,7 +210,7 @@ def values_said(specification: Specification, said: Sequence[str]) -> dict[str, 
         with located(written):
             read = elaborate(specification, syntax.Claim((), parsed(written)))
         found = pins(f.negation(read.formula))
-        if [read.formula] != [x.formula for x in _equalities(specification, found)]:
+        if [_plain(read.formula)] != [_plain(x.formula) for x in _equalities(specification, found)]:
             raise InputError(
                 f"'{written[:80]}' is no value of a parameter: write a name, = and a number, such as "
                 "minDanger = 0.6 s"
@@ -226,6 +226,16 @@ def values_said(specification: Specification, said: Sequence[str]) -> dict[str, 
 def value_texts(specification: Specification, values: Mapping[str, Fraction]) -> tuple[str, ...]:
     """Values of parameters (SI) as ``values_said`` reads them: ``minDanger = 0.6 s``, by name."""
     return tuple(x.text for x in _equalities(specification, values))
+
+
+def _plain(formula: Formula) -> Formula:
+    """The formula with its value for each term of numbers only, such as ``1/3*1 s``."""
+
+    def value_of(term: Term) -> Term:
+        value = t.constant_value(term)
+        return term if value is None else t.number(value)
+
+    return map_terms(formula, value_of)
 
 
 def _equalities(specification: Specification, values: Mapping[str, Fraction]) -> list[Query]:

@@ -1,0 +1,104 @@
+"""Options that one way of asking might ignore: each changes what is asked, of every command that has it."""
+
+import shlex
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import roadproof as rp
+from roadproof.errors import UsageError
+from roadproof.frontends.api import comparing
+from roadproof.frontends.api.studied import StudyAnswers
+from roadproof.frontends.cli.main import main
+
+CLAIM = "'fasterThan(SV,POV) -> F danger(SV,POV)'"
+COMMON = ("--option lateral_rss=signed", "--option speed=total", "--param rho=1/3", "--spec mine.spec")
+SEARCH = ("--effort 7", "--timeout 700")
+MODEL = ("--vehicle truck", "--vehicle POV=truck", "--vehicle SV=truck")
+PLACE = ("--road main-3", "--horizon 5", "--dt 1/5")
+DRIVERS = ("--preventable careful", "--unpreventable careful", "--unpreventable r157")
+COMMANDS: dict[str, tuple[str, ...]] = {
+    f"prove {CLAIM}": (
+        *(*COMMON, *SEARCH, "--set ext", "--declared", "--expect REFUTED", "--assume motion", "--no-drive"),
+    ),
+    f"prove {CLAIM} --assume motion": (*COMMON, *MODEL, *SEARCH),
+    f"prove {CLAIM} --engine milp": (
+        *(*COMMON, *MODEL, *PLACE, *SEARCH, "--set ext", "--engine smt", "--expect REFUTED"),
+    ),
+    f"prove {CLAIM} --engine smt": (*COMMON, *MODEL, *PLACE, *SEARCH, "--set ext"),
+    "prove P1": ("--set ext", "--param rho=1/3", "--declared", "--option speed=total", "--no-drive", *SEARCH),
+    f"witness {CLAIM} --lane L=main-1": (
+        *(*COMMON, *MODEL, *PLACE, *SEARCH, "--set ext", "--objective severe", "--count 2", "--engine smt"),
+        *("--reach 90", "--allow-collisions", "--lane L=main-2"),
+    ),
+    "witness 1": DRIVERS,
+    "overlap --among 1,3": (
+        *(*COMMON, *MODEL, *SEARCH, *DRIVERS, "--set ext", "--among 1,4", "--lanes any", "--roles any"),
+        *("--start any", "--horizon 5", "--start any --horizon 6"),
+    ),
+    "order --among 3,4 --set base": (*COMMON, *MODEL, *SEARCH, "--set ext", "--among 3,5"),
+    "redundancy --among 3": (*COMMON, *MODEL, *SEARCH, "--set ext", "--among 4", "--whole"),
+    "coverage": (
+        *(*COMMON, *MODEL, *SEARCH, *DRIVERS, "--set ext", "--wider extA", "--road main-3", "--needed"),
+    ),
+    "explore 4 --vary minSafe=0:6": (
+        *(*COMMON, *MODEL, *PLACE, *SEARCH, "--set ext", "--vary rho=0:1", "--steps 5", "--precision 0.2"),
+        *("--least 'v_lon(SV)'", "--greatest 'v_lon(SV)'", "--engine smt"),
+        *("--greatest 'v_lon(SV)' --when 'danger(SV,POV)'", "--reach 90", "--allow-collisions"),
+    ),
+    "preventable cut-in --model careful --lines 3": (
+        *("--option cc_gate=before_delay", "--param cc_delay=0.5", "--model r157", "--at Vy=1"),
+        *("--along dx0=0:60", "--across dV0=0:9", "--lines 4", "--no-lemmas"),
+    ),
+    f"compare {CLAIM} 'danger(SV,POV)'": (*COMMON, *MODEL, *PLACE, *SEARCH, "--set ext", "--engine smt"),
+}  # fmt: skip
+
+
+class Asked(list[Any]):
+    """What was asked, and no answer."""
+
+    def note(self, *what: Any) -> Any:
+        self.append(what)
+        raise UsageError("it was asked")
+
+
+@pytest.fixture
+def asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Asked:
+    (tmp_path / "mine.spec").write_text("param rho = 2 s where rho > 0\n")
+    monkeypatch.chdir(tmp_path)
+    found = Asked()
+    monkeypatch.setattr(StudyAnswers, "asked", classmethod(lambda _, study, *more, **__: found.note(study)))
+    monkeypatch.setattr(comparing, "compare_queries", lambda *what: found.note(*what[:3]))
+    return found
+
+
+def question(words: str, asked: Asked) -> Any:
+    asked.clear()
+    code = main(shlex.split(words))
+    assert (code, len(asked)) == (2, 1), words
+    return asked[0]
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_each_option_is_another_question(
+    command: str, asked: Asked, capsys: pytest.CaptureFixture[str]
+) -> None:
+    usual = question(command, asked)
+    assert question(command, asked) == usual
+    made = {option: question(f"{command} {option}", asked) for option in COMMANDS[command]}
+    for option, other in made.items():
+        assert other != usual, option
+    for (one, first), (two, second) in combinations(made.items(), 2):
+        assert first != second, f"{one} is {two}"
+    assert "it was asked" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("value", ["1/3", "0.1", "7/3", "0.001", "2/7"])
+def test_a_claim_is_proved_at_any_value_and_checked(value: str, tmp_path: Path) -> None:
+    """Thirds are no decimals: they are written as a product, and are read again."""
+    home = rp.load(params={"rho": value})
+    found = rp.prove("a_max > 0 m/s^2 -> rho > 0 s", using=home, jobs=1, out=tmp_path)
+    assert (found.verdict, found.exit_code) == ("PROVED", 0)
+    assert rp.check(tmp_path).accepted
