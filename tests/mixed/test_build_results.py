@@ -94,6 +94,13 @@ def test_suites_are_whole_whatever_the_order() -> None:
     ]
 
 
+def test_cases_of_one_name_are_told_apart_by_their_suites() -> None:
+    made = [Case(suite=x, name="P1", state="failed", rule=REFUTED) for x in ("base", "ext", "base")]
+    results = json.loads(Built(tuple(made), ExitCode.UNEXPECTED).to_sarif())["runs"][0]["results"]
+    first, second, third = (x["partialFingerprints"]["case/v1"] for x in results)
+    assert first == third != second
+
+
 KINDS = ("certificate", "drive", NO_EVIDENCE)
 
 

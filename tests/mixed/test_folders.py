@@ -356,5 +356,8 @@ def test_a_bounded_answer_is_that_of_its_limits(tmp_path: Path) -> None:
     assert [(x["view"], x["limits"]["horizon"]) for x in limits] == [("grid", "3")]  # type: ignore[union-attr,index]
     again = rp.prove(slow, out=tmp_path, horizon=3, **common)
     assert [(x.verdict, x.expected) for x in again.answers] == [("REFUTED", "PROVED-BOUNDED")]
+    false = rp.prove(slow, out=tmp_path, horizon=3, expect="REFUTED", **common)
+    assert [(x.verdict, x.expected) for x in false.answers] == [("REFUTED", "REFUTED")]
+    assert false.exit_code == 0
     dense = rp.prove(slow, out=tmp_path, jobs=1)
     assert (dense.verdict, dense.exit_code) == ("REFUTED", 10)
