@@ -16,6 +16,7 @@ from pathlib import Path
 
 from console import sessions_of
 from mutants import journal
+from mutants.by_hand import Condition, conditions
 from mutants.choose import folder_of
 
 ROOT = Path(__file__).parents[1]
@@ -92,6 +93,20 @@ def mutants() -> Table:
     return rows(("folder", "tried", "caught", "by hanging", "equivalent", "survived", "run by no test"), body)
 
 
+def rim() -> Table:
+    """A row for each room of conditions: conditions, faults planted against them, and equivalent ones."""
+    by_room: dict[str, list[Condition]] = {}
+    for each in conditions():
+        by_room.setdefault(each.faults[0].room, []).append(each)
+    by_room["all"] = conditions()
+    body = []
+    for room, those in by_room.items():
+        equivalent = sum(bool(x.equivalent) for each in those for x in each.faults)
+        faults = sum(len(each.faults) for each in those)
+        body.append((room.replace("_", " "), len(those), faults - equivalent, equivalent))
+    return rows(("room", "conditions", "faults", "equivalent"), body)
+
+
 def planted() -> Table:
     """A row for each folder: test cases that plant a fault."""
     command = [sys.executable, "-m", "pytest", "tests", "--collect-only", "-q", "-p", "no:xdist"]
@@ -108,7 +123,7 @@ def is_planted(case: str) -> bool:
     return file.count("/") > 1 and any(word in f"{Path(file).name} {name}".lower() for word in PLANTED)
 
 
-TABLES = {"attacks": attacks, "fuzz": fuzz, "mutants": mutants}
+TABLES = {"attacks": attacks, "fuzz": fuzz, "mutants": mutants, "conditions": rim}
 """Those that are counted from files alone, so that a test can compare them."""
 
 if __name__ == "__main__":

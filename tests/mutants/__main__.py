@@ -3,7 +3,7 @@
 ``record`` which tests run which lines, ``run`` the faults, ``report`` what came out. A run goes on where
 it stopped: what was tried is in ``results.jsonl``, and is tried again where the function has changed, or
 where it survived and some test has. ``--only`` takes some folders of
-the package, ``--tests`` some test files. ``by-hand`` plants the faults of ``by_hand.toml``.
+the package, ``--tests`` some test files. ``by-hand`` plants the faults of ``by_hand.toml`` and ``rim/``.
 """
 
 import argparse
