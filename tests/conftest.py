@@ -4,8 +4,8 @@ Tests that take long (``lengthy.txt``) are marked ``long``.
 
 A module that is imported while a test has replaced something would keep the replacement for good. New
 random cases are for ``make fuzz``. Answers are computed, not taken from those that are known. Compiled files
-are kept, whatever the shell says: tests start hundreds of commands. Ctrl-C is heard by the commands that tests
-start, also where the shell has the tests ignore it (``nohup make test &``): what is ignored is inherited.
+are kept, whatever the shell says: tests start hundreds of commands. They hear Ctrl-C, also where the shell
+has the tests ignore it (``nohup make test &``): what is ignored is inherited.
 """
 
 import gc

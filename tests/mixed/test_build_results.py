@@ -156,6 +156,12 @@ def test_each_outcome_beside_an_accepted_one(outcome: Acceptance, code: int) -> 
         assert exit_code(findings([(x, "certificate") for x in kinds])) == code
 
 
+@pytest.mark.parametrize(("outcome", "code"), [*zip(Acceptance, (20, 10, 20, 3, 70), strict=True)])
+def test_an_answer_without_evidence_is_a_doubt_unless_it_is_worse(outcome: Acceptance, code: int) -> None:
+    for strict, count in product((False, True), (1, 2)):
+        assert exit_code(findings([(outcome, NO_EVIDENCE)] * count), strict) == code
+
+
 def test_recordings_that_are_read_lost_skipped_or_contradictory() -> None:
     for lost, failed, broken in product(([], ["a"]), ({}, {"b": "damaged"}, {"a": "lost"}), ([], ["a fact"])):
         cases = list(recording_cases(["a", "b", "c"], failed, lost, broken, Path("nowhere")))

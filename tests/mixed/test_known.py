@@ -243,6 +243,37 @@ def test_a_known_answer_under_another_name_is_none() -> None:
     assert look_up(other) == {}
 
 
+def test_known_answers_are_looked_up_for_the_whole_question(monkeypatch: pytest.MonkeyPatch) -> None:
+    from roadproof.analysis.study import frame
+
+    study = claims_of(load(), ["v_lon(SV) > 3 m/s -> v_lon(SV) > 2 m/s"], None)
+    first = frame.conduct(study, hands=1)
+    assert frame.conduct(study, hands=1).known == ("cache",)
+    assert frame.conduct(study, hands=1, fresh=True).known == ()
+    asked: list[Any] = []
+    to = KnownAnswers.to
+    monkeypatch.setattr(KnownAnswers, "to", lambda *what: asked.append(what) or to(*what))
+    truck = studies(Basis(LIBRARY.select(), vehicles={"POV": CAR}))["overlap"]
+    assert frame.look_up(truck) == {}
+    question = truck.question
+    assert asked == [(question.schema, question.said, question.more)]
+    assert question.more
+    assert first.known == ()
+
+
+@pytest.mark.parametrize("of", [2, 3])
+def test_a_later_piece_is_in_exactly_one_share(of: int) -> None:
+    from types import SimpleNamespace
+
+    from roadproof.analysis.study.frame import _share
+    from roadproof.runtime.executors import Shard
+
+    study: Any = SimpleNamespace(pieces=lambda known: ["a", "b", "c"], doubt=lambda x, reason: {x: None})
+    shares = [_share(study, Shard(k, of)) for k in range(1, of + 1)]
+    for piece in ["a", "b", "c", *(f"later-{k}" for k in range(20))]:
+        assert sum(is_ours(piece) for is_ours in shares) == 1, piece
+
+
 def test_an_index_says_the_values_of_all_parameters() -> None:
     said = Basis(LIBRARY.select(), values={"rho": Fraction(1, 3)}).said()
     assert {*said["parameters"]} == {*LIBRARY.parameters}  # type: ignore[misc]

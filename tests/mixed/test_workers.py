@@ -16,6 +16,7 @@ from roadproof.runtime import dask_executor, executors, process_pool, worker
 from roadproof.runtime.budget import Budget, BudgetExceeded, Effort
 from roadproof.runtime.executors import Cluster, Executor, LostJob, Shard, answers_of, try_again
 from roadproof.runtime.process_pool import answers_of as in_processes
+from roadproof.runtime.progress import Stage, begin, listening
 from roadproof.runtime.worker import ended_by
 
 OURS = "1.0.0"
@@ -129,6 +130,19 @@ def square_here(job: int) -> tuple[int, int]:
 def test_a_worker_does_the_jobs_of_its_job_itself() -> None:
     found = dict(work(squares, [2, 3], 2))
     assert found == {0: [0, 1], 1: [0, 1, 4]}
+
+
+def staged(job: int) -> int:
+    begin("solve", f"job {job}")
+    return job
+
+
+@pytest.mark.parametrize("processes", [1, 2])
+def test_what_workers_are_at_is_heard_here(processes: int) -> None:
+    heard: list[Stage] = []
+    with listening(heard.append):
+        assert dict(in_processes(staged, range(3), processes)) == {0: 0, 1: 1, 2: 2}
+    assert sorted((x.name, x.told) for x in heard) == [("solve", f"job {k}") for k in range(3)]
 
 
 def test_progress_counts_what_needed_no_work() -> None:
