@@ -19,8 +19,8 @@ _INFIX: Mapping[Operation, str] = {np.add: "+", np.subtract: "-", np.multiply: "
 }
 _CALLS: Mapping[Operation, str] = {np.maximum: "larger", np.minimum: "smaller", invert: "inverse"}
 HELPERS = {
-    "finite": """\
-static int finite(double x)
+    "is_finite": """\
+static int is_finite(double x)
 {
     return x >= -1.7976931348623157e308 && x <= 1.7976931348623157e308;
 }""",
@@ -63,7 +63,7 @@ def comparisons(leaves: Sequence[tuple[int, Compare]], fields: Mapping[Source, F
             for x in risky:
                 if x not in checked and x not in inverses and not _is_number(program.steps[x]):
                     checked.add(x)
-                    yield f"fine &= finite(x{x});"
+                    yield f"fine &= is_finite(x{x});"
         sign = _INFIX.get(step.operation)
         value = f"{_CALLS[step.operation]}({', '.join(read)})" if sign is None else f" {sign} ".join(read)
         yield f"const {'int' if step.operation in COMPARISONS.values() else 'double'} x{k} = {value};"
