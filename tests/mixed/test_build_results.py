@@ -94,6 +94,22 @@ def test_suites_are_whole_whatever_the_order() -> None:
     ]
 
 
+@pytest.mark.parametrize("wanted", [(), ("junit",), ("sarif",), ("junit", "sarif")])
+def test_files_of_build_results_are_written_where_they_are_named(
+    wanted: tuple[str, ...], tmp_path: Path
+) -> None:
+    from argparse import Namespace
+
+    from roadproof.frontends.cli.options import write_build_results
+
+    built = Built((Case(suite="a", name="b", state="failed", rule=REFUTED),), ExitCode.UNEXPECTED)
+    files = {x: tmp_path / x if x in wanted else None for x in ("junit", "sarif")}
+    write_build_results(Namespace(**files), built)
+    assert {x.name for x in tmp_path.iterdir()} == {*wanted}
+    content = {"junit": built.to_junit(), "sarif": built.to_sarif()}
+    assert all((tmp_path / x).read_text("utf-8") == content[x] for x in wanted)
+
+
 def test_cases_of_one_name_are_told_apart_by_their_suites() -> None:
     made = [Case(suite=x, name="P1", state="failed", rule=REFUTED) for x in ("base", "ext", "base")]
     results = json.loads(Built(tuple(made), ExitCode.UNEXPECTED).to_sarif())["runs"][0]["results"]

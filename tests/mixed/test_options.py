@@ -95,6 +95,60 @@ def test_each_option_is_another_question(
     assert "it was asked" in capsys.readouterr().err
 
 
+def test_claims_of_a_file_are_asked_beside_those_of_the_line(
+    asked: Asked, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "mine.txt").write_text("true\n\nnot false\n")
+    for words, claims in (
+        (CLAIM, 1),
+        ("--claims mine.txt", 2),
+        (f"{CLAIM} --claims mine.txt", 3),
+    ):
+        [study] = question(f"prove {words}", asked)
+        assert len(study.tasks) == claims
+    (tmp_path / "empty.txt").write_text("# nothing\n")
+    assert main(["prove", "--claims", "empty.txt"]) == 2
+    assert "empty.txt contains no claim" in capsys.readouterr().err
+
+
+def test_properties_of_all_values_are_not_asked_at_one(asked: Asked) -> None:
+    [every] = question("prove", asked)
+    [at_one] = question("prove --param rho=1/2", asked)
+    assert any(x.of_all_values for x in every.tasks)
+    assert at_one.tasks
+    assert not any(x.of_all_values for x in at_one.tasks)
+
+
+@pytest.mark.parametrize("text", ["dx0=5", "dx0", "5:6", "dV0=5:6", "dx0=6:5"])
+def test_a_range_has_a_name_and_two_ends(text: str, asked: Asked, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["preventable", "cut-in", "--along", text]) == 2
+    told = capsys.readouterr().err
+    assert "write dx0=LOW:HIGH" in told or (text == "dx0=6:5" and "the range is empty" in told)
+    assert not asked
+
+
+def test_who_does_the_work_is_as_the_options_say() -> None:
+    from argparse import Namespace
+
+    from roadproof.frontends.cli.options import read_hands
+    from roadproof.runtime.executors import Shard
+
+    def hands(**more: Any) -> Any:
+        return read_hands(Namespace(**{"jobs": None, "json": None, **more}))
+
+    assert hands(jobs=3).processes == 3
+    assert hands(shard="2/3").shard == Shard(2, 3)
+    files = {"tls_ca": "ca.pem", "tls_cert": "cert.pem", "tls_key": "key.pem"}
+    cluster = hands(cluster="tls://host:1", **files).cluster
+    assert (cluster.address, cluster.authority, cluster.certificate, cluster.key) == (
+        "tls://host:1",
+        *files.values(),
+    )
+    for wrong in ({"tls_key": "key.pem"}, {"cluster": "local:2", "jobs": 2}, {"shard": "1/2", "json": "-"}):
+        with pytest.raises(UsageError):
+            hands(**wrong)
+
+
 @pytest.mark.parametrize("value", ["1/3", "0.1", "7/3", "0.001", "2/7"])
 def test_a_claim_is_proved_at_any_value_and_checked(value: str, tmp_path: Path) -> None:
     """Thirds are no decimals: they are written as a product, and are read again."""
