@@ -12,6 +12,7 @@ _BEGINNINGS: tuple[tuple[bytes, str], ...] = (
     (b"%PDF", "is a PDF file; the recordings are CSV files"),
     (b"version https://git-lfs", "is a pointer of Git LFS, not the file itself; fetch it with git lfs pull"),
 )
+_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 _PAGES = (b"<!doctype html", b"<html", b"<head", b"<body")
 
 
@@ -26,13 +27,18 @@ def other_format(content: bytes) -> str | None:
     return None
 
 
+def other_encoding(content: bytes) -> str | None:
+    """As ``other_format``, for text that should be UTF-8."""
+    if content.startswith(_UTF_16) or any(content[k:200:2].count(0) > 20 for k in (0, 1)):
+        return "is text in UTF-16; save it as UTF-8"
+    return None
+
+
 def other_table(content: bytes, names: int) -> str | None:
     """As ``other_format``, for a file that should be CSV in ASCII with ``names`` columns."""
-    told = other_format(content)
+    told = other_format(content) or other_encoding(content)
     if told is not None:
         return told
-    if content.startswith((b"\xff\xfe", b"\xfe\xff")) or content[1:200:2].count(0) > 20:
-        return "is text in UTF-16; save it as UTF-8"
     line = content[:10_000].partition(b"\n")[0]
     if line.lstrip().startswith(b"<"):
         return "is XML or HTML, not a table of numbers; name the CSV file"

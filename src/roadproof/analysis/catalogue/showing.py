@@ -25,6 +25,7 @@ from roadproof.library.specification import Specification
 from roadproof.logic import syntax
 from roadproof.logic.formula import Formula
 from roadproof.logic.parse import parse_claim
+from roadproof.recordings.evaluate.faults import faults_of
 from roadproof.recordings.evaluate.one_trace import OneTrace, is_pair
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.exact import DriveJudge, LazyJudge
@@ -257,6 +258,9 @@ def _of_traces(
     notes: dict[str, None] = {}
     played = dict(entry.roles)
     for trace, told in traces_of(entry, asked.role_names):
+        faults = faults_of(trace)
+        if faults:
+            raise InputError(f"{entry.place}: the samples are no motion: {'; '.join(faults)}")
         first = first or trace
         if is_samples(entry):
             played = {role: name for role, name in told.items() if role in asked.role_names}

@@ -11,7 +11,7 @@ from roadproof.analysis.catalogue.playing import chosen_vehicles, play_drive
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile, load_drive
 from roadproof.library.roles import Roles, check_roles, roles_of, vehicle_order
-from roadproof.library.scenarios import PAIR, TRIPLE
+from roadproof.library.scenarios import PAIR, SUBJECT, TRIPLE
 from roadproof.recordings.evaluate.one_trace import (
     OneTrace,
     cut_trace,
@@ -20,6 +20,7 @@ from roadproof.recordings.evaluate.one_trace import (
     read_pair,
     read_samples,
 )
+from roadproof.recordings.formats.commonroad import subject_of_problem
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.samples import ROAD_ENDING
 from roadproof.recordings.formats.source import beside, file_digest
@@ -77,11 +78,16 @@ def _all_of(
 ) -> Iterator[tuple[OneTrace, Mapping[str, str]]]:
     """All pairs and triples of vehicles of one direction that are seen together, in all orders.
 
+    SV is the vehicle that begins as a planning problem says, unless the test names it.
     Where the test says who plays all roles of a pair or triple, that alone; of further vehicles those that
     it names play their role.
     """
     ids = [str(x) for x in recording.vehicle_id]
     given = entry.roles
+    if SUBJECT not in given and entry.place.endswith(".xml"):
+        subject = subject_of_problem(Path(entry.place))
+        if subject in ids and subject not in given.values():
+            given = {**given, SUBJECT: subject}
     check_roles(ids, known, given, f"{entry.place}: roles")
     complete = [x for x in (PAIR, TRIPLE) if set(x) <= set(given)]
     if recording.vehicles > MOST_VEHICLES and not complete:

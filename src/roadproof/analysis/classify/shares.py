@@ -32,6 +32,7 @@ from roadproof.recordings.evaluate.questions import (
 )
 from roadproof.recordings.evaluate.totals import Counts, without_repeats
 from roadproof.recordings.evaluate.traces import OTHER_LANE
+from roadproof.recordings.formats.clock import Rate
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.reliable import losses_of
 from roadproof.semantics.sampled.compiled import Monitor, compile
@@ -99,7 +100,7 @@ def count_shares(
         classes=("Car",),
         convention="clip",
     )
-    known: dict[int, Questions] = {}
+    known: dict[Rate, Questions] = {}
     for recording in recordings:
         if recording.rate not in known:
             known[recording.rate] = questions_of(classes, specification, settings, recording.rate)
@@ -110,7 +111,7 @@ def count_shares(
     return shares
 
 
-def questions_of(classes: Classes, specification: Specification, settings: Settings, rate: int) -> Questions:
+def questions_of(classes: Classes, specification: Specification, settings: Settings, rate: Rate) -> Questions:
     """Every scenario and class, asked in both roles and for the lanes of both vehicles."""
     pairs: dict[MonitorKey, Formula] = {}
     triples: dict[MonitorKey, Formula] = {}

@@ -117,7 +117,7 @@ def _monitor(classes: GapClasses, road: Road) -> Monitor[GapQuestion]:
 def _cut(recording: Recording, pair: dict[str, int], frames: tuple[int, int]) -> OneTrace:
     """Two vehicles from the first frame to the last, and as at the last one for some seconds more."""
     trace = cut_trace(recording, recording.name, pair, frames)
-    more = round(TAIL * recording.rate)
+    more = round(TAIL * float(recording.rate))
     batch = trace.batch
 
     def longer(values: Array) -> Array:

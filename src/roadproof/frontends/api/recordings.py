@@ -4,6 +4,7 @@ import re
 import tempfile
 from collections.abc import Iterator
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 from typing import ClassVar, Unpack
 
@@ -38,6 +39,7 @@ from roadproof.recordings.evaluate.questions import Settings, askable
 from roadproof.recordings.evaluate.recheck import recheck
 from roadproof.recordings.evaluate.results import as_json, driver_cells, driver_columns, question_mark
 from roadproof.recordings.evaluate.totals import Totals
+from roadproof.recordings.formats.clock import rate_text
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.sources import find_sources
 from roadproof.recordings.formats.table import Frame, frame_of
@@ -282,13 +284,13 @@ class RecordedRoad:
 
     recording: str
     format: str
-    rate: int
+    rate: int | Fraction
     vehicles: int
     lanes: tuple[tuple[str, int, tuple[tuple[str, str, str], ...]], ...]
     notes: tuple[str, ...]
 
     def __str__(self) -> str:
-        head = f"{self.recording}: {self.format}, {self.rate} Hz, {self.vehicles} vehicles"
+        head = f"{self.recording}: {self.format}, {rate_text(self.rate)} Hz, {self.vehicles} vehicles"
         return "\n".join([head, *self._lanes(), *(f"  note: {note}" for note in self.notes)])
 
     def _lanes(self) -> Iterator[str]:

@@ -135,7 +135,7 @@ def _batch(recording: Recording, questions: Questions, block: Pairs, truth: Bool
     """The traces of pairs, with the ``truth`` of an rssViolation where that is a matter of one moment."""
     given = {questions.violation.formulas[VIOLATION]: truth} if questions.violation_is_state else {}
     if questions.danger.rests_on(given):
-        return Batch(Fraction(1, recording.rate), block.samples, given=given)
+        return Batch(1 / Fraction(recording.rate), block.samples, given=given)
     batch = gather(recording, block.vehicles, block.low, block.high, questions.danger.signals)
     return replace(batch, given={**batch.given, **given})
 

@@ -12,6 +12,7 @@ from roadproof.recordings.evaluate import results
 from roadproof.recordings.evaluate.evaluate import Findings, evaluate_windows
 from roadproof.recordings.evaluate.questions import Questions, Settings, ask
 from roadproof.recordings.evaluate.totals import Totals
+from roadproof.recordings.formats.clock import Rate
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.source import RecordingSource
 from roadproof.recordings.formats.sources import copies_among, find_sources
@@ -197,7 +198,7 @@ def _evaluate(job: _Job) -> str | None:
 
 
 _MOST_ASKED = 4
-_asked: dict[tuple[str, int, tuple[str, ...]], Questions] = {}
+_asked: dict[tuple[str, Rate, tuple[str, ...]], Questions] = {}
 
 
 def questions_for(settings: Settings, question: str, recording: Recording | WindowedRecording) -> Questions:

@@ -27,6 +27,7 @@ from roadproof.recordings.formats.reliable import LEFT_OUT
 from roadproof.recordings.formats.source import beside
 from roadproof.recordings.formats.sources import find_source
 from roadproof.recordings.formats.straight import of_road, whole
+from roadproof.recordings.formats.table import Column, Table
 from roadproof.semantics.exact.robust import MOST_SAMPLES
 from roadproof.semantics.sampled.batch import Array, Batch
 from roadproof.world.drive import Drive, value_at
@@ -106,7 +107,7 @@ def read_vehicles(
         raise InputError(f"{text}, frames {wanted[0]} to {wanted[1]}: {have}")
     made = cut_trace(recording, text, dict(zip(by_role, index, strict=True)), wanted)
     names = {role: str(number) for role, number in by_role.items()}
-    return replace(made, notes=(*made.notes, *_overlaps(made)), names=names)
+    return replace(made, notes=(*made.notes, *_overlaps(made), *backwards(made)), names=names)
 
 
 def play_samples(trace: OneTrace, roles: Roles) -> OneTrace:
@@ -134,6 +135,21 @@ def _overlaps(trace: OneTrace) -> Iterator[str]:
         frames = int(np.count_nonzero(depth > 0))
         if frames:
             yield f"vehicles {one} and {other} overlap in {frames} frames, by up to {depth.max():.2f} m"
+
+
+BACKWARDS = -0.5
+"""m/s: a vehicle this fast drives backwards; slower ones stand, as far as measurements say."""
+
+
+def backwards(trace: OneTrace) -> Iterator[str]:
+    """A line for each vehicle that drives backwards, for which RSS has no safe distance."""
+    for name in trace.lanes:
+        speed = trace.batch.signals["v_lon", name][: int(trace.batch.lengths[0]), 0]
+        if speed.min() < BACKWARDS:
+            yield (
+                f"vehicle {name} drives backwards, at {speed.min():.3g} m/s: the safe distance of RSS holds "
+                "for speeds of 0 or more, so rssViolation and danger decide nothing there"
+            )
 
 
 def _find(recording: Recording, number: int, text: str) -> int:
@@ -249,7 +265,7 @@ def read_samples(path: Path, road: Road | None = None, strict: bool = False) -> 
     lists = {name: values.tolist() for name, values in table.columns.items()}
     made = of_columns(lists, road, str(path))
     doubts = samples.doubts_in(table, of_road(road, samples.DIRECTION, path), computed)
-    return replace(made, notes=(*notes, *doubts, *_overlaps(made)), faults=faults)
+    return replace(made, notes=(*notes, *doubts, *_overlaps(made), *backwards(made)), faults=faults)
 
 
 def of_columns(columns: Mapping[str, Sequence[object]], road: Road, source: str = "columns") -> OneTrace:
@@ -273,53 +289,44 @@ def of_columns(columns: Mapping[str, Sequence[object]], road: Road, source: str 
     if len(set(lengths.values())) > 1:
         told = ", ".join(f"{name} {length}" for name, length in lengths.items())
         raise InputError(f"{source}: columns must be equally long, but have {told} rows")
-    keys = [
-        (Fraction(repr(round(_finite(source, k, "time", time), 9))), str(name))
-        for k, (time, name) in enumerate(zip(*(read[x] for x in samples.HEADER[:2]), strict=True))
-    ]
-    said = (*RECORDED, *SIZES)
-    numbers = [[_finite(source, k, x, read[x][k]) for x in said] for k in range(len(keys))]
-    kinds = map(str, read[kind[0]]) if kind else ["car"] * len(keys)
-    values: dict[str, Sequence[float]] = {x: [row[k] for row in numbers] for k, x in enumerate(said)}
-    values |= {name: own_numbers(read[name]).tolist() for name in own}
-    values[KIND] = [float(code_of(kind_called(name))) for name in kinds]
-    return _of_rows(source, keys, values, own, road)
+    said = ("time", *RECORDED, *SIZES)
+    values: dict[str, Column] = {
+        x: np.array([_finite(source, k, x, value) for k, value in enumerate(read[x])]) for x in said
+    }
+    values["time"] = np.round(values["time"], 9)
+    values["vehicle"] = np.array([str(x) for x in read["vehicle"]])
+    values |= {name: own_numbers(read[name]) for name in own}
+    kinds = map(str, read[kind[0]]) if kind else ["car"] * rows
+    values[KIND] = np.array([float(code_of(kind_called(name))) for name in kinds])
+    return _of_table(source, Table(Path(source), values, rows), own, road)
 
 
-def _of_rows(
-    source: str,
-    keys: Sequence[tuple[Fraction, str]],
-    values: Mapping[str, Sequence[float]],
-    own: Sequence[str],
-    road: Road,
-) -> OneTrace:
+def _of_table(source: str, columns: Table, own: Sequence[str], road: Road) -> OneTrace:
     """The trace of rows, each with its time and vehicle. Raises ``InputError`` where they are no table."""
-    names = list(dict.fromkeys(name for _, name in keys))
-    times = list(dict.fromkeys(time for time, _ in keys))
-    if len(times) < 2:
-        raise InputError(f"{source}: {len(times)} times; at least two samples are needed")
-    dt = times[1] - times[0]
-    for k, time in enumerate(times):
-        if time != times[0] + k * dt or dt <= 0:
-            shown = f"{float(time):g}"
-            raise InputError(f"{source}: time={shown} breaks the step of {float(dt):g} s; use equal steps")
-    if sorted(keys) != sorted((time, name) for time in times for name in names):
-        raise InputError(
-            f"{source}: {len(keys)} rows for {len(times)} times and {len(names)} vehicles: every vehicle "
-            "needs exactly one row at every time"
-        )
-    place = {key: k for k, key in enumerate(keys)}
-    rows = {name: [place[time, name] for time in times] for name in names}
+    names = list(dict.fromkeys(columns["vehicle"].tolist()))
+    if len(np.unique(columns["time"])) < 2:
+        raise InputError(f"{source}: fewer than two times; at least two samples are needed")
+    table, ids, clock, _ = samples.in_order(columns)
+    frames = samples.frames_of(table, ids, clock)
+    count = int(frames.max()) + 1
+    rows = {name: np.flatnonzero(table["vehicle"] == name) for name in names}
+    for name, at in rows.items():
+        if len(at) != count:
+            raise InputError(
+                f"{source}: vehicle {name} has {len(at)} of {count} samples: every vehicle needs exactly one "
+                "row at every time; of vehicles that come and go, name some (FILE:12,15)"
+            )
     sizes: dict[tuple[SizeName, str], float] = {}
     for name, size in product(names, FIXED):
-        sizes[size, name], *others = {values[size][k] for k in rows[name]}
+        sizes[size, name], *others = {*table[size][rows[name]].tolist()}
         if others:
             what = "class" if size == KIND else "size"
             raise InputError(f"{source}: {size} of {name} changes; the {what} of a vehicle stays the same")
-    columns = {x: {n: np.array([values[x][k] for k in rows[n]]) for n in names} for x in (*RECORDED, *own)}
-    signals: dict[tuple[str, str], Array] = {(x, n): columns[x][n] for x in RECORDED for n in names}
-    signals |= by_vehicle({x: columns[x] for x in own})
-    return _one_trace(source, dt, signals, sizes, road, f"{float(times[0]):g} s")
+    read = {x: {n: table[x][rows[n]] for n in names} for x in (*RECORDED, *own)}
+    signals: dict[tuple[str, str], Array] = {(x, n): read[x][n] for x in RECORDED for n in names}
+    signals |= by_vehicle({x: read[x] for x in own})
+    first = f"{float(columns['time'].min()):.15g} s"
+    return _one_trace(source, 1 / Fraction(clock.rate), signals, sizes, road, first)
 
 
 def _finite(source: str, row: int, column: str, value: object) -> float:

@@ -24,6 +24,7 @@ from roadproof.logic.rewrite import all_with_values, horizon, with_values, witho
 from roadproof.recordings.evaluate.courses import Course, courses_of
 from roadproof.recordings.evaluate.sectors import Sector, is_possible, sectors_of
 from roadproof.recordings.evaluate.traces import OTHER_LANE, LaneAtom, lane_atoms
+from roadproof.recordings.formats.clock import Rate
 from roadproof.recordings.formats.pairs import DetectionRange, Reach
 from roadproof.recordings.formats.recording import ZONES
 from roadproof.semantics.sampled.answers import Convention, Key
@@ -135,7 +136,7 @@ class Questions:
     """
 
     settings: Settings
-    rate: int
+    rate: Rate
     violation: Monitor[Condition]
     violation_is_state: bool
     danger: Monitor[Condition | Danger]
@@ -153,13 +154,13 @@ class Questions:
     courses: tuple[Course, ...] = ()
 
 
-def ask(settings: Settings, rate: int, zones: Iterable[str] = ZONES) -> Questions:
+def ask(settings: Settings, rate: Rate, zones: Iterable[str] = ZONES) -> Questions:
     """Compile the questions for recordings of ``rate`` samples a second, on roads of no other ``zones``.
 
     Scenarios that cannot begin on such a road are not asked. Raises ``InputError`` where a set or option does
     not exist, a duration is no multiple of the time step, or a scenario is none of two or three cars.
     """
-    dt = Fraction(1, rate)
+    dt = 1 / Fraction(rate)
     sets = {name: settings.library.select(name, settings.options) for name in settings.sets}
     first = sets[settings.sets[0]]
     near, starts_safe, endangers = (meaning(first, *s.PAIR) for meaning in (s.violation, s.safe, s.danger))

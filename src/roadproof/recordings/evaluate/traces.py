@@ -99,7 +99,7 @@ def gather_rows(
         whose = rows if x.vehicle else ("",)
         refuse_missing([(x.name, v) for v in whose], own_signals, f"recording {recording.name}")
     return Batch(
-        dt=Fraction(1, recording.rate),
+        dt=1 / Fraction(recording.rate),
         lengths=lengths,
         signals={
             **{(x, name): getattr(recording, x).take(at) for name, at in rows.items() for x in wanted},

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.errors import InputError
+from roadproof.recordings.formats.clock import LARGEST_RATE, LONGEST_STEP, Rate
 from roadproof.recordings.formats.plausible import (
     LARGEST_ACCELERATION,
     LARGEST_SIZE,
@@ -22,7 +23,7 @@ from roadproof.recordings.formats.recording import (
     Recording,
     beside_by_order,
 )
-from roadproof.recordings.formats.samples import LARGEST_PLACE, LARGEST_RATE
+from roadproof.recordings.formats.samples import LARGEST_PLACE
 from roadproof.recordings.formats.straight import Placement, StraightRoad, place
 from roadproof.recordings.formats.table import reach_of
 from roadproof.world.signals import RECORDED
@@ -36,10 +37,10 @@ _ROUNDING = 0.015
 class PlausibilityChecks:
     """Checks of one recording, whose vehicles are added one after the other, each whole."""
 
-    def __init__(self, head: Path, rate: int, lanes: tuple[Lane, ...]) -> None:
+    def __init__(self, head: Path, rate: Rate, lanes: tuple[Lane, ...]) -> None:
         self.head = head
-        if not 1 <= rate <= LARGEST_RATE:
-            raise InputError(f"{head}, rate={rate}: must lie between 1 and {LARGEST_RATE}")
+        if not 1 / LONGEST_STEP <= rate <= LARGEST_RATE:
+            raise InputError(f"{head}, rate={rate}: must lie between 1/{LONGEST_STEP} and {LARGEST_RATE}")
         self.doubting = ContradictionChecks(rate, lanes)
         self.ids: list[Integers] = []
         self.frames: list[tuple[Integers, Integers]] = []

@@ -3,7 +3,6 @@
 ``NAME_zones.toml`` beside the file may say which lanelets are of ramps, and in which zone.
 """
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
@@ -13,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.errors import InputError
+from roadproof.recordings.formats.clock import LARGEST_RATE, LONGEST_STEP, Rate, rate_near, samples_in
 from roadproof.recordings.formats.commonroad_obstacles import Obstacle, ObstacleRules, read_obstacles
 from roadproof.recordings.formats.lanelets import network_of
 from roadproof.recordings.formats.measured_roads import MeasuredTraffic, place_traffic
@@ -42,9 +42,10 @@ def read_commonroad(path: Path, strict: bool = True, truck_length: float = 7.0) 
         told = f"commonRoadVersion={root.get('commonRoadVersion')}"
         raise InputError(f"{path}: {told}: commonRoad of version 2020a is needed")
     step = number_in(path, root.get("timeStepSize"), "timeStepSize of commonRoad")
-    rate = round(1 / step) if step > 0 else 0
-    if rate < 1 or not math.isclose(rate * step, 1):
-        raise InputError(f"{path}: timeStepSize={step}: a whole number of steps a second is needed")
+    if not 1 / LARGEST_RATE <= step <= LONGEST_STEP:
+        told = f"a step lies between {1 / LARGEST_RATE:g} and {LONGEST_STEP} s"
+        raise InputError(f"{path}: timeStepSize={step}: {told}")
+    rate = rate_near(step)
     network = network_of(path, lanelets_of(path, root), strict)
     obstacles, notes = read_obstacles(path, root, ObstacleRules(rate, truck_length, strict))
     traffic = _traffic(path.stem, rate, obstacles, notes)
@@ -53,6 +54,39 @@ def read_commonroad(path: Path, strict: bool = True, truck_length: float = 7.0) 
     whole = place_traffic(traffic, network)
     recording = reliable(whole, strict, partial(_check_plausible, path, whole))
     return with_notes(recording, (*_say_consistent(traffic, whole, recording), *_describe(recording)))
+
+
+def subject_of_problem(path: Path) -> str:
+    """The id of the obstacle that begins as the only planning problem says; empty where none does.
+
+    Exporters of drives keep the vehicle under test as an obstacle beside the problem. Raises ``InputError``.
+    """
+    root = read_xml(path, "commonRoad")
+    problems = root.findall("planningProblem/initialState")
+    if len(problems) != 1:
+        return ""
+    begin = _begin_of(problems[0])
+    beginning = [
+        node.get("id", "")
+        for node in root.findall("dynamicObstacle")
+        if begin is not None and _near(begin, _begin_of(node.find("initialState")))
+    ]
+    return beginning[0] if len(beginning) == 1 else ""
+
+
+_BEGIN = ("time/exact", "position/point/x", "position/point/y", "velocity/exact")
+
+
+def _begin_of(node: Element | None) -> tuple[float, ...] | None:
+    """Time, place and speed of an initial state, where it has exact ones."""
+    try:
+        return None if node is None else tuple(float(node.findtext(x) or "") for x in _BEGIN)
+    except ValueError:
+        return None
+
+
+def _near(one: tuple[float, ...], other: tuple[float, ...] | None) -> bool:
+    return other is not None and all(abs(a - b) < 0.01 for a, b in zip(one, other, strict=True))
 
 
 def _say_consistent(traffic: MeasuredTraffic, whole: Recording, part: Recording) -> Iterator[str]:
@@ -74,8 +108,8 @@ def _moves_as_told(traffic: MeasuredTraffic) -> Bools:
     speed = np.hypot(*traffic.velocity.T)
     for v, (begin, end) in enumerate(pairwise(traffic.start.tolist())):
         way = np.hypot(*np.diff(traffic.centre[begin:end], axis=0).T)
-        told = (speed[begin : end - 1] + speed[begin + 1 : end]) / 2 / traffic.rate
-        seconds = np.ones(min(traffic.rate, len(way)))
+        told = (speed[begin : end - 1] + speed[begin + 1 : end]) / 2 / float(traffic.rate)
+        seconds = np.ones(min(samples_in(traffic.rate), len(way)))
         if not len(seconds):
             continue
         one, other = np.convolve(way, seconds, "valid"), np.convolve(told, seconds, "valid")
@@ -93,7 +127,7 @@ def _is_made(root: Element) -> bool:
     return root.get("benchmarkID", "").removeprefix("C-").startswith("ZAM_")
 
 
-def _traffic(name: str, rate: int, obstacles: Sequence[Obstacle], notes: tuple[str, ...]) -> MeasuredTraffic:
+def _traffic(name: str, rate: Rate, obstacles: Sequence[Obstacle], notes: tuple[str, ...]) -> MeasuredTraffic:
     counts = np.array([len(o.states) for o in obstacles])
     states = np.concatenate([o.states for o in obstacles])
     length, width = (np.array([getattr(o, x) for o in obstacles]) for x in ("length", "width"))
@@ -122,12 +156,12 @@ def _traffic(name: str, rate: int, obstacles: Sequence[Obstacle], notes: tuple[s
     )
 
 
-def _change(drift: Floats, start: Integers, rate: int) -> Floats:
+def _change(drift: Floats, start: Integers, rate: Rate) -> Floats:
     """What velocityY changes by in a second, from each sample to the next; the last one is as the one before.
 
     States have no acceleration across the box.
     """
-    step = np.diff(drift, append=0.0) * rate
+    step = np.diff(drift, append=0.0) * float(rate)
     last = start[1:] - 1
     step[last] = np.where(np.diff(start) > 1, step[last - 1], 0.0)
     return step

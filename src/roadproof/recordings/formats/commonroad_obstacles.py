@@ -15,6 +15,7 @@ import numpy as np
 
 from roadproof.errors import InputError
 from roadproof.reasons import Why
+from roadproof.recordings.formats.clock import Rate
 from roadproof.recordings.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED
 from roadproof.recordings.formats.recording import Floats
 from roadproof.recordings.formats.reliable import MOST_LEFT_OUT, left_out_note, named, rate_of_change
@@ -71,7 +72,7 @@ class Obstacle:
 class ObstacleRules:
     """How obstacles are read: the ``rate`` (1/s) of states, from which length on (m) they are trucks."""
 
-    rate: int
+    rate: Rate
     truck_length: float
     strict: bool
 
@@ -195,7 +196,7 @@ class _StateReader:
         return number_in(self.path, text, f"{what} in a state of {self.where}")
 
 
-def _completed(path: Path, states: Floats, rate: int, where: str) -> tuple[Floats, tuple[str, ...]]:
+def _completed(path: Path, states: Floats, rate: Rate, where: str) -> tuple[Floats, tuple[str, ...]]:
     """States with a first one that is said once, and with what their places and velocities imply."""
     if len(states) > 1 and states[0, 0] == states[1, 0]:
         states = states[1:]
@@ -217,9 +218,9 @@ def _completed(path: Path, states: Floats, rate: int, where: str) -> tuple[Float
     return states, tuple(told)
 
 
-def _is_unsigned(along: Floats, velocity: Floats, rate: int) -> bool:
+def _is_unsigned(along: Floats, velocity: Floats, rate: Rate) -> bool:
     """Whether a vehicle drives backwards all the time, as fast as velocities say that it drives forwards."""
-    moved, told = float(along.sum()) / rate, float(velocity.sum()) / rate
+    moved, told = float(along.sum()) / float(rate), float(velocity.sum()) / float(rate)
     return told > 1 and bool((velocity >= 0).all()) and abs(moved + told) < 0.1 * told
 
 

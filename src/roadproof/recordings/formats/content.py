@@ -13,32 +13,37 @@ import numpy as np
 import numpy.typing as npt
 
 from roadproof.errors import InputError
+from roadproof.runtime.file_kind import other_format
 from roadproof.runtime.files import refuse_name
 
 _THOUSANDS = re.compile(r"-?\d{1,3}(,\d{3})+(\.\d+)?")
 
 
 def plain_text(path: Path, content: bytes, thousands: bool = False) -> bytes:
-    """The same rows with no quotes, and with line feeds. Raises ``InputError``.
+    """The same rows with no quotes, no spaces beside commas, and with line feeds. Raises ``InputError``.
 
     A quoted cell with a comma or a line break in it is refused: no column of a format has such cells, but for
     numbers such as "1,118,846,979" where commas part ``thousands``.
     """
     if b"\n" not in content:
         content = content.replace(b"\r", b"\n")
-    if b'"' not in content or content.lstrip()[:1] in (b"<", b"{", b"["):
+    if (b'"' not in content and b", " not in content and b" ," not in content) or content.lstrip()[:1] in (
+        b"<",
+        b"{",
+        b"[",
+    ):
         return content  # no table: who reads it says what it is
     lines = []
     for number, line in enumerate(content.decode("latin-1").split("\n")[:-1], start=1):
         try:
-            (cells,) = csv.reader([line.removesuffix("\r")], strict=True)
+            (cells,) = csv.reader([line.removesuffix("\r")], strict=True, skipinitialspace=True)
         except (csv.Error, ValueError):
             raise InputError(f"{path}, row {number}: a quote does not end in its cell; remove it") from None
         if thousands:
             cells = [x.replace(",", "") if _THOUSANDS.fullmatch(x) else x for x in cells]
         if any("," in cell or '"' in cell for cell in cells):
             raise InputError(f"{path}, row {number}: a comma or a quote within a quoted cell; remove it")
-        lines.append(",".join(cells))
+        lines.append(",".join(x.strip() for x in cells))
     end = "" if content.endswith(b"\n") else content.decode("latin-1").rpartition("\n")[2]
     return "".join(f"{line}\n" for line in lines).encode("latin-1") + end.encode("latin-1")
 
@@ -49,12 +54,16 @@ _MARK = b"\xef\xbb\xbf"
 
 @dataclass(frozen=True)
 class ByteCounts:
-    """How many lines and commas there are, and whether there is a quote, and a byte that is no text."""
+    """How many lines and commas there are, and whether there is a quote, and a byte that is no ASCII text.
+
+    ``spaced``: whether a comma has a space beside it.
+    """
 
     lines: int
     commas: int
     quoted: bool
     strange: bool
+    spaced: bool
 
 
 @dataclass(frozen=True)
@@ -92,21 +101,22 @@ class Content:
     def needs_change(self) -> bool:
         """Whether cells are quoted, or lines end with a carriage return alone; False of what is no text."""
         first = self.beginning()
-        if not first.isascii() or b"\0" in first:
+        if b"\0" in first or other_format(first) is not None:
             return False
-        return (b"\r" in first and b"\n" not in first) or self.counts.quoted
+        return (b"\r" in first and b"\n" not in first) or self.counts.quoted or self.counts.spaced
 
     @cached_property
     def counts(self) -> ByteCounts:
         """What is counted in all of it, in one pass."""
-        lines, commas, quoted, strange = 0, 0, False, False
+        lines, commas, quoted, strange, spaced = 0, 0, False, False, False
         for piece in self.pieces():
             found = np.frombuffer(piece, np.uint8)
             lines += int(np.count_nonzero(found == ord("\n")))
             commas += int(np.count_nonzero(found == ord(",")))
             quoted = quoted or b'"' in piece
             strange = strange or is_strange(found)
-        return ByteCounts(lines, commas, quoted, strange)
+            spaced = spaced or b", " in piece or b" ," in piece
+        return ByteCounts(lines, commas, quoted, strange, spaced)
 
     def pieces(self, size: int = 1 << 18) -> Iterator[bytes]:
         """All of it, in pieces that by default fit the cache."""

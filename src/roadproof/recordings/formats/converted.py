@@ -22,6 +22,7 @@ from roadproof.errors import InputError
 from roadproof.evidence.codec import write
 from roadproof.recordings.formats import windows
 from roadproof.recordings.formats.believable import PlausibilityChecks
+from roadproof.recordings.formats.clock import Rate
 from roadproof.recordings.formats.content import require_unchanged, stamp_of
 from roadproof.recordings.formats.recording import (
     Integers,
@@ -168,7 +169,7 @@ def divide_converted(path: Path, checked: bool = False) -> WindowedRecording | N
                 require_unchanged(table, stamp)
             yield Window(with_notes(recording, more), new[vehicles])
 
-    return WindowedRecording(int(said["rate"]), zones_in(zones), read)
+    return WindowedRecording(_rate(said), zones_in(zones), read)
 
 
 def _checked_in_parts(head: Path, said: Head, start: Integers) -> tuple[str, ...]:
@@ -232,6 +233,11 @@ def _head_of(path: Path) -> Path:
     return path.with_name(f"{path.name.removesuffix(SAMPLES)}{HEAD}") if is_table else path
 
 
+def _rate(said: Head) -> Rate:
+    rate = Fraction(said["rate"])
+    return int(rate) if rate.denominator == 1 else rate
+
+
 def _rows(said: Head) -> int:
     return int(said["samples"]["rows"])
 
@@ -274,7 +280,7 @@ def _said(recording: Recording) -> Head:
     """All that is said once, or of vehicles."""
     return {
         "name": recording.name,
-        "rate": recording.rate,
+        "rate": recording.rate if isinstance(recording.rate, int) else str(recording.rate),
         "lanes": list(map(write, recording.lanes)),
         "beside": sorted(sorted(pair) for pair in recording.beside),
         "lanelets": list(map(write, recording.lanelets)),
@@ -325,7 +331,7 @@ def _recording(said: Head, columns: Mapping[str, Column]) -> Recording:
         plain["inside"] = np.zeros((rows, 0), np.bool_)
     return Recording(
         name=said["name"],
-        rate=said["rate"],
+        rate=_rate(said),
         lanes=tuple(Lane(x["name"], x["direction"], x["d"] and tuple(x["d"])) for x in said["lanes"]),
         beside=frozenset(frozenset(pair) for pair in said["beside"]),
         start=offsets(counts),

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.errors import InputError
+from roadproof.recordings.formats.clock import Rate
 from roadproof.recordings.formats.contradictions import contradictions, seldom
 from roadproof.recordings.formats.plausible import (
     LARGEST_ACCELERATION,
@@ -271,7 +272,7 @@ def lanes_of_markings(upper: tuple[float, ...], lower: tuple[float, ...]) -> tup
     return tuple(bands)
 
 
-def _read_recording(path: Path, name: str) -> tuple[int, tuple[Lane, ...], Mapping[str, int]]:
+def _read_recording(path: Path, name: str) -> tuple[Rate, tuple[Lane, ...], Mapping[str, int]]:
     meta = read_table(path, RECORDING_COLUMNS, _RECORDING_KINDS)
     rate = rate_of(meta, "id", int(name), f"the name of the file says recording {name}")
     for column in ("numVehicles", "numCars", "numTrucks"):

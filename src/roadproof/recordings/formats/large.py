@@ -16,6 +16,7 @@ import numpy as np
 from roadproof.errors import InputError
 from roadproof.reasons import Why
 from roadproof.recordings.formats import windows
+from roadproof.recordings.formats.clock import Clock, clock_of
 from roadproof.recordings.formats.content import require_unchanged, stamp_of
 from roadproof.recordings.formats.contradictions import contradictions
 from roadproof.recordings.formats.converted import HEAD, SAMPLES, divide_converted, frame_of_samples, head_of
@@ -31,9 +32,7 @@ from roadproof.recordings.formats.reliable import (
 )
 from roadproof.recordings.formats.samples import (
     ORDER,
-    Clock,
     by_vehicle,
-    clock_of,
     column_pieces,
     count_samples,
     number_vehicles,
@@ -162,7 +161,8 @@ def _survey(path: Path) -> _Survey:
     last: dict[str, float] = {}
     counts: dict[str, int] = {}
     steps: dict[float, int] = {}
-    begin, rows = np.inf, 0
+    times = np.zeros(0)
+    rows = 0
     for table in column_pieces(path):
         names, index = _named(table)
         ordered, codes = by_vehicle(table, index)
@@ -175,10 +175,11 @@ def _survey(path: Path) -> _Survey:
         for step, count in zip(*np.unique(ahead[~np.isnan(before)], return_counts=True), strict=True):
             steps[float(step)] = steps.get(float(step), 0) + int(count)
         ends = np.append(first[1:], len(time)) - 1
+        times = np.union1d(times, time)
         for name, count, end in zip(names, np.diff(np.append(first, len(time))), ends, strict=True):
             counts[name] = counts.get(name, 0) + int(count)
             last[name] = float(time[end])
-        begin, rows = min(begin, float(time.min())), rows + table.rows
+        rows += table.rows
     unordered = np.array(sorted(counts))
     numbers, notes = number_vehicles(unordered)
     order = np.argsort(numbers, kind="stable")
@@ -190,7 +191,7 @@ def _survey(path: Path) -> _Survey:
         {name: k for k, name in enumerate(known)},
         numbers[order],
         np.array([counts[name] for name in known]),
-        clock_of(path, begin, *found),
+        clock_of(path, times, *found),
         notes,
     )
 

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from roadproof.recordings.formats.clock import Rate
 from roadproof.recordings.formats.contradictions import contradictions, seldom
 from roadproof.recordings.formats.measured_roads import MeasuredTraffic
 from roadproof.recordings.formats.plausible import (
@@ -19,7 +20,8 @@ from roadproof.recordings.formats.plausible import (
     LARGEST_SPEED,
     ContradictionChecks,
 )
-from roadproof.recordings.formats.recording import Integers
+from roadproof.recordings.formats.recording import Floats, Integers
+from roadproof.recordings.formats.source import first_line
 from roadproof.recordings.formats.table import Kind, Table, kinds_of, read_named
 from roadproof.recordings.formats.tracks import cells_of, in_order, match_vehicles, rate_of, vehicles_by_id
 
@@ -32,11 +34,14 @@ SAMPLE_KINDS = kinds_of(
     number="xCenter yCenter heading xVelocity yVelocity xAcceleration yAcceleration lonVelocity latVelocity",
 )
 LARGEST_PLACE = 10_000.0
+_ROUNDED = 0.015
+"""m; sizes in two files that round to hundredths differ by less."""
+SIZES = ("length", "width")
 TRUCK_BUS = "truck_bus"
 """A class of inD, which counts as a truck."""
 
 
-def read_about(folder: Path, name: str) -> tuple[Table, int]:
+def read_about(folder: Path, name: str) -> tuple[Table, Rate]:
     """The meta data of a recording and its rate. Raises ``InputError``."""
     about = read_named(folder / f"{name}_recordingMeta.csv", RECORDING_KINDS)
     return about, rate_of(about, "recordingId", int(name), f"the file is of recording {name}")
@@ -57,7 +62,9 @@ def read_samples(
     Unless it is ``strict``, unreadable cells are left to ``check_cells``.
     """
     gaps = cells_of(SAMPLE_KINDS, ("recordingId", "trackId"), strict)
-    tracks = read_named(folder / f"{name}_tracks.csv", {**SAMPLE_KINDS, **more}, gaps)
+    path = folder / f"{name}_tracks.csv"
+    sizes: dict[str, Kind] = {x: "number" for x in SIZES if x in first_line(path).split(",")}
+    tracks = read_named(path, {**SAMPLE_KINDS, **sizes, **more}, (*gaps, *(() if strict else sizes)))
     tracks, notes = in_order(tracks, "trackId")
     tracks.require(tracks["recordingId"] == int(name), "recordingId", f"the file is of recording {name}")
     return tracks, notes
@@ -75,6 +82,9 @@ def check_cells(meta: Table, tracks: Table) -> Integers:
     tracks.require_within(LARGEST_SPEED, "xVelocity", "yVelocity", "lonVelocity", "latVelocity")
     tracks.require_within(LARGEST_ACCELERATION, "xAcceleration", "yAcceleration")
     tracks.require_within(360.0, "heading")
+    for column in (x for x in SIZES if x in tracks.columns):
+        size = tracks[column]
+        tracks.require((size >= 0) & (size <= LARGEST_SIZE), column, f"a size is 0 to {LARGEST_SIZE:g} m")
     return start
 
 
@@ -88,10 +98,11 @@ def check_velocities(tracks: Table) -> Iterator[str]:
 
 
 def traffic_of(
-    name: str, rate: int, meta: Table, tracks: Table, start: Integers, notes: tuple[str, ...]
+    name: str, rate: Rate, meta: Table, tracks: Table, start: Integers, notes: tuple[str, ...]
 ) -> MeasuredTraffic:
     """The vehicles in the plane; classes begin with a capital."""
     heading = np.radians(tracks["heading"])
+    (length, width), told = _sizes(meta, tracks, start)
     classes = meta["class"].astype(np.str_)
     kind = np.where(classes == TRUCK_BUS, "Truck", np.array([x.capitalize() for x in classes.tolist()]))
     return MeasuredTraffic(
@@ -99,16 +110,48 @@ def traffic_of(
         rate=rate,
         vehicle_id=meta["trackId"],
         kind=kind,
-        length=meta["length"],
-        width=meta["width"],
+        length=length,
+        width=width,
         first_frame=meta["initialFrame"],
         start=start,
         centre=np.stack((tracks["xCenter"], tracks["yCenter"]), axis=1),
         heading=heading,
         velocity=np.stack((tracks["xVelocity"], tracks["yVelocity"]), axis=1),
         acceleration=np.stack((tracks["xAcceleration"], tracks["yAcceleration"]), axis=1),
-        notes=notes,
+        notes=(*notes, *told),
     )
+
+
+def _sizes(meta: Table, tracks: Table, start: Integers) -> tuple[list[Floats], list[str]]:
+    """Length and width of each vehicle by its samples, which hold where tracksMeta differs; and notes.
+
+    A vehicle has one size: the median of its samples. Samples without a size leave that of tracksMeta.
+    """
+    found, notes = [], []
+    for column in SIZES:
+        told = meta[column]
+        if column not in tracks.columns:
+            found.append(told)
+            continue
+        samples = np.split(tracks[column], start[1:-1])
+        sizes = np.array([float(np.median(x)) for x in samples])
+        varying = sum(float(np.ptp(x)) > _ROUNDED for x in samples)
+        size = np.where(sizes > 0, sizes, told)
+        other = np.flatnonzero(np.abs(size - told) > _ROUNDED)
+        if len(other):
+            first = int(other[0])
+            notes.append(
+                f"{tracks.path.name}, column {column}: {len(other)} of {meta.rows} vehicles have another "
+                f"size than in {meta.path.name}, such as trackId={meta['trackId'][first]}: "
+                f"{size[first]:g} m, not {told[first]:g} m; the size of {tracks.path.name} counts"
+            )
+        if varying:
+            notes.append(
+                f"{tracks.path.name}, column {column}: {varying} of {meta.rows} vehicles change their size; "
+                "the median counts"
+            )
+        found.append(size)
+    return found, notes
 
 
 def check_plausible(whole: Table, checks: ContradictionChecks, rows: Integers) -> Iterator[str]:

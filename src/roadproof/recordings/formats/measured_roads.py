@@ -13,6 +13,7 @@ from fractions import Fraction
 import numpy as np
 import numpy.typing as npt
 
+from roadproof.recordings.formats.clock import Rate
 from roadproof.recordings.formats.lanelets import used_lanes
 from roadproof.recordings.formats.line_coordinates import BLOCK, LineCoordinates, motion_along, project
 from roadproof.recordings.formats.recording import (
@@ -116,7 +117,7 @@ class MeasuredTraffic:
     """
 
     name: str
-    rate: int
+    rate: Rate
     vehicle_id: Integers
     kind: npt.NDArray[np.str_]
     length: Floats

@@ -6,6 +6,7 @@ from typing import BinaryIO, cast
 
 import numpy as np
 
+from roadproof.recordings.formats.clock import Rate
 from roadproof.recordings.formats.recording import Floats, Recording, blocks_of
 
 
@@ -52,17 +53,17 @@ SHARE, LEAST = 0.1, 1.0
 count: the former contradict themselves (``plausible``)."""
 
 
-def integrate(rate: Floats, frames_a_second: int, last: tuple[float, float] | None = None) -> Floats:
+def integrate(rate: Floats, frames_a_second: Rate, last: tuple[float, float] | None = None) -> Floats:
     """The integral of a rate up to each sample, straight between samples; only differences mean something.
 
     ``last``: the integral and the rate at the sample before, where there is one.
     """
-    total = np.empty(len(rate))
-    total[:1] = 0.0 if last is None else last[0] + (rate[0] + last[1]) / (2 * frames_a_second)
+    total, twice = np.empty(len(rate)), 2 * float(frames_a_second)
+    total[:1] = 0.0 if last is None else last[0] + (rate[0] + last[1]) / twice
     for part in blocks_of(len(rate), overlap=1):
         values = rate[part]
         steps = values[1:] + values[:-1]
-        steps /= 2 * frames_a_second
+        steps /= twice
         if len(steps):
             steps[0] += total[part.start]
             np.cumsum(steps, out=total[part.start + 1 : part.stop])

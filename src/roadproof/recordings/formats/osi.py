@@ -19,6 +19,7 @@ import numpy as np
 
 from roadproof.errors import InputError
 from roadproof.reasons import Why
+from roadproof.recordings.formats.clock import Rate, clock_of
 from roadproof.recordings.formats.contradictions import contradictions
 from roadproof.recordings.formats.measured_roads import MeasuredTraffic
 from roadproof.recordings.formats.plausible import (
@@ -30,7 +31,6 @@ from roadproof.recordings.formats.plausible import (
 from roadproof.recordings.formats.protobuf import WireError, doubles_in, fields_of, integer_in, message_in
 from roadproof.recordings.formats.recording import Floats, Integers, Recording
 from roadproof.recordings.formats.reliable import left_out_note, named, rate_of_change, reliable
-from roadproof.recordings.formats.samples import LARGEST_RATE
 from roadproof.recordings.formats.selected_roads import chart_of, place_on_road
 from roadproof.recordings.formats.source import Files, Format, beside, with_suffix
 from roadproof.recordings.formats.table import CellError
@@ -150,7 +150,7 @@ def read_osi(path: Path, strict: bool = True, road: str | None = None) -> Record
     return reliable(replace(recording, name=path.stem), strict, partial(_check_plausible, path, ids, frame))
 
 
-def _read(path: Path) -> tuple[_Samples, int]:
+def _read(path: Path) -> tuple[_Samples, Rate]:
     """The vehicles of all messages, and how many messages there are a second. Raises ``InputError``."""
     samples, times = _Samples(), list[int]()
     for number, message in enumerate(_messages(path)):
@@ -190,25 +190,27 @@ def _messages(path: Path) -> Iterator[bytes]:
         raise InputError(f"{path}: the file cannot be read ({error.strerror}); check the path") from None
 
 
-def _rate_of(path: Path, times: list[int]) -> int:
+def _rate_of(path: Path, times: list[int]) -> Rate:
     """How many messages a second there are, all of them equally far apart. Raises ``InputError``."""
     if len(times) < 2 or times[1] <= times[0]:
         raise InputError(f"{path}: at least two messages are needed, each later than the one before")
-    rate = round(_NANO / float(np.median(np.diff(times))))
-    if not 1 <= rate <= LARGEST_RATE:
-        raise InputError(f"{path}: 1 to {LARGEST_RATE} messages a second are needed")
-    for number, time in enumerate(times):
-        if abs((time - times[0]) * rate - number * _NANO) > _NANO // 10:
-            told = f"timestamp={time / _NANO:g} s: messages are 1/{rate} s apart, without gaps"
+    ahead = (np.array(times) - times[0]) / _NANO
+    steps, counts = np.unique(np.diff(ahead), return_counts=True)
+    if steps[0] <= 0:
+        raise InputError(f"{path}: each message must be later than the one before")
+    clock = clock_of(path, ahead, steps, counts)
+    for number, frame in enumerate(clock.frames(ahead)):
+        if frame != number or clock.misses(ahead)[number] > 0.1 * clock.step:
+            told = f"timestamp={times[number] / _NANO:g} s: messages are 1/{clock.rate} s apart, without gaps"
             raise InputError(f"{path}, message {number + 1}, {told}")
-    return rate
+    return clock.rate
 
 
 def _starts(ids: Integers) -> list[int]:
     return [*np.flatnonzero(np.diff(ids, prepend=-1)).tolist(), len(ids)]
 
 
-def _with_accelerations(ids: Integers, base: Floats, rate: int) -> tuple[Floats, list[str]]:
+def _with_accelerations(ids: Integers, base: Floats, rate: Rate) -> tuple[Floats, list[str]]:
     """The base of each sample, where missing accelerations are changes of velocities, and a note on these."""
     base, derived = base.copy(), []
     for begin, end in pairwise(_starts(ids)):
@@ -237,7 +239,7 @@ def _rules(ids: Integers, frame: Integers, base: Floats) -> Iterator[Rule]:
 
 def _traffic(
     name: str,
-    rate: int,
+    rate: Rate,
     ids: Integers,
     frame: Integers,
     base: Floats,

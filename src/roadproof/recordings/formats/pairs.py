@@ -10,6 +10,7 @@ from typing import Self
 import numpy as np
 
 from roadproof.library.scenarios import PAIR, TRIPLE
+from roadproof.recordings.formats.clock import samples_in
 from roadproof.recordings.formats.recording import Bools, Floats, Integers, Masks, Recording, offsets
 
 
@@ -141,7 +142,7 @@ def near_moments(
     ):
         raise ValueError("the bound holds for rho, a_max >= 0 and b_min, b_max > 0, lateral ones alike")
     if len(pairs):
-        pieces = _pieces_of(recording, max(1, recording.rate), reach)
+        pieces = _pieces_of(recording, samples_in(recording.rate), reach)
         for part in _parts(pairs, samples):
             yield _near(recording, pieces, pairs, part)
 

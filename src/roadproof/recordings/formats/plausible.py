@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from roadproof.recordings.formats.clock import Rate, samples_in
 from roadproof.recordings.formats.median import Median, Scale, integrate
 from roadproof.recordings.formats.recording import (
     Bools,
@@ -135,7 +136,7 @@ class _Motion:
         wrong = np.flatnonzero(moved & (np.abs(change - told) > self.rule.share * greater + self.rule.slack))
         if len(wrong) and not self.broken:
             first = begin.start + int(wrong[0]) * begin.step
-            self.row = before + _worst(signal, total, first, first + recording.rate)
+            self.row = before + _worst(signal, total, first, first + samples_in(recording.rate))
         self.broken += len(wrong)
         self.asked += int(np.count_nonzero(moved))
         self.factors.append(told[wrong] / np.where(change[wrong] == 0, np.inf, change[wrong]))
@@ -169,10 +170,10 @@ class _Seconds:
 
 def _seconds(recording: Recording, before: int) -> _Seconds:
     """Windows every fifth of a second of the whole, in which there are so many rows ``before``."""
-    every, rows = max(1, recording.rate // 5), len(recording.s)
-    first = -before % every
-    begin = slice(first, max(0, rows - recording.rate), every)
-    end = slice(first + recording.rate, rows, every)
+    every, rows = max(1, samples_in(recording.rate) // 5), len(recording.s)
+    first, second = -before % every, samples_in(recording.rate)
+    begin = slice(first, max(0, rows - second), every)
+    end = slice(first + second, rows, every)
     vehicle = recording.row_vehicle
     return _Seconds(begin, end, vehicle[begin] == vehicle[end])
 
@@ -207,7 +208,7 @@ class _Jumps:
             change = np.diff(signal[part])
             if self.rate is not None:
                 rate = getattr(recording, self.rate)[part]
-                change -= (rate[1:] + rate[:-1]) * (1 / recording.rate / 2)
+                change -= (rate[1:] + rate[:-1]) * (1 / float(recording.rate) / 2)
             broken[steps] = inner[steps] & (np.abs(change) > self.limit)
         self.add(broken, before + 1, int(np.count_nonzero(inner)))
 
@@ -224,11 +225,11 @@ class _Jumps:
             yield Implausible(self.rule, self.signal, self.row, self.broken, self.asked, "steps", refused)
 
 
-def _steps(rate: int) -> tuple[_Jumps, ...]:
+def _steps(rate: Rate) -> tuple[_Jumps, ...]:
     moves = f"a vehicle does not move by more than {LARGEST_STEP:g} m from one frame to the next"
     differ = "a position and the velocity differ by more than {:g} m from one frame to the next"
     changes = "a velocity changes by more than {:.2g} m/s from one frame to the next"
-    along, across = 30 * (1 / rate) + 0.5, 10 * (1 / rate) + 0.5
+    along, across = 30 * (1 / float(rate)) + 0.5, 10 * (1 / float(rate)) + 0.5
     return (
         _Jumps(moves, "s", LARGEST_STEP, most=0),
         _Jumps(differ.format(1.0), "s", 1.0, "v_lon"),
@@ -332,7 +333,7 @@ class _Places:
 class ContradictionChecks:
     """What a recording contradicts itself in, whose vehicles are added one after the other, each whole."""
 
-    def __init__(self, rate: int, lanes: tuple[Lane, ...]) -> None:
+    def __init__(self, rate: Rate, lanes: tuple[Lane, ...]) -> None:
         self.lanes = lanes
         self.motion = [_Motion(rule) for rule in _RATES]
         self.scale = Scale()
@@ -346,7 +347,7 @@ class ContradictionChecks:
         """The vehicles that follow those that were added, in the order of the whole."""
         if not len(recording.s):
             return
-        if not recording.computed:
+        if not recording.computed and recording.rate >= 1:
             self._add_motion(recording)
         self.places.add(recording, self.rows)
         of = (recording.length, recording.width, recording.kind, recording.direction)

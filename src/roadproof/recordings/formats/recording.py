@@ -9,6 +9,7 @@ Samples are grouped by vehicle and consecutive within one: vehicle v owns rows
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, TypeAlias
@@ -116,7 +117,7 @@ class Recording:
     """
 
     name: str
-    rate: int
+    rate: int | Fraction
     lanes: tuple[Lane, ...]
     beside: frozenset[frozenset[str]]
     vehicle_id: Integers

@@ -15,6 +15,7 @@ import numpy as np
 
 from roadproof.errors import InputError
 from roadproof.reasons import Reason, Why
+from roadproof.recordings.formats.clock import Rate
 from roadproof.recordings.formats.plausible import (
     SHARE,
     SHARE_OF_JUMPS,
@@ -241,9 +242,9 @@ def _heads_along(recording: Recording) -> Bools:
     return along
 
 
-def rate_of_change(values: Floats, rate: int) -> Floats:
+def rate_of_change(values: Floats, rate: Rate) -> Floats:
     """What values change by in a second, by central differences; zero for a single value."""
     if len(values) < 2:
         return np.zeros(len(values))
-    changes: Floats = np.gradient(values) * rate
+    changes: Floats = np.gradient(values) * float(rate)
     return changes

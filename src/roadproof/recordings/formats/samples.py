@@ -8,7 +8,7 @@ NAME_road.toml beside NAME.csv or NAME.parquet, in the form of models/roads, say
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,7 @@ import numpy.typing as npt
 from roadproof.errors import InputError
 from roadproof.library.roles import vehicle_order
 from roadproof.reasons import Why
+from roadproof.recordings.formats.clock import Clock, clock_of, rate_text
 from roadproof.recordings.formats.contradictions import contradictions
 from roadproof.recordings.formats.plausible import (
     LARGEST_ACCELERATION,
@@ -43,6 +44,7 @@ from roadproof.recordings.formats.table import (
     polars_module,
     read_pieces,
     read_table,
+    without_copies,
 )
 from roadproof.runtime.files import refuse_name
 from roadproof.world.models import load_recorded_road
@@ -140,10 +142,6 @@ LABEL = "vehicle category"
 DIRECTION = 1
 """The only driving direction of such a file."""
 LARGEST_PLACE = 1_000_000.0
-LARGEST_RATE = 1000
-_UNEVEN = 0.01  # by so much a step may differ from a whole number of samples a second
-_ROUNDING = 0.00101
-"""s: two times with three decimals are this far from what they stand for, together."""
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*", re.ASCII)
 _KINDS: dict[str, Kind] = {name: "text" if name == "vehicle" else "number" for name in HEADER}
 
@@ -168,12 +166,13 @@ def count_samples(path: Path) -> int:
 
 
 def _header_of(path: Path) -> tuple[tuple[str, ...], dict[str, Kind]]:
+    """The columns of a CSV file, in any order, and the kinds of those that are read."""
     names = tuple(first_line(path).split(","))
-    more = names[len(HEADER) :] if names[: len(HEADER)] == HEADER else ()
-    if len({*names}) < len(names) or not all(_NAME.fullmatch(name) for name in more):
-        more = ()
+    more = [name for name in names if name not in HEADER]
+    if not {*HEADER} <= {*names} or len({*names}) < len(names) or not all(map(_NAME.fullmatch, more)):
+        return HEADER, _KINDS
     kinds: dict[str, Kind] = {name: "text" if name == "kind" else "list" for name in more}
-    return (*HEADER, *more), {**_KINDS, **kinds}
+    return names, {**_KINDS, **kinds}
 
 
 def own_columns(names: Iterable[str]) -> tuple[str, ...]:
@@ -227,7 +226,7 @@ def _readable_part(
     known, wanted, faults = len(np.unique(names)), np.ones(columns.rows, np.bool_), dict[str, CellError]()
     while True:
         try:
-            table, ids, clock, numbered = _in_order(
+            table, ids, clock, numbered = in_order(
                 columns if wanted.all() else columns.at(np.flatnonzero(wanted))
             )
             recording = vehicles_of(table, ids, clock, road, name)
@@ -244,25 +243,20 @@ def _readable_part(
 def doubts_in(columns: Table, road: StraightRoad, computed: bool = False) -> tuple[str, ...]:
     """Notes on what samples contradict themselves in, as a recording of them has.
 
-    Samples that are not a whole number a second have one note: that nothing was compared. Raises
-    ``InputError`` where the contradictions are too large or too many. ``computed``: as in ``recording_of``.
+    Raises ``InputError`` where the contradictions are too large or too many.
+    ``computed``: as in ``recording_of``.
     """
-    table, ids, clock, _ = _in_order(columns)
-    if abs(clock.rate * clock.step - 1) > _UNEVEN:
-        return (
-            f"samples are {clock.step:g} s apart, not a whole number a second: places, speeds and "
-            "accelerations were not compared with each other",
-        )
+    table, ids, clock, _ = in_order(columns)
     recording = vehicles_of(table, ids, clock, road, columns.path.stem)
     checks = check(replace(recording, computed=computed))
     return tuple(_check_plausible(table, checks, np.arange(table.rows)))
 
 
-def vehicles_of(table: Table, ids: Integers, clock: "Clock", road: StraightRoad, name: str) -> Recording:
+def vehicles_of(table: Table, ids: Integers, clock: Clock, road: StraightRoad, name: str) -> Recording:
     """The recording of rows by vehicle, whose numbers are ``ids``, without notes. Raises ``InputError``."""
     first = np.flatnonzero(np.diff(ids, prepend=-1) != 0)
     start = np.append(first, table.rows)
-    frames = _frames(table, ids, clock)
+    frames = frames_of(table, ids, clock)
     _check_cells(table, start)
     counts = np.diff(start)
     kind = table["kind"].astype(np.str_) if "kind" in table.columns else np.full(table.rows, "Car")
@@ -297,57 +291,45 @@ def by_vehicle(table: Table, ids: Integers) -> tuple[Table, Integers]:
     return table.at(order), ids[order]
 
 
-@dataclass(frozen=True)
-class Clock:
-    """``begin`` (s) is the time of frame 0, ``step`` (s) what times go on by, ``rate`` so many a second."""
-
-    begin: float
-    step: float
-    rate: int
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What frame 0 is, where it is not time 0."""
-        return (f"frame 0 is time {self.begin:g} s",) if self.begin else ()
-
-
-def _in_order(columns: Table) -> tuple[Table, Integers, Clock, tuple[str, ...]]:
+def in_order(columns: Table) -> tuple[Table, Integers, Clock, tuple[str, ...]]:
     """The rows by vehicle, the number of each row's, the clock, and a note on numbers."""
     names, index = np.unique(columns["vehicle"].astype(np.str_), return_inverse=True)
     number, notes = number_vehicles(names)
     table, ids = by_vehicle(columns, number[index])
+    table, ids, sorted_notes = _by_time(table, ids)
     time = table["time"]
     same = np.diff(ids, prepend=-1) == 0
-    ahead = np.diff(time, prepend=0.0)
-    table.require(~same | (ahead > 0), "time", ORDER)
-    steps, counts = np.unique(ahead[same], return_counts=True)
-    return table, ids, clock_of(table.path, float(time.min()), steps, counts), notes
+    steps, counts = np.unique(np.diff(time, prepend=0.0)[same], return_counts=True)
+    clock = clock_of(table.path, np.unique(time), steps, counts)
+    return table, ids, clock, (*notes, *sorted_notes)
 
 
 ORDER = "the rows of a vehicle come in order of time, each time once"
 
 
-def clock_of(path: Path, begin: float, steps: Floats, counts: Integers) -> Clock:
-    """The clock by the ``steps`` between samples, each so often, in order. Raises ``InputError``."""
-    if not len(steps):
-        raise InputError(f"{path}: no vehicle has two samples; at least two are needed")
-    near = steps < 1.2 * steps[0]  # gaps left out, rounded times evened out
-    step = float((steps[near] * counts[near]).sum() / counts[near].sum())
-    rate = round(1 / step)
-    if not 1 <= rate <= LARGEST_RATE:
-        raise InputError(f"{path}: time goes on by {step:g} s; 1 to {LARGEST_RATE} samples a second")
-    return Clock(begin, step, rate)
+def _by_time(table: Table, ids: Integers) -> tuple[Table, Integers, tuple[str, ...]]:
+    """The rows of each vehicle in order of time, without repeated ones, and notes. Raises ``InputError``."""
+    same, ahead = np.diff(ids, prepend=-1) == 0, np.diff(table["time"], prepend=0.0)
+    if (~same | (ahead > 0)).all():
+        return table, ids, ()
+    notes = []
+    if not (~same | (ahead >= 0)).all():
+        order = np.lexsort((np.arange(table.rows), table["time"], ids))
+        table, ids = table.at(order), ids[order]
+        notes.append(f"{table.path.name}: rows were not in order of time; they were sorted")
+    again = (np.diff(ids, prepend=-1) == 0) & (np.diff(table["time"], prepend=0.0) == 0)
+    table, told = without_copies(table, again, "time")
+    return table, ids[~again], (*notes, *told)
 
 
-def _frames(table: Table, ids: Integers, clock: Clock) -> Integers:
+def frames_of(table: Table, ids: Integers, clock: Clock) -> Integers:
     """The frame of each row."""
-    time, rate = table["time"], clock.rate
+    time = table["time"]
     same = np.diff(ids, prepend=-1) == 0
-    frames: Integers = np.round((time - clock.begin) * rate).astype(np.int64)
-    told = f"samples are {clock.step:g} s apart, so times are whole multiples of 1/{rate} s"
-    off = np.abs(time - clock.begin - frames / rate)
-    table.require(off <= min(_ROUNDING, 0.1 / rate), "time", told)
-    table.require(~same | (np.diff(frames, prepend=0) == 1), "time", f"{told} without gaps")
+    frames = clock.frames(time)
+    told = f"samples are {clock.step:g} s apart, so times are whole multiples of 1/{rate_text(clock.rate)} s"
+    table.require(clock.misses(time) <= clock.slack, "time", told)
+    table.require(~same | (np.diff(frames, prepend=0) == 1), "time", f"{told} without gaps; use equal steps")
     return frames
 
 

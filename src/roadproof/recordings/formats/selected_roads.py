@@ -15,6 +15,7 @@ import numpy as np
 
 from roadproof.errors import InputError
 from roadproof.reasons import Why
+from roadproof.recordings.formats.clock import samples_in
 from roadproof.recordings.formats.line_coordinates import project
 from roadproof.recordings.formats.measured_roads import (
     MOST_TURNED,
@@ -109,7 +110,7 @@ def place_on(traffic: MeasuredTraffic, network: Network) -> tuple[Recording, Int
     """
     wanted, notes = _moving(traffic)
     there = _along(traffic, network) & np.repeat(wanted, np.diff(traffic.start))
-    kept = _longest_runs(there, traffic.start, traffic.rate)
+    kept = _longest_runs(there, traffic.start, samples_in(traffic.rate))
     counts = np.add.reduceat(kept.astype(np.int64), traffic.start[:-1])
     if not counts.any():
         called = network.notes[0].partition(":")[0]

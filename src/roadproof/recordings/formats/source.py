@@ -2,12 +2,16 @@
 
 import hashlib
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 from typing import TypeAlias
 
-from roadproof.recordings.formats.recording import Recording
+import numpy as np
+
+from roadproof.recordings.formats.clock import Rate
+from roadproof.recordings.formats.recording import Recording, with_notes
 from roadproof.recordings.formats.windows import WindowedRecording, undivided
 
 Files: TypeAlias = tuple[Path, ...]
@@ -50,7 +54,8 @@ class RecordingSource:
 
     def read(self) -> Recording:
         """Read and check it. Raises ``InputError``."""
-        return self.format.read(self.files[-1], self.strict)
+        recording = self.format.read(self.files[-1], self.strict)
+        return with_notes(recording, _backwards(recording))
 
     def divided(self) -> WindowedRecording:
         """The recording in windows, one where it is small enough. Raises ``InputError``, reading them too."""
@@ -67,9 +72,21 @@ class RecordingSource:
             first = hashlib.sha256(f"{first}{self.road}".encode()).hexdigest()
         return [first, *others]
 
-    def place_of_rate(self, rate: int) -> str:
+    def place_of_rate(self, rate: Rate) -> str:
         """Where the files say how many samples a second there are."""
-        return self.format.rate_at.format(*reversed(self.files), rate=rate, step=1 / rate)
+        return self.format.rate_at.format(*reversed(self.files), rate=rate, step=float(1 / Fraction(rate)))
+
+
+def _backwards(recording: Recording) -> Iterator[str]:
+    """A note on vehicles that drive backwards, for which RSS has no safe distance."""
+    slow = recording.v_lon < -0.5
+    if slow.any():
+        ids = np.unique(recording.vehicle_id[recording.row_vehicle[slow]])
+        shown = ", ".join(map(str, ids[:6].tolist())) + (", …" if len(ids) > 6 else "")
+        yield (
+            f"{len(ids)} vehicles ({shown}) drive backwards: the safe distance of RSS holds for speeds of 0 "
+            "or more, so rssViolation and danger decide nothing there"
+        )
 
 
 def with_suffix(path: Path, suffix: str) -> list[Path]:
@@ -84,7 +101,7 @@ def first_line(path: Path) -> str:
     try:
         with path.open("rb") as file:
             line = file.readline(4096).decode("utf-8-sig", "replace").strip()
-            return line.partition("\r")[0].replace('"', "")
+            return ",".join(x.strip() for x in line.partition("\r")[0].replace('"', "").split(","))
     except OSError:
         return ""
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from roadproof.errors import InputError
+from roadproof.recordings.formats.clock import Rate
 from roadproof.recordings.formats.recording import (
     ZONES,
     Bools,
@@ -115,7 +116,7 @@ def place(
 def record(
     road: StraightRoad,
     name: str,
-    rate: int,
+    rate: Rate,
     vehicles: Mapping[str, Column],
     counts: Integers,
     signals: Iterable[Floats],

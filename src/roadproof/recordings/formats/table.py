@@ -5,6 +5,7 @@ field, every cell that is asked for is a finite number (or a text where the form
 first cell that breaks a rule is named by file, row (the header is row 1), column and value.
 """
 
+import codecs
 import io
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -112,6 +113,28 @@ def reach_of(values: Column) -> float:
     """The greatest magnitude, NaN where there is one."""
     least, greatest = float(values.min()), float(values.max())
     return max(-least, greatest) if least <= greatest else math.nan
+
+
+def without_copies(table: Table, again: npt.NDArray[np.bool_], column: str) -> tuple[Table, tuple[str, ...]]:
+    """The rows that do not repeat (``again``) the row before them, and a note. Raises ``InputError``.
+
+    Rows that repeat its key and differ from it are refused, at ``column``.
+    """
+    if not again.any():
+        return table, ()
+    rows = np.flatnonzero(again)
+    for name, values in table.columns.items():
+        same = np.ones(table.rows, np.bool_)
+        one, other = values[rows], values[rows - 1]
+        same[rows] = (one == other) | ((one != one) & (other != other))
+        if not same.all():
+            row = int(np.argmin(same))
+            first, told = table.place(row - 1) + 2, f"{name} is {values[row]} and {values[row - 1]}"
+            raise table.refuse(
+                row, column, f"vehicle and {column} occur together once, but row {first} has them; {told}"
+            )
+    note = f"{table.path.name}: {len(rows)} rows that repeat another row were left out"
+    return table.at(np.flatnonzero(~again)), (note,)
 
 
 def names_in(*lines: str) -> tuple[str, ...]:
@@ -227,7 +250,7 @@ def sample_rows(table: Table, header: Sequence[str], names: Sequence[str], count
         for k in range(count):
             file.seek(size * k // count)
             file.readline()
-            cells = file.readline().decode("ascii").strip().split(",")
+            cells = file.readline().decode("utf-8", "replace").strip().split(",")
             numbers = [cells[place] for place in places] if len(cells) == len(header) else []
             if numbers and all(_fits(x, "number") for x in numbers):
                 found.append([float(x) for x in numbers])
@@ -300,7 +323,7 @@ def _check_shape(content: Content, fields: int) -> int:
             f"{path}: the last row does not end with a line break; the file was cut off, get it again"
         )
     counts = content.counts
-    if counts.strange:
+    if counts.strange and not _is_utf_8(content):
         raise _strange_byte(content)
     lines = counts.lines
     if counts.commas != lines * (fields - 1):
@@ -313,14 +336,34 @@ def _check_shape(content: Content, fields: int) -> int:
     return lines - 1
 
 
+def _is_utf_8(content: Content) -> bool:
+    """Whether the content is text in UTF-8, in which names may have letters of any script."""
+    decoder = codecs.getincrementaldecoder("utf-8")()
+    try:
+        return all("\0" not in decoder.decode(piece) for piece in content.pieces()) and not decoder.decode(
+            b"", True
+        )
+    except UnicodeDecodeError:
+        return False
+
+
+def _first_undecodable(text: bytes) -> int:
+    """The place of the first byte that is no UTF-8, -1 for none."""
+    try:
+        text.decode("utf-8")
+    except UnicodeDecodeError as error:
+        return error.start
+    return -1
+
+
 def _strange_byte(content: Content) -> InputError:
     """The error for the first byte that is part of no table of numbers."""
     text = content.all()
     piece = np.frombuffer(text, np.uint8)
-    strange = int(np.argmax((piece > 127) | (piece == 0)))
+    strange = next((x for x in (_first_undecodable(text), text.find(b"\0")) if x >= 0), 0)
     row = text.count(b"\n", 0, strange) + 1
     return InputError(
-        f"{content.path}, row {row}: byte {piece[strange]:#04x} is no part of a table of numbers"
+        f"{content.path}, row {row}: byte {piece[strange]:#04x} is no text in UTF-8; save the file as UTF-8"
     )
 
 

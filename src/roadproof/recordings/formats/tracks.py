@@ -1,6 +1,7 @@
 """Samples of tracks in one file and what another says of each track, as highD and exiD have them."""
 
 from collections.abc import Callable, Collection, Iterable, Mapping
+from fractions import Fraction
 from pathlib import Path
 from typing import TypeAlias
 
@@ -8,10 +9,11 @@ import numpy as np
 
 from roadproof.errors import InputError
 from roadproof.reasons import Why
+from roadproof.recordings.formats.clock import LARGEST_RATE, Rate, rate_for
 from roadproof.recordings.formats.recording import Bools, Integers, Recording
 from roadproof.recordings.formats.reliable import MOST_LEFT_OUT, left_out_note
 from roadproof.recordings.formats.source import TRACK_FILES, Files, first_line, with_suffix
-from roadproof.recordings.formats.table import CellError, Kind, Table
+from roadproof.recordings.formats.table import CellError, Kind, Table, without_copies
 
 TRACKS = "_tracks.csv"
 RATE_AT = "{2}, row 2, column frameRate={rate}"
@@ -41,15 +43,15 @@ def find_recordings(path: Path, with_ids: bool, files: Callable[[Path, str], Fil
     return dict(sorted(found.items(), key=lambda entry: (int(entry[0]), entry[0])))
 
 
-def rate_of(meta: Table, column: str, number: int, rule: str) -> int:
+def rate_of(meta: Table, column: str, number: int, rule: str) -> Rate:
     """The frames a second of a recording, whose ``number`` is in ``column``. Raises ``InputError``."""
     if meta.rows != 1:
         raise InputError(f"{meta.path}: {meta.rows} rows; one recording has one row of meta data")
     meta.require(meta[column] == number, column, rule)
-    rate = meta["frameRate"][0]
-    if not (0 < rate <= 1000 and rate == int(rate)):
-        raise meta.refuse(0, "frameRate", "a whole number of frames a second is needed")
-    return int(rate)
+    rate = float(meta["frameRate"][0])
+    if not 1 <= rate <= LARGEST_RATE:
+        raise meta.refuse(0, "frameRate", f"1 to {LARGEST_RATE} frames a second are possible")
+    return rate_for(1 / Fraction(repr(rate)))
 
 
 def cells_of(kinds: Mapping[str, Kind], ids: Collection[str], strict: bool) -> tuple[str, ...]:
@@ -81,11 +83,14 @@ def in_order(tracks: Table, column: str) -> tuple[Table, tuple[str, ...]]:
     if (np.diff(ids[starts_of(ids)]) > 0).all() and (_steps_within(ids, frames) > 0).all():
         return tracks, ()
     order = np.lexsort((np.arange(tracks.rows), frames, ids))
-    repeated = np.zeros(tracks.rows, bool)
-    repeated[order[1:]] = (np.diff(ids[order]) == 0) & (np.diff(frames[order]) == 0)
-    tracks.require(~repeated, "frame", "vehicle and frame occur together once")
-    return tracks.at(order), (
+    again = np.zeros(tracks.rows, bool)
+    again[1:] = (np.diff(ids[order]) == 0) & (np.diff(frames[order]) == 0)
+    ordered, copies = without_copies(tracks.at(order), again, "frame")
+    if (np.diff(order) > 0).all():
+        return ordered, copies
+    return ordered, (
         f"{tracks.path.name}: rows were not in order of {column} and frame; they were sorted",
+        *copies,
     )
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from roadproof.recordings.formats.clock import Rate
 from roadproof.recordings.formats.recording import Bools, Integers, Recording
 from roadproof.world.road import Zone
 
@@ -33,7 +34,7 @@ class Window:
 class WindowedRecording:
     """A recording in ``windows``, of which one at a time is in memory, and what is said of the whole."""
 
-    rate: int
+    rate: Rate
     zone_names: tuple[Zone, ...]
     windows: Callable[[], Iterator[Window]]
 

@@ -1,5 +1,6 @@
 """Write a recording as the three files of the highD format (semantics §7), every column filled."""
 
+from fractions import Fraction
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -126,15 +127,15 @@ def _recording_columns(recording: Recording, decimals: int) -> Columns:
     trucks = int(np.count_nonzero(recording.kind == "Truck"))
     values: dict[str, object] = {
         "id": int(recording.name),
-        "frameRate": recording.rate,
+        "frameRate": float(recording.rate) if isinstance(recording.rate, Fraction) else recording.rate,
         "locationId": 1,
         "speedLimit": -1.0,
         "month": "1.2020",
         "weekDay": "Mon",
         "startTime": "12:00",
-        "duration": last / recording.rate,
+        "duration": last / float(recording.rate),
         "totalDrivenDistance": distance,
-        "totalDrivenTime": len(recording.s) / recording.rate,
+        "totalDrivenTime": len(recording.s) / float(recording.rate),
         "numVehicles": recording.vehicles,
         "numCars": recording.vehicles - trucks,
         "numTrucks": trucks,

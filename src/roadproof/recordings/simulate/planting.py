@@ -24,6 +24,7 @@ from roadproof.library.words import words_of
 from roadproof.recordings.evaluate.one_trace import OneTrace, cut_trace
 from roadproof.recordings.evaluate.recheck import trace_of
 from roadproof.recordings.evaluate.results import MATCH_COLUMNS
+from roadproof.recordings.formats.clock import Rate
 from roadproof.recordings.formats.highd import LOWER, UPPER
 from roadproof.recordings.formats.recording import (
     Bools,
@@ -76,7 +77,7 @@ def plant(recording: Recording, drive: Drive, place: Place) -> tuple[Recording, 
     trace of the planted vehicles starts where the drive does. Raises ``UsageError`` where the drive
     does not fit into the section, the time or the lanes that the recording shows.
     """
-    frames = int(place.seconds * recording.rate) + 1
+    frames = int(place.seconds * float(recording.rate)) + 1
     last = place.start_frame + frames - 1
     _check_time(recording, place, last)
     names = sorted(drive.vehicles)
@@ -105,9 +106,9 @@ def plant(recording: Recording, drive: Drive, place: Place) -> tuple[Recording, 
     return merged, PlantedDrive(recording.name, who, place.start_frame, last, removed)
 
 
-def _sample(drive: Drive, name: str, frames: int, place: Place, rate: int) -> list[Floats]:
+def _sample(drive: Drive, name: str, frames: int, place: Place, rate: Rate) -> list[Floats]:
     motion = drive.vehicles[name]
-    states = states_at(motion, (Fraction(k, rate) for k in range(frames)))
+    states = states_at(motion, (k / Fraction(rate) for k in range(frames)))
     shifts = {"s": place.s, "d": place.d}
     return [
         np.round([float(getattr(x, signal)) + shifts.get(signal, 0.0) for x in states], 2) + 0.0
@@ -241,7 +242,7 @@ def plant_drives(
         while len(refused) < len(files):
             k = next(turn)
             place = _place(recording, files[k], way, frame)
-            if frame + int(place.seconds * recording.rate) + PAUSE > int(recording.last_frame.max()):
+            if frame + int(place.seconds * float(recording.rate)) + PAUSE > int(recording.last_frame.max()):
                 refused.add(k)
                 continue
             merged, planted = plant(recording, files[k].drive, place)
@@ -268,7 +269,7 @@ def _place(recording: Recording, file: DriveFile, way: int, frame: int) -> Place
     low, high = _section(recording, way)
     motions = file.drive.vehicles.values()
     s = low + 0.5 - min(float(m.s - m.length) for m in motions)
-    dt = Fraction(1, recording.rate)
+    dt = 1 / Fraction(recording.rate)
     steps = int(file.horizon / dt)
     while steps > 1 and max(float(state_at(m, steps * dt).s) for m in motions) + s > high - 0.5:
         steps -= 1

@@ -1,6 +1,9 @@
 """Lanelets of a map in CommonRoad XML, with their links and the attributes that their types say."""
 
+import math
+from collections import defaultdict
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +13,8 @@ from roadproof.runtime.xml_reader import Element, by_id, number_in, read_xml
 from roadproof.world.maps.topology import Floats, MeasuredLanelet
 from roadproof.world.road import Attribute
 
+SAME = 0.05
+"""m: points of two bounds so near are one point."""
 VERSIONS = ("2020a", "2018b")
 ATTRIBUTES: Mapping[str, Attribute] = {
     "accessRamp": "merge",
@@ -34,7 +39,46 @@ def lanelets_of(path: Path, root: Element) -> dict[str, MeasuredLanelet]:
     nodes = by_id(path, root.findall("lanelet"))
     if not nodes:
         raise InputError(f"{path}: the file has no lanelet; a road is needed to place vehicles on")
-    return {name: _read_lanelet(path, node, nodes) for name, node in nodes.items()}
+    return _with_neighbours({name: _read_lanelet(path, node, nodes) for name, node in nodes.items()})
+
+
+def _with_neighbours(lanelets: Mapping[str, MeasuredLanelet]) -> dict[str, MeasuredLanelet]:
+    """The lanelets, with those beside them in the same direction whose bound is theirs."""
+    found: dict[str, list[str]] = {name: [] for name in lanelets}
+    ends: dict[tuple[int, ...], list[str]] = defaultdict(list)
+    for x in lanelets.values():
+        ends[_cell(x.right[0])].append(x.id)
+    for x in lanelets.values():
+        row, column = _cell(x.left[0])
+        near = [y for i in (-1, 0, 1) for j in (-1, 0, 1) for y in ends.get((row + i, column + j), ())]
+        for other in near:
+            if other != x.id and other not in x.beside and _same_line(x.left, lanelets[other].right):
+                found[x.id].append(other)
+                found[other].append(x.id)
+    return {
+        name: replace(x, beside=(*x.beside, *found[name]), by_bound=tuple(found[name]))
+        for name, x in lanelets.items()
+    }
+
+
+def _cell(point: Floats) -> tuple[int, int]:
+    """The square of a grid that a point is in."""
+    return math.floor(point[0] / SAME), math.floor(point[1] / SAME)
+
+
+def _same_line(one: Floats, other: Floats) -> bool:
+    """Whether two lines have the same ends and the same points between them, up to SAME."""
+    if np.hypot(*(one[[0, -1]] - other[[0, -1]]).T).max() > SAME:
+        return False
+    shares = [np.append(0, np.cumsum(np.hypot(*np.diff(x, axis=0).T))) for x in (one, other)]
+    if min(x[-1] for x in shares) <= 0 or abs(shares[0][-1] - shares[1][-1]) > SAME * len(one):
+        return False
+    at = np.union1d(*(x / x[-1] for x in shares))
+    lines = [
+        np.stack([np.interp(at, share / share[-1], x[:, k]) for k in range(2)], axis=1)
+        for share, x in zip(shares, (one, other), strict=True)
+    ]
+    return bool(np.hypot(*(lines[0] - lines[1]).T).max() <= SAME)
 
 
 def _read_lanelet(path: Path, node: Element, known: Mapping[str, Element]) -> MeasuredLanelet:

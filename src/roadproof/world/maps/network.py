@@ -75,7 +75,7 @@ def network_of(path: Path, lanelets: Mapping[str, MeasuredLanelet]) -> Network:
     chains = chains_of(lanelets)
     main = tuple(main_way(lanelets, [chain for chain in chains if chain[0] in way]) for way in ways)
     reasons = {name: reason for name, (_, reason) in inferred.items() if name not in told.attributes}
-    notes = (*_say_inferred(lanes, attributes, reasons), *_say_said(told))
+    notes = (*_say_bounds(lanelets), *_say_inferred(lanes, attributes, reasons), *_say_said(told))
     return Network(lanelets, attributes, zones, lanes, _beside(lanelets, lanes), main, notes)
 
 
@@ -109,6 +109,15 @@ def _read_said(path: Path, lanelets: Mapping[str, MeasuredLanelet]) -> LaneletAt
             require_one_of(where, "attribute", attribute, get_args(Attribute))
             attributes[name] = cast(Attribute, attribute)
     return LaneletAttributes(attributes, zones)
+
+
+def _say_bounds(lanelets: Mapping[str, MeasuredLanelet]) -> Iterator[str]:
+    """A note on neighbours that are known by a common bound alone."""
+    pairs = dict.fromkeys(frozenset((x.id, other)) for x in lanelets.values() for other in x.by_bound)
+    if pairs:
+        named = ", ".join(" and ".join(sorted(pair)) for pair in [*pairs][:6])
+        more = ", …" if len(pairs) > 6 else ""
+        yield f"lanelets {named}{more} lie side by side by a common bound; the file states no adjacency"
 
 
 def _say_inferred(

@@ -36,7 +36,8 @@ ALONE = 0.01
 class MeasuredLanelet:
     """Bounds (n, 2) with equally many points in driving direction, and the ids of its neighbours.
 
-    ``attribute`` where its type says it, else None.
+    ``attribute`` where its type says it, else None. ``by_bound``: the neighbours that are known by a common
+    bound alone.
     """
 
     id: str
@@ -45,6 +46,7 @@ class MeasuredLanelet:
     attribute: Attribute | None
     successors: tuple[str, ...]
     beside: tuple[str, ...]
+    by_bound: tuple[str, ...] = ()
 
     @property
     def centre(self) -> Floats:
