@@ -142,7 +142,7 @@ def test_what_it_can_do(drive: JudgedDrive) -> None:
         ({"v_lon": [float("nan")] * 4}, "row 0, column v_lon=nan: a finite number is needed"),
         ({"time": [0, 0, 1, 1.5]}, "use equal steps"),
         ({"length": [4, 4, 5, 4]}, "length of SV changes; the size of a vehicle stays the same"),
-        ({"vehicle": ["SV", "SV", "POV", "POV"]}, "every vehicle needs exactly one row at every time"),
+        ({"vehicle": ["SV", "POV", "SV", "car"]}, "every vehicle needs exactly one row at every time"),
     ],
 )
 def test_columns_that_are_no_trace(change: dict[str, Any], told: str) -> None:

@@ -131,7 +131,10 @@ DAMAGES: dict[str, tuple[Callable[[Files], None], str]] = {
         lambda f: f[TRACKS].pop(4) and None,
         r"id=1, column numFrames=4: 01_tracks.csv has 3",
     ),
-    "duplicate": (lambda f: f[TRACKS].insert(3, f[TRACKS][2]), r"row 4, column frame=2: vehicle and frame"),
+    "duplicate": (
+        lambda f: f[TRACKS].insert(3, [*f[TRACKS][2][:2], "9", *f[TRACKS][2][3:]]),
+        r"row 4, column frame=2: vehicle and frame",
+    ),
     "vehicle without rows": (
         lambda f: f.__setitem__(TRACKS, f[TRACKS][:8]),
         r"row 4, column id=3: the vehicle has no rows in 01_tracks.csv",

@@ -35,7 +35,8 @@ def test_motion_has_no_faults() -> None:
 @pytest.mark.parametrize("jump", [75.0, 3.0, -3.0])
 def test_a_jump_is_a_fault(jump: float) -> None:
     (told,) = faults(150 + 10 * TIMES, 10, jump=jump)
-    assert told.startswith("vehicle SV: s changes by") and told.endswith("no vehicle jumps")
+    assert told.startswith("vehicle SV: s changes by")
+    assert told.endswith("no vehicle jumps")
 
 
 def test_a_vehicle_that_drives_through_another_is_a_fault() -> None:

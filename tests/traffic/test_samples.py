@@ -225,13 +225,8 @@ def drop(row: int) -> Callable[[list[list[str]]], None]:
     return lambda rows: rows.pop(row - 1) and None
 
 
-def swap(rows: list[list[str]]) -> None:
-    rows[1], rows[2] = rows[2], rows[1]
-
-
 DAMAGE: dict[str, tuple[Callable[[list[list[str]]], object], str]] = {
     **{name: (cell(*place), said) for name, *place, said in read_table(__file__, "damaged_cells")},
-    "reversed time": (swap, r"a.csv, row 3, column time=0.0: the rows of a vehicle come in order of time"),
     "a gap": (drop(3), r"a.csv, row 3, column time=0.2: .*without gaps"),
     "off the road": (
         lambda rows: [cell(k, "d", "50")(rows) for k in (5, 6)],
@@ -247,6 +242,19 @@ DAMAGE: dict[str, tuple[Callable[[list[list[str]]], object], str]] = {
         r"a.csv: no vehicle has two samples",
     ),
 }
+
+
+def test_rows_out_of_order_and_rows_twice_are_read(tmp_path: Path) -> None:
+    rows = table(*TWO).splitlines(keepends=True)
+    whole = read_recording(write_samples(tmp_path, "whole", "".join(rows), MERGE))
+    rows[1], rows[2] = rows[2], rows[1]
+    turned = read_recording(
+        write_samples(tmp_path, "a", "".join([*rows, rows[3]]).replace(",", " , "), MERGE)
+    )
+    assert (turned.s == whole.s).all()
+    assert (turned.d == whole.d).all()
+    assert turned.notes[0] == "a.csv: rows were not in order of time; they were sorted"
+    assert turned.notes[1] == "a.csv: 1 rows that repeat another row were left out"
 
 
 @pytest.mark.parametrize("name", DAMAGE)

@@ -22,7 +22,9 @@ _DECIMALS = 9
 _JITTER = 0.00101
 """s: two times with three decimals are this far from what they stand for, together."""
 _SHARE = 0.9
-"""At least this share of times must fit a rate."""
+"""A rate that fits so large a share of times is taken before others are tried."""
+_FEWEST = 0.5
+"""At least this share of times must fit the best rate; the reader names those that do not."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +93,7 @@ def clock_of(path: Path, times: Floats, steps: Floats, counts: Integers) -> Cloc
                 best, share = clock, fits
         if share == 1 or (share >= _SHARE and rate in (exact, rates[0])):
             break
-    if share >= _SHARE:
+    if share >= _FEWEST:
         return replace(best, slack=max(best.slack, min(_JITTER, 0.1 * best.step)))
     worst = times[int(np.argmax(best.misses(times)))]
     raise InputError(f"{path}: time={worst:.{_DECIMALS}g} breaks the step of {mean:.6g} s; use equal steps")

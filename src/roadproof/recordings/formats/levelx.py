@@ -136,8 +136,8 @@ def _sizes(meta: Table, tracks: Table, start: Integers) -> tuple[list[Floats], l
         samples = np.split(tracks[column], start[1:-1])
         sizes = np.array([float(np.median(x)) for x in samples])
         varying = sum(float(np.ptp(x)) > _ROUNDED for x in samples)
-        size = np.where(sizes > 0, sizes, told)
-        other = np.flatnonzero(np.abs(size - told) > _ROUNDED)
+        differs = (sizes > 0) & (np.abs(sizes - told) > _ROUNDED)
+        size, other = np.where(differs, sizes, told), np.flatnonzero(differs)
         if len(other):
             first = int(other[0])
             notes.append(

@@ -328,8 +328,9 @@ def frames_of(table: Table, ids: Integers, clock: Clock) -> Integers:
     same = np.diff(ids, prepend=-1) == 0
     frames = clock.frames(time)
     told = f"samples are {clock.step:g} s apart, so times are whole multiples of 1/{rate_text(clock.rate)} s"
+    told += "; use equal steps"
     table.require(clock.misses(time) <= clock.slack, "time", told)
-    table.require(~same | (np.diff(frames, prepend=0) == 1), "time", f"{told} without gaps; use equal steps")
+    table.require(~same | (np.diff(frames, prepend=0) == 1), "time", f"{told}, without gaps")
     return frames
 
 
