@@ -1,5 +1,6 @@
 """The content of text files, looked at piece by piece; quotes are left out, and lines end with line feeds."""
 
+import codecs
 import csv
 import io
 import re
@@ -172,3 +173,34 @@ def stamp_of(path: Path) -> tuple[int, ...]:
     except OSError:
         return ()
     return found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns
+
+
+def is_utf_8(content: Content) -> bool:
+    """Whether the content is text in UTF-8, in which names may have letters of any script."""
+    decoder = codecs.getincrementaldecoder("utf-8")()
+    try:
+        return all("\0" not in decoder.decode(piece) for piece in content.pieces()) and not decoder.decode(
+            b"", True
+        )
+    except UnicodeDecodeError:
+        return False
+
+
+def strange_byte(content: Content) -> InputError:
+    """The error for the first byte that is part of no table of numbers."""
+    text = content.all()
+    piece = np.frombuffer(text, np.uint8)
+    strange = next((x for x in (_first_undecodable(text), text.find(b"\0")) if x >= 0), 0)
+    row = text.count(b"\n", 0, strange) + 1
+    return InputError(
+        f"{content.path}, row {row}: byte {piece[strange]:#04x} is no text in UTF-8; save the file as UTF-8"
+    )
+
+
+def _first_undecodable(text: bytes) -> int:
+    """The place of the first byte that is no UTF-8, -1 for none."""
+    try:
+        text.decode("utf-8")
+    except UnicodeDecodeError as error:
+        return error.start
+    return -1

@@ -5,7 +5,6 @@ field, every cell that is asked for is a finite number (or a text where the form
 first cell that breaks a rule is named by file, row (the header is row 1), column and value.
 """
 
-import codecs
 import io
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -18,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from roadproof.errors import InputError, MissingSolverError
-from roadproof.recordings.formats.content import Content
+from roadproof.recordings.formats.content import Content, is_utf_8, strange_byte
 from roadproof.runtime.file_kind import other_table
 from roadproof.runtime.files import whole_file
 
@@ -323,8 +322,8 @@ def _check_shape(content: Content, fields: int) -> int:
             f"{path}: the last row does not end with a line break; the file was cut off, get it again"
         )
     counts = content.counts
-    if counts.strange and not _is_utf_8(content):
-        raise _strange_byte(content)
+    if counts.strange and not is_utf_8(content):
+        raise strange_byte(content)
     lines = counts.lines
     if counts.commas != lines * (fields - 1):
         for number, line in enumerate(content.all().split(b"\n")[:-1], start=1):
@@ -334,37 +333,6 @@ def _check_shape(content: Content, fields: int) -> int:
     if lines < 2:
         raise InputError(f"{path}: the file has a header but no rows; get it again from its source")
     return lines - 1
-
-
-def _is_utf_8(content: Content) -> bool:
-    """Whether the content is text in UTF-8, in which names may have letters of any script."""
-    decoder = codecs.getincrementaldecoder("utf-8")()
-    try:
-        return all("\0" not in decoder.decode(piece) for piece in content.pieces()) and not decoder.decode(
-            b"", True
-        )
-    except UnicodeDecodeError:
-        return False
-
-
-def _first_undecodable(text: bytes) -> int:
-    """The place of the first byte that is no UTF-8, -1 for none."""
-    try:
-        text.decode("utf-8")
-    except UnicodeDecodeError as error:
-        return error.start
-    return -1
-
-
-def _strange_byte(content: Content) -> InputError:
-    """The error for the first byte that is part of no table of numbers."""
-    text = content.all()
-    piece = np.frombuffer(text, np.uint8)
-    strange = next((x for x in (_first_undecodable(text), text.find(b"\0")) if x >= 0), 0)
-    row = text.count(b"\n", 0, strange) + 1
-    return InputError(
-        f"{content.path}, row {row}: byte {piece[strange]:#04x} is no text in UTF-8; save the file as UTF-8"
-    )
 
 
 def _read_fast(
