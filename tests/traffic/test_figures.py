@@ -115,7 +115,9 @@ def answers(counts: Counts, sectors: Sequence[str]) -> Iterator[str]:
             found = [{abs(i) for i in x} for x in counts.matched(danger, kind, first).values()]
             if found:
                 together = Counter(p for x in found for p in combinations(sorted(x), 2))
-                listed = ", ".join(f"{i}-{j} {n}" for (i, j), n in together.most_common(5))
+                listed = ", ".join(
+                    f"{i}-{j} {n}" for (i, j), n in sorted(together.items(), key=lambda x: (-x[1], x[0]))
+                )
                 several = sum(len(x) > 1 for x in found)
                 told = f"{several} of {len(found)} traces that match a scenario of the {first} match several"
                 yield f"minDanger {danger}, {kind}: {told}{'; ' + listed if listed else ''}."
@@ -473,3 +475,21 @@ def test_classes_count_what_two_windows_show_once(folder: Path) -> None:
     both = shares()
     assert (both.all_traces, both.traces["class_12"], both.repeated, both.broken) == (1, 1, 1, [])
     assert both.situations == alone.situations
+
+
+def test_a_match_of_a_later_window_counts_for_the_violation_of_an_earlier_one(
+    folder: Path, tmp_path: Path
+) -> None:
+    """The first window begins in danger and has no trace; the second, with a trace, shows the same pair."""
+    window(folder / "a.xml", 12, STEPS_SEEN, (5, 6))
+    window(folder / "b.xml", 0, STEPS_SEEN)
+    alone, both = tmp_path / "alone", tmp_path / "both"
+    first = run_experiment(
+        Experiment(folder / "a.xml", alone, replace(default_settings(), scenarios=(4, 12)))
+    )
+    totals = evaluate(folder, both)
+    rows = merging(totals)
+    assert totals.violating == first.totals.violating == 1
+    assert all(row.matching_violating == row.matching for row in rows)
+    table = list(csv.DictReader((both / "pairs.csv").read_text().splitlines()))
+    assert {row["violating"] for row in table if row["min_danger"]} == {"1"}

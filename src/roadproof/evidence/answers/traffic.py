@@ -7,7 +7,7 @@ from roadproof.evidence.answers import shared
 from roadproof.evidence.codec import LEFT_OUT, Doc, Rule
 from roadproof.runtime.records import dataclass
 
-SCHEMA: Final = "roadproof/traffic-results/3"
+SCHEMA: Final = "roadproof/traffic-results/4"
 Driver: TypeAlias = Annotated[
     str, Rule(pattern="^(careful|r157|eu1426|rss)$", called="driver model with formulas")
 ]
@@ -49,6 +49,10 @@ class Row:
         shared.Count, Doc("Unordered pairs on which danger arises, and that begin in the sector.")
     ]
     matching: Annotated[shared.Count, Doc("Those that a scenario of two cars matches.")]
+    matching_uncertain: Annotated[
+        shared.Count,
+        Doc("Those of matching that depend on less than places may be off."),
+    ]
     matching_with_three_cars: Annotated[shared.Count, Doc("Those that any scenario matches.")]
     recall: Annotated[Share, Doc("matching by traces; null where there are none.")]
     recall_without_init_safe: Annotated[
@@ -112,7 +116,7 @@ class Prediction:
 class Answer(shared.PlainHeading):
     """Dangers in recordings, and the scenarios that match them."""
 
-    schema: Literal["roadproof/traffic-results/3"] = SCHEMA
+    schema: Literal["roadproof/traffic-results/4"] = SCHEMA
     settings: Settings
     recordings: Annotated[shared.Count, Doc("Recordings that were used.")]
     vehicles: Annotated[shared.Count, Doc("Vehicles in them.")]
@@ -120,8 +124,8 @@ class Answer(shared.PlainHeading):
     violating: Annotated[
         shared.Count,
         Doc(
-            "Pairs that violate the RSS distance in some frame, in all road sectors, with and without "
-            "initial safety."
+            "Pairs of vehicles that violate the RSS distance in some frame, each once over all windows that "
+            "show it, in all road sectors, with and without initial safety."
         ),
     ]
     asked: Annotated[shared.Count, Doc("Questions to the monitor.")]

@@ -110,6 +110,7 @@ class Evaluation(Table, BuildResult):
                 "set": x.set_name,
                 "traces": x.traces,
                 "matching": x.matching,
+                "uncertain": x.uncertain,
                 "recall": x.recall,
                 **{
                     f"s{i}": x.scenarios[i] if i in x.sector.scenarios else None

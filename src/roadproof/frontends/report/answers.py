@@ -51,7 +51,12 @@ def _shown(row: Row) -> str:
     known = paper_row(row)
     theirs = f" [{known.recall}]" if known else ""
     share = Share(row.matching, row.traces, traces_of(row))
-    return f"{row.set_name} {share.percent}{theirs} ({share.count})"
+    return f"{row.set_name} {share.percent}{theirs} ({share.count}{_uncertain(row)})"
+
+
+def _uncertain(row: Row) -> str:
+    """How many of the matching traces may match only since places are off; empty where none do."""
+    return f"; {row.uncertain} of {row.matching} matches uncertain" if row.uncertain else ""
 
 
 def _missed(row: Row) -> str:
@@ -75,13 +80,18 @@ def _detecting(totals: Totals) -> str:
     return _listed(lines)
 
 
+def _together(row: Row) -> Iterator[tuple[tuple[int, int], int]]:
+    """All combinations of two scenarios that some trace matches, the most frequent first."""
+    yield from sorted(row.together.items(), key=lambda item: (-item[1], item[0]))
+
+
 def _classifying(totals: Totals) -> str:
     lines = []
     for value, rows in _of_danger(totals):
         for row in rows:
             if not row.matching_with_three:
                 continue
-            several = ", ".join(f"{i}-{j} {n}" for (i, j), n in row.together.most_common(5))
+            several = ", ".join(f"{i}-{j} {n}" for (i, j), n in _together(row))
             matching = f"traces that match a scenario of the {row.sector}"
             said = f"{Share(row.several, row.matching_with_three, matching).count} match several"
             lines.append(f"minDanger {value}, {row.set_name}: {said}" + (f"; {several}." if several else "."))

@@ -177,6 +177,7 @@ def _result_rows(rows: Sequence[Row]) -> Iterator[tuple[str, ...]]:
         head = (decimal(row.min_danger), row.set_name)
         counts = (str(row.scenarios[i]) for i in scenarios)
         recall = Share(row.matching, row.traces, traces_of(row)).percent
+        recall += f" ({row.uncertain} uncertain)" if row.uncertain else ""
         yield (*head, OURS, str(row.traces), str(row.matching), recall, *counts)
         known = paper_row(row)
         if known is not None:

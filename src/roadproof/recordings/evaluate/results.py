@@ -7,7 +7,7 @@ a run that was killed and started again ends with the same bytes as one that was
 import csv
 import hashlib
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import contextmanager
 from dataclasses import fields
 from fractions import Fraction
@@ -179,7 +179,7 @@ def write_results(
             found = sums.without_repeats(all_found, counted)
             sums.add_findings(totals, found)
             match_rows.writerows(_match_rows(settings, words, found))
-            pair_rows.writerows(_pair_rows(settings, found))
+            pair_rows.writerows(_pair_rows(settings, found, {*all_found.violating}))
             if found.notes:
                 totals.notes[found.recording] = found.notes
     with whole_text(folder / "results.json") as file:
@@ -219,6 +219,7 @@ def _kept_row(row: sums.Row, totals: sums.Totals) -> kept.Row:
         traces=row.traces,
         matching=row.matching,
         matching_with_three_cars=row.matching_with_three,
+        matching_uncertain=row.uncertain,
         recall=row.recall,
         recall_without_init_safe=row.matching_violating / totals.violating if totals.violating else None,
         scenarios={str(i): row.scenarios[i] for i in row.sector.scenarios},
@@ -281,11 +282,15 @@ def _match_rows(settings: Settings, words: Called, found: Findings) -> Iterator[
         yield [found.recording, m.sv, m.pov, pov2, m.lane, *frames, *happens, int(m.uncertain), *models]
 
 
-def _pair_rows(settings: Settings, found: Findings) -> Iterator[list[object]]:
-    """A row for each trace, and one without a trace for each other pair that violates or is detected."""
+def _pair_rows(
+    settings: Settings, found: Findings, violating: Set[tuple[int, int]]
+) -> Iterator[list[object]]:
+    """A row for each trace, and one without a trace for each other pair that violates or is detected.
+
+    ``violating``: all pairs that violate in this recording, whether or not an earlier one shows them too.
+    """
     dangers = [decimal(x) for x in settings.min_danger]
     matched = {(m.pair, m.min_danger, m.set_name) for m in found.matches}
-    violating = {*found.violating}
     detected = {(x.detector, x.pair) for x in found.detections}
 
     def of_pair(pair: tuple[int, int]) -> list[int]:
@@ -298,7 +303,7 @@ def _pair_rows(settings: Settings, found: Findings) -> Iterator[list[object]]:
         frames = (dangers[t.min_danger], t.start_frame, t.end_frame, t.first_lane, t.second_lane)
         row = [found.recording, *pair, *frames, "; ".join(t.sectors), *of_pair(pair), *hits]
         rows.setdefault((min(pair), max(pair)), []).append(row)
-    for pair in sorted(violating | {pair for _, pair in detected}):
+    for pair in sorted({*found.violating} | {pair for _, pair in detected}):
         if pair not in rows:
             none = [""] * len(settings.sets)
             rows[pair] = [[found.recording, *pair, "", "", "", "", "", "", *of_pair(pair), *none]]

@@ -14,6 +14,7 @@ from roadproof.recordings.evaluate.evaluate import Findings, Trace
 from roadproof.recordings.evaluate.matching import Match
 from roadproof.recordings.evaluate.questions import Settings
 from roadproof.recordings.evaluate.sectors import Sector, sectors_of
+from roadproof.recordings.evaluate.violations import ViolatingPairs
 from roadproof.recordings.formats.repeats import FramePair
 
 
@@ -45,6 +46,8 @@ class Counts:
             (self.known[mark] for mark in marks if self.known.get(mark, recording) != recording), None
         )
         if shown is not None:
+            # A third window may overlap this one only.
+            self.known.update((mark, shown) for mark in marks if mark not in self.known)
             self.repeats.append(Repeat(recording, *pair, what, k, shown))
             return False
         self.known.update(dict.fromkeys(marks, recording))
@@ -89,6 +92,7 @@ class Row:
     as in the paper; ``matching_with_three`` counts those of three cars too, ``several`` those of these that
     match more than one scenario. ``together`` counts how many traces match two scenarios at once.
     ``matching_violating`` counts the pairs among all violating ones that match a scenario of two cars here.
+    ``uncertain`` counts those of ``matching`` that do so only by matches within the errors of places.
     """
 
     sector: Sector
@@ -98,6 +102,7 @@ class Row:
     matching: int = 0
     matching_with_three: int = 0
     matching_violating: int = 0
+    uncertain: int = 0
     scenarios: Counter[int] = field(default_factory=Counter)
     several: int = 0
     together: Counter[tuple[int, int]] = field(default_factory=Counter)
@@ -126,8 +131,9 @@ class Totals:
     not asked for; ``met``: the sectors that a road of the recordings has. ``foretold`` counts the labels that
     driver models give to matches.
 
-    The following count in all road sectors together: ``violating`` the pairs with an rssViolation in some
-    frame; ``traces`` the disturbance traces by minDanger (an index); by minDanger and set, ``matching`` the
+    The following count in all road sectors together: ``violating`` the pairs of vehicles with an rssViolation
+    in some frame, once over all windows (``violations``); ``traces`` the disturbance
+    traces by minDanger (an index); by minDanger and set, ``matching`` the
     traces and ``matching_violating`` the violating pairs that match a scenario of two cars.
     """
 
@@ -138,6 +144,7 @@ class Totals:
     vehicles: int = 0
     samples: int = 0
     violating: int = 0
+    violations: ViolatingPairs = field(default_factory=ViolatingPairs)
     traces: Counter[int] = field(default_factory=Counter)
     matching: Counter[tuple[int, str]] = field(default_factory=Counter)
     matching_violating: Counter[tuple[int, str]] = field(default_factory=Counter)
@@ -179,8 +186,8 @@ def add_findings(totals: Totals, findings: Findings) -> None:
     totals.recordings += 1
     for name in ("vehicles", "samples", "asked", "undecided", "differing"):
         setattr(totals, name, getattr(totals, name) + getattr(findings, name))
-    violating = {*findings.violating}
-    totals.violating += len(violating)
+    violating = totals.violations.add(findings)
+    totals.violating = totals.violations.count
     totals.traces.update(x.min_danger for x in findings.traces)
     totals.detected.update(name for name, _ in {(x.detector, x.pair) for x in findings.detections})
     totals.met.update(findings.sectors)
@@ -195,10 +202,15 @@ def add_findings(totals: Totals, findings: Findings) -> None:
         traces = {(t.first, t.second): t for t in findings.traces if t.min_danger == k}
         matches = [x for x in findings.matches if x.min_danger == k and x.set_name == set_name]
         for rows in totals.tables.values():
-            _count(rows[place], traces.values(), matches, violating)
+            of_sector = _count(rows[place], traces.values(), matches)
+            rows[place].matching_violating = totals.violations.match(
+                (k, set_name, rows[place].sector.name), [violating[x] for x in of_sector if x in violating]
+            )
         of_two = {x.pair for x in matches if x.pov2 is None}
         totals.matching[k, set_name] += len(of_two & traces.keys())
-        totals.matching_violating[k, set_name] += len(of_two & violating)
+        totals.matching_violating[k, set_name] = totals.violations.match(
+            (k, set_name, ""), [violating[x] for x in of_two if x in violating]
+        )
         _check(totals, findings, traces, _scenarios_by_pair(matches), k, set_name)
 
 
@@ -210,21 +222,20 @@ def _scenarios_by_pair(matches: Iterable[Match]) -> dict[tuple[int, int], set[in
     return matched
 
 
-def _count(
-    row: Row, traces: Iterable[Trace], matches: Iterable[Match], violating: Set[tuple[int, int]]
-) -> None:
-    """Add what was found in the sector of a row."""
+def _count(row: Row, traces: Iterable[Trace], matches: Iterable[Match]) -> Set[tuple[int, int]]:
+    """Add the traces and matches of the sector of a row; return the pairs that match with two cars."""
     ours = [x for x in matches if x.scenario in row.sector.scenarios]
     matched = _scenarios_by_pair(ours)
     row.traces += sum(row.sector.name in x.sectors for x in traces)
     row.matching_with_three += len(matched)
     of_two = {x.pair for x in ours if x.pov2 is None}
     row.matching += len(of_two)
-    row.matching_violating += len(of_two & violating)
+    row.uncertain += len(of_two - {x.pair for x in ours if x.pov2 is None and not x.uncertain})
     for numbers in matched.values():
         row.scenarios.update(numbers)
         row.several += len(numbers) > 1
         row.together.update((i, j) for i in numbers for j in numbers if i < j)
+    return of_two
 
 
 def _check(
