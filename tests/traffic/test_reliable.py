@@ -119,9 +119,36 @@ def test_accelerations_come_from_velocities(tmp_path: Path) -> None:
     assert "accelerations along the road and velocities contradict each other" in why
     assert read.vehicles == 3
     assert np.allclose(read.a_lon, -2.0)
-    assert "of 3 of 3 vehicles (1, 2, 3) contradict their velocities; they were" in note_in(
-        read, "accelerations a"
+    assert "those of all 3 vehicles were computed from the velocities" in note_in(
+        read, "accelerations along the road contradict"
     )
+
+
+@pytest.mark.parametrize("factor", [-1.0, 3.6])
+def test_a_factor_of_most_accelerations_holds_for_all(factor: float, tmp_path: Path) -> None:
+    """Vehicles that hardly accelerate do not show that signs or units are wrong, but theirs are as wrong."""
+    pulls = (-2.0, -1.5, -2.0, 0.3, 0.3, 0.2)
+    right = tuple(car(k, 5.0 * k, speed=9.0, pull=x) for k, x in enumerate(pulls, 1))
+    wrong = tuple(replace(x, motion=tuple((v, a * factor) for v, a in x.motion or ())) for x in right)
+    good, (read, why) = (
+        find_source(written(tmp_path / "good", document(right))).read(),
+        both(written(tmp_path / "wrong", document(wrong))),
+    )
+    assert "contradict each other, by a factor of" in why
+    assert np.allclose(read.a_lon, good.a_lon, rtol=0.03)
+    assert f"those of all 6 vehicles were divided by {factor:g}" in note_in(
+        read, "accelerations along the road contradict"
+    )
+
+
+def test_a_factor_of_a_few_accelerations_does_not(tmp_path: Path) -> None:
+    """Three turned vehicles of nine are computed from their velocities; the others are as they were."""
+    pulls = [-2.0, -1.8, -1.6, -2.0, -1.9, -1.7, -1.5, 1.5, 1.2]
+    cars = [car(k, 5.0 * k, speed=9.0, pull=x) for k, x in enumerate(pulls, 1)]
+    turned = [replace(x, motion=tuple((v, -a) for v, a in x.motion or ())) for x in cars[:3]]
+    read, _ = both(written(tmp_path, document((*turned, *cars[3:]))))
+    assert np.allclose(read.a_lon[read.start[:-1] + 20], pulls)
+    assert "of 3 of 9 vehicles (1, 2, 3) contradict their velocities" in note_in(read, "accelerations along")
 
 
 def test_velocities_across_come_from_places_where_boxes_are_turned(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
+from random import Random
 
 import numpy as np
 import polars as pl
@@ -19,7 +20,7 @@ from roadproof.recordings.evaluate.questions import ask, default_settings
 from roadproof.recordings.formats.converted import same_recording
 from roadproof.recordings.formats.highd import read_highd
 from roadproof.recordings.formats.recording import Recording, keep_vehicles, kind_called, own_numbers
-from roadproof.recordings.formats.samples import HEADER, read_columns, read_recording
+from roadproof.recordings.formats.samples import HEADER, clock_of, read_columns, read_recording
 from roadproof.recordings.formats.sources import find_source, find_sources
 from roadproof.recordings.formats.straight import of_road, place
 from roadproof.recordings.formats.write_highd import write_highd
@@ -537,3 +538,17 @@ def test_a_quoted_file_that_was_cut_off_is_refused(tmp_path: Path) -> None:
     path.write_bytes(quoted(path.read_bytes())[:-1])
     with pytest.raises(InputError, match="the file was cut off"):
         find_source(path.parent).read()
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_the_most_frequent_step_is_that_of_the_clock(seed: int) -> None:
+    """One mistyped time of a vehicle does not change the clock, whatever was typed; rounding evens out."""
+    dice = Random(seed)
+    rate = dice.choice([3, 10, 25, 30])
+    times = [[round(k / rate, 4) for k in range(dice.randrange(8, 40))] for _ in range(12)]
+    place = dice.randrange(1, len(times[0]) - 1)
+    before, after = times[0][place - 1], times[0][place + 1]
+    times[0][place] = round(before + (after - before) * dice.uniform(0.02, 0.98), 4)
+    steps, counts = np.unique(np.concatenate([np.diff(x) for x in times]), return_counts=True)
+    steps, counts = steps[steps > 0], counts[steps > 0]
+    assert clock_of(Path("a.csv"), 0.0, steps, counts).rate == rate

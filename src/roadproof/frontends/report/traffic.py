@@ -107,6 +107,7 @@ def _results_table(totals: Totals, where: str, rows: Sequence[Row], failed: Mapp
             "A trace is an unordered pair of vehicles, matched when one of its two role assignments is; "
             "matching and recall are by scenarios of two cars, as in the paper."
             + "".join(f" s{i} counts pairs (SV, POV2)." for i in three),
+            *_uncertain(rows),
             *_elsewhere(totals, where),
             _convention(totals),
             *_warnings(failed),
@@ -114,6 +115,15 @@ def _results_table(totals: Totals, where: str, rows: Sequence[Row], failed: Mapp
             *_notes(totals),
         ),
     )
+
+
+def _uncertain(rows: Sequence[Row]) -> Iterator[str]:
+    """How many matching traces depend on less than places may be off, where some do."""
+    shares = [
+        f"{decimal(x.min_danger)}, {x.set_name}: {x.uncertain} of {x.matching}" for x in rows if x.uncertain
+    ]
+    if shares:
+        yield f"Matching traces that depend on less than places may be off: {'; '.join(shares)}."
 
 
 def _names(scenarios: Sequence[int], words: Called) -> Iterator[str]:
@@ -177,7 +187,6 @@ def _result_rows(rows: Sequence[Row]) -> Iterator[tuple[str, ...]]:
         head = (decimal(row.min_danger), row.set_name)
         counts = (str(row.scenarios[i]) for i in scenarios)
         recall = Share(row.matching, row.traces, traces_of(row)).percent
-        recall += f" ({row.uncertain} uncertain)" if row.uncertain else ""
         yield (*head, OURS, str(row.traces), str(row.matching), recall, *counts)
         known = paper_row(row)
         if known is not None:

@@ -49,7 +49,8 @@ class Implausible:
     """A rule of which ``broken`` of ``asked`` places break it, first at sample ``row``.
 
     ``signal`` is what the cell there says; ``refused`` where there are too many; ``hint``: what may be wrong
-    in all of them.
+    in all of them. ``factor``: one of a known fault, such as a turned sign, that more than half of all places
+    agree on; so it holds for the whole recording.
     """
 
     rule: str
@@ -60,6 +61,7 @@ class Implausible:
     unit: str
     refused: bool
     hint: str = ""
+    factor: float | None = None
 
     @property
     def told(self) -> str:
@@ -148,14 +150,22 @@ class _Motion:
             refused = _too_many(self.broken, self.asked, SHARE)
             found = f"{self.rule.what} contradict each other", self.rule.rate, self.row
             counts = self.broken, self.asked, "moving seconds"
-            yield Implausible(*found, *counts, refused, _hint(factor) if refused else "")
+            common = _known_factor(factor) if refused and 2 * self.broken > self.asked else None
+            yield Implausible(*found, *counts, refused, _hint(factor) if refused else "", common)
+
+
+def _known_factor(factor: float) -> float | None:
+    """The factor of a known fault that this is, nearly; None where it is none."""
+    near = (x for x, _ in _FACTORS if np.isfinite(factor) and abs(factor - x) < 0.05 * max(1, abs(x)))
+    return next(near, None)
 
 
 def _hint(factor: float) -> str:
     """What such a factor between what is told and what is so may come from."""
     if not np.isfinite(factor):
         return ""
-    cause = next((f": {name}" for x, name in _FACTORS if abs(factor - x) < 0.05 * max(1, abs(x))), "")
+    known = _known_factor(factor)
+    cause = "" if known is None else f": {dict(_FACTORS)[known]}"
     return f", by a factor of {factor:.3g}{cause}"
 
 

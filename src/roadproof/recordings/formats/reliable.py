@@ -3,7 +3,8 @@
 Vehicles that are on no lane at any time are left out. Nothing else is left out of a recording that stands as
 a whole. Where too much contradicts itself, each vehicle is asked alone: those that break a rule above the
 share that a recording may are left out. Two signals are repaired instead. Accelerations along the road that
-contradict the velocities are computed from these, since places confirm the velocities. Velocities across the
+contradict the velocities are computed from these, since places confirm the velocities; a known factor by
+which most of a recording is off, such as a turned sign, is undone for all vehicles. Velocities across the
 road that contradict the places are computed from these, where velocities along the road agree with places:
 then boxes are turned against the way that they move, such as by another grid of the map.
 """
@@ -115,6 +116,7 @@ def too_many(error: InputError, out: int, of: int) -> InputError:
 class Selection:
     """What a recording is read without. ``lost``: ids; ``repaired``: ids by the signal that is computed.
 
+    ``factor``: by which accelerations along the road of all vehicles are off.
     ``vehicles``: how many there are; ``checks``: those of the part that it is read as, where they were made.
     """
 
@@ -123,6 +125,7 @@ class Selection:
     lost: list[int] = field(default_factory=list)
     found: list[LeftOut] = field(default_factory=list)
     repaired: dict[SignalName, list[int]] = field(default_factory=dict)
+    factor: float | None = None
     repairs: list[str] = field(default_factory=list)
 
     @property
@@ -133,6 +136,8 @@ class Selection:
     def of(self, part: Recording) -> Recording:
         """A recording, or some vehicles of it, without what is left out and with what is computed."""
         made = keep_vehicles(part, ~np.isin(part.vehicle_id, self.lost)) if self.lost else part
+        if self.factor is not None:
+            made = _without_factor(made, self.factor)
         for signal, ids in self.repaired.items():
             made = _repaired(made, signal, np.isin(made.vehicle_id, ids))
         return made
@@ -160,6 +165,10 @@ def selection_of(parts: Callable[[], Iterator[Recording]]) -> Selection:
         rule = next(iter(rules)) if checks.off_road() is None else None
         broken = [int(x) for part in map(chosen.of, parts()) for x in part.vehicle_id[_broken(part, rule)]]
         signal = None if rule is None else _computed(rules[rule])
+        factor = None if rule is None else rules[rule].factor
+        if signal == "a_lon" and factor is not None and chosen.factor is None:
+            _undo(chosen, factor)
+            continue
         if signal is not None and signal not in chosen.repaired:
             _repair(chosen, parts, signal, broken)
             continue
@@ -200,6 +209,23 @@ def _repair(
     of = chosen.vehicles - len(chosen.lost)
     if ids:
         chosen.repairs.append(_REPAIRED[signal].format(f"{len(ids)} of {of} vehicles ({named(ids)})"))
+
+
+def _undo(chosen: Selection, factor: float) -> None:
+    """Choose to undo a factor of the accelerations along the road of all vehicles."""
+    chosen.factor = factor
+    made = f"divided by {factor:g}" if factor else "computed from the velocities"
+    chosen.repairs.append(
+        f"accelerations along the road contradict the velocities by a factor of {factor:g} in most of the "
+        f"recording; those of all {chosen.vehicles - len(chosen.lost)} vehicles were {made}"
+    )
+
+
+def _without_factor(recording: Recording, factor: float) -> Recording:
+    """The recording with accelerations along the road divided by a factor; 0: computed from velocities."""
+    if factor:
+        return replace(recording, a_lon=recording.a_lon / factor)
+    return _repaired(recording, "a_lon", np.ones(recording.vehicles, np.bool_))
 
 
 def _breaks(recording: Recording, vehicle: int, rule: str) -> bool:
