@@ -6,7 +6,7 @@ from dataclasses import field, replace
 from itertools import count
 
 from roadproof.errors import InputError, TextError
-from roadproof.library.scenarios import PAIR, SUBJECT, TRIPLE
+from roadproof.library.scenarios import PAIR, SUBJECT
 from roadproof.library.specification import unknown
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.show import text as printed
@@ -109,7 +109,7 @@ def check_roles(
     """Raise ``InputError``, which begins with ``where``, for roles and vehicles that there are not."""
     for role, name in given.items():
         told = f"{where} = {{ {role} = '{name}' }}"
-        if role not in known and role not in (*PAIR, *TRIPLE):
+        if role not in known:
             raise InputError(f"{told}: {unknown('role', role, known)}")
         if name not in vehicles:
             raise InputError(f"{told}: {unknown('vehicle', name, vehicles)}")
