@@ -6,7 +6,7 @@ from dataclasses import field, replace
 from itertools import count
 
 from roadproof.errors import InputError, TextError
-from roadproof.library.scenarios import PAIR, SUBJECT
+from roadproof.library.scenarios import PAIR, SUBJECT, TRIPLE
 from roadproof.library.specification import unknown
 from roadproof.logic.parse import parse_claim
 from roadproof.logic.show import text as printed
@@ -103,13 +103,18 @@ def cast_of(vehicles: Sequence[str], wanted: Sequence[str], given: Mapping[str, 
     return _named(vehicles, wanted, complete, [*found.taken, *others])
 
 
+def _goes_with(role: str, known: Collection[str]) -> bool:
+    """Return whether a role that a question lacks is of the same cast: SV and POV, or SV, POV1 and POV2."""
+    return any({role, *known} <= {*cast} for cast in (PAIR, TRIPLE) if not {*cast} <= {*known})
+
+
 def check_roles(
     vehicles: Collection[str], known: Collection[str], given: Mapping[str, str], where: str
 ) -> None:
     """Raise ``InputError``, which begins with ``where``, for roles and vehicles that there are not."""
     for role, name in given.items():
         told = f"{where} = {{ {role} = '{name}' }}"
-        if role not in known:
+        if role not in known and not _goes_with(role, known):
             raise InputError(f"{told}: {unknown('role', role, known)}")
         if name not in vehicles:
             raise InputError(f"{told}: {unknown('vehicle', name, vehicles)}")
