@@ -13,7 +13,8 @@ Open Scope string_scope.
 Definition some_world : world.
 Proof.
   refine {| element := bool; somewhere := true; parameter := fun _ => 1; variable := fun _ => 0;
-            value := fun _ _ t => t; measure := fun _ _ => 1; measure_positive := _; shape := fun _ => {| s_from := None; s_to := None; d_from := 0; d_to := 1 |};
+            value := fun _ _ t => t; measure := fun _ _ => 1; measure_positive := _;
+    shape := fun _ => {| s_from := None; s_to := None; d_from := 0; d_to := 1 |};
             adjacent := fun l m => l <> m; adjacent_irreflexive := _; adjacent_symmetric := _;
             lanelets := fun l m => l = m; lanelets_reflexive := _; zone_of := fun _ => main |}.
   - intros; lra.

@@ -19,8 +19,8 @@ from roadproof.frontends.cli.overview import COMMANDS, jobs
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import number_in
 from roadproof.library.specification import Specification
-from roadproof.library.uses import definitions_used
 from roadproof.library.words import words_of
+from roadproof.logic import syntax
 from roadproof.logic.show import decimal, text
 from roadproof.logic.syntax import Definition
 from roadproof.verdict import ExitCode
@@ -146,11 +146,12 @@ def _users(base: Specification) -> dict[str, list[str]]:
     """For each definition the definitions whose text names it."""
     found: dict[str, list[str]] = {name: [] for name in base.definitions}
     for name, definition in base.definitions.items():
-        shown = text(definition)
-        named = set(re.findall(r"[A-Za-z_]\w*", shown))
-        for used in definitions_used(base, definition.body):
-            if used.name in named and used.name in found:
-                found[used.name].append(name)
+        own = {x.name for x in definition.parameters}
+        for part in syntax.walk(definition.body):
+            if isinstance(part, syntax.Call | syntax.Name):
+                used = part.name.partition("@")[0]
+                if used in found and used not in own and name not in found[used]:
+                    found[used].append(name)
     return found
 
 

@@ -319,7 +319,7 @@ def test_definitions_of_the_user_come_first() -> None:
     from roadproof.logic.parse import parse_claim
 
     home = rp.load(specs=["def mine(a, b: vehicle) := danger(a, b)\n"]).specification
-    named = named_definitions(home, parse_claim("danger(SV,POV) and mine(SV,POV)").body)
+    named = named_definitions(home, parse_claim("danger(SV,POV) and mine(SV,POV)"))
     assert named[0][0] == "mine"
     assert {x for x, _ in named} > {"mine", "danger"}
 

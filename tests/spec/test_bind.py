@@ -24,7 +24,7 @@ from roadproof.library.compose import (
 from roadproof.library.elaborate import apply_definition, read_claim
 from roadproof.library.loading import bundled_library, load_library
 from roadproof.library.specification import Query, Source
-from roadproof.library.uses import definitions_used, parameters_used
+from roadproof.library.uses import used_in
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import told_freedom
@@ -167,12 +167,11 @@ def test_uses_come_once_and_in_reading_order() -> None:
     assert claim.vehicles
     from roadproof.logic.parse import parse_claim
 
-    expression = parse_claim("decel(POV, SV, L) and G[0, minDanger] laneKeep(POV, L)").body
-    used = definitions_used(BASE, expression)
-    assert [d.name for d in used] == ["decel", "fasterThan", "laneKeep", "atLane"]
-    assert [p.name for p in parameters_used(BASE.library, expression, used)] == ["minDanger"]
-    other = parse_claim("decel@ext(POV, SV, L) and danger@ext(SV, POV)").body
-    names = [d.name for d in definitions_used(BASE, other)]
+    used = used_in(BASE, parse_claim("decel(POV, SV, L) and G[0, minDanger] laneKeep(POV, L)"))
+    assert [d.name for d in used.definitions] == ["decel", "fasterThan", "laneKeep", "atLane"]
+    assert [p.name for p in used.parameters] == ["minDanger"]
+    other = parse_claim("decel@ext(POV, SV, L) and danger@ext(SV, POV)")
+    names = [d.name for d in used_in(BASE, other).definitions]
     assert names[:3] == ["decel@ext", "fasterThan", "decelerates"]
     assert "danger" in names
 
@@ -336,7 +335,7 @@ def test_roles_are_exchanged_in_own_signals_and_never_in_kinds() -> None:
 
 def test_a_derived_signal_is_shown_with_what_it_is_derived_by() -> None:
     query = read_claim(home(), "F braking and ahead(SV) > 0")
-    assert [x.name for x in definitions_used(home(), query.claim.body)] == ["braking", "ahead"]
+    assert [x.name for x in used_in(home(), query.claim).definitions] == ["braking", "ahead"]
 
 
 def test_the_fingerprint_changes_with_signals_only() -> None:

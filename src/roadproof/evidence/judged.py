@@ -138,7 +138,7 @@ class JudgedDrive:
     @property
     def _rows(self) -> list[tuple[str, ...]]:
         """A heading, then how each vehicle starts, in SI units, and the number of its pieces of motion."""
-        heading = ("vehicle", "kind", "front", "left side", "speed along", "speed across", "motion")
+        heading = ("vehicle", "kind", "place", "left side", "speed along", "speed across", "motion")
         rows: list[tuple[str, ...]] = [heading]
         for name, x in self.file.drive.vehicles.items():
             start = (f"s={float(x.s):.4g} m", f"d={float(x.d):.4g} m")

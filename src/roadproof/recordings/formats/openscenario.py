@@ -89,7 +89,7 @@ def read_scenario(path: Path, strict: bool = False) -> Scenario:
     """
     found = _read_scenario(path)
     if strict and found.unread:
-        raise InputError(f"{path}: {'; '.join(found.unread)}; without --strict the rest is read")
+        raise InputError(f"{path}: {'; '.join(found.unread)}; unless read strictly, the rest is read")
     return found
 
 
