@@ -45,6 +45,10 @@ def whole(words: str) -> str:
 QUESTIONS = [x for x in dict.fromkeys(commands()) if not x[1].startswith(SLOW) and "$(" not in x[1]]
 
 
+DURATION = re.compile(r" \(… s\)|,? *… s")
+"""How long an answer took: a recalled one does not say it."""
+
+
 def ask(words: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> tuple[int, str]:
     arguments = shlex.split(words)
     if "--jobs" not in arguments:
@@ -57,7 +61,9 @@ def ask(words: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> tuple[i
         code = int(str(ended.code))
     printed = capsys.readouterr()
     said = printed.out.replace(str(folder), "FOLDER")
-    return code, SECONDS.sub("… s", said) + (printed.err.replace(str(folder), "FOLDER") if code == 2 else "")
+    return code, DURATION.sub("", SECONDS.sub("… s", said)) + (
+        printed.err.replace(str(folder), "FOLDER") if code == 2 else ""
+    )
 
 
 @pytest.mark.parametrize(("page", "words"), QUESTIONS, ids=[f"{page}-{x[:60]}" for page, x in QUESTIONS])

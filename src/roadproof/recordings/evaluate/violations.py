@@ -56,7 +56,7 @@ class ViolatingPairs:
                 rows.remove(gone)
                 rows.add(into)
 
-    def match(self, label: Label, rows: Iterable[int]) -> int:
-        """Note that these rows match under a label; return how many pairs do so far."""
-        self.matched[label].update(map(self._root, rows))
-        return len(self.matched[label])
+    def match(self, column: Label, rows: Iterable[int]) -> int:
+        """Note that these rows match in a column; return how many pairs do so far."""
+        self.matched[column].update(map(self._root, rows))
+        return len(self.matched[column])
