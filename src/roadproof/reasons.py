@@ -112,10 +112,9 @@ class Why(StrEnum):
     BOTH_SIDES = "drives were found on both sides"
     ONE_SIDE = "drives found: {}; no other was looked for; nothing is proved"
     ONE_SIDE_SOUGHT = "drives found: {}; a search found none on another side; nothing is proved"
-    NOT_BEFORE_DANGER = "no {} begins before danger does"
-    SLIGHT_CROSSING = "POV moves across at {:.2g} m/s when it begins, and is supposed to go on so"
-    SLIGHT_BRAKING = "POV brakes at {:.2g} m/s^2 when it begins, and is supposed to go on so"
+    NOT_BEGUN = "no {} begins, of which the models speak"
     NO_PLACE = "no place of the plane is {}"
+    PASSED_BY = "SV has passed POV at {} s; nothing is claimed after that"
     PASSED = (
         "no drive shows it: SV has passed POV, which then hits it from behind, or is never faster than POV "
         "and never brakes"

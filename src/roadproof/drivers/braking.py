@@ -97,6 +97,19 @@ class AssistedBraking:
             speed -= braking * duration + growth * duration**2 / 2
         return _joined(made)
 
+    @property
+    def phases(self) -> list[tuple[Fraction | None, Fraction, Fraction]]:
+        """Durations (s, None for ever) with acceleration and jerk, as if the vehicle never stood."""
+        made: list[tuple[Fraction | None, Fraction, Fraction]] = []
+        for time, end in pairwise([*self.knots, None]):
+            assert time is not None
+            braking, growth = self.at(time), _NONE
+            if end is not None:
+                middle = (time + end) / 2
+                growth = (self.at(middle) - braking) / (middle - time)
+            made.append((None if end is None else end - time, -braking, -growth))
+        return made
+
     def state(self, speed: Fraction, time: Fraction) -> tuple[Fraction, Fraction]:
         """Speed and braking at a time; none of either once it stands."""
         for duration, acceleration, jerk in self.pieces(speed):

@@ -7,11 +7,11 @@ from collections.abc import Mapping
 from dataclasses import fields
 from fractions import Fraction
 from functools import cached_property, partial
-from typing import Literal
+from typing import Literal, assert_never
 
 from roadproof.drivers import manoeuvres as m
 from roadproof.drivers.braking import AssistedBraking, Joined, Ramp
-from roadproof.drivers.models import MODELS
+from roadproof.drivers.models import MODELS, ModelName
 from roadproof.drivers.stepped import course_of
 from roadproof.errors import UsageError
 from roadproof.library.scenarios import SUBJECT
@@ -83,7 +83,7 @@ class DriverSettings:
         """The options of driver models."""
         return _Options(**{x.name: self.options[x.name] for x in fields(_Options)})  # type: ignore[arg-type]
 
-    def has_aeb(self, model: str) -> bool:
+    def has_aeb(self, model: ModelName) -> bool:
         """Whether there is AEB in a cut-in of the model."""
         return model == "careful" and self.choices.cc_aeb != "none"
 
@@ -110,7 +110,7 @@ def require(specification: Specification, values: Mapping[str, Fraction]) -> Non
         )
 
 
-def drive_of(manoeuvre: m.Manoeuvre, model: str, values: m.Values, reading: DriverSettings) -> Drive:
+def drive_of(manoeuvre: m.Manoeuvre, model: ModelName, values: m.Values, reading: DriverSettings) -> Drive:
     """The drive from these initial values on. Raises ``InputError`` where an instant of it is irrational."""
     start = m.start_of(manoeuvre, values)
     middle, speed = start.middle, start.Ve0
@@ -162,7 +162,7 @@ def _across(lane: Fraction, w: Fraction, past: Fraction = _STILL) -> list[Across
     return [*before, (steering, -w / steering)]
 
 
-def _onset(model: str, start: m.CutIn, reading: DriverSettings) -> Fraction | None:
+def _onset(model: ModelName, start: m.CutIn, reading: DriverSettings) -> Fraction | None:
     """When SV begins to brake, or to respond, in a cut-in; None is never."""
     known = reading.parameters
     intrusion = (start.dy0 / 2 + known.r157_past) / start.Vy
@@ -173,8 +173,12 @@ def _onset(model: str, start: m.CutIn, reading: DriverSettings) -> Fraction | No
             return intrusion + known.eu1426_delay + known.eu1426_ramp / 2
         case "rss":
             return start.dy0 / start.Vy
-        case _:
+        case "careful":
             return _careful_onset(start, reading)
+        case "fsm":
+            raise ValueError("fsm is a controller: it has no onset")
+        case _:
+            assert_never(model)
 
 
 def _careful_onset(start: m.CutIn, reading: DriverSettings) -> Fraction | None:
@@ -197,7 +201,7 @@ def _careful_onset(start: m.CutIn, reading: DriverSettings) -> Fraction | None:
     return max(seen + weighed, opens) + known.cc_delay
 
 
-def _cut_in(model: str, start: m.CutIn, reading: DriverSettings) -> list[Along]:
+def _cut_in(model: ModelName, start: m.CutIn, reading: DriverSettings) -> list[Along]:
     if reading.has_aeb(model):
         return _aided(start, reading).pieces(start.Ve0)
     return _along(model, start.Ve0, _onset(model, start, reading), reading)
@@ -238,7 +242,7 @@ def speeds_of(start: m.CutIn, reading: DriverSettings) -> tuple[Fraction, ...]:
             return tuple(begun(*x) if aided.at(x[0]) < aeb.full else full for x in (first, second))
 
 
-def motion_in_deceleration(model: str, start: m.Deceleration, reading: DriverSettings) -> list[Along]:
+def motion_in_deceleration(model: ModelName, start: m.Deceleration, reading: DriverSettings) -> list[Along]:
     """How SV moves until it stands; nothing where it never brakes. Raises ``InputError`` as ``drive_of``."""
     known, rate = reading.parameters, start.dGdt
     if model == "rss":
@@ -258,7 +262,7 @@ def _braking(speed: Fraction, start: m.Deceleration) -> list[Along]:
     return AssistedBraking(Ramp(_STILL, start.Gx / start.dGdt, start.Gx)).pieces(speed)
 
 
-def _along(model: str, speed: Fraction, onset: Fraction | None, reading: DriverSettings) -> list[Along]:
+def _along(model: ModelName, speed: Fraction, onset: Fraction | None, reading: DriverSettings) -> list[Along]:
     """SV goes on to its onset, and brakes until it stands."""
     known = reading.parameters
     if onset is None:

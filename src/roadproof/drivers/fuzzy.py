@@ -13,8 +13,15 @@ from fractions import Fraction
 from math import lcm
 
 from roadproof.runtime.records import dataclass
+from roadproof.world.drive import Along
 
 HERTZ = 10
+CHANGE = Fraction(1, 100_000)
+"""Seconds in which the speed changes after a look.
+
+The implementation moves at the new speed from the look on. A drive cannot jump, and is off by half of this
+time multiplied by the speed that is lost: 0.15 mm at 108 km/h.
+"""
 ROUNDING = Fraction(1, 10**6)  # m/s²
 TICKS = 2  # units of time from look to look
 _SECOND = TICKS * HERTZ
@@ -49,7 +56,28 @@ class Scale:
 
 def scale_of(*values: Fraction) -> Scale:
     """The scale in which these values, SI units, are whole, and stay so."""
-    return Scale(2 * _SECOND**2 * ROUNDING.denominator * lcm(*(x.denominator for x in values)))
+    whole = 2 * _SECOND**2 * ROUNDING.denominator * (CHANGE * _SECOND).denominator
+    return Scale(whole * lcm(*(x.denominator for x in values)))
+
+
+def moved(speed: int, braking: int) -> int:
+    """Return how far SV goes from look to look, in units, where it brakes from ``speed`` by ``braking``."""
+    return TICKS * (speed - TICKS * braking) + slip(braking)
+
+
+def slip(braking: int) -> int:
+    """Return how far SV goes beyond its new speed while its speed changes, in units."""
+    part = CHANGE * _SECOND * TICKS * braking / 2
+    assert part.denominator == 1
+    return part.numerator
+
+
+def step(braking: Fraction) -> list[Along]:
+    """Return the motion from look to look with a braking in m/s²."""
+    if braking == 0:
+        return [(Fraction(1, HERTZ), Fraction(0), Fraction(0))]
+    change = -braking / HERTZ / CHANGE
+    return [(CHANGE, change, Fraction(0)), (Fraction(1, HERTZ) - CHANGE, Fraction(0), Fraction(0))]
 
 
 def _whole(value: Fraction) -> int:

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 from roadproof.drivers.driving import DriverSettings, motion_in_deceleration
 from roadproof.drivers.manoeuvres import Deceleration, Plane, Values, is_possible, start_of
-from roadproof.drivers.models import MODELS
+from roadproof.drivers.models import MODELS, ModelName
 from roadproof.errors import UsageError
 from roadproof.semantics.exact.algebraic import Point, Root, compare, real_roots
 from roadproof.semantics.exact.polynomial import polynomial
@@ -31,7 +31,7 @@ _NONE = Fraction(0)
 _Coefficients = list[Fraction]
 
 
-def check_gradual(model: str, values: Values, reading: DriverSettings) -> None:
+def check_gradual(model: ModelName, values: Values, reading: DriverSettings) -> None:
     """Raises ``UsageError`` for models and speeds of which nothing is worked out with a finite rate."""
     if MODELS[model].is_stepped:
         raise UsageError(f"model={model} does not support a finite {RATE}; omit one of the two")
@@ -45,7 +45,7 @@ def check_gradual(model: str, values: Values, reading: DriverSettings) -> None:
         )
 
 
-def line(plane: Plane, model: str, reading: DriverSettings, row: Fraction) -> TruthSet:
+def line(plane: Plane, model: ModelName, reading: DriverSettings, row: Fraction) -> TruthSet:
     """At which gaps on a row's line the collision is unpreventable; nowhere where POV would go backwards."""
     values = plane.values(row)
     if not is_possible(values):

@@ -23,7 +23,7 @@ SIDES: tuple[Side, ...] = ("unpreventable", "preventable")
 
 
 def claim_of(
-    manoeuvre: m.Manoeuvre, model: str, values: m.Values, side: Side, reading: DriverSettings
+    manoeuvre: m.Manoeuvre, model: models.ModelName, values: m.Values, side: Side, reading: DriverSettings
 ) -> str:
     """What the drive from these values shows: its side, the model followed, and what comes of it.
 
@@ -96,7 +96,7 @@ class Line:
 
 
 def truths(
-    specification: Specification, plane: m.Plane, model: str, values: Mapping[str, Fraction]
+    specification: Specification, plane: m.Plane, model: models.ModelName, values: Mapping[str, Fraction]
 ) -> Iterator[TruthSet]:
     """Where a model that is not stepped cannot prevent a collision on each line of a plane, in order.
 

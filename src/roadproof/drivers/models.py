@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from types import MappingProxyType
-from typing import Final
+from typing import Final, Literal, TypeAlias
 
 from roadproof.drivers.manoeuvres import Course, ManoeuvreName
 from roadproof.errors import UsageError
@@ -32,6 +32,9 @@ _FORESEEN: Mapping[Course, str] = MappingProxyType(
 )
 
 
+ModelName: TypeAlias = Literal["careful", "r157", "eu1426", "rss", "fsm"]
+
+
 @dataclass(frozen=True)
 class Model:
     """A driver: what it is called, and what it says where.
@@ -39,7 +42,7 @@ class Model:
     ``is_stepped``: a controller that is looked at place by place, and has no formula.
     """
 
-    name: str
+    name: ModelName
     title: str
     manoeuvres: tuple[ManoeuvreName, ...]
     source: str

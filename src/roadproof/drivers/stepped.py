@@ -11,7 +11,7 @@ from itertools import groupby
 from math import ceil
 
 from roadproof.drivers import manoeuvres as m
-from roadproof.drivers.fuzzy import HERTZ, TICKS, Controller, Scale, scale_of
+from roadproof.drivers.fuzzy import HERTZ, TICKS, Controller, Scale, moved, scale_of, slip, step
 from roadproof.errors import InputError
 from roadproof.runtime.records import dataclass
 from roadproof.world.drive import Along
@@ -35,7 +35,10 @@ class Course:
     @property
     def along(self) -> list[Along]:
         """As pieces of a motion."""
-        return [(Fraction(count, HERTZ), -braking, Fraction(0)) for count, braking in self.brakings]
+        made: list[Along] = []
+        for count, braking in self.brakings:
+            made += count * step(braking) if braking else [(Fraction(count, HERTZ), -braking, Fraction(0))]
+        return made
 
 
 @dataclass(frozen=True)
@@ -125,7 +128,7 @@ def course_of(manoeuvre: m.Manoeuvre, values: m.Values, to_the_end: bool = True)
         count = 1 if acts else _looks_without(other, state, controller)
         brakings.append((count, braking))
         time += count * TICKS
-        gone += TICKS * (count * speed - braking)
+        gone += (count - 1) * TICKS * speed + moved(speed, braking)  # of several looks none brakes
         speed -= TICKS * braking
     told = ", ".join(f"{name}={value}" for name, value in values.items())
     raise InputError(
@@ -182,12 +185,12 @@ def _touches(other: _Other, now: _State, braking: int) -> bool:
     begin, end = max(Fraction(0), other.in_way - now.time), Fraction(TICKS)
     if begin > end:
         return False
-    slows = other.braking if now.its_speed else 0
-    way = _GapCourse(Fraction(now.gap), Fraction(now.speed - now.its_speed), Fraction(braking - slows))
+    slows, speed = other.braking if now.its_speed else 0, now.speed - TICKS * braking
+    way = _GapCourse(Fraction(now.gap - slip(braking)), Fraction(speed - now.its_speed), Fraction(-slows))
     stands = Fraction(now.its_speed, slows) if slows else end
     if stands >= end:
         return way.meets(begin, end, other.lengths)
-    rest = _GapCourse(way.at(stands), now.speed - braking * stands, Fraction(braking))
+    rest = _GapCourse(way.at(stands), Fraction(speed), Fraction(0))
     return way.meets(begin, stands, other.lengths) or rest.meets(Fraction(0), end - stands, other.lengths)
 
 

@@ -154,7 +154,7 @@ class Result(ABC):
             gaps=self._gaps([x.gaps for x in answers if x.gaps is not None]),
             not_tested=self.missing,
             figures=self.figures,
-            decisions=tuple(kept.KeptDecision(test=test, **vars(x)) for test, x in self.decisions),
+            decisions=tuple(_kept(test, x) for test, x in self.decisions),
             ranges=tuple(map(_range, self.spans)),
             facts=tuple(fact for x in answers for fact in x.facts),
             faults=found.faults,
@@ -215,3 +215,9 @@ class DerivedResult(Result):
 def _range(span: Span) -> kept.Range:
     said = {name: x for name, x in vars(span).items() if name != "unit"}
     return kept.Range(**said, untested=span.untested, share=round(span.share, 4))
+
+
+def _kept(test: str, decision: Decision) -> kept.KeptDecision:
+    """Return a decision as the index has it: without its drive, which ``check`` makes again."""
+    fields = {name: value for name, value in vars(decision).items() if name != "drive"}
+    return kept.KeptDecision(test=test, **fields)

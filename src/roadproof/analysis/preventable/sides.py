@@ -10,6 +10,7 @@ from math import ceil
 from roadproof.drivers.driving import OWN_LANE, DriverSettings, drive_of, rest_of, road_of
 from roadproof.drivers.lines import Side, claim_of, with_also
 from roadproof.drivers.manoeuvres import OTHER, CutIn, Manoeuvre, Plane, Values, start_of
+from roadproof.drivers.models import ModelName
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, RejectedError
@@ -28,7 +29,7 @@ _PARTS = (Fraction(1, 2), Fraction(3, 8), Fraction(1, 4), Fraction(1, 8))  # of 
 
 def judged_drive(
     manoeuvre: Manoeuvre,
-    model: str,
+    model: ModelName,
     values: Values,
     side: Side,
     specification: Specification,
@@ -91,7 +92,7 @@ def _near(point: Point, width: Fraction) -> Fraction:
 
 def first_drive(
     plane: Plane,
-    model: str,
+    model: ModelName,
     candidates: Iterable[dict[str, Fraction]],
     side: Side,
     specification: Specification,
@@ -127,7 +128,9 @@ def first_drive(
     return reason
 
 
-def _is_without_drive(manoeuvre: Manoeuvre, model: str, reading: DriverSettings, values: Values) -> bool:
+def _is_without_drive(
+    manoeuvre: Manoeuvre, model: ModelName, reading: DriverSettings, values: Values
+) -> bool:
     """Whether no drive of a preventable cut-in is to be expected from these values.
 
     Either SV is ahead of POV when this comes into its way, which then may hit it from behind; or a gate never

@@ -20,7 +20,7 @@ from roadproof.drivers.driving import DriverSettings
 from roadproof.drivers.lemmas import Lemma, chosen, idle, lemmas_for
 from roadproof.drivers.lines import SIDES, Line, Side, end_of, sides_in, told_line, truths
 from roadproof.drivers.manoeuvres import Manoeuvre, Plane, Values, plane_of
-from roadproof.drivers.models import MODELS, Model, boundary_of, parts_of, touched
+from roadproof.drivers.models import MODELS, Model, ModelName, boundary_of, parts_of, touched
 from roadproof.drivers.stepped import TOLD, beside_change, labels_of, places_of, spans_of
 from roadproof.engines.prove.prover import prove
 from roadproof.errors import InputError
@@ -57,7 +57,7 @@ class Plate:
     """One model over the plane whose lines run ``along`` (SI)."""
 
     name: str
-    model: str
+    model: ModelName
     fixed: Values
     along: tuple[Fraction, Fraction]
     lines: tuple[Line, ...] = ()
@@ -223,7 +223,9 @@ class Preventable(Unprepared):
         )
         return Plate(piece.name, model, piece.fixed, self.along, lines, shown)
 
-    def _show(self, plane: Plane, model: str, candidates: Iterable[dict[str, Fraction]], side: Side) -> Shown:
+    def _show(
+        self, plane: Plane, model: ModelName, candidates: Iterable[dict[str, Fraction]], side: Side
+    ) -> Shown:
         places = list(candidates) if self._parts else candidates
         for also in self._parts:
             rows = far_apart(plane, places, _ROWS)

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import field
 from typing import Annotated, Final, Literal, TypeAlias
 
+from roadproof.drivers.models import ModelName
 from roadproof.evidence.answers import coverage, shared
 from roadproof.evidence.codec import Doc, Rule
 from roadproof.runtime.records import dataclass
@@ -193,13 +194,12 @@ class KeptDecision:
     test: Name
     scenario: Name
     vehicles: Vehicles
-    driver: Literal["careful", "r157", "eu1426", "rss", "fsm"]
+    driver: ModelName
     side: TestedSide
-    at: Annotated[Time | None, Doc("When the manoeuvre begins, in s; null where it does not before danger.")]
-    metres: Annotated[Time | None, Doc("From the gap to the nearest one with the other answer.")]
-    seconds: Annotated[
-        Time | None, Doc("From the response time of the model to the nearest one with the other answer.")
-    ]
+    at: Annotated[Time | None, Doc("When the manoeuvre begins, in s; null where it never does.")]
+    gap: Annotated[float | None, Doc("The least gap that SV leaves, in m; null where it touches POV.")]
+    instant: Annotated[Time | None, Doc("When SV touches POV, in s.")]
+    speed: Annotated[float | None, Doc("How much faster SV then is, in m/s.")]
     start: Annotated[
         Mapping[str, float],
         Doc("The state when the manoeuvre begins, as the sheets of UN R157 name it (SI)."),

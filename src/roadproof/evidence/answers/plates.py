@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar, Final, Literal, TypeAlias
 from roadproof.drivers import lines as drawn
 from roadproof.drivers.lines import Side
 from roadproof.drivers.manoeuvres import ManoeuvreName
+from roadproof.drivers.models import ModelName
 from roadproof.evidence.answers import shared
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
 from roadproof.runtime.records import dataclass
@@ -86,7 +87,7 @@ class Plate:
     """One model over the plane of two initial values."""
 
     name: Name
-    model: Annotated[Name, Doc("The driver model.")]
+    model: Annotated[ModelName, Doc("The driver model.")]
     fixed: Values
     verdict: Annotated[SideVerdict, Doc("Whether each side that the plane has is shown by a drive.")]
     formula: Annotated[

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, get_args
 
-from roadproof.drivers.models import DRIVERS, check_courses, check_driver
+from roadproof.drivers.models import DRIVERS, MODELS, check_courses, check_driver
 from roadproof.drivers.restriction import About, Restriction, Side, check_library, files_for
 from roadproof.errors import UsageError
 from roadproof.frontends.api.definitions import Among, Definitions, What
@@ -70,7 +70,7 @@ def drivers_of(home: Definitions, names: tuple[str, ...]) -> "Drivers | None":
     specification = library.select(home.sets[0], home.specification.options)
     values = values_with(library, home.values)
     require(specification, values)
-    return Drivers(specification, values, names)
+    return Drivers(specification, values, tuple(MODELS[name].name for name in names))
 
 
 def _asked(home: Definitions, among: Among, what: Sequence[What] | None) -> Iterator[int]:

@@ -34,7 +34,7 @@ def driver_lines(decisions: Sequence[tuple[str, Decision]]) -> Iterator[str]:
     """
     if not decisions:
         return
-    yield "driver models, asked when the manoeuvre begins (margins: gap in m, response time in s):"
+    yield "driver models in place of SV, in the test's own motion:"
     for model in MODELS:
         sides = [x.side for _, x in decisions if x.driver == model]
         if sides:
@@ -59,10 +59,12 @@ def _lines_of_test(test: str, scenario: str, those: Sequence[Decision]) -> Itera
 
 
 def said(decision: Decision) -> str:
-    """The side, and the margin where there is one: ``preventable (3.2 m, 0.41 s)``."""
-    margins = [f"{decision.metres:g} m"] if decision.metres is not None else []
-    margins += [f"{decision.seconds:g} s"] if decision.seconds is not None else []
-    return decision.side + (f" ({', '.join(margins)})" if margins else "")
+    """The side with its figures: ``preventable (3.2 m left)``, ``unpreventable (at 4.1 s, 9 m/s faster)``."""
+    if decision.gap is not None:
+        return f"{decision.side} ({decision.gap:g} m left)"
+    if decision.instant is not None and decision.speed is not None:
+        return f"{decision.side} (touches at {decision.instant:g} s, {decision.speed:g} m/s faster)"
+    return decision.side
 
 
 def drivers_csv(decisions: Sequence[tuple[str, Decision]]) -> str:
@@ -74,8 +76,9 @@ def drivers_csv(decisions: Sequence[tuple[str, Decision]]) -> str:
         Column("driver", lambda x: x[1].driver),
         Column("side", lambda x: x[1].side),
         Column("at", lambda x: x[1].at),
-        Column("margin_m", lambda x: x[1].metres),
-        Column("margin_s", lambda x: x[1].seconds),
+        Column("gap_m", lambda x: x[1].gap),
+        Column("touches_s", lambda x: x[1].instant),
+        Column("faster_m_s", lambda x: x[1].speed),
         *(Column[tuple[str, Decision]](name, partial(_start, name)) for name in _STARTS),
         Column("reason", lambda x: x[1].reason),
     )
