@@ -23,7 +23,7 @@ from roadproof.drivers.manoeuvres import KMH, MANOEUVRES, Manoeuvre, Plane, line
 from roadproof.drivers.models import MODELS, SCENARIOS, course_in, foreseen
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.main import main
-from roadproof.recordings.evaluate import courses, foretelling
+from roadproof.recordings.evaluate import foretelling
 from roadproof.recordings.evaluate.evaluate import evaluate_recording, evaluate_windows
 from roadproof.recordings.evaluate.matching import Match
 from roadproof.recordings.evaluate.questions import Questions, Settings, ask
@@ -43,6 +43,9 @@ FIXED: Mapping[str, Mapping[str, Fraction]] = {
     "cut-out": {"Ve0": 60 * KMH},
     "deceleration": {"Ve0": 60 * KMH, "dV0": 20 * KMH},
 }
+PASSED = {(side, name): set() for side in SIDES for name in MANOEUVRES}
+PASSED["preventable", "cut-in"] = {(1, BEFORE, "undecided")}
+"""Formulas count places at which SV passes POV as preventable; in a test nothing is claimed of them."""
 EACH = [(name, x) for name in MANOEUVRES for x in DRIVERS if name in MODELS[x].manoeuvres]
 
 
@@ -85,8 +88,8 @@ def test_drives_on_both_sides_of_the_boundary(
     number, seen = SCENARIOS[name], 0
     for _, recording in drives(name, model, side):
         labels = {x for x in told(recording, questions, model) if x[0] == number}
-        assert labels <= {(number, BEFORE, side)}
-        seen += len(labels)
+        assert labels <= {(number, BEFORE, side), *PASSED[side, name]}
+        seen += (number, BEFORE, side) in labels
     assert seen
 
 
@@ -125,7 +128,8 @@ def _checked(recording: Recording, match: Match, asked: Questions) -> int:
     for model, label in zip(asked.settings.drivers, match.labels, strict=True):
         if name in MODELS[model].manoeuvres:
             collides = reading.holds(boundary(name, model), here, "strong")
-            assert label == ("unpreventable" if collides else "preventable")
+            passed = name == "cut-in" and label == "undecided"
+            assert label == "unpreventable" if collides else passed or label == "preventable"
         else:
             assert label == ""
     return 1
@@ -144,12 +148,12 @@ def test_what_is_never_foreseen(questions: Questions) -> None:
     assert told(slow, questions, "careful") == {(4, None, "not foreseen")}
 
 
-def test_what_begins_after_danger_is_not_foreseen(questions: Questions) -> None:
-    """POV drifts near without a speed across, so that danger begins; only then it has one."""
+def test_what_begins_late_is_put_into_the_same_motion(questions: Questions) -> None:
+    """POV is given a speed across only late; places, which it has from the beginning, decide."""
     (_, recording), *_ = drives("cut-in", "careful", "unpreventable")
     frames = np.tile(np.arange(len(recording.s) // 2), 2)
     late = replace(recording, v_lat=np.where(frames < BEFORE + 36, 0.0, recording.v_lat))
-    assert told(late, questions, "careful") == {(1, None, "not foreseen")}
+    assert told(late, questions, "careful") == {(1, BEFORE + 36, "unpreventable")}
 
 
 def test_check_names_a_label_that_is_wrong(questions: Questions) -> None:
@@ -171,30 +175,23 @@ def test_check_names_a_label_that_is_wrong(questions: Questions) -> None:
 @pytest.mark.parametrize(
     ("owner", "name", "right", "wrong"),
     [
-        (foretelling, "_begun", "hits.argmax(axis=0)", "hits.argmax(axis=0) + 1"),
-        (foretelling, "_begun", "begins & before", "before"),
-        (foretelling, "_begun", "begins & before", "begins"),
-        (foretelling, "_collides", "answer.true", "~answer.true"),
-        (foretelling, "_label", "int(collides[k])", "0"),
-        (courses, "courses_of", "unpreventable(name", "foreseen(name"),
+        (foretelling, "_begun", "begins.argmax(axis=0)", "begins.argmax(axis=0) + 1"),
+        (foretelling, "_begun", "begins.any(axis=0)", "~begins.any(axis=0)"),
+        (foretelling, "label_of", "x == driver", "x != driver"),
+        (foretelling, "label_of", "scene is None", "scene is not None"),
+        (foretelling, "scene_in", "frames, SIGNALS", "(frames[0], frames[0] + 51), SIGNALS"),
     ],
 )
 def test_planted_faults_are_seen(
     monkeypatch: pytest.MonkeyPatch, owner: object, name: str, right: str, wrong: str
 ) -> None:
-    if name == "courses_of":
-        right, wrong = "unpreventable(name, model, manoeuvre.vehicles)", "foreseen(name, manoeuvre.vehicles)"
     plant(monkeypatch, owner, name, right, wrong)
-    if name == "courses_of":
-        from roadproof.recordings.evaluate import questions as module
-
-        monkeypatch.setattr(module, "courses_of", courses.courses_of)
-    with pytest.raises((AssertionError, ValueError, IndexError)):
+    with pytest.raises((AssertionError, ValueError, IndexError, TypeError)):
         _ask_again(questions_with())
 
 
 def _ask_again(asked: Questions) -> None:
-    test_what_begins_after_danger_is_not_foreseen(asked)
+    test_what_begins_late_is_put_into_the_same_motion(asked)
     for side in SIDES:
         test_drives_on_both_sides_of_the_boundary(asked, "cut-in", "careful", side)
 
@@ -258,12 +255,13 @@ def test_columns_table_and_what_stays(folder: Path, tmp_path: Path) -> None:
         assert (known["careful"] != "") == (known["scenario"] in ("1", "2", "4"))
         assert (known["r157"] != "") == (known["scenario"] == "1")
         for model in ("careful", "r157"):
-            assert (known[f"{model}_frame"] != "") == (known[model] in SIDES)
+            assert (known[f"{model}_frame"] != "") == (known[model] in (*SIDES, "undecided"))
     told = json.loads(asked["results.json"])
     assert told["settings"]["drivers"] == ["careful", "r157"]
     counted = {
         (x["set"], x["min_danger"], x["scenario"], x["driver"]): x["preventable"]
         + x["unpreventable"]
+        + x["undecided"]
         + x["not_foreseen"]
         for x in told["drivers"]
     }
@@ -281,7 +279,7 @@ def test_from_python(folder: Path) -> None:
     assert rows.height == sum(
         x[label]
         for x in found.as_data()["drivers"]
-        for label in ("preventable", "unpreventable", "not_foreseen")
+        for label in ("preventable", "unpreventable", "undecided", "not_foreseen")
     )
     assert "Matches by whether a driver model" in str(found)
 

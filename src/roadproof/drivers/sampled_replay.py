@@ -1,6 +1,6 @@
 """A driver model put into samples: POV is where the samples say, and SV moves as the model prescribes.
 
-SV's motion is exact between samples. Whether the boxes touch is looked at in each sample, as a monitor does.
+Between samples places are straight lines; so it is decided whether the boxes touch, and when SV has passed.
 """
 
 from collections.abc import Mapping, Sequence
@@ -147,10 +147,13 @@ def replay_samples(
 
 def _unbraked(track: Track, first: int, step: Fraction) -> Track:
     """Return a track of which the speed along never falls from sample ``first`` on."""
-    v, s = track.v_lon.copy(), track.s.copy()
-    v[first:] = v[first] + np.concatenate(([0.0], np.cumsum(np.maximum(np.diff(v[first:]), 0))))
+    s, v = track.s.copy(), track.v_lon.copy()
+    more = np.maximum(np.diff(v[first:]), 0)
+    v[first:] = v[first] + np.concatenate(([0.0], np.cumsum(more)))
     faster = (v - track.v_lon)[first:]
-    s[first + 1 :] += np.cumsum((faster[:-1] + faster[1:]) / 2) * float(step)
+    gone = np.diff(s[first:]) + (faster[:-1] + faster[1:]) / 2 * float(step)
+    even = v[first:-1] * float(step)
+    s[first + 1 :] = s[first] + np.cumsum(np.where((more > 0) | (faster[1:] == 0), gone, even))
     return replace(track, s=s, v_lon=v)
 
 
@@ -192,28 +195,40 @@ def _driven(track: Track, step: Fraction, onset: Fraction, phases: Sequence[Phas
 
 
 def _judged(mine: Track, scene: SampledScene) -> Outcome:
-    """Return whether SV touches the last vehicle in a sample before it has passed it."""
-    other = scene.tracks[scene.vehicles[-1]]
-    begin = scene.first_sample
-    way = in_way(mine, other)
-    gap = other.s - other.length - mine.s
-    touch = way & (gap <= 0) & (mine.s - mine.length <= other.s)
-    past = mine.s - mine.length > other.s
-    first_touch, first_past = (_first_of(x[begin:]) for x in (touch, past))
-    if first_touch is not None and (first_past is None or first_touch <= first_past):
-        k = begin + first_touch
-        speed = round(float(mine.v_lon[k] - other.v_lon[k]), 2)
-        return Outcome(Result.COLLIDES, instant=round(k * float(scene.step), 3), speed=speed)
-    if first_past is not None:
-        at = round((begin + first_past) * float(scene.step), 2)
-        return Outcome(Result.UNDECIDED, reason=Why.PASSED_BY(at))
-    least = gap[begin:][way[begin:]]
+    """Return whether SV touches the last vehicle before it has passed it."""
+    other, begin = scene.tracks[scene.vehicles[-1]], scene.first_sample
+    gap, clear = other.s - other.length - mine.s, other.s - mine.s + mine.length
+    touch = _first_together(begin, mine.d - other.d + other.width, other.d - mine.d + mine.width, -gap, clear)
+    past = _first_together(begin, np.nextafter(-clear, -np.inf))
+    step = float(scene.step)
+    if touch is not None and (past is None or touch <= past):
+        samples = np.arange(len(gap))
+        speed = float(np.interp(touch, samples, mine.v_lon - other.v_lon))
+        return Outcome(Result.COLLIDES, instant=round(touch * step, 3), speed=round(speed, 2))
+    if past is not None:
+        return Outcome(Result.UNDECIDED, reason=Why.PASSED_BY(round(past * step, 2)))
+    least = gap[begin:][in_way(mine, other)[begin:]]
     return Outcome(Result.PREVENTED, gap=round(float(least.min()), 2) if len(least) else None)
 
 
-def _first_of(condition: Bools) -> int | None:
-    found = np.flatnonzero(condition)
-    return int(found[0]) if len(found) else None
+def _first_together(begin: int, *margins: Floats) -> float | None:
+    """Return the first sample, and part of one, at which no margin is negative.
+
+    Between samples margins are straight lines.
+    """
+    count = len(margins[0]) - 1
+    low, high = np.zeros(count), np.ones(count)
+    for margin in margins:
+        now, later = margin[:-1], margin[1:]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            crossing = now / (now - later)
+        low = np.maximum(low, np.where(now >= 0, 0.0, np.where(later >= 0, crossing, 2.0)))
+        high = np.minimum(high, np.where(later >= 0, 1.0, np.where(now >= 0, crossing, -1.0)))
+    found = np.flatnonzero(low[begin:] <= high[begin:])
+    if not len(found):
+        return None
+    k = begin + int(found[0])
+    return k + float(low[k])
 
 
 def _looked(scene: SampledScene, manoeuvre: ManoeuvreName) -> tuple[Fraction | None, list[Phase]]:

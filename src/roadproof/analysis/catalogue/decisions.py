@@ -13,9 +13,9 @@ from roadproof.drivers.driving import DriverSettings
 from roadproof.drivers.initial_state import State
 from roadproof.drivers.manoeuvres import ManoeuvreName
 from roadproof.drivers.models import MODELS, ModelName, course_in, foreseen
-from roadproof.drivers.outcome import Outcome, Result
+from roadproof.drivers.outcome import Outcome
 from roadproof.drivers.replay import first_cut, replay
-from roadproof.drivers.sampled_replay import SampledScene, Track, replay_samples
+from roadproof.drivers.sampled_replay import replay_samples
 from roadproof.evidence.answers.catalogue_index import TestedSide
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.library.elaborate import read_claim
@@ -25,6 +25,8 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import with_values
 from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.recordings.evaluate.courses import BEGINS
+from roadproof.recordings.evaluate.driven import scene_of
+from roadproof.recordings.evaluate.foretelling import RESULTS
 from roadproof.recordings.evaluate.one_trace import OneTrace
 from roadproof.runtime.canonical import digest
 from roadproof.semantics.exact.algebraic import approximate
@@ -37,11 +39,6 @@ from roadproof.world.signals import SIGNALS
 
 _JUST_AFTER = Fraction(1, 1000)  # s after an instant that is not one of the manoeuvre itself
 _PLACES = 6  # decimals of a state
-SIDES: Mapping[Result, TestedSide] = {
-    Result.PREVENTED: "preventable",
-    Result.COLLIDES: "unpreventable",
-    Result.UNDECIDED: "undecided",
-}
 
 
 @dataclass(frozen=True)
@@ -172,22 +169,11 @@ def decide_trace(
         },
         {(x, n): _rounded(batch.sizes[x, n][0]) for n in vehicles for x in ("length", "width")},
     )
-    scene = SampledScene(
-        {name: _track(trace, name) for name in vehicles}, trace.road, vehicles, batch.dt, first
-    )
+    scene = scene_of(batch, trace.road, vehicles, first * batch.dt)
     for model in drivers.of(manoeuvre):
         found = replay_samples(scene, manoeuvre, model, drivers.settings)
         at = float(begun * batch.dt)
         yield _decided(scenario, called, model, found, at, state.start(manoeuvre, vehicles))
-
-
-def _track(trace: OneTrace, name: str) -> Track:
-    batch, length = trace.batch, int(trace.batch.lengths[0])
-    s, d, v_lon, v_lat, a_lon = (
-        batch.signals[x, name][:length, 0] for x in ("s", "d", "v_lon", "v_lat", "a_lon")
-    )
-    sizes = (float(batch.sizes[x, name][0]) for x in ("length", "width"))
-    return Track(s, d, v_lon, v_lat, a_lon, *sizes)
 
 
 # --- tests with a formula -------------------------------------------------------------------------
@@ -236,7 +222,7 @@ def _decided(
         scenario,
         vehicles,
         model,
-        SIDES[found.result],
+        RESULTS[found.result],
         round(at, _PLACES),
         found.gap,
         found.instant,

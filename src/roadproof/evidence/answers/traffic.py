@@ -104,12 +104,14 @@ class Prediction:
     scenario: shared.Number
     driver: Driver
     preventable: Annotated[
-        shared.Count, Doc("Matches in which the model prevents a collision from where the manoeuvre begins.")
+        shared.Count,
+        Doc("Matches in which SV, driven by the model, never touches POV before it has passed it."),
     ]
-    unpreventable: Annotated[shared.Count, Doc("Those in which it does not.")]
-    not_foreseen: Annotated[
-        shared.Count, Doc("Those in which the manoeuvre does not begin before danger does.")
+    unpreventable: Annotated[shared.Count, Doc("Those in which it touches POV.")]
+    undecided: Annotated[
+        shared.Count, Doc("Those in which SV passes POV first, after which nothing is claimed.")
     ]
+    not_foreseen: Annotated[shared.Count, Doc("Those in which the manoeuvre never begins.")]
 
 
 @dataclass(frozen=True, kw_only=True)

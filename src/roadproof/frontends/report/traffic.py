@@ -144,19 +144,19 @@ def drivers_table(totals: Totals) -> Table | None:
     rows = [
         (
             *(decimal(Fraction(x.min_danger)), x.set, f"s{x.scenario}", x.driver),
-            *map(str, (x.preventable, x.unpreventable, x.not_foreseen)),
+            *map(str, (x.preventable, x.unpreventable, x.undecided, x.not_foreseen)),
         )
         for x in foretold_rows(totals)
     ]
     said = [f"{name}: {MODELS[name].title} ({MODELS[name].source})" for name in totals.settings.drivers]
     return Table(
-        "Matches by whether a driver model prevents a collision from where the manoeuvre begins",
+        "Matches by whether a driver model prevents a collision in place of SV",
         ("minDanger", "set", "scenario", "model", *LABELS),
         tuple(rows),
         (
             "; ".join(said) + ".",
-            "Rows of matches.csv, so a pair may count in both roles. The other vehicle is supposed to go on "
-            "as it moves where the manoeuvre begins; floating point, no evidence.",
+            "Rows of matches.csv, so a pair may count in both roles. All but SV moves as recorded, and after "
+            "the last common frame straight on; undecided: SV passes POV. Floating point, no evidence.",
         ),
     )
 

@@ -1,11 +1,12 @@
-"""What is asked of matches about driver models: that a manoeuvre begins, and that it ends in a collision."""
+"""Manoeuvres that driver models are put into: in which matches they are, and when they begin."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from roadproof.drivers.manoeuvres import MANOEUVRES
-from roadproof.drivers.models import MODELS, course_in, foreseen, unpreventable
+from roadproof.drivers.driving import DriverSettings
+from roadproof.drivers.manoeuvres import MANOEUVRES, ManoeuvreName
+from roadproof.drivers.models import MODELS, ModelName, course_in, foreseen
 from roadproof.errors import UsageError
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Specification
@@ -20,14 +21,16 @@ BEGINS = "begins"
 class Course:
     """A manoeuvre: the ``scenarios`` that it is the course of, and its ``vehicles``, SV first.
 
-    ``begins`` is asked whether it begins in a state (BEGINS); ``collides``, by the name of a model, whether
-    it ends in a collision from this state on though SV is driven so.
+    ``begins`` is asked whether it begins in a state (BEGINS). ``models`` are those that speak of it, with
+    their ``settings``.
     """
 
+    name: ManoeuvreName
     scenarios: tuple[int, ...]
     vehicles: tuple[str, ...]
     begins: Monitor[str]
-    collides: Monitor[str]
+    models: tuple[ModelName, ...]
+    settings: DriverSettings
 
 
 def courses_of(
@@ -42,13 +45,11 @@ def courses_of(
     """
     for name, manoeuvre in MANOEUVRES.items():
         numbers = tuple(number for number in scenarios if course_in(number) == name)
-        models = [model for model in drivers if name in MODELS[model].manoeuvres]
+        models = tuple(MODELS[x].name for x in drivers if name in MODELS[x].manoeuvres)
         if numbers and models:
-            texts = {model: unpreventable(name, model, manoeuvre.vehicles) for model in models}
-            texts[BEGINS] = foreseen(name, manoeuvre.vehicles)
-            formulas = {key: _meaning(sets, values, text) for key, text in texts.items()}
-            begins = compile({BEGINS: formulas.pop(BEGINS)})
-            yield Course(numbers, manoeuvre.vehicles, begins, compile(formulas))
+            begins = compile({BEGINS: _meaning(sets, values, foreseen(name, manoeuvre.vehicles))})
+            settings = DriverSettings(values, sets[0].options)
+            yield Course(name, numbers, manoeuvre.vehicles, begins, models, settings)
 
 
 def _meaning(sets: Sequence[Specification], values: Mapping[str, Fraction], text: str) -> Formula:

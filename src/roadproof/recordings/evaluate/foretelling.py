@@ -1,29 +1,38 @@
-"""What becomes of matches under driver models: when a manoeuvre begins in one, and whether SV can prevent it.
+"""What becomes of matches under driver models: when a manoeuvre begins in one, and whether SV prevents it.
 
-A manoeuvre begins at the first sample of the match's trace at which the formula of its beginning holds, up
-to the sample at which danger first begins. The state there is what the models are asked about: POV is
-supposed to go on as it moves there, whatever it does later in the recording.
+Each model is put into the match: from its start on SV drives as the model does, and all else moves as in
+the recording, up to the last frame that has all of its vehicles.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Literal, TypeAlias
+from fractions import Fraction
+from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 
-from roadproof.library.scenarios import PAIR, endangered
+from roadproof.drivers.outcome import Result
+from roadproof.drivers.sampled_replay import SampledScene, replay_samples
 from roadproof.recordings.evaluate.courses import BEGINS, Course
+from roadproof.recordings.evaluate.driven import SIGNALS, scene_of
 from roadproof.recordings.evaluate.matching import Match
-from roadproof.recordings.evaluate.questions import Danger, Questions
-from roadproof.recordings.evaluate.traces import blocks, gather
-from roadproof.recordings.formats.recording import Bools, Integers, Recording
+from roadproof.recordings.evaluate.one_trace import road_of
+from roadproof.recordings.evaluate.questions import Questions
+from roadproof.recordings.evaluate.traces import blocks, gather, gather_one
+from roadproof.recordings.formats.recording import Integers, Recording
+from roadproof.world.road import Road
 
-Label: TypeAlias = Literal["preventable", "unpreventable", "not foreseen"]
-LABELS: tuple[Label, ...] = ("preventable", "unpreventable", "not foreseen")
+Label: TypeAlias = Literal["preventable", "unpreventable", "undecided", "not foreseen"]
+LABELS: tuple[Label, ...] = get_args(Label)
+RESULTS: Mapping[Result, Label] = {
+    Result.PREVENTED: "preventable",
+    Result.COLLIDES: "unpreventable",
+    Result.UNDECIDED: "undecided",
+}
 _NEVER = -1
 
-# What matches have in common where a course is the same: SV, POV, POV2, first and last frame, minDanger.
-_Key: TypeAlias = tuple[int, int, int | None, int, int, int]
+# What matches have in common where a course is the same: SV, POV, POV2, and the first frame.
+_Key: TypeAlias = tuple[int, int, int | None, int]
 
 
 def foretell(recording: Recording, questions: Questions, matches: Sequence[Match]) -> list[Match]:
@@ -44,69 +53,71 @@ def foretell(recording: Recording, questions: Questions, matches: Sequence[Match
 
 
 def _key(match: Match) -> _Key:
-    return match.sv, match.pov, match.pov2, match.start_frame, match.end_frame, match.min_danger
+    return match.sv, match.pov, match.pov2, match.start_frame
 
 
 def _labels(
     recording: Recording, questions: Questions, course: Course, keys: Sequence[_Key], place: Mapping[int, int]
 ) -> list[tuple[int | None, tuple[str, ...]]]:
     """For each trace the frame at which the course begins, and a label for each driver that is asked for."""
-    who = [[place[x] for x in key[:3] if x is not None] for key in keys]
-    vehicles = dict(zip(course.vehicles, np.array(who, np.int64).T, strict=True))
-    low, high, danger = np.array([key[3:] for key in keys], np.int64).T
+    who = np.array([[place[x] for x in key[:3] if x is not None] for key in keys], np.int64).T
+    vehicles = dict(zip(course.vehicles, who, strict=True))
+    low = np.array([key[3] for key in keys], np.int64)
+    high = last_common(recording, who)
     begun = np.full(len(keys), _NEVER)
     for block in blocks(low, high, 200_000):
         some = {name: index[block] for name, index in vehicles.items()}
-        begun[block] = _begun(recording, questions, course, some, low[block], high[block], danger[block])
-    collides = _collides(recording, course, vehicles, begun)
-    return [
-        (
-            None if frame == _NEVER else frame,
-            tuple(_label(frame, collides.get(x), k) for x in questions.settings.drivers),
-        )
-        for k, frame in enumerate(begun.tolist())
-    ]
+        begun[block] = _begun(recording, course, some, low[block], high[block])
+    roads: dict[int, Road] = {}
+    made: list[tuple[int | None, tuple[str, ...]]] = []
+    for k, frame in enumerate(begun.tolist()):
+        those = {name: int(index[k]) for name, index in vehicles.items()}
+        scene = None
+        if frame != _NEVER:
+            scene = scene_in(recording, course, those, (int(low[k]), int(high[k])), roads)
+        labels = tuple(label_of(course, scene, model) for model in questions.settings.drivers)
+        made.append((None if frame == _NEVER else frame, labels))
+    return made
 
 
-def _label(frame: int, collides: Bools | None, k: int) -> str:
-    """Empty where the model says nothing of the manoeuvre."""
-    if collides is None:
+def last_common(recording: Recording, vehicles: Integers) -> Integers:
+    """Return the last frame that has all vehicles of each trace; ``vehicles``: a row for each of them."""
+    last: Integers = recording.last_frame[vehicles].min(axis=0)
+    return last
+
+
+def scene_in(
+    recording: Recording,
+    course: Course,
+    vehicles: Mapping[str, int],
+    frames: tuple[int, int],
+    roads: dict[int, Road],
+) -> SampledScene:
+    """Return the frames of some vehicles as a test for drivers; ``roads``: those known, by direction."""
+    way = int(recording.direction[vehicles[course.vehicles[0]]])
+    if way not in roads:
+        roads[way] = road_of(recording, way)
+    batch = gather_one(recording, vehicles, frames, SIGNALS)
+    return scene_of(batch, roads[way], course.vehicles, Fraction(0))
+
+
+def label_of(course: Course, scene: SampledScene | None, driver: str) -> str:
+    """Return the label of a model; empty where it says nothing of the manoeuvre.
+
+    ``scene`` is None where the manoeuvre never begins.
+    """
+    model = next((x for x in course.models if x == driver), None)
+    if model is None:
         return ""
-    return LABELS[2] if frame == _NEVER else LABELS[int(collides[k])]
+    if scene is None:
+        return "not foreseen"
+    return RESULTS[replay_samples(scene, course.name, model, course.settings).result]
 
 
 def _begun(
-    recording: Recording,
-    questions: Questions,
-    course: Course,
-    vehicles: Mapping[str, Integers],
-    low: Integers,
-    high: Integers,
-    danger: Integers,
+    recording: Recording, course: Course, vehicles: Mapping[str, Integers], low: Integers, high: Integers
 ) -> Integers:
-    """The first frame of each trace in which the course begins, up to where danger does; else _NEVER."""
+    """Return the first frame of each trace in which the course begins; else _NEVER."""
     batch = gather(recording, vehicles, low, high, course.begins.signals)
     begins = course.begins.evaluate(batch, at="all").answers[BEGINS].true
-    pair = {name: vehicles[x] for name, x in zip(PAIR, endangered(course.vehicles), strict=True)}
-    batch = gather(recording, pair, low, high, questions.danger.signals)
-    answers = questions.danger.evaluate(batch, at="all").answers
-    arises = np.zeros(begins.shape, bool)
-    for k in range(len(questions.danger_steps)):
-        arises[:, danger == k] = answers[Danger(k)].true[:, danger == k]
-    before = np.cumsum(arises, axis=0) - arises == 0
-    hits = begins & before
-    return np.where(hits.any(axis=0), low + hits.argmax(axis=0), _NEVER)
-
-
-def _collides(
-    recording: Recording, course: Course, vehicles: Mapping[str, Integers], begun: Integers
-) -> dict[str, Bools]:
-    """Whether each model that speaks of the course collides; False where it never begins."""
-    there = np.flatnonzero(begun != _NEVER)
-    found = {model: np.zeros(len(begun), bool) for model in course.collides.formulas}
-    if len(there):
-        some = {name: index[there] for name, index in vehicles.items()}
-        batch = gather(recording, some, begun[there], begun[there], course.collides.signals)
-        for model, answer in course.collides.evaluate(batch).answers.items():
-            found[model][there] = answer.true
-    return found
+    return np.where(begins.any(axis=0), low + begins.argmax(axis=0), _NEVER)

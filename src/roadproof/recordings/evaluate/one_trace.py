@@ -171,7 +171,7 @@ def cut_trace(
     """
 
     way = int(recording.direction[next(iter(vehicles.values()))])
-    road = _road_of(recording, way)
+    road = road_of(recording, way)
     made = gather_one(recording, vehicles, frames, RECORDED)
     given: dict[Formula, Array] = {}
     own: dict[str, dict[str, Array]] = {}
@@ -202,8 +202,8 @@ def _lanelets(recording: Recording, way: int, rows: slice) -> Iterator[tuple[Lan
             yield whole(lane), (recording.occupancy[rows] >> np.uint32(k)) & 1 != 0
 
 
-def _road_of(recording: Recording, way: int) -> Road:
-    """The lanes of one direction."""
+def road_of(recording: Recording, way: int) -> Road:
+    """Return the lanes of one direction."""
     lanelets = tuple(lanelet for lanelet, _ in _lanelets(recording, way, slice(0)))
     names = {x.lane for x in lanelets}
     beside = frozenset(pair for pair in recording.beside if pair <= names)

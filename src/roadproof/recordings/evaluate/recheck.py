@@ -2,13 +2,15 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from roadproof.library.scenarios import LANE, PAIR, TRIPLE, endangered
+import numpy as np
+
+from roadproof.library.scenarios import LANE, PAIR, TRIPLE
 from roadproof.logic.formula import Formula, transform
 from roadproof.recordings.evaluate.courses import BEGINS
 from roadproof.recordings.evaluate.evaluate import Findings
-from roadproof.recordings.evaluate.foretelling import LABELS
+from roadproof.recordings.evaluate.foretelling import label_of, last_common, scene_in
 from roadproof.recordings.evaluate.matching import Match
-from roadproof.recordings.evaluate.questions import Danger, MonitorKey, Questions, of_three
+from roadproof.recordings.evaluate.questions import MonitorKey, Questions, of_three
 from roadproof.recordings.evaluate.traces import OTHER_LANE, gather_one
 from roadproof.recordings.formats.recording import Recording
 from roadproof.semantics.sampled.batch import Batch
@@ -64,28 +66,18 @@ def recheck(recording: Recording, questions: Questions, findings: Findings) -> I
 def _foretold(
     recording: Recording, questions: Questions, match: Match, place: Mapping[int, int]
 ) -> tuple[int | None, tuple[str, ...]]:
-    """When the manoeuvre of a match begins, sample by sample, and its labels there."""
+    """Return when the manoeuvre of a match begins, sample by sample, and the labels of drivers."""
     course = next(x for x in questions.courses if match.scenario in x.scenarios)
     ids = [match.sv, match.pov] if match.pov2 is None else [match.sv, match.pov, match.pov2]
     vehicles = dict(zip(course.vehicles, (place[x] for x in ids), strict=True))
-    frames = match.start_frame, match.end_frame
-    signals = (*course.begins.signals, *course.collides.signals)
-    reading = TraceReader(trace_of(gather_one(recording, vehicles, frames, signals)))
-    pair = dict(zip(PAIR, (vehicles[x] for x in endangered(course.vehicles)), strict=True))
-    near = TraceReader(trace_of(gather_one(recording, pair, frames, questions.danger.signals)))
-    danger = questions.danger.formulas[Danger(match.min_danger)]
-    for k in range(frames[1] - frames[0] + 1):
-        if reading.holds(course.begins.formulas[BEGINS], k, "strong"):
-            labels = (
-                LABELS[reading.holds(course.collides.formulas[x], k, "strong")]
-                if x in course.collides.formulas
-                else ""
-                for x in questions.settings.drivers
-            )
-            return frames[0] + k, tuple(labels)
-        if near.holds(danger, k, "strong"):
-            break
-    return None, tuple(LABELS[2] if x in course.collides.formulas else "" for x in questions.settings.drivers)
+    last = int(last_common(recording, np.array([[x] for x in vehicles.values()]))[0])
+    frames = match.start_frame, last
+    reading = TraceReader(trace_of(gather_one(recording, vehicles, frames, course.begins.signals)))
+    begins = course.begins.formulas[BEGINS]
+    samples = range(frames[1] - frames[0] + 1)
+    begun = next((frames[0] + k for k in samples if reading.holds(begins, k, "strong")), None)
+    scene = None if begun is None else scene_in(recording, course, vehicles, frames, {})
+    return begun, tuple(label_of(course, scene, x) for x in questions.settings.drivers)
 
 
 def _told(begun: int | None, labels: Iterable[str]) -> str:
