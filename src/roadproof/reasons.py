@@ -114,6 +114,7 @@ class Why(StrEnum):
     ONE_SIDE_SOUGHT = "drives found: {}; a search found none on another side; nothing is proved"
     NOT_BEGUN = "no {} begins, of which the models speak"
     NO_PLACE = "no place of the plane is {}"
+    TOO_LONG = "SV touches POV later than {} s after its start, up to which the controller is followed"
     PASSED_BY = "SV has passed POV at {} s; nothing is claimed after that"
     PASSED = (
         "no drive shows it: SV has passed POV, which then hits it from behind, or is never faster than POV "

@@ -27,7 +27,7 @@ TICKS = 2  # units of time from look to look
 _SECOND = TICKS * HERTZ
 _REACTION = 15  # 0.75 s
 _WAITS = -(-_REACTION // TICKS)  # looks for which it sees danger before it brakes
-_COMFORT, _GREATEST, _OTHER = 4, 6, 7  # m/s²: of SV, of SV, of POV
+COMFORT, _GREATEST, _OTHER = 4, 6, 7  # m/s²: of SV, of SV, of POV
 _MARGIN = 2  # m, d_1
 _JERK = Fraction("12.65")  # m/s³
 _LATER = 2  # 0.1 s
@@ -94,7 +94,7 @@ class Controller:
     """
 
     def __init__(self, scale: Scale) -> None:
-        self.comfort = scale.acceleration(_COMFORT)
+        self.comfort = scale.acceleration(COMFORT)
         self.greatest = scale.acceleration(_GREATEST)
         self.other = scale.acceleration(_OTHER)
         self.margin = _MARGIN * scale.metre

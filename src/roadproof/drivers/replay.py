@@ -12,8 +12,8 @@ from itertools import pairwise
 from math import ceil, isqrt
 
 from roadproof.drivers.driving import DriverSettings
-from roadproof.drivers.fuzzy import HERTZ, step
-from roadproof.drivers.fuzzy_looks import Look, Looks
+from roadproof.drivers.fuzzy import HERTZ
+from roadproof.drivers.fuzzy_looks import LONGEST, Sight, controlled, known_from
 from roadproof.drivers.lanes import Across, Box, across
 from roadproof.drivers.manoeuvres import ManoeuvreName
 from roadproof.drivers.models import MODELS, ModelName
@@ -30,14 +30,13 @@ from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.truth import Cut, TruthSet
 from roadproof.world.drive import Drive, Motion, Piece
-from roadproof.world.motion import State, advance, starts_of, state_at, states_at
+from roadproof.world.motion import starts_of, state_at, states_at
 from roadproof.world.road import Road
 
 _FINE = 10**6  # parts of a second: instants that are no fraction are taken so much later at most
 _METRES, _SPEED, _ACCELERATION = (1, 0), (1, -1), (1, -2)
-LONGEST = 60
-"""Seconds that a controller is followed."""
 _NONE = Fraction(0)
+_MOMENT = Fraction(1, 1000)  # s before it stands: there a vehicle loses its speed across
 
 
 @dataclass(frozen=True)
@@ -108,7 +107,7 @@ class DriveScene:
         return self.first(to_the_right if here.side > 0 else to_the_left)
 
     def beside(self) -> Fraction | None:
-        return self.first(self._in_way)
+        return self.first(self.in_way)
 
     def past_marking(self, metres: Fraction) -> Fraction | None:
         here, other = self.across, self.vehicles[1]
@@ -136,7 +135,7 @@ class DriveScene:
         other = self.vehicles[1]
         slows = _compare(t.Signal("a_lon", other), "<=" if least else "<", -least, _ACCELERATION)
         ahead = f.Compare(self._gap, ">=", t.number(0, _METRES))
-        return self.first(f.conjunction(slows, ahead, self._in_way))
+        return self.first(f.conjunction(slows, ahead, self.in_way))
 
     @property
     def _gap(self) -> t.Term:
@@ -145,7 +144,7 @@ class DriveScene:
         return t.subtract(rear, t.Signal("s", me))
 
     @property
-    def _in_way(self) -> Formula:
+    def in_way(self) -> Formula:
         me, other = self.vehicles[0], self.vehicles[1]
         pairs = ((me, other), (other, me))
         return f.conjunction(
@@ -204,22 +203,27 @@ def driven_from(motion: Motion, onset: Fraction, phases: Sequence[Phase]) -> Mot
 
     Across the road it is as before until it stands, and then it moves no more.
     """
-    now = state_at(motion, onset)
-    later = [*until_it_stands(now.v_lon, phases)]
-    starts = starts_of(motion)
-    knots, time, speed = {x.time for x in starts} | {onset}, onset, now.v_lon
-    for duration, acceleration, jerk in later:
-        time += duration
-        speed += acceleration * duration + jerk * duration**2 / 2
-        knots.add(time)
+    starts, speed, time = starts_of(motion), state_at(motion, onset).v_lon, onset
+    along = {x.time: (x.a_lon, x.j_lon) for x in starts if x.time < onset}
+    for lasts, acceleration, jerk in until_it_stands(speed, phases):
+        along[time] = acceleration, jerk
+        time += lasts
+        speed += acceleration * lasts + jerk * lasts**2 / 2
+    along[time] = _NONE, _NONE
     stands = speed == 0
-    times = sorted(x for x in knots if not stands or x <= time)
+    knots = {*along, *(x.time for x in starts if x.time >= onset and not (stands and x.time > time))}
+    drift = state_at(motion, time).v_lat
+    if stands and drift and time > onset:
+        knots.add(max(onset, time - _MOMENT))
     pieces: list[Piece] = []
-    for begin, end in pairwise([*times, None]):
-        assert begin is not None
-        a_lon, j_lon = _along(starts, onset, later, begin)
-        a_lat = _NONE if end is None and stands else state_at(motion, begin).a_lat
-        pieces.append(Piece(None if end is None else end - begin, a_lon, a_lat, j_lon))
+    begin, (acceleration, jerk) = onset, along[min(along)]
+    times = sorted(knots)
+    for now, end in zip(states_at(motion, times), [*times[1:], None], strict=True):
+        if now.time in along:
+            begin, (acceleration, jerk) = now.time, along[now.time]
+        a_lat = _NONE if end is None and stands else now.a_lat
+        duration = None if end is None else end - now.time
+        pieces.append(Piece(duration, acceleration + jerk * (now.time - begin), a_lat, jerk))
     made = replace(motion, pieces=tuple(pieces))
     return _at_rest_across(made) if stands else made
 
@@ -233,25 +237,6 @@ def _at_rest_across(motion: Motion) -> Motion:
     assert piece.duration is not None
     change = replace(piece, a_lat=piece.a_lat - last.v_lat / piece.duration)
     return replace(motion, pieces=(*before, change, rest))
-
-
-def _along(
-    before: Sequence[State],
-    onset: Fraction,
-    later: Sequence[tuple[Fraction, Fraction, Fraction]],
-    at: Fraction,
-) -> tuple[Fraction, Fraction]:
-    """Acceleration and jerk along the road from an instant on."""
-    if at < onset:
-        now = [x for x in before if x.time <= at][-1]
-        state = advance(now, at - now.time)
-        return state.a_lon, state.j_lon
-    time = onset
-    for duration, acceleration, jerk in later:
-        if at < time + duration:
-            return acceleration + jerk * (at - time), jerk
-        time += duration
-    return _NONE, _NONE
 
 
 def until_it_stands(
@@ -299,17 +284,16 @@ def _judged(
 ) -> Outcome:
     """Return what the judge says of a drive: whether SV touches the last vehicle before it has passed it.
 
-    Only up to ``latest`` is looked, where that is not None.
+    Nothing is claimed of what comes after ``latest``, where that is not None.
     """
     me, last = vehicles[0], vehicles[-1]
     touching = read_claim(home, f"touches({me}, {last})").formula
     passing = read_claim(home, f"rear({me}) > front({last})").formula
     judgement = judge(f.conjunction(touching, passing), drive)
     touch, past = (first_cut(judgement.truth(x), since) for x in (touching, passing))
-    touch, past = (
-        None if x is not None and latest is not None and x.point > latest else x for x in (touch, past)
-    )
     if touch is not None and (past is None or touch <= past):
+        if latest is not None and touch.point > latest:
+            return Outcome(Result.UNDECIDED, reason=Why.TOO_LONG(LONGEST))
         at = _at_or_after(touch)
         mine, its = (state_at(drive.vehicles[x], at) for x in (me, last))
         speed = round(float(mine.v_lon - its.v_lon), 2)
@@ -325,13 +309,16 @@ def least_gap(drive: Drive, pair: tuple[str, str], since: Fraction) -> float | N
     It is looked for at knots, where the speeds are equal, and where the overlap begins or ends.
     """
     me, other = pair
-    scene = DriveScene(drive, Road("", (), frozenset()), pair, since)
-    way = judge(scene._in_way, drive).truth(scene._in_way)
-    speeds = _compare(t.subtract(t.Signal("v_lon", me), t.Signal("v_lon", other)), ">", _NONE, _SPEED)
+    way, speeds = (
+        DriveScene(drive, Road("", (), frozenset()), pair, since).in_way,
+        _compare(t.subtract(t.Signal("v_lon", me), t.Signal("v_lon", other)), ">", _NONE, _SPEED),
+    )
+    judgement = judge(f.conjunction(way, speeds), drive)
+    beside = judgement.truth(way)
     knots = {x.time for name in pair for x in starts_of(drive.vehicles[name])}
-    ends = (cut for truth in (way, judge(speeds, drive).truth(speeds)) for cut in truth.cuts)
+    ends = (cut for truth in (beside, judgement.truth(speeds)) for cut in truth.cuts)
     times = {since, *knots, *(_at_or_after(x) for x in ends)}
-    looked = sorted(x for x in times if x >= since and way.at(x))
+    looked = sorted(x for x in times if x >= since and beside.at(x))
     mine, its = (states_at(drive.vehicles[x], looked) for x in pair)
     gaps = [b.s - drive.vehicles[other].length - a.s for a, b in zip(mine, its, strict=True)]
     return round(float(min(gaps)), 2) if gaps else None
@@ -342,31 +329,22 @@ def least_gap(drive: Drive, pair: tuple[str, str], since: Fraction) -> float | N
 
 def _looked(scene: DriveScene, manoeuvre: ManoeuvreName) -> tuple[Fraction | None, list[Phase]]:
     """Return when the fuzzy safety model first brakes, and its braking from look to look."""
-    me, other = scene.vehicles[0], scene.vehicles[-1]
-    motion, its = scene.drive.vehicles[me], scene.drive.vehicles[other]
-    seen = scene.offset(Fraction("0.375")) if manoeuvre == "cut-out" else scene.start
-    looks = Looks(motion.length + its.length)
-    onset: Fraction | None = None
-    phases: list[Phase] = []
-    place, speed = state_at(motion, scene.start).s, state_at(motion, scene.start).v_lon
-    for k in range(LONGEST * HERTZ):
-        time = scene.start + Fraction(k, HERTZ)
-        there, mine = state_at(its, time), state_at(motion, time)
-        if onset is None:
-            place, speed = mine.s, mine.v_lon
-        if speed <= 0 or place - motion.length > there.s:
-            break
-        boxes = (
-            Box(place, mine.d, motion.length, motion.width),
-            Box(there.s, there.d, its.length, its.width),
+    me, other = (scene.drive.vehicles[x] for x in (scene.vehicles[0], scene.vehicles[-1]))
+    times = [scene.start + Fraction(k, HERTZ) for k in range(LONGEST * HERTZ)]
+    ends = [starts_of(motion)[-1] for motion in (me, other)]
+    even = max(x.time for x in ends)
+    is_straight = all(x.a_lon == x.a_lat == x.v_lat == 0 for x in ends)
+    seen = (
+        Sight(
+            time,
+            Box(mine.s, mine.d, me.length, me.width),
+            Box(its.s, its.d, other.length, other.width),
+            mine.v_lon,
+            its.v_lon,
+            mine.v_lat,
+            its.v_lat,
+            is_straight and time >= even,
         )
-        braking = _NONE
-        if seen is not None and time >= seen:
-            braking = looks.braking(Look.of(*boxes, speed, there.v_lon, mine.v_lat, there.v_lat))
-        if braking > 0 and onset is None:
-            onset = time
-        if onset is not None:
-            phases += step(braking)
-            speed = speed - braking / HERTZ
-            place += speed / HERTZ + braking / HERTZ * (step(braking)[0][0]) / 2
-    return onset, phases
+        for time, mine, its in zip(times, states_at(me, times), states_at(other, times), strict=True)
+    )
+    return controlled(seen, known_from(scene, manoeuvre))

@@ -14,13 +14,12 @@ import numpy.typing as npt
 
 from roadproof.drivers.driving import DriverSettings
 from roadproof.drivers.fuzzy import HERTZ
-from roadproof.drivers.fuzzy import step as step_of
-from roadproof.drivers.fuzzy_looks import Look, Looks
+from roadproof.drivers.fuzzy_looks import LONGEST, Sight, controlled, known_from
 from roadproof.drivers.lanes import Across, Box, across
 from roadproof.drivers.manoeuvres import ManoeuvreName
 from roadproof.drivers.models import MODELS, ModelName
 from roadproof.drivers.outcome import Outcome, Result
-from roadproof.drivers.replay import LONGEST, until_it_stands
+from roadproof.drivers.replay import until_it_stands
 from roadproof.drivers.response import Phase, response
 from roadproof.reasons import Why
 from roadproof.runtime.records import dataclass
@@ -233,45 +232,25 @@ def _first_together(begin: int, *margins: Floats) -> float | None:
 
 def _looked(scene: SampledScene, manoeuvre: ManoeuvreName) -> tuple[Fraction | None, list[Phase]]:
     """Return when the fuzzy safety model first brakes, and its braking from look to look."""
-    me, other = scene.tracks[scene.vehicles[0]], scene.tracks[scene.vehicles[-1]]
-    seen = scene.offset(Fraction("0.375")) if manoeuvre == "cut-out" else scene.start
-    times = np.arange(len(me.s)) * float(scene.step)
-    looks = Looks(_exact(me.length + other.length))
-    onset: Fraction | None = None
-    phases: list[Phase] = []
-    place = speed = 0.0
-    time = scene.start
-    while float(time) <= times[-1]:
-        at = {
-            (who, name): float(np.interp(float(time), times, getattr(track, name)))
-            for who, track in (("me", me), ("other", other))
-            for name in ("s", "d", "v_lon", "v_lat")
-        }
-        if onset is None:
-            place, speed = at["me", "s"], at["me", "v_lon"]
-        if speed <= 0 or place - me.length > at["other", "s"]:
-            break
-        mine = Box(_exact(place), _exact(at["me", "d"]), _exact(me.length), _exact(me.width))
-        its = Box(*map(_exact, (at["other", "s"], at["other", "d"], other.length, other.width)))
-        braking = Fraction(0)
-        if seen is not None and time >= seen:
-            seen_now = Look.of(
-                mine,
-                its,
-                _exact(speed),
-                _exact(at["other", "v_lon"]),
-                _exact(at["me", "v_lat"]),
-                _exact(at["other", "v_lat"]),
-            )
-            braking = looks.braking(seen_now)
-        if braking > 0 and onset is None:
-            onset = time
-        if onset is not None:
-            phases += step_of(braking)
-            speed -= float(braking) / HERTZ
-            place += speed / HERTZ
-        time += Fraction(1, HERTZ)
-    return onset, phases
+    tracks = [scene.tracks[x] for x in (scene.vehicles[0], scene.vehicles[-1])]
+    times = [scene.start + Fraction(k, HERTZ) for k in range(LONGEST * HERTZ)]
+    samples = np.arange(len(tracks[0].s)) * float(scene.step)
+    names = ("s", "d", "v_lon", "v_lat")
+    places = np.array([float(x) for x in times])
+    columns = [[np.interp(places, samples, getattr(x, name)) for name in names] for x in tracks]
+    end = (len(samples) - int(LONGEST / scene.step)) * scene.step
+    return controlled(
+        (_sight(time, k, tracks, columns, time >= end) for k, time in enumerate(times)),
+        known_from(scene, manoeuvre),
+    )
+
+
+def _sight(
+    time: Fraction, k: int, tracks: Sequence[Track], columns: Sequence[Sequence[Floats]], is_even: bool
+) -> Sight:
+    (s, d, v, u), (its_s, its_d, its_v, its_u) = ([_exact(x[k]) for x in those] for those in columns)
+    mine, its = ((_exact(x.length), _exact(x.width)) for x in tracks)
+    return Sight(time, Box(s, d, *mine), Box(its_s, its_d, *its), v, its_v, u, its_u, is_even)
 
 
 def _exact(value: float) -> Fraction:
