@@ -75,7 +75,10 @@ def ramp(times: np.ndarray, begin: float, full: float) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Found:
-    """``gap``: the least that is left while side by side across; ``time``, ``faster``: of the touch."""
+    """``word``: the verdict, or later where SV still comes nearer at the end.
+
+    ``gap``: the least that is left while side by side across; ``time``, ``faster``: of the touch.
+    """
 
     word: str
     gap: float | None = None
@@ -210,5 +213,7 @@ class Simulation:
             return Found("collides", time=touch, faster=float(self.me["v"][at] - self.others[k]["v"][at]))
         if past is not None:
             return Found("undecided")
+        if self.me["v"][-1] > self.others[k]["v"][-1] + STEP:
+            return Found("later")
         left = gap[beside & now]
         return Found("prevented", gap=float(left.min()) if len(left) else None)

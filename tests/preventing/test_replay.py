@@ -184,7 +184,7 @@ def check(manoeuvre: str, model: ModelName, number: int, in_samples: bool = Fals
             Simulation(case, nearer=x).run(model, options, late)
             for x, late in ((0, 0), (near, 0), (-near, 0), (near, step), (-near, step))
         ]
-        if len({x.word for x in found}) > 1:
+        if len({x.word for x in found}) > 1 or found[0].word == "later":
             yield "divided"
             continue
         made = replayed(manoeuvre, model, drive, since, settings, in_samples)
