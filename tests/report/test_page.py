@@ -190,7 +190,7 @@ def hostile_traffic() -> dict:
         **dict.fromkeys(counts, 1),
         **{"settings": settings, "table": [row], "words": [], "detectors": {HOSTILE: 3}, "repeats": []},
         **{"checks": {"broken": [HOSTILE], "unequal_3_4": []}, "notes": {HOSTILE: [CLOSED]}},
-        **{"failed": {HOSTILE: CLOSED}, "drivers": [model | {"preventable": 0, "not_foreseen": 0}]},
+        **{"failed": {HOSTILE: CLOSED}, "drivers": [model | {"preventable": 0, "undecided": 0, "not_foreseen": 0}]},
     }
 
 
