@@ -24,6 +24,8 @@ CLOSED = "</script><script>alert(1)</script>"
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 NO_BROWSER = "there is no chromium here: install it, for instance apt-get install chromium"
 
+_LABELS = ("preventable", "undecided", "not_foreseen")
+
 
 @pytest.fixture(scope="module")
 def drives(tmp_path_factory) -> Path:
@@ -190,7 +192,7 @@ def hostile_traffic() -> dict:
         **dict.fromkeys(counts, 1),
         **{"settings": settings, "table": [row], "words": [], "detectors": {HOSTILE: 3}, "repeats": []},
         **{"checks": {"broken": [HOSTILE], "unequal_3_4": []}, "notes": {HOSTILE: [CLOSED]}},
-        **{"failed": {HOSTILE: CLOSED}, "drivers": [model | {"preventable": 0, "undecided": 0, "not_foreseen": 0}]},
+        **{"failed": {HOSTILE: CLOSED}, "drivers": [model | dict.fromkeys(_LABELS, 0)]},
     }
 
 

@@ -306,7 +306,7 @@ def test_counts_are_those_of_the_matches_one_by_one(seed: int) -> None:
     counted = {
         (Fraction(x.min_danger), x.set, x.scenario, x.driver, label): n
         for x in rows
-        for label, n in zip(LABELS, (x.preventable, x.unpreventable, x.undecided, x.not_foreseen), strict=True)
+        for label, n in ((name, getattr(x, name.replace(" ", "_"))) for name in LABELS)
     }
     assert counted == {key: expected[key] for key in counted}
     assert sum(counted.values()) == sum(expected.values()) > 50
