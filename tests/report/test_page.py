@@ -288,7 +288,7 @@ def hostile_plates(drive: dict) -> dict:
     lines = [{"at": "0", "unpreventable": []}, {"at": "1/2", "unpreventable": [ends]}]
     shown = {"side": "preventable", "at": {HOSTILE: "1"}, "verdict": "WITNESSED", "formula": HOSTILE}
     shown |= {"scenario": CLOSED, "reason": CLOSED, "drive": drive}
-    plate = {"name": HOSTILE, "model": CLOSED, "fixed": {HOSTILE: "1"}, "verdict": "UNKNOWN"}
+    plate = {"name": HOSTILE, "model": "careful", "fixed": {HOSTILE: "1"}, "verdict": "UNKNOWN"}
     plate |= {"stepped": HOSTILE, "motion": CLOSED, "reason": HOSTILE}
     lemma = {"name": HOSTILE, "title": CLOSED, "claim": HOSTILE, "verdict": "PROVED", "assuming": [CLOSED]}
     lemma |= {"certificate": None, "reason": CLOSED}
