@@ -185,7 +185,8 @@ def hostile_traffic() -> dict:
     settings |= {"convention": "clip", "detectors": [HOSTILE], "options": {HOSTILE: CLOSED}, "parameters": {}}
     counts = ("recordings", "vehicles", "samples", "violating", "asked", "undecided", "differing")
     row = {"sector": HOSTILE, "min_danger": "0", "set": CLOSED, "recall": 0.5, "scenarios": {"1": 3}}
-    row |= dict.fromkeys(("traces", "matching", "matching_with_three_cars", "matching_several"), 1)
+    row |= dict.fromkeys(("traces", "matching", "matching_uncertain", "matching_with_three_cars"), 1)
+    row["matching_several"] = 1
     row |= {"recall_without_init_safe": None, "together": {}}
     model = {"min_danger": "3/5", "set": HOSTILE, "scenario": 1, "driver": "rss", "unpreventable": 2}
     return {
