@@ -4,16 +4,23 @@ import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from pathlib import Path
 
+from roadproof.drivers.manoeuvres import MANOEUVRES
 from roadproof.errors import InputError
+from roadproof.evidence.answers.plates import Index
+from roadproof.evidence.codec import read
 from roadproof.evidence.folder import INDEX
 from roadproof.evidence.journal import HEAD
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
 from roadproof.library.scenarios import EVERY_SCENARIO
+from roadproof.world.units import UNITS
 
 TEMPLATES = ("catalogue-coverage",)
-Table = Mapping[str, str | Sequence[str] | bool]
+Table = Mapping[str, str | Sequence[str] | bool | int]
+_MOST = 6  # values of a quantity that a goal names
+_MODEL = "careful"  # the driver model that the argument is about
 
 
 @dataclass(frozen=True)
@@ -55,10 +62,10 @@ _TESTS: Mapping[str, _Use] = {
 }
 _DRIVER: Mapping[str, _Use] = {
     "preventable": _Use(
-        "The boundary of preventable collisions is exact for {manoeuvre}",
-        "Plates and lemmas of {manoeuvre}",
-        ("WITNESSED", "PROVED"),
-        ("careful*", "lemma*"),
+        "The boundary of preventable collisions {boundary} in {manoeuvre}, {plates}",
+        "{drives} on both sides of the boundary in {manoeuvre}{lemmas}",
+        ("WITNESSED",),
+        (f"{_MODEL}*",),
     )
 }
 _BRANCHES: Sequence[tuple[str, str, Mapping[str, _Use]]] = (
@@ -69,14 +76,15 @@ _BRANCHES: Sequence[tuple[str, str, Mapping[str, _Use]]] = (
     ),
     ("The catalogue tests the scenarios", "Argument over the review of the tests", _TESTS),
     (
-        "A competent and careful driver prevents the preventable collisions",
-        "Argument over manoeuvres",
+        "The collisions that a competent and careful driver prevents are known for the manoeuvres and values "
+        "below",
+        "Argument over the manoeuvres with evidence",
         _DRIVER,
     ),
 )
 _TOP = (
-    "The catalogue covers the reasonably foreseeable traffic disturbances of ISO 34502, and a competent and "
-    "careful driver prevents the preventable collisions"
+    "The catalogue covers the reasonably foreseeable traffic disturbances of ISO 34502, and the collisions "
+    "that a competent and careful driver prevents are known for the manoeuvres and values below"
 )
 _BESIDE: Mapping[str, Table] = {
     "C1": {"context": "The traffic disturbance scenarios of ISO 34502, formal in signal temporal logic"},
@@ -104,11 +112,16 @@ def fill_template(name: str, evidence: Sequence[Path], home: Path) -> str:
 
 @dataclass(frozen=True)
 class _Given:
-    """A folder of evidence: ``kind`` of its answers, and words that the template puts in."""
+    """A folder of evidence: ``kind`` of its answers, and words that the template puts in.
+
+    ``lemmas``: whether it has lemmas; ``entries``: how many entries the argument is about, None for all.
+    """
 
     path: str
     kind: str
     words: Mapping[str, str]
+    lemmas: bool = False
+    entries: int | None = None
 
     @staticmethod
     def read(folder: Path, home: Path) -> "_Given":
@@ -120,8 +133,46 @@ class _Given:
                     x: str(data.content[x]) for x in ("set", "manoeuvre") if x in data.content
                 }
                 kind = [*data.text(key).split("/"), ""][1]
-                return _Given(Path(os.path.relpath(folder, home)).as_posix(), kind, words)
+                path = Path(os.path.relpath(folder, home)).as_posix()
+                if kind != "preventable":
+                    return _Given(path, kind, words)
+                if name != INDEX:
+                    raise InputError(f"{folder} has no {INDEX}: its run has not ended; run it again")
+                return _of_plates(path, read(Index, data.content, str(folder / name)))
         raise InputError(f"{folder} has no answers: name a folder that a command has written with --out")
+
+
+def _of_plates(path: str, index: Index) -> _Given:
+    """The plates and lemmas of a folder. Raises ``InputError`` where none is of the model."""
+    plates = [x for x in index.plates if x.model == _MODEL]
+    if not plates:
+        raise InputError(
+            f"{path} has no plate of driver model {_MODEL}: run preventable with --model {_MODEL}"
+        )
+    known = MANOEUVRES[index.manoeuvre].quantities
+    fixed: dict[str, list[str]] = {}
+    for plate in plates:
+        for name, value in plate.fixed.items():
+            unit = known[name].unit
+            told = f"{float(Fraction(value) / UNITS[unit][0]):g} {unit}"
+            if told not in fixed.setdefault(name, []):
+                fixed[name].append(told)
+    values = "; ".join(
+        f"{name} = {', '.join(x[:_MOST])}{', …' * (len(x) > _MOST)}" for name, x in fixed.items()
+    )
+    drives, count = sum(len(x.shown) for x in plates), len(index.lemmas)
+    words = {
+        "manoeuvre": index.manoeuvre,
+        "plates": f"{_number(len(plates), 'plate')}{f' at {values}' if values else ''}",
+        "drives": _number(drives, "drive"),
+        "boundary": "follows from the motion" if count else "is shown by drives, without a lemma,",
+        "lemmas": f", and {_number(count, 'lemma')} about its formula" if count else "",
+    }
+    return _Given(path, "preventable", words, count > 0, drives + count)
+
+
+def _number(count: int, what: str) -> str:
+    return f"{count} {what}{'s' * (count != 1)}"
 
 
 def _tables(found: Sequence[_Given]) -> Iterator[tuple[str, Table]]:
@@ -142,8 +193,20 @@ def _tables(found: Sequence[_Given]) -> Iterator[tuple[str, Table]]:
         for sub, (x, use) in zip(inner, given, strict=True):
             count += 1
             yield sub, {"goal": use.goal.format(**x.words), "supported-by": [f"Sn{count}"]}
-            solution = {"solution": use.solution.format(**x.words), "evidence": x.path, "expect": use.expect}
-            yield f"Sn{count}", {**solution, **({"select": use.select} if use.select else {})}
+            yield f"Sn{count}", _solution(x, use)
+
+
+def _solution(given: _Given, use: _Use) -> Table:
+    table: dict[str, str | Sequence[str] | bool | int] = {
+        "solution": use.solution.format(**given.words),
+        "evidence": given.path,
+        "expect": (*use.expect, *("PROVED",) * given.lemmas),
+    }
+    if use.select:
+        table["select"] = (*use.select, *("lemma*",) * given.lemmas)
+    if given.entries is not None:
+        table["entries"] = given.entries
+    return table
 
 
 def _as_toml(title: str, tables: Mapping[str, Table]) -> str:
@@ -155,7 +218,7 @@ def _as_toml(title: str, tables: Mapping[str, Table]) -> str:
     return "\n".join(blocks)
 
 
-def _value(value: str | Sequence[str] | bool) -> str:
+def _value(value: str | Sequence[str] | bool | int) -> str:
     if isinstance(value, tuple) and len(value) == 1:
         value = str(value[0])
     return json.dumps(value, ensure_ascii=False)
