@@ -159,6 +159,53 @@ def test_a_changed_file_is_found_before_anything_is_installed(home: Path, tmp_pa
     assert "FAILED: files are not those of the bundle" in done.stdout
 
 
+CHECKED = ("proofs", "case.toml", "asked.toml")
+AFTER = "# Check an assurance case or requirements: ``argue COMMAND FILE``."
+CASE = """
+[G1]
+goal = "Claims hold"
+supported-by = "Sn1"
+[Sn1]
+solution = "Proofs"
+evidence = "proofs"
+expect = "EXPECTED"
+"""
+TRACED = """
+[trace]
+evidence = ["proofs"]
+specs = ["own.spec"]
+[[requirement]]
+id = "R1"
+text = "Slow means slow"
+claims = ["slow(SV) -> v_lon(SV) < LIMIT m/s"]
+"""
+
+
+@pytest.mark.parametrize(
+    ("expected", "limit", "codes"), [("PROVED", 4, (0, 0)), ("REFUTED", 4, (10, 0)), ("PROVED", 1, (0, 10))]
+)
+def test_the_script_checks_cases_and_requirements(
+    home: Path, tmp_path: Path, expected: str, limit: int, codes: tuple[int, int]
+) -> None:
+    """The script runs the commands of this environment, without its lines about packages and evidence."""
+    (home / "case.toml").write_text(CASE.replace("EXPECTED", expected), "utf-8")
+    (home / "asked.toml").write_text(TRACED.replace("LIMIT", str(limit)), "utf-8")
+    found = rp.bundle(*CHECKED, specs=["own.spec"], out="safety.tar.gz", jobs=1)
+    assert (found.exit_code == 0) is (codes == (0, 0))
+    folder = unpacked(home / "safety.tar.gz", tmp_path)
+    lines = (folder / "check.sh").read_text("utf-8").splitlines()
+    for path, command in (("asked.toml", "trace"), ("case.toml", "assurance")):
+        assert f"argue {command} {path}" in lines
+    rest = [x for x in lines if "-m pip" not in x and "-m venv" not in x]
+    before, after = rest.index("for solver in z3 cvc5; do"), rest.index(AFTER)
+    script = "\n".join([*rest[:before], *rest[after:]])
+    script = script.replace("$place/environment/bin", str(Path(sys.executable).parent))
+    done = subprocess.run(["sh", "-c", script], cwd=folder, capture_output=True, text=True, check=False)
+    assert (done.returncode == 0) is (codes == (0, 0)), done.stdout + done.stderr
+    for command, code in zip(("assurance case.toml", "trace asked.toml"), codes, strict=True):
+        assert (f"FAILED: the exit code of {command} is" in done.stdout) is (code != 0), done.stdout
+
+
 def test_it_checks_itself_in_an_empty_environment(
     made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -11,16 +11,19 @@ import tarfile
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING, Literal, TypeAlias, Unpack
 
+from roadproof.analysis.assurance.case import Kind
 from roadproof.analysis.study.pool import Progress
 from roadproof.errors import InputError, MissingSolverError, UsageError
 from roadproof.evidence.answers.bundle import Manifest, Package
 from roadproof.evidence.answers.catalogue_index import SCHEMA as CATALOGUE
 from roadproof.evidence.codec import write
 from roadproof.evidence.strict import JsonObject
+from roadproof.frontends.api.assuring import assurance
 from roadproof.frontends.api.checking import CheckReport
 from roadproof.frontends.api.reporting import page
+from roadproof.frontends.api.tracing import requirements
 from roadproof.frontends.report.page.results import read_results
 from roadproof.frontends.settings.keywords import BundleKeywords
 from roadproof.frontends.settings.option import takes
@@ -30,28 +33,29 @@ from roadproof.runtime.files import refuse_name, utf8, whole_file
 from roadproof.runtime.records import dataclass
 from roadproof.runtime.version import VERSION
 from roadproof.verdict import ExitCode
+from roadproof.world.models import read_toml
 
 if TYPE_CHECKING:
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
 SCRIPT = Path(__file__).parents[1] / "report" / "bundle" / "check.sh"
 PAGE, SUMS, MANIFEST, REQUIREMENTS = "index.html", "SHA256SUMS", "manifest.json", "requirements.txt"
+_Command: TypeAlias = Literal["assurance", "trace"]
 _TIME = 0  # when every file in a bundle was changed, so that the same content is the same bundle
 
 
 @dataclass(frozen=True)
 class Bundle:
-    """A bundle that was written to ``path``; ``checked``: what was found of its evidence."""
+    """A bundle that was written to ``path``; ``checked``: what was found of its evidence.
+
+    ``exit_code``: the gravest of ``roadproof check`` and of the cases and requirements inside.
+    """
 
     path: Path
     manifest: Manifest
     checked: CheckReport
-    signature: Path | None = None
-
-    @property
-    def exit_code(self) -> ExitCode:
-        """That of ``roadproof check``."""
-        return self.checked.exit_code
+    signature: Path | None
+    exit_code: ExitCode
 
     def as_data(self) -> JsonObject:
         """The manifest as plain data."""
@@ -90,7 +94,10 @@ def bundle(*results: str | Path, out: str | Path, **options: Unpack[BundleKeywor
     pinned = _packages(files, asked.wheel, asked.wheels)
     files[REQUIREMENTS] = "".join(f"{x.line}\n" for x in pinned).encode()
     checkable = [x.as_posix() for x in read_results(evidence).checkable]
-    script = _script(checkable, [x.as_posix() for x in specs], checked.exit_code, asked.wheels)
+    commands = {name: found for name in sorted(files) if (found := _command_of(Path(name))) is not None}
+    held = [_exit_code(command, Path(name), specs, asked) for name, command in commands.items()]
+    arguments = [shlex.join(["argue", command, name]) for name, command in commands.items()]
+    script = _script(checkable, [x.as_posix() for x in specs], checked.exit_code, asked.wheels, arguments)
     files |= {"check.sh": script}
     manifest = _manifest(checkable, specs, checked, pinned, files)
     files[MANIFEST] = (json.dumps(write(manifest), indent=1) + "\n").encode()
@@ -98,7 +105,8 @@ def bundle(*results: str | Path, out: str | Path, **options: Unpack[BundleKeywor
     packed = _packed(_stem(target), files)
     with whole_file(target) as file:
         file.write(packed)
-    return Bundle(target, manifest, checked, None if key is None else _sign(key, target, packed))
+    signature = None if key is None else _sign(key, target, packed)
+    return Bundle(target, manifest, checked, signature, max([checked.exit_code, *held]))
 
 
 def _inside(path: Path) -> Path:
@@ -153,7 +161,33 @@ def _packages(files: dict[str, bytes], wheel: str | Path | None, with_wheels: bo
         return [packages.pin_of_wheel(own), *pinned]
 
 
-def _script(evidence: Sequence[str], specs: Sequence[str], code: ExitCode, with_wheels: bool) -> bytes:
+def _command_of(path: Path) -> _Command | None:
+    """The command that checks a file: an assurance case has a table of an element, requirements a [trace]."""
+    if path.suffix != ".toml":
+        return None
+    try:
+        content = read_toml(path)
+    except InputError:
+        return None  # such as a file for another program
+    if "trace" in content:
+        return "trace"
+    tables = [x for x in content.values() if isinstance(x, dict)]
+    return "assurance" if any(str(Kind.GOAL) in x or str(Kind.SOLUTION) in x for x in tables) else None
+
+
+def _exit_code(command: _Command, path: Path, specs: Sequence[Path], asked: Options) -> ExitCode:
+    """The exit code of the command that checks a case or requirements. Raises ``InputError``."""
+    run = assurance if command == "assurance" else requirements
+    return run(path, specs=specs, jobs=asked.jobs).exit_code
+
+
+def _script(
+    evidence: Sequence[str],
+    specs: Sequence[str],
+    code: ExitCode,
+    with_wheels: bool,
+    arguments: Sequence[str],
+) -> bytes:
     index = "--no-index " if with_wheels else ""
     values = {
         "python": _python(),
@@ -162,6 +196,7 @@ def _script(evidence: Sequence[str], specs: Sequence[str], code: ExitCode, with_
         "evidence": shlex.join(evidence),
         "specs": shlex.join(word for x in specs for word in ("--spec", x)),
         "code": str(int(code)),
+        "arguments": "\n".join(arguments),
     }
     text = SCRIPT.read_text("utf-8")
     for name, value in values.items():

@@ -24,7 +24,8 @@ all packages, and check.sh, which checks all digests, and the evidence with z3, 
 installed, Coq, in a fresh environment. The same content gives the same bundle, byte by byte.
 A key is made by openssl genpkey -algorithm ed25519 -out key.pem; a signature is verified by
 openssl pkeyutl -verify -pubin -inkey public.pem -rawin -in safety.tar.gz -sigfile safety.tar.gz.sig
-Exit code: that of roadproof check.
+It runs roadproof assurance and trace on cases and requirements inside, and fails when these fail.
+Exit code: the gravest of roadproof check, assurance and trace.
 """
 OPTIONS = Bundle
 

@@ -1,10 +1,12 @@
 #!/bin/sh
 # Checks this bundle again: the digests of its files, then its evidence with z3, cvc5 and, where coqc is
-# installed, the kernel of Coq, in a fresh environment whose packages are pinned by their digests.
+# installed, the kernel of Coq, in a fresh environment whose packages are pinned by their digests. Assurance
+# cases and requirements inside are checked against the evidence.
 #
 #   sh check.sh [PYTHON]        PYTHON: @python@ on @platform@ (default: python@python@)
 #
-# Exit code 0 where every check comes out as it did when the bundle was made.
+# Exit code 0 where the evidence comes out as it did when the bundle was made, and all cases and requirements
+# inside hold.
 set -u
 cd "$(dirname "$0")" || exit 2
 python=${1:-python@python@}
@@ -41,5 +43,17 @@ if command -v coqc > /dev/null; then
 else
 	echo "coq: coqc is not installed, so its kernel is not asked"
 fi
+# Check an assurance case or requirements: ``argue COMMAND FILE``.
+argue() {
+	roadproof "$1" "$2" @specs@ > "$place/told" 2>&1
+	code=$?
+	tail -n 1 "$place/told"
+	[ $code -eq 0 ] && return
+	head -n 20 "$place/told"
+	echo "FAILED: the exit code of $1 $2 is $code"
+	fail=10
+}
+
+@arguments@
 [ $fail -eq 0 ] && echo "OK: everything comes out as when the bundle was made"
 exit $fail
