@@ -157,6 +157,9 @@ def test_files_are_only_written(tmp_path, capsys):
     written = (tmp_path / "v" / "P1_scenario_04_base.v").read_text("ascii")
     assert "Definition claim : formula := scenario_4 SV POV L -> dangerArises SV POV." in written
     assert (tmp_path / "v" / "Roadproof" / "Tableau.v").exists()
+    assert capsys.readouterr().out.startswith(
+        f"wrote 1 file for coq to {tmp_path / 'v'}, and checked no evidence\n"
+    )
     assert main(["check", str(ONE), "--write", str(tmp_path / "v"), "--jobs", "1"]) == 2
 
 

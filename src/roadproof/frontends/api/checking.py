@@ -191,14 +191,22 @@ def _judged_again(told: FolderStatements, asked: Check) -> "Comparison | None":
     return compare(told, asked.jobs, asked.progress)
 
 
+@dataclass(frozen=True)
+class Sources:
+    """Files that were written for a kernel: ``count`` of questions, and why others have no file, by path."""
+
+    count: int
+    reasons: Mapping[Path, str]
+
+
 def write_sources(
     *paths: str | Path,
     folder: str | Path,
     specs: Iterable[str | Path] = (),
     jobs: Jobs = None,
     kernel: Kernel = "coq",
-) -> dict[Path, str]:
-    """Write what would be put to a kernel for each certificate; why there is no file for those without one.
+) -> Sources:
+    """Write what would be put to a kernel for each certificate; nothing is checked.
 
     Raises ``InputError`` for a path that holds nothing, and where it cannot be written.
     """
@@ -209,10 +217,11 @@ def write_sources(
     surveyed = survey([Path(x) for x in paths], named, find_label)
     given = list(surveyed.files.items())
     traces = _traces(surveyed, named)
-    reasons = write_all([*_asked(given), *(x for _, x in traces)], Path(folder), jobs, kernel)
+    questions = [*_asked(given), *(x for _, x in traces)]
+    reasons = write_all(questions, Path(folder), jobs, kernel)
     by_name = {name: path for path, name in names_of(path for path, _ in given).items()}
     by_name |= {x.name: Path(where) for where, x in traces}
-    return {by_name[name]: reason for name, reason in reasons.items()}
+    return Sources(len(questions) - len(reasons), {by_name[x]: reason for x, reason in reasons.items()})
 
 
 def _traces(surveyed: Survey, specs: tuple[Path, ...]) -> list[tuple[str, "KernelQuestion"]]:

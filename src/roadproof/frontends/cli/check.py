@@ -80,10 +80,12 @@ def _write(args: argparse.Namespace) -> int:
 
     if args.kernel is None or args.json:
         raise UsageError("--write DIR only writes files for a kernel: add --kernel, and omit --json")
-    reasons = write_sources(
+    written = write_sources(
         *args.paths, folder=args.write, specs=args.specs or (), jobs=args.jobs, kernel=args.kernel
     )
-    for path, reason in reasons.items():
+    for path, reason in written.reasons.items():
         print(f"no file for {path}: {reason}")
-    print(f"written to {args.write}; there: {_THERE[args.kernel]}")
-    return ExitCode.UNKNOWN if reasons else ExitCode.AS_EXPECTED
+    count = f"{written.count} file{'s' * (written.count != 1)}"
+    print(f"wrote {count} for {args.kernel} to {args.write}, and checked no evidence")
+    print(f"to check them there: {_THERE[args.kernel]}")
+    return ExitCode.UNKNOWN if written.reasons else ExitCode.AS_EXPECTED
