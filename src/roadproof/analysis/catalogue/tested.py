@@ -195,12 +195,16 @@ def _of_concrete(
                 yield Remark((x.entry.id,), f"claims {claim}, {_no_target(claim, asked)}")
             elif claim not in x.names:
                 told = f"claims {claim}, and shows {', '.join(shown) or 'no scenario'}"
-                yield Remark((x.entry.id,), told + _with_other_values(x))
+                yield Remark((x.entry.id,), told + _with_other_values(x) + _nearest(x))
         if not any(gaps or not name.startswith(PREFIX) for name in shown) and not (
             x.claims or x.entry.copy_of
         ):
-            why = "" if x.why is None else f"; {x.why}"
-            yield Remark((x.entry.id,), f"shows no scenario{_of_danger(x)}{why}")
+            yield Remark((x.entry.id,), f"shows no scenario{_of_danger(x)}{_nearest(x)}")
+
+
+def _nearest(answer: ConcreteAnswer) -> str:
+    """The scenario most parts of which hold on a test that shows none."""
+    return "" if answer.why is None else f"; {answer.why}"
 
 
 def _of_danger(answer: ConcreteAnswer) -> str:
@@ -254,7 +258,10 @@ def _of_abstract(asked: Questions, abstract: Sequence[Abstract], facts: Sequence
             if fact is None and alone is not None and claim in alone.also:
                 continue
             if fact is None:
-                yield Remark((entry.id,), f"claims {claim}, which no drive of it shows that was found")
+                why = (
+                    _why_of_formula(alone, asked) if alone is not None and not _says_something(known) else ""
+                )
+                yield Remark((entry.id,), f"claims {claim}, which no drive of it shows that was found{why}")
             elif fact.relation == "excludes":
                 yield Remark((entry.id,), f"claims {claim}, which it excludes: that is proved")
 
