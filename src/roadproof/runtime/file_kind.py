@@ -34,9 +34,14 @@ def other_encoding(content: bytes) -> str | None:
     return None
 
 
+def other_text(content: bytes) -> str | None:
+    """As ``other_format``, for content that could not be read as text in UTF-8 or as XML."""
+    return other_format(content) or other_encoding(content)
+
+
 def other_table(content: bytes, names: int) -> str | None:
     """As ``other_format``, for a file that should be CSV in ASCII with ``names`` columns."""
-    told = other_format(content) or other_encoding(content)
+    told = other_text(content)
     if told is not None:
         return told
     line = content[:10_000].partition(b"\n")[0]

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from roadproof.errors import InputError
+from roadproof.runtime.file_kind import other_text
 
 
 @contextmanager
@@ -198,4 +199,7 @@ def read_text(path: Path, most: int, advice: str, remedy: str = "") -> str:
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError as error:
+        other = other_text(data)
+        if other is not None:
+            raise InputError(f"{path}: the file {other}") from None
         raise InputError(f"{path}: byte {error.start} is not UTF-8 text{remedy}") from None

@@ -6,7 +6,7 @@ from pathlib import Path
 from xml.parsers import expat
 
 from roadproof.errors import InputError
-from roadproof.runtime.file_kind import other_format
+from roadproof.runtime.file_kind import other_format, other_text
 from roadproof.runtime.xml_element import Element, Unread, parse, summary_of, unread
 
 __all__ = ["Element", "Unread", "by_id", "number_in", "read_xml", "summary_of", "unread"]
@@ -31,6 +31,9 @@ def read_xml(path: Path, root_tag: str) -> Element:
         _refuse_tricks(path, content)
         root = parse(content)
     except (ElementTree.ParseError, expat.ExpatError, ValueError, LookupError) as error:
+        other = other_text(content)
+        if other is not None:
+            raise InputError(f"{path}: the file {other}") from None
         raise InputError(
             f"{path}: no well-formed XML ({error}); get the file again from its source"
         ) from None
