@@ -173,7 +173,13 @@ def hostile_monitor() -> dict:
         "seconds": 3,
         "dt": "1",
     }
-    said |= {"under_the_other_end": None, "robustness": [None, 1], "trace": CLOSED, "start": HOSTILE}
+    said |= {
+        "under_the_other_end": None,
+        "decides": True,
+        "robustness": [None, 1],
+        "trace": CLOSED,
+        "start": HOSTILE,
+    }
     said |= {"set": HOSTILE, "road": HOSTILE, "lanes": {HOSTILE: CLOSED}}
     part = {"formula": HOSTILE, "true": [[0, None]], "undecided": [[1, 2]]}
     overruled = {"what": f"option {HOSTILE}", "asked": HOSTILE, "said": CLOSED}
