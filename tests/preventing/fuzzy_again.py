@@ -6,6 +6,7 @@ It shares nothing with roadproof.drivers.fuzzy, which is in whole numbers of oth
 from fractions import Fraction as F
 
 STEP = F(1, 10)
+CHANGE = F(1, 100_000)  # s after a look in which a drive changes its speed; then it keeps it
 TAU, COMFORT, GREATEST, OTHER, MARGIN, JERK = F(3, 4), F(4), F(6), F(7), F(2), F("12.65")
 
 
@@ -84,6 +85,6 @@ def first_difference(drive, first: int = 0, looks: int = 400) -> int | None:
     ]
     wanted = accelerations(states, ego.length + other.length, first)
     for k, (a, (state, _)) in enumerate(zip(wanted, seen, strict=True)):
-        if state[2] != a:
+        if state[2] * CHANGE != a * STEP or any(motion(ego, times[k] + x)[2] for x in (CHANGE, STEP / 2)):
             return k
     return None

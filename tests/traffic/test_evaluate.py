@@ -520,7 +520,7 @@ def test_two_times_are_enough(tmp_path: Path) -> None:
     assert trace.batch.signals["v_lon", "B"].ravel().tolist() == [30, 30]
     assert trace.batch.sizes["length", "A"].tolist() == [4.5]
     assert (trace.source, trace.road) == (str(path), ROAD)
-    with pytest.raises(InputError, match="1 times; at least two samples are needed"):
+    with pytest.raises(InputError, match="fewer than two times; at least two samples are needed"):
         read_samples(written(path, f"1.5,A,{A}", f"1.5,B,{B}"), ROAD)
 
 

@@ -74,7 +74,7 @@ def test_a_vehicle_that_a_controller_moves_is_left_out(action: str, tmp_path: Pa
     assert any(
         "does not say where it is: Ego, which a controller moves from 0 s on" in x for x in found.notes
     )
-    with pytest.raises(InputError, match=r"controller moves.*without --strict"):
+    with pytest.raises(InputError, match=r"controller moves.*unless read strictly"):
         read_scenario(path, strict=True)
     with pytest.raises(InputError, match="controller moves"):
         read_storyboard_drive(path)
@@ -304,7 +304,7 @@ def test_parts_that_nothing_reads_are_named(tmp_path: Path) -> None:
     answer = rp.monitor("v_lon(SV) > 1 m/s", path)
     assert answer.left_out == (note,)
     assert answer.as_data()["left_out"] == [note]
-    with pytest.raises(InputError, match=r"Entities@strange.*without --strict the rest is read"):
+    with pytest.raises(InputError, match=r"Entities@strange.*unless read strictly, the rest is read"):
         rp.monitor("v_lon(SV) > 1 m/s", path, strict=True)
 
 

@@ -22,7 +22,7 @@ from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import signals_of, with_values
 from roadproof.recordings.evaluate.traces import KIND, by_vehicle, gather_one, refuse_missing
 from roadproof.recordings.formats import openscenario, samples
-from roadproof.recordings.formats.recording import Bools, Recording, kind_called, own_numbers
+from roadproof.recordings.formats.recording import BACKWARDS, Bools, Recording, kind_called, own_numbers
 from roadproof.recordings.formats.reliable import LEFT_OUT
 from roadproof.recordings.formats.source import beside
 from roadproof.recordings.formats.sources import find_source
@@ -135,10 +135,6 @@ def _overlaps(trace: OneTrace) -> Iterator[str]:
         frames = int(np.count_nonzero(depth > 0))
         if frames:
             yield f"vehicles {one} and {other} overlap in {frames} frames, by up to {depth.max():.2f} m"
-
-
-BACKWARDS = -0.5
-"""m/s: a vehicle this fast drives backwards; slower ones stand, as far as measurements say."""
 
 
 def backwards(trace: OneTrace) -> Iterator[str]:

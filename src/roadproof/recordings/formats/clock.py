@@ -46,7 +46,11 @@ class Clock:
     @property
     def notes(self) -> tuple[str, ...]:
         """The time of frame 0, where it is not 0, and a rate that is not whole."""
-        begin = (f"frame 0 is time {Decimal(repr(round(self.begin, _DECIMALS)))} s",) if self.begin else ()
+        begin = (
+            (f"frame 0 is time {Decimal(repr(round(self.begin, _DECIMALS))).normalize():f} s",)
+            if self.begin
+            else ()
+        )
         odd = isinstance(self.rate, Fraction)
         return (*begin, f"the rate is {self.rate} samples a second") if odd else begin
 

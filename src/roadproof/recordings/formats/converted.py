@@ -25,10 +25,12 @@ from roadproof.recordings.formats.believable import PlausibilityChecks
 from roadproof.recordings.formats.clock import Rate
 from roadproof.recordings.formats.content import require_unchanged, stamp_of
 from roadproof.recordings.formats.recording import (
+    BACKWARDS,
     Integers,
     Lane,
     Recording,
     Slack,
+    backwards,
     offsets,
     with_notes,
     zones_in,
@@ -158,6 +160,8 @@ def divide_converted(path: Path, checked: bool = False) -> WindowedRecording | N
         if counts.sum() != _rows(said) or counts.shape != first_frame.shape or counts.min() < 1:
             raise ValueError("vehicles and samples do not fit")
         more = () if checked else _checked_in_parts(head, said, offsets(counts))
+        ids = np.array(said["vehicles"]["vehicle_id"])[_backwards_in(table, offsets(counts))]
+        more = (*more, *(x for x in backwards(ids) if x not in said["notes"]))
         zones = polars_module().scan_parquet(table).select("zones").unique().collect()["zones"].to_list()
 
     def read() -> Iterator[Window]:
@@ -170,6 +174,14 @@ def divide_converted(path: Path, checked: bool = False) -> WindowedRecording | N
             yield Window(with_notes(recording, more), new[vehicles])
 
     return WindowedRecording(_rate(said), zones_in(zones), read)
+
+
+def _backwards_in(table: Path, start: Integers) -> Integers:
+    """Which vehicles drive backwards; of all rows only those are read in which one does."""
+    pl = polars_module()
+    rows = pl.scan_parquet(table, row_index_name="row").filter(pl.col("v_lon") < BACKWARDS).select("row")
+    found: Integers = np.unique(np.searchsorted(start, rows.collect()["row"].to_numpy(), "right") - 1)
+    return found
 
 
 def _checked_in_parts(head: Path, said: Head, start: Integers) -> tuple[str, ...]:

@@ -270,6 +270,21 @@ def with_notes(recording: Recording, notes: Iterable[str]) -> Recording:
     return replace(recording, notes=(*recording.notes, *notes))
 
 
+BACKWARDS = -0.5
+"""m/s: a slower vehicle drives backwards; others stand, as far as measurements say."""
+
+
+def backwards(ids: Integers) -> tuple[str, ...]:
+    """A note on these vehicles of a recording, which drive backwards: RSS has no safe distance for them."""
+    if not len(ids):
+        return ()
+    shown = ", ".join(map(str, ids[:6].tolist())) + (", …" if len(ids) > 6 else "")
+    return (
+        f"{len(ids)} vehicles ({shown}) drive backwards: the safe distance of RSS holds for speeds of 0 "
+        "or more, so rssViolation and danger decide nothing there",
+    )
+
+
 def offsets(counts: npt.NDArray[Any]) -> Integers:
     """0 and the running sums of ``counts``.
 

@@ -2,7 +2,7 @@
 
 import hashlib
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -11,7 +11,7 @@ from typing import TypeAlias
 import numpy as np
 
 from roadproof.recordings.formats.clock import Rate
-from roadproof.recordings.formats.recording import Recording, with_notes
+from roadproof.recordings.formats.recording import BACKWARDS, Recording, backwards, with_notes
 from roadproof.recordings.formats.windows import WindowedRecording, undivided
 
 Files: TypeAlias = tuple[Path, ...]
@@ -55,7 +55,8 @@ class RecordingSource:
     def read(self) -> Recording:
         """Read and check it. Raises ``InputError``."""
         recording = self.format.read(self.files[-1], self.strict)
-        return with_notes(recording, _backwards(recording))
+        told = backwards(recording.vehicle_id[np.unique(recording.row_vehicle[recording.v_lon < BACKWARDS])])
+        return with_notes(recording, [x for x in told if x not in recording.notes])
 
     def divided(self) -> WindowedRecording:
         """The recording in windows, one where it is small enough. Raises ``InputError``, reading them too."""
@@ -75,18 +76,6 @@ class RecordingSource:
     def place_of_rate(self, rate: Rate) -> str:
         """Where the files say how many samples a second there are."""
         return self.format.rate_at.format(*reversed(self.files), rate=rate, step=float(1 / Fraction(rate)))
-
-
-def _backwards(recording: Recording) -> Iterator[str]:
-    """A note on vehicles that drive backwards, for which RSS has no safe distance."""
-    slow = recording.v_lon < -0.5
-    if slow.any():
-        ids = np.unique(recording.vehicle_id[recording.row_vehicle[slow]])
-        shown = ", ".join(map(str, ids[:6].tolist())) + (", …" if len(ids) > 6 else "")
-        yield (
-            f"{len(ids)} vehicles ({shown}) drive backwards: the safe distance of RSS holds for speeds of 0 "
-            "or more, so rssViolation and danger decide nothing there"
-        )
 
 
 def with_suffix(path: Path, suffix: str) -> list[Path]:
