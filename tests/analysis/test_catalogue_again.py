@@ -237,6 +237,13 @@ def with_a_jump(row: Row, subject: Row) -> Row:
     return {**row, "s": str(float(row["s"]) + 75 * (float(row["time"]) > 1))}
 
 
+def within(row: Row, subject: Row) -> Row:
+    """Whoever is not SV drives 2 m ahead of it, so that their boxes overlap."""
+    if row["vehicle"] == "SV":
+        return row
+    return {**subject, "vehicle": row["vehicle"], "s": str(float(subject["s"]) + 2)}
+
+
 def through(row: Row, subject: Row) -> Row:
     """Whoever is not SV falls back through it."""
     if row["vehicle"] == "SV":
@@ -275,7 +282,7 @@ def test_samples_that_contradict_themselves_are_refused_as_in_an_evaluation(
 
 
 def test_vehicles_in_one_place_are_noted(tmp_path: Path) -> None:
-    path = changed(tmp_path, through)
+    path = changed(tmp_path, within)
     found = rp.catalogue(path, among="4", classes=False, jobs=1)
     [note] = found.notes
     assert note.startswith("braking: vehicles SV and POV overlap in ")
@@ -284,6 +291,13 @@ def test_vehicles_in_one_place_are_noted(tmp_path: Path) -> None:
     told = note.partition(" overlap in ")[2]
     for trace in (read_samples(path), read_pair(f"{path}:1,2")):
         assert [x.partition(" overlap in ")[2] for x in trace.notes if " overlap in " in x] == [told]
+
+
+def test_samples_in_which_a_vehicle_drives_through_another_show_nothing(tmp_path: Path) -> None:
+    found = rp.catalogue(changed(tmp_path, through), among="4", classes=False, jobs=1)
+    [fault] = found.tested.faults
+    assert "the samples are no motion: vehicle SV drives through POV 1.4 s after" in fault.told
+    assert found.exit_code == 10
 
 
 def test_samples_without_contradictions_have_no_notes(tmp_path: Path) -> None:

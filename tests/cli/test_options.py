@@ -316,6 +316,8 @@ READERS = {
     "roadproof.analysis.catalogue.examination": {"--no-classes"},
     "roadproof.analysis.classify.classes": {"--among"},
     "roadproof.frontends.api.covering": {"--wider"},
+    # Names a run of preventable.
+    "roadproof.analysis.assurance.template": {"--model"},
 }
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]*")
 

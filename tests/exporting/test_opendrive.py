@@ -2,6 +2,7 @@
 
 import math
 import re
+import tomllib
 import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 from fractions import Fraction as F
@@ -197,8 +198,7 @@ def test_the_road_goes_as_far_as_the_drive_and_a_margin() -> None:
 
 
 def commonroad_root(made: Subject) -> Element:
-    (content,) = commonroad.files(made).values()
-    return ElementTree.fromstring(content)
+    return ElementTree.fromstring(commonroad.files(made)[f"{made.name}.xml"])
 
 
 def read(made: Subject, folder: Path) -> Recording:
@@ -286,16 +286,18 @@ def test_planted_fault_another_reference_point_is_noticed(tag: str, planted: flo
     assert faults(made, read_commonroad(path))
 
 
-def test_neighbours_are_those_of_one_zone() -> None:
-    """After the departure zone the ramp lies beside the road, but is no part of it."""
+def test_neighbours_are_those_beside_also_after_a_zone() -> None:
+    """After the departure zone the ramp lies beside the road, which the file with zones calls main."""
     lanelets = commonroad_root(subject("depart")).findall("lanelet")
     near = {
         x.get("id"): tuple(y.get("ref") for y in x if y.tag in ("adjacentLeft", "adjacentRight"))
         for x in lanelets
     }
     assert near["1004"] == ("1003", "1005")
-    assert near["1007"] == ("1006",)
-    assert near["1008"] == ()
+    assert near["1007"] == ("1006", "1008")
+    assert near["1008"] == ("1007",)
+    zones = tomllib.loads(commonroad.files(subject("depart"))["made_zones.toml"].decode())
+    assert zones == {"lanelet": [{"id": 1006, "zone": "main"}, {"id": 1007, "zone": "main"}]}
 
 
 def test_what_lies_apart_is_no_neighbour(tmp_path: Path) -> None:

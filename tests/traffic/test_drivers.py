@@ -179,7 +179,7 @@ def test_check_names_a_label_that_is_wrong(questions: Questions) -> None:
         (foretelling, "_begun", "begins.any(axis=0)", "~begins.any(axis=0)"),
         (foretelling, "label_of", "x == driver", "x != driver"),
         (foretelling, "label_of", "scene is None", "scene is not None"),
-        (foretelling, "scene_in", "frames, SIGNALS", "(frames[0], frames[0] + 51), SIGNALS"),
+        (foretelling, "scene_in", "frames, TRACKED", "(frames[0], frames[0] + 51), TRACKED"),
     ],
 )
 def test_planted_faults_are_seen(

@@ -288,7 +288,7 @@ def _judged(
     """
     me, last = vehicles[0], vehicles[-1]
     touching = read_claim(home, f"touches({me}, {last})").formula
-    passing = read_claim(home, f"rear({me}) > front({last})").formula
+    passing = read_claim(home, f"s({me}) - length({me}) > s({last})").formula
     judgement = judge(f.conjunction(touching, passing), drive)
     touch, past = (first_cut(judgement.truth(x), since) for x in (touching, passing))
     if touch is not None and (past is None or touch <= past):

@@ -4,7 +4,7 @@ Between samples places are straight lines; so it is decided whether the boxes to
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import TypeAlias
@@ -24,6 +24,7 @@ from roadproof.drivers.response import Phase, response
 from roadproof.reasons import Why
 from roadproof.runtime.records import dataclass
 from roadproof.world.road import Road
+from roadproof.world.signals import RECORDED, STARTING, SignalName
 
 Floats: TypeAlias = npt.NDArray[np.float64]
 Bools: TypeAlias = npt.NDArray[np.bool_]
@@ -48,6 +49,10 @@ class Track:
     def box(self, k: int) -> Box:
         """Return the box at a sample, rounded to a micrometre."""
         return Box(*(_exact(x) for x in (self.s[k], self.d[k], self.length, self.width)))
+
+
+TRACKED: tuple[SignalName, ...] = tuple(x for x in RECORDED if x in {y.name for y in fields(Track)})
+"""The signals of which a driver model is told."""
 
 
 @dataclass(frozen=True)
@@ -235,9 +240,8 @@ def _looked(scene: SampledScene, manoeuvre: ManoeuvreName) -> tuple[Fraction | N
     tracks = [scene.tracks[x] for x in (scene.vehicles[0], scene.vehicles[-1])]
     times = [scene.start + Fraction(k, HERTZ) for k in range(LONGEST * HERTZ)]
     samples = np.arange(len(tracks[0].s)) * float(scene.step)
-    names = ("s", "d", "v_lon", "v_lat")
     places = np.array([float(x) for x in times])
-    columns = [[np.interp(places, samples, getattr(x, name)) for name in names] for x in tracks]
+    columns = [[np.interp(places, samples, getattr(x, name)) for name in STARTING] for x in tracks]
     end = (len(samples) - int(LONGEST / scene.step)) * scene.step
     return controlled(
         (_sight(time, k, tracks, columns, time >= end) for k, time in enumerate(times)),

@@ -2,13 +2,10 @@
 
 from fractions import Fraction
 
-from roadproof.drivers.sampled_replay import SampledScene, Track
+from roadproof.drivers.sampled_replay import TRACKED, SampledScene, Track
 from roadproof.semantics.sampled.batch import Batch
 from roadproof.world.road import Road
-from roadproof.world.signals import SignalName
-
-SIGNALS: tuple[SignalName, ...] = ("s", "d", "v_lon", "v_lat", "a_lon")
-"""The signals of which a driver model is told."""
+from roadproof.world.signals import SIZES
 
 
 def scene_of(batch: Batch, road: Road, vehicles: tuple[str, ...], since: Fraction) -> SampledScene:
@@ -18,6 +15,6 @@ def scene_of(batch: Batch, road: Road, vehicles: tuple[str, ...], since: Fractio
 
 
 def _track(batch: Batch, name: str) -> Track:
-    length = int(batch.lengths[0])
-    s, d, v_lon, v_lat, a_lon = (batch.signals[x, name][:length, 0] for x in SIGNALS)
-    return Track(s, d, v_lon, v_lat, a_lon, *(float(batch.sizes[x, name][0]) for x in ("length", "width")))
+    count = int(batch.lengths[0])
+    s, d, v_lon, v_lat, a_lon = (batch.signals[x, name][:count, 0] for x in TRACKED)
+    return Track(s, d, v_lon, v_lat, a_lon, *(float(batch.sizes[x, name][0]) for x in SIZES))

@@ -12,9 +12,9 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 
 from roadproof.drivers.outcome import Result
-from roadproof.drivers.sampled_replay import SampledScene, replay_samples
+from roadproof.drivers.sampled_replay import TRACKED, SampledScene, replay_samples
 from roadproof.recordings.evaluate.courses import BEGINS, Course
-from roadproof.recordings.evaluate.driven import SIGNALS, scene_of
+from roadproof.recordings.evaluate.driven import scene_of
 from roadproof.recordings.evaluate.matching import Match
 from roadproof.recordings.evaluate.one_trace import road_of
 from roadproof.recordings.evaluate.questions import Questions
@@ -97,7 +97,7 @@ def scene_in(
     way = int(recording.direction[vehicles[course.vehicles[0]]])
     if way not in roads:
         roads[way] = road_of(recording, way)
-    batch = gather_one(recording, vehicles, frames, SIGNALS)
+    batch = gather_one(recording, vehicles, frames, TRACKED)
     return scene_of(batch, roads[way], course.vehicles, Fraction(0))
 
 

@@ -302,8 +302,9 @@ def _of_table(source: str, columns: Table, own: Sequence[str], road: Road) -> On
     names = list(dict.fromkeys(columns["vehicle"].tolist()))
     if len(np.unique(columns["time"])) < 2:
         raise InputError(f"{source}: fewer than two times; at least two samples are needed")
-    table, ids, clock, _ = samples.in_order(columns)
-    frames = samples.frames_of(table, ids, clock)
+    ordered = samples.in_order(columns)
+    table, clock = ordered.table, ordered.clock
+    frames = samples.frames_of(table, ordered.ids, clock)
     count = int(frames.max()) + 1
     rows = {name: np.flatnonzero(table["vehicle"] == name) for name in names}
     for name, at in rows.items():

@@ -13,15 +13,16 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 from pathlib import Path
 
 from roadproof.recordings.export.points import centre, centre_in_plane
-from roadproof.recordings.export.subject import WRITTEN, Layout, Section, Subject, kind_of, together
+from roadproof.recordings.export.subject import WRITTEN, Layout, Section, Subject, crossed, kind_of, together
 from roadproof.recordings.export.user_map import checked_map
 from roadproof.recordings.export.xml import Element, decimal, document, element
 from roadproof.runtime.xml_reader import read_xml
 from roadproof.world.drive import Motion
-from roadproof.world.maps.network import ZONES_ENDING
+from roadproof.world.maps.network import ZONES_ENDING, zones_beside
 from roadproof.world.motion import State
 from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.road import Attribute, Lanelet
@@ -52,7 +53,7 @@ class _Cell:
 
 
 def files(subject: Subject) -> dict[str, bytes]:
-    """NAME.xml, and NAME_zones.toml where the map has one.
+    """NAME.xml, and NAME_zones.toml where the map has one or a zone does not follow from ramps.
 
     Raises ``InputError`` for roads that have no lanes side by side, and maps that are others by now.
     """
@@ -78,6 +79,8 @@ def files(subject: Subject) -> dict[str, bytes]:
     zones = None if path is None else path.with_name(f"{path.stem}{ZONES_ENDING}")
     if zones is not None and zones.is_file():
         made[f"{subject.name}{ZONES_ENDING}"] = zones.read_bytes()
+    elif path is None and (entries := [*_zones(subject.layout)]):
+        made[f"{subject.name}{ZONES_ENDING}"] = "\n".join(entries).encode()
     return made
 
 
@@ -103,11 +106,30 @@ def _numbered(subject: Subject, known: list[Element]) -> dict[str, int]:
     return {name: first + number for name, number in subject.ids.items()}
 
 
-def _lanelets(layout: Layout) -> Iterator[Element]:
+def _rows(layout: Layout) -> list[list[_Cell]]:
+    """The lanelets of each section, from left to right."""
     rows: list[list[_Cell]] = []
     for section in layout.sections:
         first = FIRST_LANELET + sum(map(len, rows))
         rows.append([_Cell(first + k, x, section) for k, x in enumerate(section.lanelets)])
+    return rows
+
+
+def _zones(layout: Layout) -> Iterator[str]:
+    """An entry for each lanelet that is in another zone than the ramps side by side with it say."""
+    for row in _rows(layout):
+        beside = {
+            str(x.id): str(y.id) for x, y in pairwise(row) if together(x.lanelet, y.lanelet, layout.road)
+        }
+        attributes = {str(x.id): x.lanelet.attribute for x in row}
+        inferred = zones_beside(attributes, beside.items())
+        for x in row:
+            if inferred[str(x.id)] != x.lanelet.zone:
+                yield f'[[lanelet]]\nid = {x.id}\nzone = "{x.lanelet.zone}"\n'
+
+
+def _lanelets(layout: Layout) -> Iterator[Element]:
+    rows = _rows(layout)
     for k, row in enumerate(rows):
         before = {x.lanelet.lane: x.id for x in rows[k - 1]} if k else {}
         after = {x.lanelet.lane: x.id for x in rows[k + 1]} if k + 1 < len(rows) else {}
@@ -119,14 +141,15 @@ def _lanelets(layout: Layout) -> Iterator[Element]:
             near = {
                 side: x for side, x in sides.items() if x and together(cell.lanelet, x.lanelet, layout.road)
             }
+            dashed = {side for side, x in near.items() if crossed(cell.lanelet, x.lanelet, layout.road)}
             refs += [
                 element(f"adjacent{side.title()}", ref=str(x.id), drivingDir="same")
                 for side, x in near.items()
             ]
             yield element(
                 "lanelet",
-                _bound("leftBound", cell, cell.lanelet.d[1], "left" in near, layout.road.line),
-                _bound("rightBound", cell, cell.lanelet.d[0], "right" in near, layout.road.line),
+                _bound("leftBound", cell, cell.lanelet.d[1], "left" in dashed, layout.road.line),
+                _bound("rightBound", cell, cell.lanelet.d[0], "right" in dashed, layout.road.line),
                 *refs,
                 element("laneletType", text="highway"),
                 element("laneletType", text=_TYPES[cell.lanelet.attribute]),
@@ -134,7 +157,7 @@ def _lanelets(layout: Layout) -> Iterator[Element]:
             )
 
 
-def _bound(tag: str, cell: _Cell, across: Fraction, crossed: bool, line: ReferenceLine | None) -> Element:
+def _bound(tag: str, cell: _Cell, across: Fraction, is_dashed: bool, line: ReferenceLine | None) -> Element:
     """A side of a lanelet; on a bend its points are so near that lines are within ``_CHORD`` of it."""
     low, high = cell.section.low, cell.section.high
     if line is None:
@@ -143,7 +166,7 @@ def _bound(tag: str, cell: _Cell, across: Fraction, crossed: bool, line: Referen
         count = _points_between(low, high, line)
         places = (float(low + (high - low) * k / count) for k in range(count + 1))
         points = [_point(x, y) for x, y in (line.place(s, float(across)) for s in places)]
-    return element(tag, *points, element("lineMarking", text="dashed" if crossed else "solid"))
+    return element(tag, *points, element("lineMarking", text="dashed" if is_dashed else "solid"))
 
 
 def _points_between(low: Fraction, high: Fraction, line: ReferenceLine) -> int:

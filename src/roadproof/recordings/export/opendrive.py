@@ -14,7 +14,7 @@ from itertools import pairwise
 from math import ceil
 
 from roadproof.recordings.export import plan_view
-from roadproof.recordings.export.subject import WRITTEN, Layout, Section, Subject, together
+from roadproof.recordings.export.subject import WRITTEN, Layout, Section, Subject, crossed
 from roadproof.recordings.export.user_map import checked_map, map_path
 from roadproof.recordings.export.xml import Element, decimal, document, element
 from roadproof.world.motion import monotone_starts, state_at
@@ -167,7 +167,7 @@ def _mark(lanelet: Lanelet | None, right: Lanelet | None, layout: Layout) -> str
         return "none"
     if lanelet is None or right is None:
         return "solid"
-    return "broken" if together(lanelet, right, layout.road) else "solid"
+    return "broken" if crossed(lanelet, right, layout.road) else "solid"
 
 
 def _line(kind: str) -> Element:

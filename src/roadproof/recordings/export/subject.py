@@ -127,12 +127,14 @@ def _still(state: State, end: Fraction) -> Fraction:
 
 
 def together(one: Lanelet, other: Lanelet, road: Road) -> bool:
-    """Whether two lanelets of a section share a boundary, lie in one zone, and their lanes are adjacent.
-
-    Beyond a zone its ramp is no part of the main road any more, though it may still lie beside it.
-    """
+    """Whether two lanelets of a section share a boundary, and their lanes are adjacent."""
     touching = one.d[0] == other.d[1] or one.d[1] == other.d[0]
-    return touching and one.zone == other.zone and frozenset((one.lane, other.lane)) in road.adjacent
+    return touching and frozenset((one.lane, other.lane)) in road.adjacent
+
+
+def crossed(one: Lanelet, other: Lanelet, road: Road) -> bool:
+    """Whether vehicles may change between two lanelets: beyond the zone of a ramp they no longer do."""
+    return one.zone == other.zone and together(one, other, road)
 
 
 TRUCK_LENGTH = 7

@@ -8,7 +8,7 @@ NAME_road.toml beside NAME.csv or NAME.parquet, in the form of models/roads, say
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -226,10 +226,8 @@ def _readable_part(
     known, wanted, faults = len(np.unique(names)), np.ones(columns.rows, np.bool_), dict[str, CellError]()
     while True:
         try:
-            table, ids, clock, numbered = in_order(
-                columns if wanted.all() else columns.at(np.flatnonzero(wanted))
-            )
-            recording = vehicles_of(table, ids, clock, road, name)
+            rows = in_order(columns if wanted.all() else columns.at(np.flatnonzero(wanted)))
+            recording = vehicles_of(rows.table, rows.ids, rows.clock, road, name)
             break
         except CellError as error:
             if strict or len(faults) + 1 > MOST_LEFT_OUT * known:
@@ -237,7 +235,7 @@ def _readable_part(
             faults[str(names[error.place])] = error
             wanted &= names != names[error.place]
     left_out = (left_out_note([vehicle], known, Why.TOLD(x.told)) for vehicle, x in faults.items())
-    return table, recording, (*left_out, *numbered, *clock.notes)
+    return rows.table, recording, (*left_out, *rows.numbered, *rows.notes, *rows.clock.notes)
 
 
 def doubts_in(columns: Table, road: StraightRoad, computed: bool = False) -> tuple[str, ...]:
@@ -246,10 +244,11 @@ def doubts_in(columns: Table, road: StraightRoad, computed: bool = False) -> tup
     Raises ``InputError`` where the contradictions are too large or too many.
     ``computed``: as in ``recording_of``.
     """
-    table, ids, clock, _ = in_order(columns)
-    recording = vehicles_of(table, ids, clock, road, columns.path.stem)
+    rows = in_order(columns)
+    recording = vehicles_of(rows.table, rows.ids, rows.clock, road, columns.path.stem)
     checks = check(replace(recording, computed=computed))
-    return tuple(_check_plausible(table, checks, np.arange(table.rows)))
+    doubts = _check_plausible(rows.table, checks, np.arange(rows.table.rows))
+    return (*rows.notes, *rows.clock.notes, *doubts)
 
 
 def vehicles_of(table: Table, ids: Integers, clock: Clock, road: StraightRoad, name: str) -> Recording:
@@ -291,17 +290,31 @@ def by_vehicle(table: Table, ids: Integers) -> tuple[Table, Integers]:
     return table.at(order), ids[order]
 
 
-def in_order(columns: Table) -> tuple[Table, Integers, Clock, tuple[str, ...]]:
-    """The rows by vehicle, the number of each row's, the clock, and a note on numbers."""
+@dataclass(frozen=True)
+class Ordered:
+    """Rows by vehicle and time, the number of each row's vehicle, and the clock.
+
+    ``numbered``: a note on what vehicles are called. ``notes``: what was done to the rows.
+    """
+
+    table: Table
+    ids: Integers
+    clock: Clock
+    numbered: tuple[str, ...]
+    notes: tuple[str, ...]
+
+
+def in_order(columns: Table) -> Ordered:
+    """The rows by vehicle and time. Raises ``InputError`` where times are no clock or rows contradict."""
     names, index = np.unique(columns["vehicle"].astype(np.str_), return_inverse=True)
-    number, notes = number_vehicles(names)
+    number, numbered = number_vehicles(names)
     table, ids = by_vehicle(columns, number[index])
-    table, ids, sorted_notes = _by_time(table, ids)
+    table, ids, notes = _by_time(table, ids)
     time = table["time"]
     same = np.diff(ids, prepend=-1) == 0
     steps, counts = np.unique(np.diff(time, prepend=0.0)[same], return_counts=True)
     clock = clock_of(table.path, np.unique(time), steps, counts)
-    return table, ids, clock, (*notes, *sorted_notes)
+    return Ordered(table, ids, clock, numbered, notes)
 
 
 ORDER = "the rows of a vehicle come in order of time, each time once"

@@ -172,7 +172,12 @@ def _beside(
 
 def zones_of(lanelets: Mapping[str, MeasuredLanelet], attributes: Mapping[str, Attribute]) -> dict[str, Zone]:
     """Zones by the attributes of the lanelets across the road."""
-    across = closure(lanelets, ((x.id, other) for x in lanelets.values() for other in x.beside))
+    return zones_beside(attributes, ((x.id, other) for x in lanelets.values() for other in x.beside))
+
+
+def zones_beside(attributes: Mapping[str, Attribute], beside: Iterable[tuple[str, str]]) -> dict[str, Zone]:
+    """The zone of each lanelet, from the attributes of those that are side by side with it, one by one."""
+    across = closure(attributes, beside)
     zones: dict[str, Zone] = {}
     for name, section in across.items():
         present = {attributes[x] for x in section}
