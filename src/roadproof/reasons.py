@@ -219,6 +219,7 @@ class Why(StrEnum):
     TEXT_CHANGED = "its text changed"
     # Recordings
     OFF_ROAD = "on no lane at any time"
+    OFF_LINE = "the reference line of the road does not follow their way"
     OF_KIND = "they are {}"
     NOT_ALONG = "they are not on the road along it for a second"
     STANDING = "they are parked, or stand all the time"

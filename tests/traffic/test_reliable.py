@@ -4,6 +4,7 @@ import json
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,7 @@ from roadproof.frontends.cli.main import main
 from roadproof.frontends.settings import studies as settings
 from roadproof.library.loading import bundled_library
 from roadproof.recordings.evaluate.one_trace import read_pair
+from roadproof.recordings.formats.off_line import follows_line, leave_out_strays
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.sources import find_source
 from roadproof.recordings.formats.write_highd import write_highd
@@ -186,10 +188,48 @@ def test_the_line_is_at_fault_where_the_plane_agrees(tmp_path: Path) -> None:
     read = find_source(written(tmp_path, document((*GOOD, turned)))).read()
     assert read.vehicle_id.tolist() == [1, 2, 3, 4, 5]
     assert "left out, 1 (9) move in the plane as their velocities say" in note_in(read, "of the vehicles")
+    reason = "left out 1 of 6 vehicles (9): the reference line of the road does not follow their way"
+    assert reason in read.notes
+    alone = written(tmp_path, document((GOOD[0], turned, replace(turned, id=10))), "b")
+    with pytest.raises(InputError, match="line of the road does not follow the way of 2 of 3 vehicles"):
+        find_source(alone).read()
     told = replace(turned, motion=((9.0, 0.0),) * STEPS)
     read = find_source(written(tmp_path, document((*GOOD, told)))).read()
     assert read.vehicle_id.tolist() == [1, 2, 3, 4, 5]
     assert not any(x.startswith("of the vehicles") for x in read.notes)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_vehicle_is_bounded_by_the_mean_error_of_its_steps(tmp_path: Path, seed: int) -> None:
+    """Steps that are too long do not make up for steps that are too short; noise of places is no error."""
+    random = np.random.default_rng(seed)
+    read = find_source(written(tmp_path, document(GOOD))).read()
+    counts = np.diff(read.start)
+    centre = np.stack((read.s, read.d), axis=1) + random.uniform(-1e3, 1e3, 2)
+    off = random.choice((0.0, 0.02, 0.045, 0.055, 0.3, 2.2), read.vehicles)
+    turns = random.integers(2, size=read.vehicles)
+    s = []
+    for share, back, (begin, end) in zip(off, turns, pairwise(read.start.tolist()), strict=True):
+        steps = np.diff(read.s[begin:end])
+        sign = np.where(np.arange(len(steps)) < len(steps) / 2, 1.0, -1.0 if back else 1.0)
+        s.append(read.s[begin] + np.append(0.0, np.cumsum(steps * (1 + share * np.maximum(sign, -0.4)))))
+    half = np.where(turns == 1, 0.7, 1.0)
+    stretched = replace(read, s=np.concatenate(s))
+    assert len(stretched.s) == counts.sum()
+    fits = follows_line(centre, stretched)
+    assert fits.tolist() == (off * half <= 0.05).tolist()
+    whole = leave_out_strays(stretched, fits, strict=True)
+    assert whole.slack is not None
+    unbounded = np.isinf(whole.slack.along) & np.isinf(whole.slack.across)
+    assert unbounded.tolist() == np.repeat(~fits, counts).tolist()
+    strays = read.vehicle_id[~fits].tolist()
+    assert fits.all() or f"({', '.join(map(str, strays))})" in whole.notes[-1]
+    if len(strays) > read.vehicles / 2:
+        with pytest.raises(InputError, match="the reference line of the road does not follow the way of"):
+            leave_out_strays(stretched, fits, strict=False)
+    else:
+        part = leave_out_strays(stretched, fits, strict=False)
+        assert part.vehicle_id.tolist() == read.vehicle_id[fits].tolist()
 
 
 # --- what files do not have -------------------------------------------------------------------------

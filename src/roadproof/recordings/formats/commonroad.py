@@ -17,6 +17,7 @@ from roadproof.recordings.formats.commonroad_obstacles import Obstacle, Obstacle
 from roadproof.recordings.formats.lanelets import network_of
 from roadproof.recordings.formats.measured_roads import MeasuredTraffic, place_traffic
 from roadproof.recordings.formats.neighbours import describe_overlaps
+from roadproof.recordings.formats.off_line import follows_line, leave_out_strays
 from roadproof.recordings.formats.plausible import SHARE, ContradictionChecks
 from roadproof.recordings.formats.recording import Bools, Floats, Integers, Recording, offsets, with_notes
 from roadproof.recordings.formats.reliable import contradicts_motion, named, reliable
@@ -52,7 +53,9 @@ def read_commonroad(path: Path, strict: bool = True, truck_length: float = 7.0) 
     if _is_made(root):
         traffic = replace(traffic, moments=np.zeros_like(traffic.moments))
     whole = place_traffic(traffic, network)
-    recording = reliable(whole, strict, partial(_check_plausible, path, whole))
+    strays = _moves_as_told(traffic) & ~follows_line(traffic.centre, whole)
+    fitting = leave_out_strays(whole, ~strays, strict)
+    recording = reliable(fitting, strict, partial(_check_plausible, path, fitting))
     return with_notes(recording, (*_say_consistent(traffic, whole, recording), *_describe(recording)))
 
 

@@ -27,6 +27,7 @@ from roadproof.recordings.formats.levelx import (
     read_vehicles,
     traffic_of,
 )
+from roadproof.recordings.formats.off_line import follows_line, leave_out_strays
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.reliable import left_out_note, reliable
 from roadproof.recordings.formats.selected_roads import chart_of, place_on_road
@@ -62,7 +63,11 @@ def read_ind(folder: Path, name: str, strict: bool = True, road: str | None = No
     traffic = traffic_of(str(tracks.path), rate, meta, tracks, start, notes)
     origin = float(about["xUtmOrigin"][0]), float(about["yUtmOrigin"][0])
     recording, rows = place_on_road(traffic, str(road), origin)
-    return reliable(replace(recording, name=name), strict, partial(check_plausible, tracks.at(rows)))
+    fits = follows_line(traffic.centre[rows], recording)
+    fitting = leave_out_strays(replace(recording, name=name), fits, strict)
+    if not strict:
+        rows = rows[np.repeat(fits, np.diff(recording.start))]
+    return reliable(fitting, strict, partial(check_plausible, tracks.at(rows)))
 
 
 def _vehicles(meta: Table, tracks: Table) -> tuple[Table, Table, list[str]]:
