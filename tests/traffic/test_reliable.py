@@ -212,12 +212,11 @@ def test_a_vehicle_is_bounded_by_the_mean_error_of_its_steps(tmp_path: Path, see
     for share, back, (begin, end) in zip(off, turns, pairwise(read.start.tolist()), strict=True):
         steps = np.diff(read.s[begin:end])
         sign = np.where(np.arange(len(steps)) < len(steps) / 2, 1.0, -1.0 if back else 1.0)
-        s.append(read.s[begin] + np.append(0.0, np.cumsum(steps * (1 + share * np.maximum(sign, -0.4)))))
-    half = np.where(turns == 1, 0.7, 1.0)
+        s.append(read.s[begin] + np.append(0.0, np.cumsum(steps * (1 + share * sign))))
     stretched = replace(read, s=np.concatenate(s))
     assert len(stretched.s) == counts.sum()
     fits = follows_line(centre, stretched)
-    assert fits.tolist() == (off * half <= 0.05).tolist()
+    assert fits.tolist() == (off <= 0.05).tolist()
     whole = leave_out_strays(stretched, fits, strict=True)
     assert whole.slack is not None
     unbounded = np.isinf(whole.slack.along) & np.isinf(whole.slack.across)
