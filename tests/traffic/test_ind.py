@@ -10,6 +10,7 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import InputError, UsageError
+from roadproof.reasons import Why
 from roadproof.recordings.evaluate.one_trace import read_pair
 from roadproof.recordings.formats.recording import Floats
 from roadproof.recordings.formats.sources import find_source, find_sources
@@ -64,6 +65,42 @@ def test_a_road_in_opendrive(tmp_path: Path) -> None:
     assert matches(read) == matches(on_road(recording, rp.road("main-2"), RATE))
     assert f"road {chart}: edges of its lanes are up to 0 m from the map's" in read.notes
     assert find_source(path, road=str(chart)).files[0] == chart
+
+
+def around(radius: float, d: float, begin: float, speed: float = 12.0, count: int = 60) -> list[list[float]]:
+    """A car at ``d`` beside a left bend of this radius that begins in the origin along x."""
+    out = radius - d
+    angles = [begin / radius + speed * k / RATE / out for k in range(count)]
+    return [
+        [
+            out * math.sin(x),
+            radius - out * math.cos(x),
+            math.degrees(x),
+            speed * math.cos(x),
+            speed * math.sin(x),
+        ]
+        for x in angles
+    ]
+
+
+@pytest.mark.parametrize(("radius", "lost"), [(60.0, [23]), (400.0, [])])
+def test_cars_far_beside_the_line_of_a_bend_are_left_out(
+    radius: float, lost: list[int], tmp_path: Path
+) -> None:
+    """At 5.25 m beside a line with a radius of 60 m a way is 8.8 % longer; 1.75 m beside it 2.9 %."""
+    path = two_cars(tmp_path)
+    for number, (d, begin) in enumerate(
+        [(-1.75, 10.0), (-1.75, 25.0), (-1.75, 40.0), (-5.25, 10.0)], start=20
+    ):
+        add_track(tmp_path, number, "car", (4.4, 1.8), around(radius, d, begin))
+    geometry = f'<geometry s="0" x="0" y="0" hdg="0" length="90"><arc curvature="{1 / radius!r}"/></geometry>'
+    chart = tmp_path / "location3.xodr"
+    lanes = section(lane(-1) + lane(-2))
+    chart.write_text(f"<OpenDRIVE><header/>{road(1, geometry, lanes, length='90')}</OpenDRIVE>")
+    read = find_source(path, road=str(chart)).read()
+    assert sorted({20, 21, 22, 23} - set(read.vehicle_id.tolist())) == lost
+    names = [x for x in read.notes if "the reference line of the road does not follow their way" in x]
+    assert names == [f"left out 1 of {read.vehicles + 1} vehicles (23): {Why.OFF_LINE()}"] * len(lost)
 
 
 def two_cars(folder: Path) -> Path:
