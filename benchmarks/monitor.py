@@ -5,7 +5,9 @@
 The traces are random pairs of cars that follow, approach and pass each other, lengths all equal (the
 worst case). Every sampled verdict and margin is compared with the plain recursive evaluator.
 ``--peers`` names the Python of an environment with rtamt and sentil; they get the truth of the state
-atoms ready-made and are timed on fewer traces, whose verdicts are compared with the clip convention.
+atoms ready-made, one trace after another, and are timed on fewer traces, whose verdicts are compared with
+the clip convention. Both sides have one thread there, and the best of ``--runs`` counts. The ratios are
+for the whole batch, and for traces that come alone (a batch of one).
 """
 
 import argparse
@@ -136,10 +138,18 @@ def peer_text(formula: Formula, atoms: Mapping[Formula, int], dt: Fraction) -> s
     return show(formula)
 
 
+def alone(batch: Batch, index: int) -> Batch:
+    """One trace of a batch as a batch of its own."""
+    one = slice(index, index + 1)
+    parts = (batch.signals, batch.sizes, batch.given)
+    signals, sizes, given = ({key: values[..., one].copy() for key, values in x.items()} for x in parts)
+    return Batch(batch.dt, batch.lengths[one], signals, sizes, given)
+
+
 def compare_with_peers(
-    monitor: Monitor, batch: Batch, python: str, traces: int, slow: int
+    monitor: Monitor, batch: Batch, python: str, traces: int, slow: int, runs: int
 ) -> dict[str, float]:
-    """Seconds that each peer would take for the whole batch, and how many verdicts differ from clip."""
+    """Seconds that each side takes for a trace with one thread, and how many verdicts differ from clip."""
     observation = monitor.observe(batch)
     leaves = {x: k for k, x in enumerate(observation.leaves)}
     truth = np.stack([unpack(words, batch.traces)[:, :traces] for words in observation.leaves.values()])
@@ -147,13 +157,19 @@ def compare_with_peers(
         path = Path(folder) / "atoms.npz"
         np.savez(path, truth=truth, texts=[peer_text(x, leaves, batch.dt) for x in monitor.plain.values()])
         script = Path(__file__).with_name("monitor_peers.py")
-        run = subprocess.run([python, script, path, str(slow)], check=True, capture_output=True, text=True)
+        command = [python, script, path, str(slow), str(runs)]
+        run = subprocess.run(command, check=True, capture_output=True, text=True)
     print(run.stderr, file=sys.stderr, end="")
     clipped = monitor.evaluate(observation, "clip").answers
-    figures = {}
+    singles = [alone(batch, k) for k in range(slow)]
+    in_batch = timed(lambda: monitor.evaluate(batch, "clip", threads=1), runs) / batch.traces
+    by_itself = timed(lambda: [monitor.evaluate(x, "clip", threads=1) for x in singles], runs) / slow
+    figures = {"trace_in_batch": in_batch, "trace_alone": by_itself}
     for name, answers in json.loads(run.stdout).items():
         ours = np.array([clipped[x].true[: len(answers["verdicts"])] for x in monitor.plain]).T
-        figures[f"{name}_scaled"] = answers["seconds"] * batch.traces
+        figures[f"trace_{name}"] = answers["seconds"]
+        figures[f"ratio_{name}_to_batch"] = answers["seconds"] / in_batch
+        figures[f"ratio_{name}_to_alone"] = answers["seconds"] / by_itself
         figures[f"count_{name}_verdicts"] = ours.size
         figures[f"count_{name}_differing"] = int((ours != np.array(answers["verdicts"])).sum())
     return figures
@@ -178,6 +194,7 @@ def main() -> int:
     parser.add_argument("--json", type=Path)
     parser.add_argument("--peers", metavar="PYTHON", help="a Python that has rtamt and sentil")
     parser.add_argument("--rtamt", type=int, default=20, help="traces for rtamt")
+    parser.add_argument("--runs", type=int, default=3, help="runs of each side with --peers")
     parser.add_argument("--sentil", type=int, default=1000, help="traces for sentil")
     options = parser.parse_args()
 
@@ -215,12 +232,11 @@ def main() -> int:
                 return 30
     figures["ratio_recursive_to_boolean"] = figures["recursive_scaled"] / figures["boolean"]
     if options.peers:
-        figures |= compare_with_peers(monitor, batch, options.peers, options.sentil, options.rtamt)
-        for peer in ("rtamt", "sentil"):
-            if f"{peer}_scaled" in figures:
-                figures[f"ratio_{peer}_to_boolean"] = figures[f"{peer}_scaled"] / figures["boolean_clip"]
+        figures |= compare_with_peers(
+            monitor, batch, options.peers, options.sentil, options.rtamt, options.runs
+        )
     for name, value in figures.items():
-        print(f"{name:28s} {value:12.3f}{'' if name.startswith(('ratio', 'count')) else ' s'}")
+        print(f"{name:28s} {value:12.6f}{'' if name.startswith(('ratio', 'count')) else ' s'}")
     for name, found in verdicts.answers.items():
         print(
             f"{name}: {found.true.sum()} true, {found.false.sum()} false, {found.undecided.sum()} undecided"

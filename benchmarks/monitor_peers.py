@@ -3,7 +3,8 @@
 Needs neither roadproof nor anything but numpy and the peers, so that they may live in a virtual
 environment of their own. Reads an .npz with the truth of the state atoms (atom, time, trace) and the
 formulas as text over variables a0, a1, … that are 1 for true and -1 for false; one time unit is one
-step. Prints JSON: for each peer seconds a trace, and one verdict for each trace and formula.
+step. Prints JSON: for each peer seconds a trace, the best of some runs, and one verdict for each trace and
+formula.
 """
 
 import json
@@ -64,9 +65,12 @@ def main() -> None:
             {f"a{k}": np.where(atom[:, i], 1.0, -1.0).tolist() for k, atom in enumerate(truth)}
             for i in range(min(counts[name], truth.shape[2]))
         ]
-        start = perf_counter()
-        verdicts = [[value > 0 for value in evaluate(one)] for one in signals]
-        answers[name] = {"seconds": (perf_counter() - start) / len(signals), "verdicts": verdicts}
+        seconds = []
+        for _ in range(int(sys.argv[3])):
+            start = perf_counter()
+            verdicts = [[value > 0 for value in evaluate(one)] for one in signals]
+            seconds.append((perf_counter() - start) / len(signals))
+        answers[name] = {"seconds": min(seconds), "verdicts": verdicts}
     print(json.dumps(answers))
 
 

@@ -83,24 +83,69 @@ def around(radius: float, d: float, begin: float, speed: float = 12.0, count: in
     ]
 
 
-@pytest.mark.parametrize(("radius", "lost"), [(60.0, [23]), (400.0, [])])
-def test_cars_far_beside_the_line_of_a_bend_are_left_out(
-    radius: float, lost: list[int], tmp_path: Path
-) -> None:
-    """At 5.25 m beside a line with a radius of 60 m a way is 8.8 % longer; 1.75 m beside it 2.9 %."""
-    path = two_cars(tmp_path)
-    for number, (d, begin) in enumerate(
-        [(-1.75, 10.0), (-1.75, 25.0), (-1.75, 40.0), (-5.25, 10.0)], start=20
-    ):
-        add_track(tmp_path, number, "car", (4.4, 1.8), around(radius, d, begin))
+def bend_of(folder: Path, radius: float) -> str:
+    """The map of a road with two lanes to the right of a left bend of ``radius``."""
     geometry = f'<geometry s="0" x="0" y="0" hdg="0" length="90"><arc curvature="{1 / radius!r}"/></geometry>'
-    chart = tmp_path / "location3.xodr"
+    chart = folder / "location3.xodr"
     lanes = section(lane(-1) + lane(-2))
     chart.write_text(f"<OpenDRIVE><header/>{road(1, geometry, lanes, length='90')}</OpenDRIVE>")
-    read = find_source(path, road=str(chart)).read()
-    assert sorted({20, 21, 22, 23} - set(read.vehicle_id.tolist())) == lost
+    return str(chart)
+
+
+def beside_bend(folder: Path, radius: float, cars: list[tuple[float, float]]) -> str:
+    """The map of a bend, beside which recording 07 has these cars (d, begin) from 20 on."""
+    for number, (d, begin) in enumerate(cars, start=20):
+        add_track(folder, number, "car", (4.4, 1.8), around(radius, d, begin))
+    return bend_of(folder, radius)
+
+
+@pytest.mark.parametrize(("radius", "lost"), [(60.0, True), (400.0, False)])
+@pytest.mark.parametrize("far", range(4))
+def test_cars_far_beside_the_line_of_a_bend_are_left_out(
+    radius: float, lost: bool, far: int, tmp_path: Path
+) -> None:
+    """At 5.25 m beside a line with a radius of 60 m a way is 8.8 % longer; 1.75 m beside it 2.9 %.
+
+    Whichever car of the file that is: rows of the others stay theirs.
+    """
+    path = two_cars(tmp_path)
+    cars = [(-5.25 if k == far else -1.75, 10.0 + 8 * k) for k in range(4)]
+    chart = beside_bend(tmp_path, radius, cars)
+    read = find_source(path, road=chart).read()
+    expected = {20, 21, 22, 23} - ({20 + far} if lost else set())
+    assert expected == {20, 21, 22, 23} & set(read.vehicle_id.tolist())
     names = [x for x in read.notes if "the reference line of the road does not follow their way" in x]
-    assert names == [f"left out 1 of {read.vehicles + 1} vehicles (23): {Why.OFF_LINE()}"] * len(lost)
+    told = f"left out 1 of {read.vehicles + 1} vehicles ({20 + far}): {Why.OFF_LINE()}"
+    assert names == [told] * lost
+    for number, (d, begin) in enumerate(cars, start=20):
+        if number in expected:
+            first = int(read.start[read.vehicle_id.tolist().index(number)])
+            assert read.s[first] == pytest.approx(begin + 2.2, abs=0.1)
+            assert read.d[first] == pytest.approx(d + 0.9, abs=0.1)
+    if lost:
+        with pytest.raises(InputError, match=rf"way of 1 of {read.vehicles + 1} vehicles \({20 + far}\)"):
+            find_source(path, strict=True, road=chart).read()
+
+
+@pytest.mark.parametrize("far", [20, 23])
+def test_a_contradiction_is_named_where_it_is_after_a_vehicle_that_is_left_out(
+    far: int, tmp_path: Path
+) -> None:
+    """Car 22 tells 3 m/s² for a second, and no other does."""
+    path = two_cars(tmp_path)
+    chart = beside_bend(tmp_path, 60.0, [(-5.25 if k + 20 == far else -1.75, 10.0 + 8 * k) for k in range(4)])
+    lines = path.read_text().splitlines()
+    columns = lines[0].split(",")
+    for k, line in enumerate(lines):
+        cells = line.split(",")
+        if cells[1] == "22" and int(cells[2]) < 25:
+            cells[columns.index("xAcceleration")] = "3"
+            lines[k] = ",".join(cells)
+    path.write_text("\n".join([*lines, ""]))
+    read = find_source(path, road=chart).read()
+    assert far not in read.vehicle_id
+    (note,) = (x for x in read.notes if "accelerations along the road" in x)
+    assert note.startswith("07_tracks.csv, row 243, column frame=1, trackId=22: ")
 
 
 def two_cars(folder: Path) -> Path:

@@ -65,8 +65,7 @@ def read_ind(folder: Path, name: str, strict: bool = True, road: str | None = No
     recording, rows = place_on_road(traffic, str(road), origin)
     fits = follows_line(traffic.centre[rows], recording)
     fitting = leave_out_strays(replace(recording, name=name), fits, strict)
-    if not strict:
-        rows = rows[np.repeat(fits, np.diff(recording.start))]
+    rows = rows[np.repeat(fits, np.diff(recording.start))]
     return reliable(fitting, strict, partial(check_plausible, tracks.at(rows)))
 
 

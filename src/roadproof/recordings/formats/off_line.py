@@ -4,7 +4,6 @@ Lengths along a line through a crossing, or far from it in a bend, are not those
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -44,29 +43,16 @@ def follows_line(centre: Floats, recording: Recording) -> Bools:
 def leave_out_strays(recording: Recording, fits: Bools, strict: bool) -> Recording:
     """The recording of the vehicles that the line ``fits``, with a note that names the others.
 
-    If ``strict``, all stay, and the errors of their places have no bound. Raises ``InputError`` where more
-    than half would be left out.
+    Raises ``InputError`` where more than half would be left out; if ``strict``, where one would.
     """
     ids = [int(x) for x in recording.vehicle_id[~fits]]
     if not ids:
         return recording
-    off = _off(ids, recording.vehicles)
-    if strict:
-        return with_notes(_without_bound(recording, fits), [off])
-    if len(ids) > MOST_LEFT_OUT * recording.vehicles:
+    if strict or len(ids) > MOST_LEFT_OUT * recording.vehicles:
+        off = _off(ids, recording.vehicles)
         raise InputError(f"{recording.name}: {off}; evaluate a part of one road without crossings")
     note = left_out_note(ids, recording.vehicles, Why.OFF_LINE())
     return with_notes(keep_vehicles(recording, fits), [note])
-
-
-def _without_bound(recording: Recording, fits: Bools) -> Recording:
-    """The recording with errors of any size in the places of vehicles that the line does not fit."""
-    slack = recording.slack
-    if slack is None:
-        return recording
-    stray = np.repeat(~fits, np.diff(recording.start))
-    along, across = (np.where(stray, np.inf, x) for x in (slack.along, slack.across))
-    return replace(recording, slack=replace(slack, along=along, across=across))
 
 
 def _off(ids: Sequence[int], of: int) -> str:

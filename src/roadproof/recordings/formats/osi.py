@@ -22,6 +22,7 @@ from roadproof.reasons import Why
 from roadproof.recordings.formats.clock import Rate, clock_of
 from roadproof.recordings.formats.contradictions import contradictions
 from roadproof.recordings.formats.measured_roads import MeasuredTraffic
+from roadproof.recordings.formats.off_line import follows_line, leave_out_strays
 from roadproof.recordings.formats.plausible import (
     LARGEST_ACCELERATION,
     LARGEST_SIZE,
@@ -146,8 +147,10 @@ def read_osi(path: Path, strict: bool = True, road: str | None = None) -> Record
     notes = (*samples.notes(), *left_out, *derived)
     traffic = _traffic(str(path), rate, ids, frame, base, samples.kind, notes)
     recording, rows = place_on_road(traffic, str(road))
-    ids, frame, base = ids[rows], frame[rows], base[rows]
-    return reliable(replace(recording, name=path.stem), strict, partial(_check_plausible, path, ids, frame))
+    fits = follows_line(traffic.centre[rows], recording)
+    fitting = leave_out_strays(replace(recording, name=path.stem), fits, strict)
+    rows = rows[np.repeat(fits, np.diff(recording.start))]
+    return reliable(fitting, strict, partial(_check_plausible, path, ids[rows], frame[rows]))
 
 
 def _read(path: Path) -> tuple[_Samples, Rate]:
