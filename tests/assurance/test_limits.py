@@ -32,7 +32,7 @@ def test_motion_declared_values_and_bounds_of_a_certificate(tmp_path: Path) -> N
 
 def test_limits_of_answers(tmp_path: Path) -> None:
     results = {
-        "schema": "roadproof/traffic-results/4",
+        "schema": "roadproof/traffic-results/5",
         "failed": {"07": "no lanes"},
         "notes": {"08": ["two vehicles overlap"]},
     }

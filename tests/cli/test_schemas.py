@@ -48,7 +48,7 @@ DRIVE = ROOT / "examples" / "traffic" / "drives" / "scenario-04-base.json"
 # What evaluate keeps of one recording, and convert, and what a page gives to the viewer in it: for this very
 # version, which alone reads it; answers that are known, cells of classes, and shares of classes.
 INTERNAL = {
-    "roadproof/recording-findings/4",
+    "roadproof/recording-findings/5",
     "roadproof/recording/3",
     "roadproof/viewer/1",
     "roadproof/known/1",

@@ -364,7 +364,7 @@ def test_a_hostile_text_stays_text_in_every_section(tmp_path, drives):
         ('{"schema": "other/1"}', "its schema does not begin with roadproof/"),
         ('{"schema": "roadproof/overlap/1", "verdicts": [{"a": []}]}', "'roadproof' is missing"),
         ('{"schema": "roadproof/classify/1", "classes": 3}', "'roadproof' is missing"),
-        ('{"schema": "roadproof/traffic-results/4", "table": 3}', "'roadproof' is missing"),
+        ('{"schema": "roadproof/traffic-results/5", "table": 3}', "'roadproof' is missing"),
         ('{"schema": "roadproof/catalogue/1", "tests": 3}', "'roadproof' is missing"),
     ],
 )

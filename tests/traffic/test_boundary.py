@@ -5,11 +5,13 @@ from collections import Counter
 from dataclasses import replace
 from fractions import Fraction
 from itertools import permutations
+from random import Random
 
 import numpy as np
 import pytest
 
 from planting import plant as plant_fault
+from roadproof.frontends.report.answers import answer_questions
 from roadproof.frontends.report.traffic import results_tables
 from roadproof.library.loading import build_library, bundled_library
 from roadproof.library.scenarios import COMPARISON
@@ -18,21 +20,30 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare, Formula
 from roadproof.recordings.evaluate import boundary, detectors
-from roadproof.recordings.evaluate.boundary import TraceQuestion, uncertain
+from roadproof.recordings.evaluate.boundary import Bounds, TraceQuestions, bounds_of
 from roadproof.recordings.evaluate.detectors import Detection, find_detections
 from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
-from roadproof.recordings.evaluate.questions import Questions, Settings, ask, askable, default_settings
+from roadproof.recordings.evaluate.matching import PossibleMatch
+from roadproof.recordings.evaluate.questions import (
+    MonitorKey,
+    Questions,
+    Settings,
+    ask,
+    askable,
+    default_settings,
+)
 from roadproof.recordings.evaluate.recheck import recheck
-from roadproof.recordings.evaluate.results import as_json
+from roadproof.recordings.evaluate.results import as_json, uncertain_pairs
 from roadproof.recordings.evaluate.sectors import ANYWHERE, is_possible, sectors_of
 from roadproof.recordings.evaluate.totals import add_findings, begin_totals
 from roadproof.recordings.formats.commonroad import read_commonroad
 from roadproof.recordings.formats.pairs import DetectionRange, common_pairs
-from roadproof.recordings.formats.recording import ZONES, Floats, Recording, Slack, keep_vehicles
+from roadproof.recordings.formats.recording import ZONES, Bools, Floats, Recording, Slack, keep_vehicles
 from roadproof.recordings.simulate.planting import Place, plant
 from roadproof.recordings.simulate.simulate import simulate
 from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.recordings.simulate.traffic import Traffic as Simulated
+from roadproof.semantics.sampled.compiled import compile as compile_formulas
 from roadproof.semantics.sampled.recursive import TraceReader
 from traffic.drives import braking, cut_in, swerve
 from traffic.make_recording import LANES, Track, cruise, make_recording
@@ -42,6 +53,7 @@ from traffic.sampled import lower_road
 from traffic.test_evaluate import planted_traffic
 
 RADIUS, LENGTH = 300.0, 300.0
+Answers = dict[MonitorKey, Bools]
 
 
 def clothoid(s: Floats, d: Floats) -> tuple[Floats, Floats, Floats]:
@@ -136,10 +148,16 @@ def pair(along: float) -> Recording:
     return replace(recording, slack=Slack(off, off, np.zeros(20), np.zeros(20)))
 
 
-def is_uncertain(recording: Recording, formula: Formula) -> bool:
+def bounds(recording: Recording, formula: Formula) -> tuple[bool, bool]:
+    """Whether it surely holds on the only trace, and whether it may."""
     one = np.array([0])
-    asked = TraceQuestion(formula, {"SV": one, "POV": one + 1}, one, one + 9, {}, {}, "truncated")
-    return bool(uncertain(recording, asked)[0])
+    assert recording.slack is not None
+    asked = TraceQuestions({"it": formula}, {"SV": one, "POV": one + 1}, one, one + 9, {}, {}, "truncated")
+    found = bounds_of(recording, recording.slack, asked)["it"]
+    return bool(found.surely[0]), bool(found.perhaps[0])
+
+
+SURE, UNSURE, NEVER = (True, True), (False, True), (False, False)
 
 
 @pytest.mark.parametrize(
@@ -154,80 +172,227 @@ def is_uncertain(recording: Recording, formula: Formula) -> bool:
     ],
 )
 def test_by_hand(formula: Formula, sure: float, unsure: float) -> None:
-    """The gap is 20 m at all times, and each of two vehicles may be off."""
+    """The gap is 20 m at all times, and each of two vehicles may be off; so a denial never holds, or may."""
     if math.isnan(unsure):
-        assert is_uncertain(pair(0.0), formula)  # no sum of places: nothing is known
+        assert bounds(pair(0.0), formula) == UNSURE  # no sum of places: nothing is known
         return
-    assert not is_uncertain(pair(sure), formula)
+    assert bounds(pair(sure), formula) == SURE
+    assert bounds(pair(sure), f.Not(formula)) == NEVER
     if math.isfinite(unsure):
-        assert is_uncertain(pair(unsure), formula)
+        assert bounds(pair(unsure), formula) == UNSURE
+        assert bounds(pair(unsure), f.Not(formula)) == UNSURE
 
 
 def moved(recording: Recording, seed: int) -> Recording:
-    """Every place moved by what it may be off by, ahead or back at random: each sample, or each vehicle."""
+    """Every place moved by what it may be off by, at random: each sample, or each vehicle for a while."""
     random = np.random.default_rng(seed)
     assert recording.slack is not None
-    if seed % 2:
-        sign = random.choice([-1, 1], recording.vehicles)[recording.row_vehicle]
-        return replace(recording, s=recording.s + sign * recording.slack.along)
+    stretch = (1, 25, 10_000)[seed % 3]
+    of_sample = recording.row_vehicle * 10_000 + recording.row_frame // stretch
+    _, index = np.unique(of_sample, return_inverse=True)
     along, across = (
-        random.choice([-1, 1], len(recording.s)) * x for x in (recording.slack.along, recording.slack.across)
+        random.choice([-1, 1], index.max() + 1)[index] * x
+        for x in (recording.slack.along, recording.slack.across)
     )
     return replace(recording, s=recording.s + along, d=recording.d + across)
 
 
-def test_sure_matches_stay_when_places_move(traffic: Recording) -> None:
-    """And of the uncertain ones some do not. The cut of the trace is kept, as the answer is about it."""
-    off = np.full(len(traffic.s), 0.3)
-    measured = replace(traffic, slack=Slack(off, off, np.zeros_like(off), np.zeros_like(off)))
-    settings = replace(default_settings(), min_danger=(Fraction(0),))
-    questions = ask(settings, 25)
-    matches = [m for m in evaluate_recording(measured, questions).matches if m.pov2 is None]
-    sure = [m for m in matches if not m.uncertain]
-    unsure = [m for m in matches if m.uncertain]
-    assert len(sure) > 5
-    assert len(unsure) > 3
-    index = {int(number): k for k, number in enumerate(traffic.vehicle_id)}
-    lost = set()
+def measured(recording: Recording, off: float = 0.3) -> Recording:
+    """The same places, each of which may be off by so many metres."""
+    each = np.full(len(recording.s), off)
+    return replace(recording, slack=Slack(each, each, np.zeros_like(each), np.zeros_like(each)))
+
+
+def questions_to(recording: Recording, questions: Questions) -> TraceQuestions[MonitorKey]:
+    """All questions about pairs, to all traces on which danger arises."""
+    traces = [x for x in evaluate_recording(recording, questions).traces if x.min_danger == 0]
+    place = {int(number): k for k, number in enumerate(recording.vehicle_id)}
+    first, second = (np.array([place[getattr(x, name)] for x in traces]) for name in ("first", "second"))
+    low, high = (np.array([getattr(x, name) for x in traces]) for name in ("start_frame", "end_frame"))
+    at = {"L": first, "L1": second}
+    lanes = {x: recording.lane[recording.start[v] + low - recording.first_frame[v]] for x, v in at.items()}
     (monitor,) = questions.pairs
+    vehicles = {"SV": first, "POV": second}
+    return TraceQuestions(monitor.formulas, vehicles, low, high, lanes, questions.lane_atoms, "truncated")
+
+
+def answers_on(recording: Recording, asked: TraceQuestions[MonitorKey], questions: Questions) -> Answers:
+    (monitor,) = questions.pairs
+    rows = (asked.vehicles, asked.low, asked.high, monitor.signals, asked.lanes, questions.lane_atoms)
+    return monitor.holds(boundary.gather(recording, *rows))
+
+
+@pytest.mark.parametrize("off", [0.05, 0.3])
+def test_matches_stay_within_their_bounds_when_places_move(traffic: Recording, off: float) -> None:
+    """The cut of a trace is kept, as the answer is about it."""
+    recording, questions = measured(traffic, off), ask(PAIRS_ONLY, 25)
+    asked = questions_to(recording, questions)
+    assert recording.slack is not None
+    found, now = bounds_of(recording, recording.slack, asked), answers_on(recording, asked, questions)
+    sure = impossible = lost = 0
     for seed in range(12):
-        other = moved(measured, seed)
-        for m in matches:
-            pair = sorted((index[m.sv], index[m.pov]))
-            role = "first" if index[m.sv] == pair[0] else "second"
-            (asked,) = [
-                x for x in monitor.formulas if (x.set_name, x.number, x.sv) == (m.set_name, m.scenario, role)
-            ]
-            one = {name: np.array([v]) for name, v in zip(("SV", "POV"), pair, strict=True)}
-            lanes = {
-                name: traffic.lane[traffic.start[v] + m.start_frame - traffic.first_frame[v]]
-                for name, v in (("L", one["SV"]), ("L1", one["POV"]))
-            }
-            low, high = np.array([m.start_frame]), np.array([m.end_frame])
-            batch = boundary.gather(other, one, low, high, monitor.signals, lanes, questions.lane_atoms)
-            if not monitor.evaluate(batch).answers[asked].true[0]:
-                lost.add(m)
-    assert not lost & set(sure)
-    assert lost & set(unsure)
+        for key, true in answers_on(moved(recording, seed), asked, questions).items():
+            assert not (found[key].surely & ~true).any()
+            assert not (true & ~found[key].perhaps).any()
+            lost += np.count_nonzero(now[key] & ~true)
+            sure += np.count_nonzero(found[key].surely)
+            impossible += np.count_nonzero(~found[key].perhaps)
+    assert min(sure, impossible) > 50
+    assert off < 0.3 or lost > 5
 
 
-def test_a_wrong_polarity_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Planted fault: a comparison that hurts is taken as one that helps."""
-    formula = f.Not(gap(21))
-    assert is_uncertain(pair(0.6), formula)
-    plant_fault(
-        monkeypatch,
-        boundary._BoundedFormula,
-        "_made",
-        "self._visit(body, not helps)",
-        "self._visit(body, helps)",
-    )
-    assert not is_uncertain(pair(0.6), formula)
+TERMS = (
+    t.Signal("s", "SV"),
+    t.Signal("d", "POV"),
+    t.subtract(t.Signal("s", "POV"), t.Signal("s", "SV")),
+    t.Sum((t.Product((t.number(2), t.Signal("d", "SV"))), t.Signal("d", "POV"))),
+)
+
+
+def random_formula(dice: Random, depth: int) -> Formula:
+    """Places about 0 m compared with numbers, under all connectives; windows of up to 4 samples."""
+    if depth == 0 or dice.random() < 0.1:
+        limit = t.number(Fraction(dice.randrange(-20, 21), 10), (1, 0))
+        return Compare(dice.choice(TERMS), dice.choice(("<", "<=", ">", ">=")), limit)
+    low = dice.randrange(3)
+    ends = (t.number(Fraction(k, 25), (0, 1)) for k in (low, low + dice.randrange(3)))
+    interval = f.Interval(*ends)
+    one, other = (random_formula(dice, depth - 1) for _ in range(2))
+    match dice.randrange(6):
+        case 0:
+            return f.Not(one)
+        case 1:
+            return f.conjunction(one, other)
+        case 2:
+            return f.disjunction(one, other)
+        case 3:
+            return f.Always(interval, one)
+        case 4:
+            return f.Eventually(interval, one)
+        case _:
+            return f.Until(one, interval, other)
+
+
+def wandering(dice: Random) -> Recording:
+    """Two vehicles whose places wander about 0 m, each sample with an error of its own, or none."""
+    random = np.random.default_rng(dice.randrange(1 << 32))
+    recording = make_recording([Track(2, 0, cruise(0, 30, 10))] * 2)
+    s, d = random.normal(0, 1.2, (2, 20))
+    along, across = random.choice([0.0, 0.1, 0.5], (2, 20))
+    return replace(recording, s=s, d=d, slack=Slack(along, across, np.zeros(20), np.zeros(20)))
+
+
+def breaches(seeds: range) -> Counter[str]:
+    """How often places that move within their errors make an answer that its bounds exclude, and others."""
+    seen: Counter[str] = Counter()
+    one = np.array([0])
+    vehicles, frames = {"SV": one, "POV": one + 1}, (one, one + 9)
+    for seed in seeds:
+        dice = Random(seed)
+        recording = wandering(dice)
+        assert recording.slack is not None
+        formulas = {k: random_formula(dice, 3) for k in range(12)}
+        asked = TraceQuestions(formulas, vehicles, *frames, {}, {}, "truncated")
+        found = bounds_of(recording, recording.slack, asked)
+        monitor = compile_formulas(formulas)
+        now = monitor.holds(boundary.gather(recording, vehicles, *frames, ("s", "d")))
+        for move in range(12):
+            batch = boundary.gather(moved(recording, 12 * seed + move), vehicles, *frames, ("s", "d"))
+            for key, true in monitor.holds(batch).items():
+                sure, perhaps = bool(found[key].surely[0]), bool(found[key].perhaps[0])
+                seen["sure, but false"] += sure and not true[0]
+                seen["true, but not possible"] += bool(true[0]) and not perhaps
+                seen["changed"] += bool(true[0] != now[key][0])
+                seen["sure"] += sure
+                seen["impossible"] += not perhaps
+    return seen
+
+
+def test_bounds_of_random_formulas_hold_however_places_move() -> None:
+    """1,200 formulas, each with 12 moves."""
+    seen = breaches(range(100))
+    assert (seen["sure, but false"], seen["true, but not possible"]) == (0, 0)
+    assert min(seen["sure"], seen["impossible"], 5 * seen["changed"]) > 1000, seen
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "shown"),
+    [
+        ("self.visit(body, not helps)", "self.visit(body, helps)", "sure, but false"),
+        ("self.visit(body, not helps)", "self.visit(body, helps)", "true, but not possible"),
+        ("[0 if helps else 1]", "[0]", "true, but not possible"),
+        ("[0 if helps else 1]", "[1]", "sure, but false"),
+    ],
+)
+def test_a_wrong_polarity_is_caught(
+    before: str, after: str, shown: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Planted faults: a comparison that hurts is taken as one that helps, or the other way round."""
+    plant_fault(monkeypatch, boundary._BoundedFormulas, "_made", before, after)
+    assert breaches(range(8))[shown] > 0
+
+
+PAIRS_ONLY = replace(default_settings(), min_danger=(Fraction(0),), scenarios=(1, 3, 4, 5, 6, 7, 8))
+
+
+def test_possible_matches_are_those_that_the_bounds_allow(traffic: Recording) -> None:
+    """Of all traces and questions: a match, a possible match, or neither; and in blocks as all at once."""
+    recording, questions = measured(traffic), ask(PAIRS_ONLY, 25)
+    findings = evaluate_recording(recording, questions)
+    asked = questions_to(recording, questions)
+    assert recording.slack is not None
+    found, now = bounds_of(recording, recording.slack, asked), answers_on(recording, asked, questions)
+    expected = set()
+    for key, bound in found.items():
+        for k in np.flatnonzero(bound.perhaps & ~now[key]).tolist():
+            ids = (int(recording.vehicle_id[asked.vehicles[x][k]]) for x in ("SV", "POV"))
+            expected.add(PossibleMatch(*ids, 0, key.set_name, key.number))
+    assert set(findings.possible) == expected
+    assert len(expected) > 5
+    assert len(findings.possible) == len(expected)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(boundary, "_CELLS", 500)
+        again: dict[MonitorKey, Bounds] = bounds_of(recording, recording.slack, asked)
+    for key, bound in found.items():
+        assert again[key].surely.tolist() == bound.surely.tolist()
+        assert again[key].perhaps.tolist() == bound.perhaps.tolist()
+
+
+def test_recall_has_bounds(traffic: Recording) -> None:
+    """In totals, results.json, tables and text, counted from the rows one by one."""
+    recording, questions = measured(traffic), ask(PAIRS_ONLY, 25)
+    findings = evaluate_recording(recording, questions)
+    totals = begin_totals(PAIRS_ONLY)
+    add_findings(totals, findings)
+    row = totals.rows[0]
+    ours = [x for x in findings.matches if x.set_name == "base"]
+    sure = {x.pair for x in ours if not x.uncertain}
+    perhaps = {x.pair for x in ours} | {x.pair for x in findings.possible if x.set_name == "base"}
+    assert row.bounds == (len(sure), len(perhaps))
+    assert len(sure) < row.matching < len(perhaps) <= row.traces
+    kept = as_json(totals, {})["table"][0]
+    assert kept["recall_interval"] == [len(sure) / row.traces, len(perhaps) / row.traces]
+    violating = set(findings.violating)
+    low, high = (len(x & violating) / totals.violating for x in (sure, perhaps))
+    assert kept["recall_without_init_safe_interval"] == [low, high]
+    (table,) = results_tables(totals).values()
+    told = f"{100 * len(sure) / row.traces:.1f} to {100 * len(perhaps) / row.traces:.1f}%"
+    assert table.rows[0][table.columns.index("within errors")] == told
+    text = answer_questions(totals)
+    assert f"({row.matching} of {row.traces} traces on the main road; {told} within errors of places)" in text
+    assert f"; {100 * low:.1f} to {100 * high:.1f}% within errors of places) match a scenario" in text
+    uncertain = {pair for pair, k, name in uncertain_pairs(findings) if (k, name) == (0, "base")}
+    assert uncertain == perhaps - sure
 
 
 def test_recordings_in_road_coordinates_are_sure(traffic: Recording) -> None:
     told = found(traffic)
     assert not any(m.uncertain for m in told.matches)
+    assert told.possible == ()
+    totals = begin_totals(default_settings())
+    add_findings(totals, told)
+    assert all(x.bounds == (x.matching, x.matching) for x in totals.rows)
+    assert all("within errors" not in x.columns for x in results_tables(totals).values())
     assert not any("depend" in note for note in told.notes)
 
 

@@ -69,7 +69,7 @@ def test_files_and_their_numbers(undisturbed: dict[str, bytes]) -> None:
         *(f"recordings/{x}.json" for x in ("01", "02", "03")),
     }
     told = json.loads(undisturbed["results.json"])
-    assert told["schema"] == "roadproof/traffic-results/4"
+    assert told["schema"] == "roadproof/traffic-results/5"
     assert told["recordings"] == 3
     assert told["checks"]["broken"] == []
     matches = list(csv.DictReader(undisturbed["matches.csv"].decode().splitlines()))

@@ -12,7 +12,7 @@ from roadproof.recordings.evaluate.evaluate import Findings
 from roadproof.recordings.evaluate.violations import ViolatingPairs
 from roadproof.recordings.formats.repeats import FramePair
 
-LABEL = (0, "ext", "")
+LABEL = (0, "ext", "", "match")
 LENGTH, SPAN = 60, 20
 
 

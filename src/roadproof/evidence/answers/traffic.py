@@ -7,12 +7,13 @@ from roadproof.evidence.answers import shared
 from roadproof.evidence.codec import LEFT_OUT, Doc, Rule
 from roadproof.runtime.records import dataclass
 
-SCHEMA: Final = "roadproof/traffic-results/4"
+SCHEMA: Final = "roadproof/traffic-results/5"
 Driver: TypeAlias = Annotated[
     str, Rule(pattern="^(careful|r157|eu1426|rss)$", called="driver model with formulas")
 ]
 MinDanger: TypeAlias = Annotated[shared.Rational, Doc("In s.")]
 Share: TypeAlias = Annotated[float, Rule(minimum=0)] | None
+Interval: TypeAlias = tuple[float, float] | None
 UnequalPair: TypeAlias = tuple[str, int, int, shared.Rational]
 
 
@@ -53,14 +54,24 @@ class Row:
         shared.Count,
         Doc("Those of matching that depend on less than places may be off."),
     ]
+    matching_possible: Annotated[
+        shared.Count,
+        Doc("Traces that no scenario of two cars matches, but one may, as places are off."),
+    ]
     matching_with_three_cars: Annotated[shared.Count, Doc("Those that any scenario matches.")]
     recall: Annotated[Share, Doc("matching by traces; null where there are none.")]
+    recall_interval: Annotated[
+        Interval, Doc("recall by matches that are sure, and by all that are possible; null as recall.")
+    ]
     recall_without_init_safe: Annotated[
         Share,
         Doc(
             "The share of all violating pairs that match a scenario of two cars of this sector; null where "
             "there are none."
         ),
+    ]
+    recall_without_init_safe_interval: Annotated[
+        Interval, Doc("That share by matches that are sure, and by all that are possible.")
     ]
     scenarios: Annotated[
         Mapping[Annotated[str, Rule(pattern="^[0-9]+$", called="number")], shared.Count],
@@ -118,7 +129,7 @@ class Prediction:
 class Answer(shared.PlainHeading):
     """Dangers in recordings, and the scenarios that match them."""
 
-    schema: Literal["roadproof/traffic-results/4"] = SCHEMA
+    schema: Literal["roadproof/traffic-results/5"] = SCHEMA
     settings: Settings
     recordings: Annotated[shared.Count, Doc("Recordings that were used.")]
     vehicles: Annotated[shared.Count, Doc("Vehicles in them.")]

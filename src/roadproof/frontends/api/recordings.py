@@ -37,7 +37,13 @@ from roadproof.recordings.evaluate.experiment import (
 )
 from roadproof.recordings.evaluate.questions import Settings, askable
 from roadproof.recordings.evaluate.recheck import recheck
-from roadproof.recordings.evaluate.results import as_json, driver_cells, driver_columns, question_mark
+from roadproof.recordings.evaluate.results import (
+    as_json,
+    driver_cells,
+    driver_columns,
+    question_mark,
+    uncertain_pairs,
+)
 from roadproof.recordings.evaluate.totals import Totals
 from roadproof.recordings.formats.clock import rate_text
 from roadproof.recordings.formats.recording import Recording
@@ -111,6 +117,7 @@ class Evaluation(Table, BuildResult):
                 "traces": x.traces,
                 "matching": x.matching,
                 "uncertain": x.uncertain,
+                "possible": x.possible,
                 "recall": x.recall,
                 **{
                     f"s{i}": x.scenarios[i] if i in x.sector.scenarios else None
@@ -150,6 +157,7 @@ class Evaluation(Table, BuildResult):
         rows: list[Row] = []
         for x in self.findings:
             matched = {(m.pair, m.min_danger, m.set_name) for m in x.matches}
+            uncertain = uncertain_pairs(x)
             for trace in x.traces:
                 pair = (trace.first, trace.second)
                 row: Row = {"recording": x.recording, "first": trace.first, "second": trace.second}
@@ -157,7 +165,9 @@ class Evaluation(Table, BuildResult):
                 row |= {"first_frame": trace.start_frame, "last_frame": trace.end_frame}
                 row |= {"sectors": "; ".join(trace.sectors)}
                 sets = self.settings.sets
-                rows.append(row | {name: (pair, trace.min_danger, name) in matched for name in sets})
+                row |= {name: (pair, trace.min_danger, name) in matched for name in sets}
+                row |= {f"{name}_uncertain": (pair, trace.min_danger, name) in uncertain for name in sets}
+                rows.append(row)
         return frame_of(rows)
 
     def as_data(self) -> JsonObject:

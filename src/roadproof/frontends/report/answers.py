@@ -15,6 +15,7 @@ from roadproof.frontends.report.traffic import (
     RECALL_WITHOUT_FILTER,
     VIOLATING_PAIRS,
     Share,
+    interval,
     missing,
     paper_row,
     percent,
@@ -50,19 +51,25 @@ def _listed(lines: Iterable[str]) -> str:
 def _shown(row: Row) -> str:
     known = paper_row(row)
     theirs = f" [{known.recall}]" if known else ""
+    return f"{row.set_name} {_share(row, theirs)}"
+
+
+def _share(row: Row, theirs: str = "") -> str:
+    """The recall of a row with its counts and bounds."""
     share = Share(row.matching, row.traces, traces_of(row))
-    return f"{row.set_name} {share.percent}{theirs} ({share.count}{_uncertain(row)})"
+    return f"{share.percent}{theirs} ({share.count}{_within(row.bounds, row.matching, row.traces)})"
 
 
-def _uncertain(row: Row) -> str:
-    """How many of the matching traces may match only since places are off; empty where none do."""
-    return f"; {row.uncertain} of {row.matching} matches uncertain" if row.uncertain else ""
+def _within(bounds: tuple[int, int], matching: int, whole: int) -> str:
+    """The least and the greatest share that match, as places are off; empty where that changes nothing."""
+    return "" if bounds == (matching, matching) else f"; {interval(bounds, whole)} within errors of places"
 
 
 def _missed(row: Row) -> str:
     """How many traces of a row match no scenario of two vehicles."""
     share = Share(row.traces - row.matching, row.traces, traces_of(row))
-    return f"{share.count} match no scenario of {row.set_name} with two vehicles."
+    may = f", but {row.possible} of these may, as places are off" if row.possible else ""
+    return f"{share.count} match no scenario of {row.set_name} with two vehicles{may}."
 
 
 def _of_danger(totals: Totals) -> Iterator[tuple[str, list[Row]]]:
@@ -116,9 +123,10 @@ def _precision(totals: Totals) -> str:
         danger = totals.settings.min_danger.index(row.min_danger)
         matching = totals.matching_violating[danger, row.set_name]
         share = Share(matching, totals.violating, "violating pairs in all road sectors")
+        within = _within(totals.violating_bounds[danger, row.set_name], matching, totals.violating)
         lines.append(
             f"Without the filter dangerArises, minDanger {decimal(row.min_danger)}, {row.set_name}: "
-            f"{share.percent}{theirs} ({share.count}) match a scenario with two vehicles."
+            f"{share.percent}{theirs} ({share.count}{within}) match a scenario with two vehicles."
         )
     return _listed(lines)
 
@@ -131,9 +139,7 @@ def _min_danger(totals: Totals) -> str:
         rows = [row for row in totals.rows if row.set_name == name and row.traces]
         shares = [100 * row.matching / row.traces for row in rows]
         if len(shares) > 1:
-            values = ", ".join(
-                f"{decimal(r.min_danger)}: {Share(r.matching, r.traces, traces_of(r))}" for r in rows
-            )
+            values = ", ".join(f"{decimal(r.min_danger)}: {_share(r)}" for r in rows)
             lines.append(f"{name}: {values}; {max(shares) - min(shares):.1f} points between them.")
     return _listed(lines) or "Too few traces to tell."
 

@@ -60,6 +60,8 @@ MARK = "the paper's, on the real highD"
 
 
 NONE_FAILED: Mapping[str, str] = MappingProxyType({})
+WITHIN = "within errors"
+"""The column of the least and the greatest recall, where places are off."""
 OURS = "here"
 PAPER = "paper*"
 NAMES = 3
@@ -94,12 +96,14 @@ def ending_of(totals: Totals, sector: str) -> str:
 
 def _results_table(totals: Totals, where: str, rows: Sequence[Row], failed: Mapping[str, str]) -> Table:
     scenarios = rows[0].sector.scenarios
-    columns = ("minDanger", "set", "data", "traces", "matching", "recall", *(f"s{i}" for i in scenarios))
+    bounded = any(is_bounded(x) for x in rows)
+    recall = ("recall", WITHIN) if bounded else ("recall",)
+    columns = ("minDanger", "set", "data", "traces", "matching", *recall, *(f"s{i}" for i in scenarios))
     three = rows[0].sector.of_three
     return Table(
         "Disturbance traces that match a scenario" + (f": {where}" if where else ""),
         columns,
-        tuple(_result_rows(rows)),
+        tuple(_result_rows(rows, bounded)),
         (
             *_names(scenarios, words_in(totals.settings)),
             f"{OURS}: {_data(totals)}",
@@ -117,13 +121,32 @@ def _results_table(totals: Totals, where: str, rows: Sequence[Row], failed: Mapp
     )
 
 
+def is_bounded(row: Row) -> bool:
+    """Whether errors of places decide whether some traces of a row match."""
+    return bool(row.uncertain or row.possible)
+
+
+def interval(bounds: tuple[int, int], whole: int) -> str:
+    """The least share and the greatest.
+
+    >>> interval((1, 2), 3)
+    '33.3 to 66.7%'
+    """
+    low, high = bounds
+    return f"{percent(low, whole).removesuffix('%')} to {percent(high, whole)}" if whole else "-"
+
+
 def _uncertain(rows: Sequence[Row]) -> Iterator[str]:
-    """How many matching traces depend on less than places may be off, where some do."""
+    """How many traces match, or do not, by less than places may be off, where some do."""
     shares = [
-        f"{decimal(x.min_danger)}, {x.set_name}: {x.uncertain} of {x.matching}" for x in rows if x.uncertain
+        f"{decimal(x.min_danger)}, {x.set_name}: {x.uncertain} of {x.matching} that match and {x.possible} "
+        f"of {x.traces - x.matching} others"
+        for x in rows
+        if is_bounded(x)
     ]
     if shares:
-        yield f"Matching traces that depend on less than places may be off: {'; '.join(shares)}."
+        yield f"{WITHIN}: recall by matches that are sure, and by all that are possible, as places are off."
+        yield f"Traces for which these errors decide: {'; '.join(shares)}."
 
 
 def _names(scenarios: Sequence[int], words: Called) -> Iterator[str]:
@@ -181,17 +204,19 @@ def _numbered(numbers: Sequence[int]) -> str:
     return f"s{numbers[0]}" if len(numbers) == 1 else f"s{numbers[0]} to s{numbers[-1]}"
 
 
-def _result_rows(rows: Sequence[Row]) -> Iterator[tuple[str, ...]]:
+def _result_rows(rows: Sequence[Row], bounded: bool) -> Iterator[tuple[str, ...]]:
     for row in rows:
         scenarios = row.sector.scenarios
         head = (decimal(row.min_danger), row.set_name)
         counts = (str(row.scenarios[i]) for i in scenarios)
         recall = Share(row.matching, row.traces, traces_of(row)).percent
-        yield (*head, OURS, str(row.traces), str(row.matching), recall, *counts)
+        within = (interval(row.bounds, row.traces),) * bounded
+        yield (*head, OURS, str(row.traces), str(row.matching), recall, *within, *counts)
         known = paper_row(row)
         if known is not None:
             theirs = (str(known.scenarios.get(i, "-")) for i in scenarios)
-            yield (*head, PAPER, str(known.traces), str(known.matching), known.recall, *theirs)
+            figures = (str(known.traces), str(known.matching), known.recall, *("-",) * bounded)
+            yield (*head, PAPER, *figures, *theirs)
 
 
 def comparison_table(totals: Totals, failed: Mapping[str, str] = NONE_FAILED) -> Table | None:

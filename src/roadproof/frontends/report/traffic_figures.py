@@ -14,6 +14,7 @@ from roadproof.frontends.report.traffic import (
     comparison_table,
     drivers_table,
     ending_of,
+    is_bounded,
     paper_row,
     results_tables,
 )
@@ -23,7 +24,7 @@ from roadproof.recordings.evaluate.totals import Row, Totals
 from roadproof.runtime.files import cannot_write, write_whole
 
 COLOURS = ("#9db8d9", "#4f7fb8", "#1f4a80", "#e0b990", "#c8783c", "#8a4a1c", "#8fb884", "#4b8b3b", "#2b5a20")
-BAR, GREY = "#9db8d9", "#555555"
+BAR, GREY, BOUNDS = "#9db8d9", "#555555", "#c8783c"
 
 
 def draw_figures(totals: Totals) -> Iterator[tuple[str, Any]]:
@@ -47,6 +48,8 @@ def _recall(rows: Sequence[Row], where: str) -> Any:
         axes.barh(place, 100 * (row.recall or 0.0), color=BAR, height=0.7)
         said = f"{100 * (row.recall or 0.0):.1f} % of {row.traces}" if row.traces else "no traces"
         axes.text(1, place, said, va="center", fontsize=7)
+        if is_bounded(row):
+            axes.plot([100 * x / row.traces for x in row.bounds], [place, place], color=BOUNDS, lw=3)
         known = paper_row(row)
         if known is not None:
             theirs = 100 * known.matching / known.traces
@@ -57,6 +60,8 @@ def _recall(rows: Sequence[Row], where: str) -> Any:
     axes.set_xlabel("recall, %", fontsize=8)
     axes.tick_params(axis="x", labelsize=7)
     axes.fill([], [], color=BAR, label="these recordings")
+    if any(map(is_bounded, rows)):
+        axes.plot([], [], color=BOUNDS, lw=3, label="within errors\nof places")
     if any(paper_row(row) is not None for row in rows):
         axes.plot([], [], color=GREY, lw=2, label="\n".join(wrap(MARK, 20)))
     legend_beside(axes)

@@ -2,14 +2,16 @@
 
 A match is sure where its formula holds however each comparison of places comes out that is nearer to its
 boundary than places may be off there: such a comparison counts as false where the formula needs it, and as
-true where the formula needs that it is false. Comparisons are taken one by one at every sample, as if each
-could be off by itself, so a match that is called sure is; one that is not may be. Velocities, and which
-lanelets a box is in, are taken as they are, and so is where a trace starts and ends.
+true where the formula needs that it is false. The other way round, a formula may hold. Comparisons are taken
+one by one at every sample, as if each could be off by itself, so a match that is called sure is, and one that
+may not hold does not; others may be either. Velocities, and which lanelets a box is in, are taken as they
+are, and so is where a trace starts and ends.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import Generic
 
 import numpy as np
 
@@ -17,22 +19,24 @@ from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Compare, Formula
 from roadproof.logic.rewrite import signals_of, terms_of, without_names
-from roadproof.recordings.evaluate.traces import LaneAtom, gather, rows_of
+from roadproof.recordings.evaluate.traces import LaneAtom, blocks, gather, rows_of
 from roadproof.recordings.formats.recording import Bools, Floats, Integers, Recording, Slack
-from roadproof.semantics.sampled.answers import Convention
+from roadproof.semantics.sampled.answers import Convention, Key
 from roadproof.semantics.sampled.arithmetic import COMPARISONS, margin_program
-from roadproof.semantics.sampled.batch import Batch
-from roadproof.semantics.sampled.compiled import compile
+from roadproof.semantics.sampled.batch import Array, Batch
+from roadproof.semantics.sampled.compiled import Monitor, compile
 from roadproof.semantics.sampled.robustness import observe_margins
 
 PLACES = ("s", "d")
+_CELLS = 200_000
+"""So many samples of traces are looked at together."""
 
 
 @dataclass(frozen=True)
-class TraceQuestion:
-    """A formula that holds on traces: vehicles and lanes by name as for ``gather``, an entry a trace."""
+class TraceQuestions(Generic[Key]):
+    """Formulas asked of traces: vehicles and lanes by name as for ``gather``, an entry a trace."""
 
-    formula: Formula
+    formulas: Mapping[Key, Formula]
     vehicles: Mapping[str, Integers]
     low: Integers
     high: Integers
@@ -40,45 +44,76 @@ class TraceQuestion:
     atoms: Mapping[Formula, LaneAtom]
     convention: Convention
 
+    def choose(self, index: Integers | Bools) -> "TraceQuestions[Key]":
+        """The questions to some of the traces."""
+        vehicles, lanes = ({k: x[index] for k, x in each.items()} for each in (self.vehicles, self.lanes))
+        low, high = self.low[index], self.high[index]
+        return TraceQuestions(self.formulas, vehicles, low, high, lanes, self.atoms, self.convention)
 
-def uncertain(recording: Recording, asked: TraceQuestion) -> Bools:
-    """For each trace whether what holds there depends on less than places may be off by."""
-    if recording.slack is None or not len(asked.low):
-        return np.zeros(len(asked.low), np.bool_)
-    plain = _BoundedFormula(without_names(asked.formula))
-    signals = signals_of([asked.formula])
+
+@dataclass(frozen=True)
+class Bounds:
+    """For each trace whether a formula holds however places are off, and whether it may hold."""
+
+    surely: Bools
+    perhaps: Bools
+
+
+def bounds_of(recording: Recording, slack: Slack, asked: TraceQuestions[Key]) -> dict[Key, Bounds]:
+    """The bounds of each formula, where places are off by no more than ``slack``."""
+    count = len(asked.low)
+    found = {key: Bounds(*np.zeros((2, count), np.bool_)) for key in asked.formulas}
+    if not count or not found:
+        return found
+    bounded = _BoundedFormulas()
+    parts = {
+        (key, helps): bounded.visit(without_names(formula), helps)
+        for key, formula in asked.formulas.items()
+        for helps in (True, False)
+    }
+    monitor = compile(parts)
+    for index in blocks(asked.low, asked.high, _CELLS):
+        true = _ask(recording, slack, asked.choose(index), bounded, monitor)
+        for key, bound in found.items():
+            bound.surely[index], bound.perhaps[index] = true[key, True], true[key, False]
+    return found
+
+
+def _ask(
+    recording: Recording,
+    slack: Slack,
+    asked: TraceQuestions[Key],
+    bounded: "_BoundedFormulas",
+    monitor: Monitor[tuple[Key, bool]],
+) -> Mapping[tuple[Key, bool], Bools]:
+    signals = signals_of(asked.formulas.values())
     batch = gather(recording, asked.vehicles, asked.low, asked.high, signals, asked.lanes, asked.atoms)
-    comparisons = tuple(plain.comparisons)
+    comparisons = tuple(bounded.comparisons)
     margins = observe_margins(comparisons, margin_program(comparisons), batch, slice(0, batch.traces))
     rows = {name: rows_of(recording, v, asked.low, asked.high) for name, v in asked.vehicles.items()}
-    given = dict(batch.given)
+    given: dict[Formula, Array] = dict(batch.given)
     for compare in comparisons:
-        off = _off(compare, recording.slack, rows)
-        for sign, atom in zip((-1.0, 1.0), plain.comparisons[compare], strict=True):
+        off = _off(compare, slack, rows)
+        for sign, atom in zip((-1.0, 1.0), bounded.comparisons[compare], strict=True):
             with np.errstate(invalid="ignore"):  # an endless margin that is endlessly off is not known
                 shifted = np.nan_to_num(margins[compare] + sign * off, nan=sign * np.inf)
             relation = COMPARISONS[">" if compare.op in ("<", ">") else ">="]
             given[atom] = relation(shifted, 0.0)
-    bounded = Batch(batch.dt, batch.lengths, batch.signals, batch.sizes, given)
-    (sure,) = compile({"sure": plain.formula}).evaluate(bounded, asked.convention).answers.values()
-    return ~sure.true
+    return monitor.holds(Batch(batch.dt, batch.lengths, batch.signals, batch.sizes, given), asked.convention)
 
 
 @dataclass
-class _BoundedFormula:
-    """A formula with two atoms for each comparison of places: that it surely holds, and that it may.
+class _BoundedFormulas:
+    """Formulas with two atoms for each comparison of places: that it surely holds, and that it may.
 
     The first stands where truth of the comparison helps the formula, the second where it hurts.
     """
 
-    original: Formula
     comparisons: dict[Compare, tuple[Formula, Formula]] = field(default_factory=dict)
+    known: dict[tuple[Formula, bool], Formula] = field(default_factory=dict)
 
-    def __post_init__(self) -> None:
-        self.known: dict[tuple[Formula, bool], Formula] = {}
-        self.formula = self._visit(self.original, True)
-
-    def _visit(self, formula: Formula, helps: bool) -> Formula:
+    def visit(self, formula: Formula, helps: bool) -> Formula:
+        """The formula that holds only if this one surely does, if it ``helps``; else if this one may."""
         key = (formula, helps)
         if key not in self.known:
             self.known[key] = self._made(formula, helps)
@@ -94,11 +129,11 @@ class _BoundedFormula:
                 atoms = (f.Occupies(name, "surely"), f.Occupies(name, "perhaps"))
                 return self.comparisons.setdefault(formula, atoms)[0 if helps else 1]
             case f.Not(body):
-                return f.Not(self._visit(body, not helps))
+                return f.Not(self.visit(body, not helps))
             case f.Some() | f.Every():
                 return formula
             case _:
-                parts = tuple(self._visit(child, helps) for child in f.children(formula))
+                parts = tuple(self.visit(child, helps) for child in f.children(formula))
                 return f.with_children(formula, parts)
 
 

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from roadproof.library.scenarios import LANE
+from roadproof.library.scenarios import LANE, PAIR
 from roadproof.logic.formula import Formula
-from roadproof.recordings.evaluate.boundary import TraceQuestion, uncertain
+from roadproof.recordings.evaluate.boundary import Bounds, TraceQuestions, bounds_of
 from roadproof.recordings.evaluate.detectors import Detection, find_detections, order_of_detections
 from roadproof.recordings.evaluate.disturbances import (
     NEVER,
@@ -20,7 +20,7 @@ from roadproof.recordings.evaluate.disturbances import (
     find_disturbances,
 )
 from roadproof.recordings.evaluate.foretelling import foretell
-from roadproof.recordings.evaluate.matching import Match
+from roadproof.recordings.evaluate.matching import Match, PossibleMatch
 from roadproof.recordings.evaluate.questions import START, MonitorKey, Questions
 from roadproof.recordings.evaluate.traces import OTHER_LANE, gather
 from roadproof.recordings.formats.neighbours import Overlap, find_overlaps, told_overlap
@@ -56,7 +56,8 @@ class Findings:
     ``undecided`` counts questions whose answer depends on what comes after the trace, ``differing``
     those that the other convention for the end of a trace answers otherwise. ``sectors``: the road sectors
     that its road has, of those that were asked for. ``seen``: the pairs that
-    violate or are detected, where another recording may show them too.
+    violate or are detected, where another recording may show them too. ``possible``: on a measured road,
+    scenarios that traces do not match, but may.
     """
 
     recording: str
@@ -73,6 +74,7 @@ class Findings:
     notes: tuple[str, ...]
     sectors: tuple[str, ...]
     seen: tuple[FramePair, ...] = ()
+    possible: tuple[PossibleMatch, ...] = ()
 
 
 def evaluate_recording(recording: Recording, questions: Questions) -> Findings:
@@ -116,7 +118,7 @@ def _evaluate(window: Window, questions: Questions) -> tuple[Findings, Iterable[
     everything = find_disturbances(recording, questions)
     found = everything.choose(window.has(everything.pairs.first, everything.pairs.second))
     tally = _Tally(questions)
-    matches = _match_pairs(recording, questions, found, tally)
+    matches, possible = _match_pairs(recording, questions, found, tally)
     cut = None
     if questions.triple_start is not None:
         cut = _candidates(window, questions, everything)
@@ -138,6 +140,7 @@ def _evaluate(window: Window, questions: Questions) -> tuple[Findings, Iterable[
         notes=recording.notes,
         sectors=tuple(x.name for x in questions.sectors),
         seen=tuple(_see(recording, found, detections)) if len(recording.moments) else (),
+        possible=tuple(dict.fromkeys(possible)),
     )
     # Boxes that overlap violate the RSS distance, so they are here; CommonRoad's are noted already.
     return findings, () if len(recording.moments) else find_overlaps(recording, found.pairs)
@@ -173,6 +176,7 @@ _ORDERS: Mapping[str, Callable[[Any], Any] | None] = {
     "matches": lambda x: (x.sv, x.pov, x.pov2 or 0, x.min_danger, x.set_name, x.scenario),
     "detections": order_of_detections,
     "seen": attrgetter("first", "second"),
+    "possible": attrgetter("first", "second", "min_danger", "set_name", "scenario"),
 }
 
 
@@ -201,12 +205,12 @@ class _Tally:
 
 def _match_pairs(
     recording: Recording, questions: Questions, found: Disturbances, tally: _Tally
-) -> list[Match]:
+) -> tuple[list[Match], list[PossibleMatch]]:
     end = np.max(found.end, axis=0, initial=-1)
     chosen = np.flatnonzero(end >= 0)
     chosen = chosen[np.argsort(found.start[chosen] - end[chosen], kind="stable")]  # the longest first
     if not len(chosen) or not questions.pairs:
-        return []
+        return [], []
     pairs, start = found.pairs.choose(chosen), found.start[chosen]
     vehicles = pairs.vehicles
     at = zip((LANE, OTHER_LANE), vehicles.values(), strict=True)
@@ -236,7 +240,8 @@ def _match_triples(recording: Recording, questions: Questions, cut: CutTriples, 
         return []
     lanes = {LANE: _lane_at(recording, triples.sv, cut.start)}
     vehicles = triples.vehicles
-    return _ask_all(recording, questions, questions.triples, vehicles, cut.start, cut.end, lanes, tally)
+    monitors = questions.triples
+    return _ask_all(recording, questions, monitors, vehicles, cut.start, cut.end, lanes, tally)[0]
 
 
 def _ask_all(
@@ -248,9 +253,12 @@ def _ask_all(
     ends: tuple[Integers, ...],
     lanes: Mapping[str, Integers],
     tally: _Tally,
-) -> list[Match]:
-    """For each minDanger and question the traces that satisfy it, each cut at its own end."""
-    matches = list[Match]()
+) -> tuple[list[Match], list[PossibleMatch]]:
+    """For each minDanger and question the traces that satisfy it, each cut at its own end.
+
+    On a measured road, for pairs also those that may, as places are off.
+    """
+    matches, possible = list[Match](), list[PossibleMatch]()
     last = np.max(ends, axis=0)
     signals = [signal for monitor in monitors for signal in monitor.signals]
     asked_of = frozenset[Formula]().union(*(monitor.states for monitor in monitors))
@@ -261,23 +269,40 @@ def _ask_all(
         seen = monitor.observe(batch, known=seen)
         arises = end >= 0
         lengths = np.where(arises, end - start + 1, batch.lengths)
-        for asked, true in tally.ask(monitor, seen.cut(lengths), arises).items():
-            hits = np.flatnonzero(true)
-            there = TraceQuestion(
-                monitor.formulas[asked],
-                {name: index[hits] for name, index in vehicles.items()},
-                start[hits],
-                end[hits],
-                {name: index[hits] for name, index in lanes.items()},
-                questions.lane_atoms,
-                questions.settings.convention,
-            )
-            matches += _matches_of(recording, asked, there, k)
-    return matches
+        true = tally.ask(monitor, seen.cut(lengths), arises)
+        convention, formulas = questions.settings.convention, monitor.formulas
+        there = TraceQuestions(formulas, vehicles, start, end, lanes, questions.lane_atoms, convention)
+        paired = len(vehicles) == len(PAIR)
+        bounds = _bounds(recording, there, arises if paired else np.logical_or.reduce([*true.values()]))
+        for asked, hit in true.items():
+            hits = np.flatnonzero(hit)
+            uncertain = np.zeros(len(hits), np.bool_) if bounds is None else ~bounds[asked].surely[hits]
+            matches += _matches_of(recording, asked, there.choose(hits), k, uncertain)
+            if bounds is not None and paired:
+                missed = np.flatnonzero(bounds[asked].perhaps & ~hit)
+                possible += _possible_of(recording, asked, there.choose(missed), k)
+    return matches, possible
+
+
+def _bounds(
+    recording: Recording, there: TraceQuestions[MonitorKey], chosen: Bools
+) -> dict[MonitorKey, Bounds] | None:
+    """The bounds of the answers to all traces, false where not ``chosen``; None where places are exact."""
+    if recording.slack is None:
+        return None
+    made = {}
+    for asked, bound in bounds_of(recording, recording.slack, there.choose(chosen)).items():
+        made[asked] = Bounds(*np.zeros((2, len(chosen)), np.bool_))
+        made[asked].surely[chosen], made[asked].perhaps[chosen] = bound.surely, bound.perhaps
+    return made
 
 
 def _matches_of(
-    recording: Recording, asked: MonitorKey, there: TraceQuestion, min_danger: int
+    recording: Recording,
+    asked: MonitorKey,
+    there: TraceQuestions[MonitorKey],
+    min_danger: int,
+    uncertain: Bools,
 ) -> Iterator[Match]:
     """A match for each trace."""
     vehicles = [recording.vehicle_id[index].tolist() for index in there.vehicles.values()]
@@ -287,7 +312,15 @@ def _matches_of(
     lanes = [names[lane] for lane in there.lanes[asked.lane].tolist()]
     frames = there.low.tolist(), there.high.tolist()
     question = map(repeat, (min_danger, asked.set_name, asked.number))
-    return map(Match, sv, pov, pov2, lanes, *frames, *question, uncertain(recording, there).tolist())
+    return map(Match, sv, pov, pov2, lanes, *frames, *question, uncertain.tolist())
+
+
+def _possible_of(
+    recording: Recording, asked: MonitorKey, there: TraceQuestions[MonitorKey], min_danger: int
+) -> Iterator[PossibleMatch]:
+    """A possible match for each trace, whichever of the two is SV."""
+    ids = (recording.vehicle_id[index].tolist() for index in there.vehicles.values())
+    return map(PossibleMatch, *ids, *map(repeat, (min_danger, asked.set_name, asked.number)))
 
 
 def _lane_at(recording: Recording, vehicle: Integers, frame: Integers) -> Integers:

@@ -1,4 +1,4 @@
-"""A match: a scenario that happens in a recording."""
+"""A match: a scenario that happens in a recording; and one that may, as places are off."""
 
 from dataclasses import dataclass, field
 
@@ -31,3 +31,22 @@ class Match:
         """The unordered pair that the match counts for: SV and its POV, or POV2 where there is one."""
         other = self.pov if self.pov2 is None else self.pov2
         return min(self.sv, other), max(self.sv, other)
+
+
+@dataclass(frozen=True)
+class PossibleMatch:
+    """A scenario of two cars that a trace does not match, but may: places decide that are off by as much.
+
+    ``first``, ``second``: the pair as in its trace (``Trace``); ``min_danger`` as in ``Match``.
+    """
+
+    first: int
+    second: int
+    min_danger: int
+    set_name: str
+    scenario: int
+
+    @property
+    def pair(self) -> tuple[int, int]:
+        """The unordered pair."""
+        return min(self.first, self.second), max(self.first, self.second)

@@ -27,14 +27,14 @@ from roadproof.recordings.evaluate import totals as sums
 from roadproof.recordings.evaluate.detectors import Detection
 from roadproof.recordings.evaluate.evaluate import Findings, Trace
 from roadproof.recordings.evaluate.foretelling import LABELS
-from roadproof.recordings.evaluate.matching import Match
+from roadproof.recordings.evaluate.matching import Match, PossibleMatch
 from roadproof.recordings.evaluate.questions import Settings
 from roadproof.recordings.formats.repeats import FramePair
 from roadproof.runtime.canonical import digest
 from roadproof.runtime.files import make_folder, whole_file
 from roadproof.runtime.package_data import program
 
-RECORDING_SCHEMA = "roadproof/recording-findings/4"
+RECORDING_SCHEMA = "roadproof/recording-findings/5"
 MATCH_COLUMNS = tuple(
     "recording sv pov pov2 lane start_frame end_frame min_danger set scenario title uncertain".split()  # noqa: SIM905
 )
@@ -92,7 +92,7 @@ def _seal_of(mark: str, texts: Mapping[str, str]) -> str:
     return hashlib.sha256(told.encode()).hexdigest()
 
 
-def _saved(row: Match | Trace | Detection | FramePair) -> list[object]:
+def _saved(row: Match | Trace | Detection | FramePair | PossibleMatch) -> list[object]:
     """The fields of a row; those about driver models, its last two, where there are any."""
     values = [*vars(row).values()]
     return values[:-2] if isinstance(row, Match) and not row.labels else values
@@ -145,6 +145,7 @@ _ROWS: Mapping[str, Callable[..., object]] = {
     "matches": Match,
     "detections": Detection,
     "seen": FramePair,
+    "possible": PossibleMatch,
 }
 
 
@@ -174,7 +175,8 @@ def write_results(
     with whole_text(folder / "matches.csv") as matches, whole_text(folder / "pairs.csv") as pairs:
         match_rows, pair_rows = (csv.writer(file, lineterminator="\n") for file in (matches, pairs))
         match_rows.writerow((*MATCH_COLUMNS, *driver_columns(settings)))
-        pair_rows.writerow((*PAIR_COLUMNS, *settings.detectors, *settings.sets))
+        within = [f"{name}_uncertain" for name in settings.sets]
+        pair_rows.writerow((*PAIR_COLUMNS, *settings.detectors, *settings.sets, *within))
         for all_found in findings:
             found = sums.without_repeats(all_found, counted)
             sums.add_findings(totals, found)
@@ -220,12 +222,20 @@ def _kept_row(row: sums.Row, totals: sums.Totals) -> kept.Row:
         matching=row.matching,
         matching_with_three_cars=row.matching_with_three,
         matching_uncertain=row.uncertain,
+        matching_possible=row.possible,
         recall=row.recall,
+        recall_interval=_shares(row.bounds, row.traces),
         recall_without_init_safe=row.matching_violating / totals.violating if totals.violating else None,
+        recall_without_init_safe_interval=_shares(row.violating_bounds, totals.violating),
         scenarios={str(i): row.scenarios[i] for i in row.sector.scenarios},
         matching_several=row.several,
         together={f"{i}-{j}": n for (i, j), n in sorted(row.together.items())},
     )
+
+
+def _shares(bounds: tuple[int, int], whole: int) -> tuple[float, float] | None:
+    low, high = bounds
+    return (low / whole, high / whole) if whole else None
 
 
 def _kept_repeat(repeat: sums.Repeat, totals: sums.Totals) -> kept.Repeat:
@@ -282,6 +292,13 @@ def _match_rows(settings: Settings, words: Called, found: Findings) -> Iterator[
         yield [found.recording, m.sv, m.pov, pov2, m.lane, *frames, *happens, int(m.uncertain), *models]
 
 
+def uncertain_pairs(found: Findings) -> Set[tuple[tuple[int, int], int, str]]:
+    """The traces, by pair, minDanger and set, for which errors of places decide whether they match."""
+    sure = {(m.pair, m.min_danger, m.set_name) for m in found.matches if not m.uncertain}
+    perhaps = {(x.pair, x.min_danger, x.set_name) for x in found.possible}
+    return (perhaps | {(m.pair, m.min_danger, m.set_name) for m in found.matches}) - sure
+
+
 def _pair_rows(
     settings: Settings, found: Findings, violating: Set[tuple[int, int]]
 ) -> Iterator[list[object]]:
@@ -291,6 +308,7 @@ def _pair_rows(
     """
     dangers = [decimal(x) for x in settings.min_danger]
     matched = {(m.pair, m.min_danger, m.set_name) for m in found.matches}
+    uncertain = uncertain_pairs(found)
     detected = {(x.detector, x.pair) for x in found.detections}
 
     def of_pair(pair: tuple[int, int]) -> list[int]:
@@ -299,13 +317,13 @@ def _pair_rows(
     rows: dict[tuple[int, int], list[list[object]]] = {}
     for t in found.traces:
         pair = t.first, t.second
-        hits = [int((pair, t.min_danger, s) in matched) for s in settings.sets]
+        hits = [int((pair, t.min_danger, s) in x) for x in (matched, uncertain) for s in settings.sets]
         frames = (dangers[t.min_danger], t.start_frame, t.end_frame, t.first_lane, t.second_lane)
         row = [found.recording, *pair, *frames, "; ".join(t.sectors), *of_pair(pair), *hits]
         rows.setdefault((min(pair), max(pair)), []).append(row)
     for pair in sorted({*found.violating} | {pair for _, pair in detected}):
         if pair not in rows:
-            none = [""] * len(settings.sets)
+            none = [""] * 2 * len(settings.sets)
             rows[pair] = [[found.recording, *pair, "", "", "", "", "", "", *of_pair(pair), *none]]
     for _, each in sorted(rows.items()):
         yield from each

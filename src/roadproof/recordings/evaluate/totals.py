@@ -4,17 +4,17 @@ What an earlier window of the same recording has shown counts once: it is left o
 """
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Collection, Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import product
 from typing import NamedTuple
 
 from roadproof.recordings.evaluate.evaluate import Findings, Trace
-from roadproof.recordings.evaluate.matching import Match
+from roadproof.recordings.evaluate.matching import Match, PossibleMatch
 from roadproof.recordings.evaluate.questions import Settings
 from roadproof.recordings.evaluate.sectors import Sector, sectors_of
-from roadproof.recordings.evaluate.violations import ViolatingPairs
+from roadproof.recordings.evaluate.violations import Degree, VehiclePair, ViolatingPairs
 from roadproof.recordings.formats.repeats import FramePair
 
 
@@ -80,6 +80,7 @@ def without_repeats(findings: Findings, counted: Counts) -> Findings:
         violating=tuple(pair for pair in findings.violating if pair not in shown),
         traces=tuple(kept),
         matches=tuple(x for x in findings.matches if (*x.pair, x.min_danger) in traces),
+        possible=tuple(x for x in findings.possible if (*x.pair, x.min_danger) in traces),
         detections=tuple(x for x in findings.detections if (x.detector, x.pair) in new),
     )
 
@@ -92,7 +93,9 @@ class Row:
     as in the paper; ``matching_with_three`` counts those of three cars too, ``several`` those of these that
     match more than one scenario. ``together`` counts how many traces match two scenarios at once.
     ``matching_violating`` counts the pairs among all violating ones that match a scenario of two cars here.
-    ``uncertain`` counts those of ``matching`` that do so only by matches within the errors of places.
+    ``uncertain`` counts those of ``matching`` that do so only by matches within the errors of places, and
+    ``possible`` those that do not match, but may; ``violating_bounds``: how many of the violating pairs
+    match for sure, and at most.
     """
 
     sector: Sector
@@ -103,6 +106,8 @@ class Row:
     matching_with_three: int = 0
     matching_violating: int = 0
     uncertain: int = 0
+    possible: int = 0
+    violating_bounds: tuple[int, int] = (0, 0)
     scenarios: Counter[int] = field(default_factory=Counter)
     several: int = 0
     together: Counter[tuple[int, int]] = field(default_factory=Counter)
@@ -111,6 +116,11 @@ class Row:
     def recall(self) -> float | None:
         """Matching traces by traces; None where there are none."""
         return self.matching / self.traces if self.traces else None
+
+    @property
+    def bounds(self) -> tuple[int, int]:
+        """How many traces match for sure, and how many may match at most, as places are off."""
+        return self.matching - self.uncertain, self.matching + self.possible
 
 
 class Foretold(NamedTuple):
@@ -134,7 +144,8 @@ class Totals:
     The following count in all road sectors together: ``violating`` the pairs of vehicles with an rssViolation
     in some frame, once over all windows (``violations``); ``traces`` the disturbance
     traces by minDanger (an index); by minDanger and set, ``matching`` the
-    traces and ``matching_violating`` the violating pairs that match a scenario of two cars.
+    traces and ``matching_violating`` the violating pairs that match a scenario of two cars, and
+    ``violating_bounds`` how many of these do for sure, and at most.
     """
 
     settings: Settings
@@ -148,6 +159,7 @@ class Totals:
     traces: Counter[int] = field(default_factory=Counter)
     matching: Counter[tuple[int, str]] = field(default_factory=Counter)
     matching_violating: Counter[tuple[int, str]] = field(default_factory=Counter)
+    violating_bounds: dict[tuple[int, str], tuple[int, int]] = field(default_factory=dict)
     asked: int = 0
     undecided: int = 0
     differing: int = 0
@@ -201,16 +213,24 @@ def add_findings(totals: Totals, findings: Findings) -> None:
     ):
         traces = {(t.first, t.second): t for t in findings.traces if t.min_danger == k}
         matches = [x for x in findings.matches if x.min_danger == k and x.set_name == set_name]
+        possible = [x for x in findings.possible if x.min_danger == k and x.set_name == set_name]
+
+        def violate(sector: str, degree: Degree, pairs: Iterable[VehiclePair]) -> int:
+            rows = [violating[x] for x in pairs if x in violating]
+            return totals.violations.match((k, set_name, sector, degree), rows)  # noqa: B023
+
         for rows in totals.tables.values():
-            of_sector = _count(rows[place], traces.values(), matches)
-            rows[place].matching_violating = totals.violations.match(
-                (k, set_name, rows[place].sector.name), [violating[x] for x in of_sector if x in violating]
-            )
-        of_two = {x.pair for x in matches if x.pov2 is None}
-        totals.matching[k, set_name] += len(of_two & traces.keys())
-        totals.matching_violating[k, set_name] = totals.violations.match(
-            (k, set_name, ""), [violating[x] for x in of_two if x in violating]
-        )
+            row, sector = rows[place], rows[place].sector
+            found = _pairs(matches, possible, sector.scenarios)
+            _count(row, traces.values(), matches, found)
+            row.matching_violating = violate(sector.name, "match", found.matching)
+            surely = violate(sector.name, "surely", found.surely)
+            row.violating_bounds = surely, violate(sector.name, "perhaps", found.perhaps)
+        found = _pairs(matches, possible, totals.settings.scenarios)
+        totals.matching[k, set_name] += len(found.matching & traces.keys())
+        totals.matching_violating[k, set_name] = violate("", "match", found.matching)
+        surely = violate("", "surely", found.surely)
+        totals.violating_bounds[k, set_name] = surely, violate("", "perhaps", found.perhaps)
         _check(totals, findings, traces, _scenarios_by_pair(matches), k, set_name)
 
 
@@ -222,20 +242,33 @@ def _scenarios_by_pair(matches: Iterable[Match]) -> dict[tuple[int, int], set[in
     return matched
 
 
-def _count(row: Row, traces: Iterable[Trace], matches: Iterable[Match]) -> Set[tuple[int, int]]:
-    """Add the traces and matches of the sector of a row; return the pairs that match with two cars."""
-    ours = [x for x in matches if x.scenario in row.sector.scenarios]
-    matched = _scenarios_by_pair(ours)
+class _Pairs(NamedTuple):
+    """Pairs that match with two cars, those that do for sure, and all that may."""
+
+    matching: Set[VehiclePair]
+    surely: Set[VehiclePair]
+    perhaps: Set[VehiclePair]
+
+
+def _pairs(matches: Sequence[Match], possible: Iterable[PossibleMatch], scenarios: Collection[int]) -> _Pairs:
+    of_two = [x for x in matches if x.pov2 is None and x.scenario in scenarios]
+    matching = {x.pair for x in of_two}
+    surely = {x.pair for x in of_two if not x.uncertain}
+    return _Pairs(matching, surely, matching | {x.pair for x in possible if x.scenario in scenarios})
+
+
+def _count(row: Row, traces: Iterable[Trace], matches: Iterable[Match], found: _Pairs) -> None:
+    """Add the traces and matches of the sector of a row; ``found``: the pairs of the latter."""
+    matched = _scenarios_by_pair(x for x in matches if x.scenario in row.sector.scenarios)
     row.traces += sum(row.sector.name in x.sectors for x in traces)
     row.matching_with_three += len(matched)
-    of_two = {x.pair for x in ours if x.pov2 is None}
-    row.matching += len(of_two)
-    row.uncertain += len(of_two - {x.pair for x in ours if x.pov2 is None and not x.uncertain})
+    row.matching += len(found.matching)
+    row.uncertain += len(found.matching - found.surely)
+    row.possible += len(found.perhaps - found.matching)
     for numbers in matched.values():
         row.scenarios.update(numbers)
         row.several += len(numbers) > 1
         row.together.update((i, j) for i in numbers for j in numbers if i < j)
-    return of_two
 
 
 def _check(

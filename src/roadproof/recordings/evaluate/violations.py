@@ -8,11 +8,14 @@ does, in whichever window. So neither figure depends on the order of the windows
 from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
 
 from roadproof.recordings.evaluate.evaluate import Findings
 
 VehiclePair = tuple[int, int]
-Label = tuple[int, str, str]
+Degree: TypeAlias = Literal["match", "surely", "perhaps"]
+"""How pairs match: as places are, however they are off, or as they may be off."""
+Label = tuple[int, str, str, Degree]
 """An index of minDanger, a set, and a road sector; "" for all sectors together."""
 
 
