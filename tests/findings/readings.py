@@ -156,6 +156,13 @@ def uncertain_matches(outcome: Outcome) -> tuple[int, int]:
     return marks.count("1"), len(marks)
 
 
+def uncertain_misses(outcome: Outcome) -> tuple[int, int]:
+    """Traces with minDanger 0 that match nothing of ext, and how many of them may."""
+    with (outcome.folder / US101 / "pairs.csv").open(encoding="utf-8", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if (row["min_danger"], row["ext"]) == ("0", "0")]
+    return len(rows), sum(row["ext_uncertain"] == "1" for row in rows)
+
+
 def sectors_of_matches(outcome: Outcome) -> tuple[str, ...]:
     """Numbers of scenarios of merge and departure zones that match, and windows in which one does."""
     with (outcome.folder / US101 / "matches.csv").open(encoding="utf-8", newline="") as file:
@@ -172,7 +179,14 @@ def us101_counts(outcome: Outcome) -> dict[str, Any]:
 
 
 def disturbances(outcome: Outcome) -> tuple[int, int]:
-    """With minDanger 0 and with 0.6."""
+    """Pairs with minDanger 0 and with 0.6, each once, whichever sectors it begins in."""
+    with (outcome.folder / US101 / "pairs.csv").open(encoding="utf-8", newline="") as file:
+        found = Counter(row["min_danger"] for row in csv.DictReader(file))
+    return found["0"], found["0.6"]
+
+
+def rows_of_sectors(outcome: Outcome) -> tuple[int, int]:
+    """The traces of the tables of all sectors together, with minDanger 0 and with 0.6."""
     rows = [row for row in us101_counts(outcome)["table"] if row["set"] == "base"]
     every, lasting = (sum(x["traces"] for x in rows if x["min_danger"] == d) for d in ("0", "3/5"))
     return every, lasting
@@ -209,10 +223,13 @@ def notes_of(outcome: Outcome, pattern: str) -> list[tuple[str, ...]]:
 
 
 def errors_of_lengths(outcome: Outcome) -> tuple[str, ...]:
-    """Errors of s in per cent: least and greatest on average; greatest on a vehicle's way, in a bend."""
-    pattern = r"off by (\S+) % on average, by (\S+) % on the way of .*, by up to (\S+) % in a bend"
-    columns = list(zip(*notes_of(outcome, pattern), strict=True))
-    return min(columns[0], key=float), *(max(column, key=float) for column in columns)
+    """Errors of s in per cent: least and greatest on average; greatest on a way, in a bend, and where."""
+    pattern = r"off by (\S+) % on average, by (\S+) % on the way of obstacle (\d+), by up to (\S+) % in a bend"
+    notes = us101_counts(outcome)["notes"].items()
+    found = [(*m.groups(), name) for name, said in notes for x in said if (m := re.search(pattern, x))]
+    means = sorted((x[0] for x in found), key=float)
+    way, bend = (max(found, key=lambda x: float(x[k])) for k in (1, 3))
+    return means[0], means[-1], way[1], way[2], way[4], bend[3], bend[4]
 
 
 def pairs_drives_proofs(outcome: Outcome) -> tuple[int, int, int]:
