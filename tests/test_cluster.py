@@ -14,7 +14,7 @@ from roadproof.runtime import dask_executor
 from roadproof.runtime.executors import Cluster, Executor
 from roadproof.runtime.worker import is_worker
 
-pytest.importorskip("distributed", reason="dask is not installed: pip install 'roadproof[cluster]'")
+pytest.importorskip("distributed", reason="dask is not installed: pip install distributed")
 
 TOLD: list[str] = []
 HERE = Executor(cluster=Cluster("local:2", tell=TOLD.append))

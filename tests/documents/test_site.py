@@ -21,7 +21,7 @@ ROOT = Path(__file__).parents[2]
 LINK = re.compile(r"\]\(([^)\s#]+)(?:#[^)]*)?\)")
 needs_mkdocs = pytest.mark.skipif(
     not all(map(find_spec, ("mkdocs", "material", "mkdocstrings"))),
-    reason="mkdocs, mkdocs-material or mkdocstrings is not installed (pip install 'roadproof[docs]')",
+    reason="mkdocs, mkdocs-material or mkdocstrings is not installed (pip install -e '.[docs]')",
 )
 
 

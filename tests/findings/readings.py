@@ -224,7 +224,9 @@ def notes_of(outcome: Outcome, pattern: str) -> list[tuple[str, ...]]:
 
 def errors_of_lengths(outcome: Outcome) -> tuple[str, ...]:
     """Errors of s in per cent: least and greatest on average; greatest on a way, in a bend, and where."""
-    pattern = r"off by (\S+) % on average, by (\S+) % on the way of obstacle (\d+), by up to (\S+) % in a bend"
+    pattern = (
+        r"off by (\S+) % on average, by (\S+) % on the way of obstacle (\d+), by up to (\S+) % in a bend"
+    )
     notes = us101_counts(outcome)["notes"].items()
     found = [(*m.groups(), name) for name, said in notes for x in said if (m := re.search(pattern, x))]
     means = sorted((x[0] for x in found), key=float)

@@ -191,9 +191,11 @@ def hostile_traffic() -> dict:
     settings |= {"convention": "clip", "detectors": [HOSTILE], "options": {HOSTILE: CLOSED}, "parameters": {}}
     counts = ("recordings", "vehicles", "samples", "violating", "asked", "undecided", "differing")
     row = {"sector": HOSTILE, "min_danger": "0", "set": CLOSED, "recall": 0.5, "scenarios": {"1": 3}}
-    row |= dict.fromkeys(("traces", "matching", "matching_uncertain", "matching_with_three_cars"), 1)
+    row |= dict.fromkeys(("traces", "matching", "matching_uncertain", "matching_possible"), 1)
+    row["matching_with_three_cars"] = 1
     row["matching_several"] = 1
-    row |= {"recall_without_init_safe": None, "together": {}}
+    row |= {"recall_interval": [0.25, 0.75], "recall_without_init_safe": None, "together": {}}
+    row["recall_without_init_safe_interval"] = None
     model = {"min_danger": "3/5", "set": HOSTILE, "scenario": 1, "driver": "rss", "unpreventable": 2}
     return {
         **dict.fromkeys(counts, 1),
@@ -334,7 +336,7 @@ def test_a_hostile_text_stays_text_in_every_section(tmp_path, drives):
     files = []
     for kind, data in hostile_answers(drive_in(drives)).items():
         files.append(tmp_path / f"{kind}.json")
-        version = {"compare": 2, "monitor": 2, "traffic-results": 4}.get(kind, 1)
+        version = {"compare": 2, "monitor": 2, "traffic-results": 5}.get(kind, 1)
         files[-1].write_text(json.dumps({"schema": f"roadproof/{kind}/{version}", **HEADED, **data}), "utf-8")
     found, text = made(*files, out=tmp_path / "page.html", title=f"{HOSTILE} {CLOSED}")
     assert found.results == len(files)

@@ -105,7 +105,7 @@ def _client(cluster: Cluster) -> "Client":
         from distributed import Client, LocalCluster, Security
     except ImportError:
         raise MissingSolverError(
-            "a cluster needs dask, which is not installed: pip install 'roadproof[cluster]'"
+            "a cluster needs dask, which is not installed: pip install distributed"
         ) from None
     dask.config.set(_SETTINGS)
     if cluster.local:

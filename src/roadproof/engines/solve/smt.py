@@ -158,7 +158,7 @@ def _ask_cvc5(script: str, meter: Budget | None) -> Satisfiability:
     try:
         import cvc5
     except ImportError:
-        raise MissingSolverError("solver=cvc5 is not installed: install roadproof[cvc5], or ask z3") from None
+        raise MissingSolverError("solver=cvc5 is not installed: pip install cvc5, or ask z3") from None
     solver = cvc5.Solver()
     # Without it, cvc5 finds no end to one of the cases of the RSS guarantee, and with it it takes 0.03 s.
     solver.setOption("decision", "justification")

@@ -259,7 +259,7 @@ def _signing_key(path: Path) -> "Ed25519PrivateKey":
         from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
         from cryptography.hazmat.primitives.serialization import load_pem_private_key
     except ImportError:
-        raise MissingSolverError("--sign needs cryptography: pip install 'roadproof[sign]'") from None
+        raise MissingSolverError("--sign needs cryptography: pip install cryptography") from None
     try:
         key = load_pem_private_key(path.read_bytes(), None)
     except (ValueError, TypeError) as error:

@@ -16,7 +16,7 @@ examples:
   roadproof studio --no-browser --port 9000
 
 The page is served on this machine's loopback interface only, at the address that is printed; its token is
-made anew at each start. Nothing is sent anywhere else. Ctrl-C ends it. Needs the extra: 'roadproof[studio]'.
+made anew at each start. Nothing is sent anywhere else. Ctrl-C ends it. Needs starlette and uvicorn.
 """
 OPTIONS = settings.Studio
 

@@ -123,7 +123,8 @@ def _precision(totals: Totals) -> str:
         danger = totals.settings.min_danger.index(row.min_danger)
         matching = totals.matching_violating[danger, row.set_name]
         share = Share(matching, totals.violating, "violating pairs in all road sectors")
-        within = _within(totals.violating_bounds[danger, row.set_name], matching, totals.violating)
+        bounds = totals.violating_bounds.get((danger, row.set_name), (matching, matching))
+        within = _within(bounds, matching, totals.violating)
         lines.append(
             f"Without the filter dangerArises, minDanger {decimal(row.min_danger)}, {row.set_name}: "
             f"{share.percent}{theirs} ({share.count}{within}) match a scenario with two vehicles."

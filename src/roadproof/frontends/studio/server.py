@@ -147,7 +147,7 @@ def _routes(studio: Studio, largest_body: int) -> "Starlette":
 def missing() -> MissingSolverError:
     """What is said where the extra is not installed."""
     return MissingSolverError(
-        "the studio needs starlette and uvicorn, which are not installed: pip install 'roadproof[studio]'"
+        "the studio needs starlette and uvicorn, which are not installed: pip install starlette uvicorn"
     )
 
 
