@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from random import Random
 
 import numpy as np
 import pytest
@@ -141,6 +142,21 @@ def test_a_factor_of_most_accelerations_holds_for_all(factor: float, tmp_path: P
     assert f"those of all 6 vehicles were divided by {factor:g}" in note_in(
         read, "accelerations along the road contradict"
     )
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_a_factor_of_a_whole_recording_is_undone_for_every_vehicle(seed: int, tmp_path: Path) -> None:
+    """Four to eight vehicles show it, and up to three hardly accelerate; turned signs, km/h, and g."""
+    dice = Random(seed)
+    factor = dice.choice((-1.0, 3.6, 9.81, -3.6))
+    shown = [dice.choice((-1, -1, 1)) * dice.uniform(1.2, 2.0) for _ in range(dice.randrange(4, 9))]
+    pulls = [*shown, *(dice.uniform(-0.1, 0.1) for _ in range(dice.randrange(4)))]
+    dice.shuffle(pulls)
+    right = tuple(car(k, 9.0 * k, speed=12.0, pull=x) for k, x in enumerate(pulls, 1))
+    wrong = tuple(replace(x, motion=tuple((v, a * factor) for v, a in x.motion or ())) for x in right)
+    read = find_source(written(tmp_path, document(wrong))).read()
+    assert read.vehicle_id.tolist() == [x.id for x in right]
+    assert np.allclose(read.a_lon[read.start[:-1] + 20], pulls, atol=0.1), (factor, pulls)
 
 
 def test_a_factor_of_a_few_accelerations_does_not(tmp_path: Path) -> None:

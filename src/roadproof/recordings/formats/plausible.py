@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from roadproof.recordings.formats.clock import Rate, samples_in
+from roadproof.recordings.formats.factors import common_factor, hint_on
 from roadproof.recordings.formats.median import Median, Scale, integrate
 from roadproof.recordings.formats.recording import (
     Bools,
@@ -49,8 +50,8 @@ class Implausible:
     """A rule of which ``broken`` of ``asked`` places break it, first at sample ``row``.
 
     ``signal`` is what the cell there says; ``refused`` where there are too many; ``hint``: what may be wrong
-    in all of them. ``factor``: one of a known fault, such as a turned sign, that more than half of all places
-    agree on; so it holds for the whole recording.
+    in all of them. ``factor``: that of a known fault, such as a turned sign, or another one that more than
+    half of all places agree on; so it holds for the whole recording.
     """
 
     rule: str
@@ -109,7 +110,6 @@ _RATES = (
     _Rate("d", "v_lat", 0.3, 0.5, 0.1, "velocities across the road and positions"),
     _Rate("v_lon", "a_lon", 0.5, 0.5, 0.25, "accelerations along the road and velocities"),
 )
-_FACTORS = ((-1.0, "the sign is turned"), (0.0, "zero"), (3.6, "km/h?"), (2.237, "miles an hour?"))
 
 
 @dataclass
@@ -146,27 +146,14 @@ class _Motion:
 
     def doubts(self) -> Iterator[Implausible]:
         if self.broken:
-            factor = float(np.median(np.concatenate(self.factors)))
+            factors = np.concatenate(self.factors)
+            factor = float(np.median(factors))
             refused = _too_many(self.broken, self.asked, SHARE)
             found = f"{self.rule.what} contradict each other", self.rule.rate, self.row
             counts = self.broken, self.asked, "moving seconds"
-            common = _known_factor(factor) if refused and 2 * self.broken > self.asked else None
-            yield Implausible(*found, *counts, refused, _hint(factor) if refused else "", common)
-
-
-def _known_factor(factor: float) -> float | None:
-    """The factor of a known fault that this is, nearly; None where it is none."""
-    near = (x for x, _ in _FACTORS if np.isfinite(factor) and abs(factor - x) < 0.05 * max(1, abs(x)))
-    return next(near, None)
-
-
-def _hint(factor: float) -> str:
-    """What such a factor between what is told and what is so may come from."""
-    if not np.isfinite(factor):
-        return ""
-    known = _known_factor(factor)
-    cause = "" if known is None else f": {dict(_FACTORS)[known]}"
-    return f", by a factor of {factor:.3g}{cause}"
+            most = refused and 2 * self.broken > self.asked
+            common = common_factor(factors, factor, self.asked) if most else None
+            yield Implausible(*found, *counts, refused, hint_on(factor) if refused else "", common)
 
 
 @dataclass(frozen=True)
