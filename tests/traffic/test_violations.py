@@ -4,13 +4,23 @@ The oracle knows which vehicles every window shows and when; it shares no code w
 moments only.
 """
 
+from dataclasses import replace
+from fractions import Fraction
 from random import Random
 
+import numpy as np
 import pytest
 
-from roadproof.recordings.evaluate.evaluate import Findings
+from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
+from roadproof.recordings.evaluate.questions import ask, default_settings
+from roadproof.recordings.evaluate.totals import Counts, add_findings, begin_totals, without_repeats
 from roadproof.recordings.evaluate.violations import ViolatingPairs
-from roadproof.recordings.formats.repeats import FramePair
+from roadproof.recordings.formats.recording import OF_SAMPLES, Recording, keep_vehicles, offsets
+from roadproof.recordings.formats.repeats import FramePair, moments_of
+from roadproof.recordings.simulate.planting import Place, plant
+from roadproof.recordings.simulate.simulate import simulate
+from roadproof.recordings.simulate.traffic import Traffic
+from traffic.drives import braking, cut_in
 
 LABEL = (0, "ext", "", "match")
 LENGTH, SPAN = 60, 20
@@ -104,3 +114,60 @@ def test_pairs_that_are_only_detected_do_not_violate() -> None:
     counted = ViolatingPairs()
     assert counted.add(findings("a", (FramePair(1, 2, 0, False, (5,)),), ())) == {}
     assert counted.count == 0
+
+
+# --- whole evaluations of windows that overlap -------------------------------------------------------
+
+
+def cut(
+    whole: Recording, number: int, begin: int, end: int, dice: Random
+) -> tuple[Recording, dict[int, int]]:
+    """The frames from ``begin`` to ``end`` as a recording with ids of its own, and whose these are."""
+    frames = whole.row_frame
+    rows = (frames >= begin) & (frames < end)
+    counts = np.add.reduceat(rows.astype(int), whole.start[:-1])
+    there = counts > 0
+    part = keep_vehicles(whole, there)
+    kept = rows[np.repeat(there, np.diff(whole.start))]
+    per_sample = {name: getattr(part, name)[kept] for name in OF_SAMPLES}
+    start = offsets(counts[there])
+    ids = np.array(sorted(dice.sample(range(1, 1000), int(there.sum()))))
+    motion = np.column_stack([per_sample[x] for x in ("v_lon", "v_lat", "a_lon", "a_lat")])
+    window = replace(
+        part,
+        **per_sample,
+        name=f"w{number}",
+        vehicle_id=ids,
+        first_frame=np.maximum(part.first_frame - begin, 0),
+        start=start,
+        moments=moments_of(motion, start),
+    )
+    return window, dict(zip(ids.tolist(), part.vehicle_id.tolist(), strict=True))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_pair_and_its_match_count_once_in_windows_that_overlap(seed: int) -> None:
+    """Windows of 8 s, each 4 s after the one before, in any order, against the vehicles behind their ids.
+
+    Accelerations have noise, so that each vehicle is known again by its motion.
+    """
+    dice, random = Random(seed), np.random.default_rng(seed)
+    whole = simulate(Traffic(seconds=16, lane_width=3.5, section=300), seed=seed)
+    for drive, frame in ((cut_in(), 60), (braking(), 200)):
+        whole, _ = plant(whole, drive, Place(2, frame, 6, 10.0, -34.0))
+    whole = replace(whole, a_lon=whole.a_lon + random.normal(0, 0.01, len(whole.a_lon)))
+    settings = replace(default_settings(), sets=("ext",), scenarios=(1, 3, 4), min_danger=(Fraction(0),))
+    questions = ask(settings, whole.rate)
+    windows = [cut(whole, k, 100 * k, 100 * k + 200, dice) for k in range(4)]
+    dice.shuffle(windows)
+    totals, counted = begin_totals(settings), Counts()
+    violating, matching = set(), set()
+    single = 0
+    for window, names in windows:
+        found = evaluate_recording(window, questions)
+        violating |= {frozenset(names[x] for x in pair) for pair in found.violating}
+        matching |= {frozenset(names[x] for x in m.pair) for m in found.matches}
+        single += len(found.violating)
+        add_findings(totals, without_repeats(found, counted))
+    assert totals.violating == len(violating) < single
+    assert totals.matching_violating[0, "ext"] == len(matching & violating) > 0
