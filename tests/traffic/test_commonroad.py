@@ -284,7 +284,7 @@ def state(tag: str, time: int, x: State) -> str:
         f"<{tag}><position>{xml_point(at(x.s, x.d))}</position>{exact('orientation', x.turned + TURN)}"
         f"<time><exact>{time}</exact></time>{exact('velocity', x.speed)}"
         f"{'' if x.drift is None else exact('velocityY', x.drift)}{exact('acceleration', x.pull)}"
-        f"{exact('yawRate', 0.3)}{exact('slipAngle', 0.1)}</{tag}>"
+        f"{exact('yawRate', 0.3)}{exact('slipAngle', 0.0)}</{tag}>"
     )
 
 
@@ -473,10 +473,10 @@ def shaped(more: str) -> Callable[[str], str]:
 @pytest.mark.parametrize(
     ("change", "note"),
     [
-        (lambda x: x.replace("<shape>", f"<shape>{CIRCLE}", 1), "obstacles left out (not one rectangle"),
+        (lambda x: x.replace("<shape>", f"<shape>{CIRCLE}", 1), "left out obstacles (not one rectangle"),
         (
             lambda x: x.replace("</rectangle></shape>", f"</rectangle>{CIRCLE}</shape>", 1),
-            "left out (not one",
+            "(not one",
         ),
         (lambda x: x.replace("trajectory>", "occupancySet>", 2), "or no trajectory): 2"),
     ],
@@ -496,7 +496,7 @@ def test_what_is_no_box_is_left_out_and_noted(
 def test_static_obstacles_are_noted(tmp_path: Path) -> None:
     parked = '<staticObstacle id="77"><type>parkedVehicle</type></staticObstacle>'
     recording = read_commonroad(put(tmp_path, [FIRST], more=parked * 2))
-    assert "2 static obstacles left out: they are no traffic" in recording.notes
+    assert "left out 2 static obstacles: they are no traffic" in recording.notes
     assert not any("left out" in x for x in read_commonroad(put(tmp_path, [FIRST])).notes)
 
 

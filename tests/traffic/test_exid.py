@@ -20,7 +20,7 @@ from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
 from roadproof.recordings.evaluate.one_trace import read_pair
 from roadproof.recordings.evaluate.questions import Questions, ask, default_settings
 from roadproof.recordings.evaluate.recheck import recheck
-from roadproof.recordings.formats.exid import LEFT_OUT, read_exid, read_osm, utm_of
+from roadproof.recordings.formats.exid import NO_LANES, read_exid, read_osm, utm_of
 from roadproof.recordings.formats.recording import Recording
 from roadproof.recordings.formats.sources import find_source
 from roadproof.world.motion import state_at
@@ -144,7 +144,7 @@ def test_lat_and_lon(tmp_path: Path) -> None:
     road = with_ramps("merge")
     for name, local in (("a", True), ("b", False)):
         (tmp_path / f"{name}.osm").write_text(osm_of(road, rampwards, step=60.0, local=local))
-    one, other = (read_osm(tmp_path / f"{name}.osm", (300000.0, 5600000.0))[0] for name in "ab")
+    one, other = (read_osm(tmp_path / f"{name}.osm", (300000.0, 5600000.0)).lanelets for name in "ab")
     assert one.keys() == other.keys()
     for name in one:
         assert np.abs(one[name].left - other[name].left).max() < 1e-3
@@ -401,15 +401,16 @@ def test_bounds_are_turned_into_driving_direction(seed: int, tmp_path: Path) -> 
     text = xml.tostring(root, "unicode")
     path = tmp_path / "a.osm"
     path.write_text(text)
-    lanelets, notes = read_osm(path, (0.0, 0.0))
-    assert notes == ()
+    found = read_osm(path, (0.0, 0.0))
+    lanelets = found.lanelets
+    assert found.notes == ()
     expected = bounds(text)
     assert {*lanelets} == {*expected}
     for name, (left, right) in expected.items():
         for line, points in ((lanelets[name].left, left), (lanelets[name].right, right)):
             ends = [complex(*line[0]), complex(*line[-1])]
             assert ends == pytest.approx([points[0], points[-1]], abs=1e-6), name
-    plain, _ = read_osm(write_text(tmp_path / "b.osm", drawn()), (0.0, 0.0))
+    plain = read_osm(write_text(tmp_path / "b.osm", drawn()), (0.0, 0.0)).lanelets
     for name, lanelet in plain.items():
         assert lanelets[name].successors == lanelet.successors
         assert {*lanelets[name].beside} == {*lanelet.beside}
@@ -420,15 +421,16 @@ def write_text(path: Path, text: str) -> Path:
     return path
 
 
-@pytest.mark.parametrize("subtype", sorted(LEFT_OUT))
+@pytest.mark.parametrize("subtype", sorted(NO_LANES))
 def test_lanelets_that_are_no_lanes_are_left_out(subtype: str, tmp_path: Path) -> None:
     text = drawn()
     place = text.rindex('v="highway"')
     changed = text[:place] + f'v="{subtype}"' + text[place + len('v="highway"') :]
-    everything, _ = read_osm(write_text(tmp_path / "a.osm", text), (0.0, 0.0))
-    lanelets, notes = read_osm(write_text(tmp_path / "b.osm", changed), (0.0, 0.0))
+    everything = read_osm(write_text(tmp_path / "a.osm", text), (0.0, 0.0)).lanelets
+    found = read_osm(write_text(tmp_path / "b.osm", changed), (0.0, 0.0))
+    lanelets = found.lanelets
     (gone,) = {*everything} - {*lanelets}
-    assert notes == (f"lanelets of subtype {subtype} are left out",)
+    assert found.notes == (f"left out lanelets of b.osm that are no lanes of the road: 1 of kind {subtype}",)
     assert all(gone not in (*x.successors, *x.beside) for x in lanelets.values())
 
 

@@ -1,8 +1,9 @@
 """XML elements that record what was read of them, so that a reader can name what it passed over.
 
 An attribute is read by ``get``, a text by ``text`` or ``findtext``. An element is read if a reader asks for
-it by tag (``find``, ``findall``, ``iter``) or reads one of its attributes. Iterating over children reads none
-of them. ``unread`` lists all the rest, apart from parts that a table of the format declares harmless.
+it by tag (``find``, ``findall``, ``iter``) or reads one of its attributes; ``find`` reads the first one only.
+Iterating over children reads none of them. ``unread`` lists all the rest, apart from parts that a table of
+the format declares harmless.
 """
 
 import xml.etree.ElementTree as ElementTree
@@ -90,7 +91,15 @@ class Element(_Plain):
         _TEXT_OF.__set__(self, value)
 
     def find(self, path: str, namespaces: Any = None) -> "Element | None":
-        return next(iter(self.findall(path)), None)
+        """The first element at a path of tags; it counts as read, with those around it."""
+        tag, _, below = path.partition("/")
+        for node in self if tag == _ALL else _Plain.findall(self, tag):
+            found = node if not below else node.find(below)
+            if found is not None:
+                if tag != _ALL:
+                    node.note()  # type: ignore[attr-defined]
+                return found  # type: ignore[return-value]
+        return None
 
     def findall(self, path: str, namespaces: Any = None) -> "list[Element]":  # type: ignore[override]
         """The elements at a path of tags joined by ``/``, all of which count as read, and ``*`` as not."""
@@ -125,7 +134,8 @@ def text_of(node: _Plain) -> str | None:
 class Unread:
     """A part of a file that a reader passed over.
 
-    ``part``: ``Tag`` of an element, ``Tag@attribute`` or ``Tag/text()``. ``where``: the path of the element.
+    ``part``: ``Tag`` of an element, ``Tag[key=value]`` where an attribute says what it is, ``Tag@attribute``
+    or ``Tag/text()``. ``where``: the path of the element.
     """
 
     part: str
@@ -135,21 +145,27 @@ class Unread:
         return f"{self.part} at {self.where}"
 
 
-def unread(root: Element, harmless: Mapping[str, str]) -> tuple[Unread, ...]:
+def unread(
+    root: Element, harmless: Mapping[str, str], keys: Mapping[str, str] | None = None
+) -> tuple[Unread, ...]:
     """The parts of a file that were not read and that no rule declares harmless, in the order of the file.
 
-    ``harmless``: reasons by ``Tag``, ``Tag@attribute``, ``@attribute`` of any element, or ``Tag/text()``.
+    ``harmless``: reasons by ``Tag``, ``Tag[key=value]``, ``Tag@attribute``, ``@attribute`` of any element, or
+    ``Tag/text()``. ``keys``: by tag the attribute that says what an element is, as ``k`` of a ``tag`` in OSM.
     Nothing below an unread element is listed.
     """
-    return tuple(_unread(root, harmless, ""))
+    return tuple(_unread(root, harmless, keys or {}, ""))
 
 
-def _unread(node: Element, harmless: Mapping[str, str], above: str) -> Iterator[Unread]:
-    if node.tag in harmless or node.has_read(_ALL):
+def _unread(
+    node: Element, harmless: Mapping[str, str], keys: Mapping[str, str], above: str
+) -> Iterator[Unread]:
+    called = _called(node, keys)
+    if node.tag in harmless or called in harmless or node.has_read(_ALL):
         return
     where = f"{above}/{_label(node)}" if above else _label(node)
     if not node.is_read and above and not any(x.is_read for x in _below(node)):
-        yield Unread(str(node.tag), where)
+        yield Unread(called, where)
         return
     for name in node.keys():  # noqa: SIM118
         part = f"{node.tag}@{name}"
@@ -159,7 +175,13 @@ def _unread(node: Element, harmless: Mapping[str, str], above: str) -> Iterator[
     if (text_of(node) or "").strip() and not node.has_read(_TEXT) and part not in harmless:
         yield Unread(part, where)
     for child in node:
-        yield from _unread(child, harmless, where)
+        yield from _unread(child, harmless, keys, where)
+
+
+def _called(node: Element, keys: Mapping[str, str]) -> str:
+    """The tag of an element, with the attribute that says what it is."""
+    key = keys.get(str(node.tag))
+    return str(node.tag) if key is None else f"{node.tag}[{key}={node.peek(key)}]"
 
 
 def _below(node: Element) -> Iterator[Element]:

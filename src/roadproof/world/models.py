@@ -46,7 +46,8 @@ def _of_map(text: str) -> Road:
 
     path, selection = read_selection(text)
     found = select(path, selection)
-    return Road(path.stem, found.lanelets, shared_boundaries(found.lanelets), found.line, text)
+    beside = shared_boundaries(found.lanelets)
+    return Road(path.stem, found.lanelets, beside, found.line, text, found.unread)
 
 
 def load_recorded_road(name_or_path: str | Path, directions: tuple[int, ...] = ()) -> tuple[Road, int]:

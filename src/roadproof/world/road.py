@@ -32,7 +32,7 @@ class Road:
     """Lanelets and which lanes lie side by side (unordered pairs).
 
     ``line`` None: the road is straight, with s and d as coordinates of the plane. ``map``: the map that it is
-    from, and which stretch of it.
+    from, and which stretch of it. ``unread``: kinds of parts of the map that were not read.
     """
 
     name: str
@@ -40,6 +40,7 @@ class Road:
     adjacent: frozenset[frozenset[str]]
     line: ReferenceLine | None = None
     map: str | None = None
+    unread: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         """The same in every process, as answers are kept under fingerprints of what was asked."""

@@ -1,7 +1,7 @@
 """All that is known of a catalogue: what its tests show, imply and miss, and the index that says so."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -26,6 +26,7 @@ from roadproof.evidence.answers import catalogue_index as kept
 from roadproof.evidence.answers import coverage
 from roadproof.evidence.answers.catalogue_index import Figure
 from roadproof.library.bind import values_with
+from roadproof.recordings.formats.reliable import left_out_in
 
 
 class Result(ABC):
@@ -114,19 +115,28 @@ class Result(ABC):
     @property
     def notes(self) -> tuple[str, ...]:
         """On files that are no tests, samples that contradict themselves, drives made with other values."""
-        doubted: dict[str, list[str]] = {}
         made: dict[tuple[str, ...], list[str]] = {}
         for x in self.concrete:
-            for note in x.notes:
-                doubted.setdefault(note, []).append(x.entry.id)
             if x.made_with:
                 made.setdefault(x.made_with, []).append(x.entry.id)
         others = (
             f"made with {', '.join(those)}, and judged with what is asked for: {', '.join(tests)}"
             for those, tests in made.items()
         )
-        told = (f"{', '.join(tests)}: {note}" for note, tests in doubted.items())
-        return (*self.catalogue.notes, *told, *others)
+        return (*self.catalogue.notes, *self._noted(lambda note: True), *others)
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """Those of the notes that say which vehicles and parts of files were left out."""
+        return self._noted(lambda note: bool(left_out_in([note])))
+
+    def _noted(self, wanted: Callable[[str], bool]) -> tuple[str, ...]:
+        """The notes on tests that are wanted, each with the tests that it is about."""
+        tests: dict[str, list[str]] = {}
+        for x in self.concrete:
+            for note in filter(wanted, x.notes):
+                tests.setdefault(note, []).append(x.entry.id)
+        return tuple(f"{', '.join(names)}: {note}" for note, names in tests.items())
 
     @property
     def in_force(self) -> tuple[str, ...]:
@@ -162,6 +172,7 @@ class Result(ABC):
             alike=found.alike,
             contradictions=found.contradictions,
             notes=self.notes,
+            left_out=self.left_out,
             seconds=round(seconds, 1),
         )
 

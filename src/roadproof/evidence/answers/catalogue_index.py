@@ -6,7 +6,7 @@ from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.drivers.models import ModelName
 from roadproof.evidence.answers import coverage, shared
-from roadproof.evidence.codec import Doc, Rule
+from roadproof.evidence.codec import LEFT_OUT, Doc, Rule
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
 
@@ -289,6 +289,11 @@ class Index(Preamble, shared.Heading):
     alike: Annotated[Remarks, Doc("Tests that say the same.")]
     contradictions: Annotated[Remarks, Doc("What was seen although it is proved never to be.")]
     notes: tuple[str, ...]
+    left_out: Annotated[
+        tuple[str, ...],
+        LEFT_OUT,
+        Doc("Those of the notes that say which vehicles and parts of files were left out."),
+    ] = ()
     seconds: shared.Seconds = 0.0
 
 

@@ -1,6 +1,7 @@
 """The answer of ``roadproof evaluate``: dangers in recordings, and the scenarios that match them."""
 
 from collections.abc import Mapping
+from dataclasses import field
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers import shared
@@ -154,6 +155,11 @@ class Answer(shared.PlainHeading):
         tuple[Repeat, ...], Doc("What an earlier recording shows too, which is counted there only.")
     ]
     notes: Annotated[Mapping[str, tuple[str, ...]], Doc("What is odd, by recording, in words.")]
+    left_out: Annotated[
+        Mapping[str, tuple[str, ...]],
+        LEFT_OUT,
+        Doc("Those of the notes that say which vehicles and parts of files were left out."),
+    ] = field(default_factory=dict)
     failed: Annotated[Mapping[str, str], Doc("Recordings that were left out, and why.")]
     drivers: Annotated[
         tuple[Prediction, ...] | None,

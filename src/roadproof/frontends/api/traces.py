@@ -40,7 +40,7 @@ from roadproof.recordings.evaluate.one_trace import (
     refuse_unmeasured,
     sample_drive,
 )
-from roadproof.recordings.formats.reliable import LEFT_OUT
+from roadproof.recordings.formats.reliable import left_out_in
 from roadproof.recordings.formats.sources import has_numbers
 from roadproof.recordings.formats.storyboard.drives import read_storyboard_drive
 from roadproof.recordings.formats.table import Frame, columns_of
@@ -76,7 +76,7 @@ class MonitorAnswer(Table):
     @property
     def left_out(self) -> tuple[str, ...]:
         """The notes on vehicles and parts of the file that were left out."""
-        return tuple(x for x in self.notes if x.startswith(LEFT_OUT))
+        return left_out_in(self.notes)
 
     @property
     def verdict(self) -> Truth:

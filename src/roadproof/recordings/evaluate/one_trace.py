@@ -23,11 +23,12 @@ from roadproof.logic.rewrite import signals_of, with_values
 from roadproof.recordings.evaluate.traces import KIND, by_vehicle, gather_one, refuse_missing
 from roadproof.recordings.formats import openscenario, samples
 from roadproof.recordings.formats.recording import BACKWARDS, Bools, Recording, kind_called, own_numbers
-from roadproof.recordings.formats.reliable import LEFT_OUT
+from roadproof.recordings.formats.reliable import left_out_in
 from roadproof.recordings.formats.source import beside
 from roadproof.recordings.formats.sources import find_source
 from roadproof.recordings.formats.straight import of_road, whole
 from roadproof.recordings.formats.table import Column, Table
+from roadproof.recordings.formats.unread import unread_note
 from roadproof.semantics.exact.robust import MOST_SAMPLES
 from roadproof.semantics.sampled.batch import Array, Batch
 from roadproof.world.drive import Drive, value_at
@@ -152,7 +153,7 @@ def _find(recording: Recording, number: int, text: str) -> int:
     place = np.flatnonzero(recording.vehicle_id == number)
     if not len(place):
         known = f"{recording.vehicle_id.min()} to {recording.vehicle_id.max()}"
-        left_out = [f"\n{x}" for x in recording.notes if x.startswith(LEFT_OUT)]
+        left_out = [f"\n{x}" for x in left_out_in(recording.notes)]
         told = f"recording {recording.name} has no vehicle {number}; ids are {known}"
         raise InputError(f"{text}: {told}{''.join(left_out)}")
     return int(place[0])
@@ -254,10 +255,13 @@ def read_samples(path: Path, road: Road | None = None, strict: bool = False) -> 
         table, road, notes = scenario.table, road or scenario.road, (*scenario.otherwise, *scenario.faults)
         computed, faults = scenario.computed, scenario.faults
     else:
-        table, notes, computed, faults = samples.read_columns(path), (), False, ()
+        table, computed, faults = samples.read_columns(path), False, ()
+        notes = samples.unread_of(table, strict)
     if road is None:
         known = beside(path, samples.ROAD_ENDING)
         road = load_recorded_road(known[0])[0] if known else load_road("main-2")
+    if path.suffix != ".xosc":
+        notes += unread_note(Path((road.map or "").partition("#")[0]), road.unread, strict)
     lists = {name: values.tolist() for name, values in table.columns.items()}
     made = of_columns(lists, road, str(path))
     doubts = samples.doubts_in(table, of_road(road, samples.DIRECTION, path), computed)

@@ -29,6 +29,7 @@ from roadproof.recordings.evaluate.evaluate import Findings, Trace
 from roadproof.recordings.evaluate.foretelling import LABELS
 from roadproof.recordings.evaluate.matching import Match, PossibleMatch
 from roadproof.recordings.evaluate.questions import Settings
+from roadproof.recordings.formats.reliable import left_out_in
 from roadproof.recordings.formats.repeats import FramePair
 from roadproof.runtime.canonical import digest
 from roadproof.runtime.files import make_folder, whole_file
@@ -207,6 +208,7 @@ def as_json(totals: sums.Totals, failed: Mapping[str, str]) -> JsonObject:
         checks=kept.Checks(broken=tuple(totals.broken), unequal_3_4=tuple(totals.unequal_3_4)),
         repeats=tuple(_kept_repeat(x, totals) for x in totals.repeats),
         notes=totals.notes,
+        left_out={name: x for name, notes in totals.notes.items() if (x := left_out_in(notes))},
         failed=failed,
         drivers=tuple(foretold_rows(totals)) if totals.settings.drivers else None,
     )

@@ -23,8 +23,11 @@ from roadproof.recordings.formats.recording import Bools, Floats, Integers, Reco
 from roadproof.recordings.formats.reliable import contradicts_motion, named, reliable
 from roadproof.recordings.formats.repeats import moments_of
 from roadproof.recordings.formats.source import Format, find_files
-from roadproof.runtime.xml_reader import Element, number_in, read_xml
+from roadproof.recordings.formats.unread import unread_note
+from roadproof.runtime.xml_reader import Element, number_in, read_xml, summary_of
+from roadproof.runtime.xml_reader import unread as unread_parts
 from roadproof.world.maps.commonroad import lanelets_of
+from roadproof.world.maps.harmless import COMMONROAD
 from roadproof.world.maps.network import ZONES_ENDING
 
 
@@ -49,7 +52,8 @@ def read_commonroad(path: Path, strict: bool = True, truck_length: float = 7.0) 
     rate = rate_near(step)
     network = network_of(path, lanelets_of(path, root), strict)
     obstacles, notes = read_obstacles(path, root, ObstacleRules(rate, truck_length, strict))
-    traffic = _traffic(path.stem, rate, obstacles, notes)
+    unread = unread_note(path, summary_of(unread_parts(root, COMMONROAD)), strict)
+    traffic = _traffic(path.stem, rate, obstacles, (*notes, *unread))
     if _is_made(root):
         traffic = replace(traffic, moments=np.zeros_like(traffic.moments))
     whole = place_traffic(traffic, network)

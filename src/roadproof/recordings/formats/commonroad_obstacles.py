@@ -8,6 +8,7 @@ out, as are those that are no vehicles in traffic.
 import math
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,7 +19,14 @@ from roadproof.reasons import Why
 from roadproof.recordings.formats.clock import Rate
 from roadproof.recordings.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED
 from roadproof.recordings.formats.recording import Floats
-from roadproof.recordings.formats.reliable import MOST_LEFT_OUT, left_out_note, named, rate_of_change
+from roadproof.recordings.formats.reliable import (
+    LEFT_OUT,
+    MOST_LEFT_OUT,
+    left_out_note,
+    named,
+    rate_of_change,
+)
+from roadproof.runtime.xml_element import text_of
 from roadproof.runtime.xml_reader import Element, number_in
 
 LARGEST_PLACE, LARGEST_ORIENTATION = 1e8, 100.0
@@ -90,8 +98,10 @@ def read_obstacles(path: Path, root: Element, rules: ObstacleRules) -> tuple[lis
         shape, label = node.find("shape"), (node.findtext("type") or "").strip()
         if not rules.strict and label in NO_TRAFFIC:
             absent[NO_TRAFFIC[label]].append(number)
+            node.read_all()
         elif shape is None or [x.tag for x in shape] != ["rectangle"] or node.find("trajectory") is None:
             shapeless.append(number)
+            node.read_all()
         else:
             try:
                 obstacles.append(_read_obstacle(path, node, number, rules))
@@ -99,15 +109,19 @@ def read_obstacles(path: Path, root: Element, rules: ObstacleRules) -> tuple[lis
                 if rules.strict:
                     raise
                 faults[number] = str(error).removeprefix(f"{path}: ")
+                node.read_all()
     if len(faults) > MOST_LEFT_OUT * (len(faults) + len(obstacles)):
         raise InputError(f"{path}: {next(iter(faults.values()))}; {len(faults)} obstacles have such faults")
     if not obstacles:
         raise InputError(f"{path}: the file has no dynamicObstacle with a rectangle and a trajectory")
     shown = ", ".join(map(str, shapeless))
-    notes = [f"obstacles left out (not one rectangle, or no trajectory): {shown}"] if shapeless else []
-    static = len(root.findall("staticObstacle"))
-    if static:
-        notes.append(f"{static} static obstacles left out: they are no traffic")
+    notes = [f"{LEFT_OUT} obstacles (not one rectangle, or no trajectory): {shown}"] if shapeless else []
+    for tag in ("static", "phantom"):
+        others = root.findall(f"{tag}Obstacle")
+        for node in others:
+            node.read_all()
+        if others:
+            notes.append(f"{LEFT_OUT} {len(others)} {tag} obstacles: they are no traffic")
     notes += [left_out_note(ids, len(nodes), Why.OF_KIND(what)) for what, ids in absent.items()]
     notes += [left_out_note([number], len(nodes), Why.TOLD(told)) for number, told in faults.items()]
     return sorted(obstacles, key=lambda o: o.id), (*notes, *_say_implied(obstacles))
@@ -174,6 +188,9 @@ class _StateReader:
 
     def read(self, node: Element) -> list[float]:
         aside = node.find("velocityY") is not None
+        for slip in (x for x in node if x.tag == "slipAngle"):
+            if _is_zero(slip):
+                slip.read_all()
         state = {what: self._value(node, what) if aside or what != "velocityY" else 0.0 for what in _STATE}
         for what, (_, most) in _STATE.items():
             if abs(state[what]) > most:
@@ -194,6 +211,14 @@ class _StateReader:
             value = value.find("exact")
         text = None if value is None else value.text
         return number_in(self.path, text, f"{what} in a state of {self.where}")
+
+
+def _is_zero(node: Element) -> bool:
+    """Whether the exact value of a node is 0, without counting it as read."""
+    texts = [text_of(x) for x in node if x.tag == "exact"]
+    with suppress(TypeError, ValueError):
+        return len(texts) == 1 and float(texts[0] or "") == 0
+    return False
 
 
 def _completed(path: Path, states: Floats, rate: Rate, where: str) -> tuple[Floats, tuple[str, ...]]:

@@ -33,21 +33,24 @@ from roadproof.recordings.formats.levelx import (
     read_samples,
     read_vehicles,
     traffic_of,
+    unread_of,
 )
 from roadproof.recordings.formats.measured_roads import place_traffic
 from roadproof.recordings.formats.recording import Floats, Integers, Recording, with_notes
-from roadproof.recordings.formats.reliable import reliable
+from roadproof.recordings.formats.reliable import LEFT_OUT, reliable
 from roadproof.recordings.formats.source import Files, Format, beside, first_line
 from roadproof.recordings.formats.table import Table
 from roadproof.recordings.formats.tracks import RATE_AT, files_of, find_recordings, read_tracks, usable
+from roadproof.recordings.formats.unread import unread_note
 from roadproof.runtime.xml_reader import Element, by_id, number_in, read_xml
-from roadproof.world.maps.lanelet2 import Bounded, directed
+from roadproof.world.maps.lanelet2 import Bounded, directed, lanelets_among, tag_of
+from roadproof.world.maps.lanelet2 import unread_of as unread_parts
 from roadproof.world.maps.lines import way_along
 from roadproof.world.maps.network import ZONES_ENDING
 from roadproof.world.maps.projections import UtmPoint, utm_of
 from roadproof.world.maps.topology import MeasuredLanelet
 
-LEFT_OUT = frozenset(
+NO_LANES = frozenset(
     "emergency_lane walkway shared_walkway crosswalk stairs bicycle_lane rail parking".split()  # noqa: SIM905
 )
 """Subtypes of lanelets that are no lanes of the road."""
@@ -62,29 +65,33 @@ class _LaneletNodes:
     bounds: Bounded
 
 
-def read_osm(path: Path, origin: UtmPoint) -> tuple[dict[str, MeasuredLanelet], tuple[str, ...]]:
-    """The lanelets of a map by id, and notes on what was left out.
+@dataclass(frozen=True)
+class ReadMap:
+    """Lanelets by id, notes on others, and kinds of parts of the file that were not read."""
+
+    lanelets: dict[str, MeasuredLanelet]
+    notes: tuple[str, ...]
+    unread: tuple[str, ...]
+
+
+def read_osm(path: Path, origin: UtmPoint) -> ReadMap:
+    """The lanelets of a map, with what was left out.
 
     ``origin``: UTM easting and northing (m) of the point from which coordinates count, for nodes that have
     no local ones. Raises ``InputError`` that names the file, the element and the rule.
     """
     root = read_xml(path, "osm")
     nodes, ways = by_id(path, root.findall("node")), by_id(path, root.findall("way"))
-    relations = by_id(path, [x for x in root.findall("relation") if _tag(x, "type") == "lanelet"])
-    left_out = sorted({_tag(x, "subtype") for x in relations.values()} & LEFT_OUT)
-    relations = {name: x for name, x in relations.items() if _tag(x, "subtype") not in LEFT_OUT}
+    lanelets, others = lanelets_among(root, lambda kind: kind not in NO_LANES)
+    relations = by_id(path, lanelets)
     if not relations:
         raise InputError(f"{path}: the map has no relation of type lanelet; a road is needed")
     refs = {name: _nodes_of(path, name, way, nodes) for name, way in ways.items()}
     places = _places(path, {ref: nodes[ref] for way in refs.values() for ref in way}, origin)
     drawn = {name: _draw(path, name, x, refs, places) for name, x in relations.items()}
-    notes = (f"lanelets of subtype {', '.join(left_out)} are left out",) if left_out else ()
-    return _linked(drawn), notes
-
-
-def _tag(node: Element, key: str) -> str:
-    found = (x.get("v", "") for x in node.findall("tag") if x.get("k") == key)
-    return next(found, "")
+    told = ", ".join(f"{count} of kind {kind}" for kind, count in sorted(others.items()))
+    notes = (f"{LEFT_OUT} lanelets of {path.name} that are no lanes of the road: {told}",) if told else ()
+    return ReadMap(_linked(drawn), notes, unread_parts(root))
 
 
 def _nodes_of(path: Path, name: str, way: Element, nodes: Mapping[str, Element]) -> tuple[str, ...]:
@@ -97,14 +104,14 @@ def _nodes_of(path: Path, name: str, way: Element, nodes: Mapping[str, Element])
 
 def _places(path: Path, nodes: Mapping[str, Element], origin: UtmPoint) -> dict[str, Floats]:
     """x and y of each node that a way uses."""
-    local = {name for name, node in nodes.items() if _tag(node, "local_x") or _tag(node, "local_y")}
+    local = {name for name, node in nodes.items() if tag_of(node, "local_x") or tag_of(node, "local_y")}
     if local and len(local) < len(nodes):
         name = next(x for x in nodes if x not in local)
         raise InputError(f"{path}: node {name} has no local_x and local_y, but others have; all or none")
     keys = ("local_x", "local_y") if local else ("lat", "lon")
     read = [
         [
-            number_in(path, _tag(node, key) if local else node.get(key), f"{key} of node {name}")
+            number_in(path, tag_of(node, key) if local else node.get(key), f"{key} of node {name}")
             for key in keys
         ]
         for name, node in nodes.items()
@@ -130,7 +137,9 @@ def _draw(
     where = f"{path}: relation {name}"
     ways: dict[str, str] = {}
     for role in ("left", "right"):
-        members = [x for x in relation.findall("member") if x.get("role") == role]
+        members = [x for x in relation if x.tag == "member" and x.peek("role") == role]
+        for member in members:
+            member.note("role")
         if len(members) != 1 or members[0].get("type") != "way":
             raise InputError(f"{where} has {len(members)} members of role {role}; a lanelet has one way each")
         ways[role] = members[0].get("ref", "")
@@ -138,7 +147,7 @@ def _draw(
             raise InputError(f"{where}: {role} way {ways[role]} is no way of the map")
         if len(refs[ways[role]]) < 2:
             raise InputError(f"{where}: {role} way {ways[role]} has fewer than two nodes")
-    if _tag(relation, "one_way") == "no":
+    if tag_of(relation, "one_way") == "no":
         raise InputError(f"{where}: one_way=no: lanelets that are driven both ways are not supported")
     left, right = ways["left"], ways["right"]
     return _LaneletNodes(name, (left, right), directed(refs[left], refs[right], places))
@@ -187,9 +196,10 @@ def read_exid(folder: Path, name: str, strict: bool = True) -> Recording:
     meta, tracks, start, left_out = usable(meta, tracks, "trackId", strict, check_cells)
     notes += (*left_out, *check_velocities(tracks))
     path = _map_of(folder, int(about["locationId"][0]), about)
-    lanelets, told = read_osm(path, (about["xUtmOrigin"][0], about["yUtmOrigin"][0]))
-    traffic = traffic_of(name, rate, meta, tracks, start, (*notes, *told))
-    recording = place_traffic(traffic, network_of(path, lanelets, strict))
+    chart = read_osm(path, (about["xUtmOrigin"][0], about["yUtmOrigin"][0]))
+    unread = (*unread_note(path, chart.unread, strict), *unread_of(folder, name, strict))
+    traffic = traffic_of(name, rate, meta, tracks, start, (*notes, *chart.notes, *unread))
+    recording = place_traffic(traffic, network_of(path, chart.lanelets, strict))
     stands = reliable(recording, strict, partial(check_plausible, tracks))
     return with_notes(stands, _check_lanelets(tracks, recording, path))
 

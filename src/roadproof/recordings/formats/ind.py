@@ -26,6 +26,7 @@ from roadproof.recordings.formats.levelx import (
     read_samples,
     read_vehicles,
     traffic_of,
+    unread_of,
 )
 from roadproof.recordings.formats.off_line import follows_line, leave_out_strays
 from roadproof.recordings.formats.recording import Recording
@@ -59,10 +60,10 @@ def read_ind(folder: Path, name: str, strict: bool = True, road: str | None = No
     tracks, notes = read_samples(folder, name, {}, strict)
     meta, tracks, absent = _vehicles(meta, tracks)
     meta, tracks, start, left_out = usable(meta, tracks, "trackId", strict, check_cells)
-    notes += (*absent, *left_out, *check_velocities(tracks))
+    notes += (*absent, *left_out, *unread_of(folder, name, strict), *check_velocities(tracks))
     traffic = traffic_of(str(tracks.path), rate, meta, tracks, start, notes)
     origin = float(about["xUtmOrigin"][0]), float(about["yUtmOrigin"][0])
-    recording, rows = place_on_road(traffic, str(road), origin)
+    recording, rows = place_on_road(traffic, str(road), origin, strict)
     fits = follows_line(traffic.centre[rows], recording)
     fitting = leave_out_strays(replace(recording, name=name), fits, strict)
     rows = rows[np.repeat(fits, np.diff(recording.start))]

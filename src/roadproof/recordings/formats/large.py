@@ -37,6 +37,7 @@ from roadproof.recordings.formats.samples import (
     count_samples,
     number_vehicles,
     road_beside,
+    unread_of,
     vehicles_of,
 )
 from roadproof.recordings.formats.straight import StraightRoad
@@ -85,7 +86,7 @@ def write_large(path: Path, folder: Path, digests: Mapping[str, str], form: str,
     road = road_beside(path)
     with tempfile.TemporaryDirectory(dir=folder, prefix=".") as temporary:
         stamp = stamp_of(path)
-        survey = _survey(path)
+        survey = _survey(path, strict)
         require_unchanged(path, stamp)
         groups = _divide_rows(path, survey, Path(temporary))
         require_unchanged(path, stamp)
@@ -96,7 +97,14 @@ def write_large(path: Path, folder: Path, digests: Mapping[str, str], form: str,
         whole = _joined(made.heads)
         chosen = made.chosen
         left_out = (left_out_note([x], len(survey.names), Why.TOLD(y.told)) for x, y in read.faults.items())
-        notes = (*left_out, *survey.notes, *survey.clock.notes, *chosen.notes, *read.doubts(made))
+        notes = (
+            *left_out,
+            *survey.unread,
+            *survey.notes,
+            *survey.clock.notes,
+            *chosen.notes,
+            *read.doubts(made),
+        )
         table, head = folder / f"{path.stem}{SAMPLES}", folder / f"{path.stem}{HEAD}"
         head.unlink(missing_ok=True)  # it is there when the samples are
         _join(made.parts, Path(temporary) / "whole", table)
@@ -155,15 +163,17 @@ class _Survey:
     counts: Integers
     clock: Clock
     notes: tuple[str, ...]
+    unread: tuple[str, ...]
 
 
-def _survey(path: Path) -> _Survey:
+def _survey(path: Path, strict: bool) -> _Survey:
     last: dict[str, float] = {}
     counts: dict[str, int] = {}
     steps: dict[float, int] = {}
     times = np.zeros(0)
-    rows = 0
+    rows, unread = 0, tuple[str, ...]()
     for table in column_pieces(path):
+        unread = unread_of(table, strict)
         names, index = _named(table)
         ordered, codes = by_vehicle(table, index)
         time = ordered["time"]
@@ -193,6 +203,7 @@ def _survey(path: Path) -> _Survey:
         np.array([counts[name] for name in known]),
         clock_of(path, times, *found),
         notes,
+        unread,
     )
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from roadproof.recordings.formats.clock import Rate
 from roadproof.recordings.formats.contradictions import contradictions, seldom
+from roadproof.recordings.formats.harmless_columns import LEVELX
 from roadproof.recordings.formats.measured_roads import MeasuredTraffic
 from roadproof.recordings.formats.plausible import (
     LARGEST_ACCELERATION,
@@ -24,6 +25,7 @@ from roadproof.recordings.formats.recording import Floats, Integers
 from roadproof.recordings.formats.source import first_line
 from roadproof.recordings.formats.table import Kind, Table, kinds_of, read_named
 from roadproof.recordings.formats.tracks import cells_of, in_order, match_vehicles, rate_of, vehicles_by_id
+from roadproof.recordings.formats.unread import unread_columns
 
 RECORDING_KINDS = kinds_of(integer="recordingId locationId", number="frameRate xUtmOrigin yUtmOrigin")
 VEHICLE_KINDS = kinds_of(
@@ -45,6 +47,20 @@ def read_about(folder: Path, name: str) -> tuple[Table, Rate]:
     """The meta data of a recording and its rate. Raises ``InputError``."""
     about = read_named(folder / f"{name}_recordingMeta.csv", RECORDING_KINDS)
     return about, rate_of(about, "recordingId", int(name), f"the file is of recording {name}")
+
+
+def unread_of(folder: Path, name: str, strict: bool) -> tuple[str, ...]:
+    """Notes on columns that are not read and may have an effect, which are refused where it is ``strict``."""
+    read = {
+        "recordingMeta": RECORDING_KINDS,
+        "tracksMeta": VEHICLE_KINDS,
+        "tracks": (*SAMPLE_KINDS, *SIZES),
+    }
+    notes: tuple[str, ...] = ()
+    for ending, columns in read.items():
+        path = folder / f"{name}_{ending}.csv"
+        notes += unread_columns(path, first_line(path).split(","), columns, LEVELX, strict)
+    return notes
 
 
 def read_vehicles(folder: Path, name: str) -> Table:

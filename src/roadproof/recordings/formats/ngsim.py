@@ -20,6 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.recordings.formats.contradictions import contradictions, seldom
+from roadproof.recordings.formats.harmless_columns import NGSIM
 from roadproof.recordings.formats.ngsim_lanes import FOOT, FREEWAYS, measured_road
 from roadproof.recordings.formats.plausible import (
     LARGEST_ACCELERATION,
@@ -33,6 +34,7 @@ from roadproof.recordings.formats.source import Files, Format, find_files, first
 from roadproof.recordings.formats.straight import StraightRoad, of_road, record
 from roadproof.recordings.formats.table import Kind, Table, kinds_of, read_table
 from roadproof.recordings.formats.tracks import Rule, without_bad
+from roadproof.recordings.formats.unread import unread_columns
 from roadproof.world.models import load_recorded_road
 from roadproof.world.signals import RECORDED, SIZES, SignalName, SizeName
 
@@ -81,6 +83,7 @@ def read_ngsim(path: Path, strict: bool = True) -> Recording:
 
     Raises ``InputError`` that names file, row, column, value and rule.
     """
+    unread = unread_columns(path, *_names(path), strict)
     rows, streets = _freeways(_read(path))
     rows, late, periods = _in_order(rows)
     if not strict:
@@ -88,9 +91,15 @@ def read_ngsim(path: Path, strict: bool = True) -> Recording:
     kept, left_out = without_bad(rows["track"], _rules(rows, late), rows.refuse, strict)
     rows = rows.at(np.flatnonzero(kept))
     road, way = _road_of(path, rows)
-    recording = with_notes(_recording(rows, road, path.stem), (*streets, *periods, *left_out, _TOLD))
+    recording = with_notes(_recording(rows, road, path.stem), (*streets, *periods, *left_out, *unread, _TOLD))
     whole = reliable(recording, strict, partial(_check_plausible, rows))
     return with_notes(whole, () if way else _check_lanes(rows, recording))
+
+
+def _names(path: Path) -> tuple[list[str], list[str], dict[str, str]]:
+    """The columns of a file, those that are read, and the harmless ones, in lower case."""
+    names = [x.lower() for x in first_line(path).split(",")]
+    return names, [x.lower() for x in (*_WANTED, _LOCATION)], {x.lower(): y for x, y in NGSIM.items()}
 
 
 def _read(path: Path) -> Table:

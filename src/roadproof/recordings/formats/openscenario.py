@@ -26,10 +26,17 @@ from roadproof.recordings.formats.storyboard.box import Box
 from roadproof.recordings.formats.storyboard.conditions import TICKS
 from roadproof.recordings.formats.storyboard.curves import curve
 from roadproof.recordings.formats.storyboard.distributions import read_distribution, scenarios_of, split
-from roadproof.recordings.formats.storyboard.document import Document, catalogues_of, open_document
+from roadproof.recordings.formats.storyboard.document import catalogues_of, open_document
 from roadproof.recordings.formats.storyboard.faults import faults_of
 from roadproof.recordings.formats.storyboard.run import Play
-from roadproof.recordings.formats.storyboard.stage import map_of, number_of, open_stage, played, text_of
+from roadproof.recordings.formats.storyboard.stage import (
+    map_of,
+    number_of,
+    open_stage,
+    played,
+    text_of,
+    unread_of,
+)
 from roadproof.recordings.formats.straight import of_road
 from roadproof.recordings.formats.table import Column, Table
 from roadproof.runtime.xml_reader import Element
@@ -105,7 +112,7 @@ def _read_scenario(path: Path) -> Scenario:
         ways = {name: _in_road(x, boxes[name], road) for name, x in _vertices(path, root, boxes)}
         _read_stop(path, root, max(float(x.time[-1]) for x in ways.values()))
         note = f"speeds and accelerations are those of curves through the vertices, {RATE} samples a second"
-        unread = _unread(document)
+        unread = unread_of(stage)
         otherwise = (*follows, *varied, *unread)
         table = _sampled(path, boxes, ways)
         return Scenario(table, road, road_path, (note, *otherwise), otherwise, unread=unread)
@@ -116,18 +123,12 @@ def _read_scenario(path: Path) -> Scenario:
     note = f"the storyboard was run with conditions evaluated {TICKS} times a second, {RATE} samples a second"
     table, left_out = _of_play(path, boxes, play)
     controlled = tuple(x for x in left_out if any(told in x for told in play.controlled.values()))
-    unread = (*controlled, *_unread(document))
+    unread = (*controlled, *unread_of(stage))
     otherwise = (*follows, *varied, *(x for x in left_out if x not in controlled), *unread)
     faults = faults_of(play, boxes)
     idle = (f"events that never start: {', '.join(play.idle)}",) if play.idle else ()
     notes = (note, told, *idle, *otherwise, *faults)
     return Scenario(table, stage.road, road_path, notes, otherwise, faults, computed=True, unread=unread)
-
-
-def _unread(document: Document) -> tuple[str, ...]:
-    """A note on parts of a file that were not read and may have an effect."""
-    parts = document.left_out()
-    return (f"{LEFT_OUT}, as it is not supported: {'; '.join(parts)}",) if parts else ()
 
 
 def _read_init(root: Element) -> None:

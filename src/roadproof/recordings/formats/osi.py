@@ -36,6 +36,7 @@ from roadproof.recordings.formats.selected_roads import chart_of, place_on_road
 from roadproof.recordings.formats.source import Files, Format, beside, with_suffix
 from roadproof.recordings.formats.table import CellError
 from roadproof.recordings.formats.tracks import Rule, without_bad
+from roadproof.recordings.formats.unread import unread_note
 from roadproof.world.maps.network import ZONES_ENDING
 
 ENDING = ".osi"
@@ -50,6 +51,39 @@ _TIMESTAMP, _HOST, _MOVING_OBJECT = 2, 3, 5
 """Of GroundTruth."""
 _VEHICLE = 2
 """A type of moving object."""
+_HARMLESS: Mapping[str, Mapping[int, str]] = {
+    "GroundTruth": {
+        1: "the version of OSI",
+        4: "objects that do not move, which are no traffic",
+        **dict.fromkeys((6, 7, 8), "signs, lights and markings, which no formula sees"),
+        **dict.fromkeys((9, 10, 17, 18, 19), "lanes by another map; the road is that which was selected"),
+        11: "people in vehicles",
+        12: "weather and light",
+        **dict.fromkeys((13, 14), "where the road is on the earth; places are those of the file"),
+        **dict.fromkeys((15, 16), "names of other files; the road is that which was selected"),
+    },
+    "MovingObject": {
+        4: "lanes by another map; the road is that which was selected",
+        5: "axles and wheels; places are those of the middle of the box",
+        7: "looks",
+        8: "a motion that is planned; that of the next messages is read",
+        9: "lanes by another map; the road is that which was selected",
+        10: "the name in another file",
+        11: "poses of people, who are left out",
+    },
+    "BaseMoving": {
+        **dict.fromkeys((6, 8), "how fast the vehicle turns; its heading is read"),
+        7: "the outline within the box, which is read",
+    },
+}
+"""By message the fields that are not read, since they change no motion, with the reason of each."""
+_READ: Mapping[str, tuple[int, ...]] = {
+    "GroundTruth": (_TIMESTAMP, _HOST, _MOVING_OBJECT),
+    "MovingObject": (1, 2, 3, 6),
+    "BaseMoving": (1, 2, 3, 4, 5),
+}
+_FIELDS = {("GroundTruth", 20): "proj_frame_offset"}
+"""Names of fields that are left out."""
 NO_VEHICLES: Mapping[int, str] = {3: "pedestrians", 4: "animals"}
 """Types of moving objects."""
 KINDS: Mapping[int, str] = {
@@ -88,6 +122,13 @@ class _Samples:
         self.kind: dict[int, str] = {}
         self.absent: dict[str, dict[int, None]] = {}
         self.host: int | None = None
+        self.unread: dict[str, None] = {}
+
+    def look(self, message: str, content: bytes) -> None:
+        """Note the fields of a message of this kind that are not read and may have an effect."""
+        known = {*_READ[message], *_HARMLESS[message]}
+        for field in {number for number, _ in fields_of(content)} - known:
+            self.unread[f"{message}.{_FIELDS.get((message, field), f'field {field}')}"] = None
 
     def add(self, number: int, content: bytes) -> None:
         """Add a moving object of the message of this number. Raises ``WireError``."""
@@ -98,9 +139,12 @@ class _Samples:
         if no_traffic:
             self.absent.setdefault(no_traffic, {})[name] = None
             return
+        base = message_in(content, 2) or b""
+        self.look("MovingObject", content)
+        self.look("BaseMoving", base)
         self.message.append(number)
         self.id.append(name)
-        self.base.append(_base_of(message_in(content, 2) or b""))
+        self.base.append(_base_of(base))
         self.kind.setdefault(name, KINDS.get(kind, "Other"))
 
     def notes(self) -> Iterator[str]:
@@ -144,9 +188,10 @@ def read_osi(path: Path, strict: bool = True, road: str | None = None) -> Record
     base, derived = _with_accelerations(ids, base, rate)
     kept, left_out = without_bad(ids, _rules(ids, frame, base), refuse, strict)
     ids, frame, base = ids[kept], frame[kept], base[kept]
-    notes = (*samples.notes(), *left_out, *derived)
+    unread = unread_note(path, samples.unread, strict)
+    notes = (*samples.notes(), *left_out, *unread, *derived)
     traffic = _traffic(str(path), rate, ids, frame, base, samples.kind, notes)
-    recording, rows = place_on_road(traffic, str(road))
+    recording, rows = place_on_road(traffic, str(road), strict=strict)
     fits = follows_line(traffic.centre[rows], recording)
     fitting = leave_out_strays(replace(recording, name=path.stem), fits, strict)
     rows = rows[np.repeat(fits, np.diff(recording.start))]
@@ -160,6 +205,7 @@ def _read(path: Path) -> tuple[_Samples, Rate]:
         try:
             if SENSOR_VIEW in path.name:
                 message = message_in(message, _GROUND_TRUTH) or b""
+            samples.look("GroundTruth", message)
             time = message_in(message, _TIMESTAMP) or b""
             times.append(integer_in(time, 1) * _NANO + integer_in(time, 2))
             host = message_in(message, _HOST)

@@ -62,9 +62,14 @@ def left_out_note(vehicles: Sequence[object], of: int, reason: Reason) -> str:
     return f"{LEFT_OUT} {len(vehicles)} of {of} vehicles ({named(vehicles)}): {reason}"
 
 
+def left_out_in(notes: Iterable[str]) -> tuple[str, ...]:
+    """Those of the notes that say which vehicles and parts of files were left out."""
+    return tuple(x for x in notes if x.startswith(LEFT_OUT))
+
+
 def losses_of(recording: Recording) -> list[str]:
-    """The notes of a recording on vehicles that it was read without, with its name."""
-    return [f"recording {recording.name}: {x}" for x in recording.notes if x.startswith(LEFT_OUT)]
+    """The notes of a recording on vehicles and parts that it was read without, with its name."""
+    return [f"recording {recording.name}: {x}" for x in left_out_in(recording.notes)]
 
 
 def named(vehicles: Sequence[object]) -> str:

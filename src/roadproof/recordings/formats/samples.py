@@ -46,6 +46,7 @@ from roadproof.recordings.formats.table import (
     read_table,
     without_copies,
 )
+from roadproof.recordings.formats.unread import unread_columns
 from roadproof.runtime.files import refuse_name
 from roadproof.world.models import load_recorded_road
 from roadproof.world.signals import RECORDED, SIGNALS, SIZES
@@ -180,13 +181,20 @@ def own_columns(names: Iterable[str]) -> tuple[str, ...]:
     return tuple(name for name in names if name not in (*HEADER, *SIGNALS, "kind", LABEL))
 
 
+def unread_of(columns: Table, strict: bool) -> tuple[str, ...]:
+    """A note on columns of signals that no recording has, such as jerk; refused if ``strict``."""
+    read = (*HEADER, "kind", LABEL, *own_columns(columns.columns))
+    return unread_columns(columns.path, columns.columns, read, {}, strict)
+
+
 def read_recording(path: Path, strict: bool = True) -> Recording:
     """The recording of a file, on the road beside it; unless ``strict``, bad vehicles are left out.
 
     Raises ``InputError``. Vehicles that are not called by whole numbers are numbered; ``notes`` tell how.
     """
     columns = read_columns(path)
-    return recording_of(columns, road_beside(path), path.stem, strict=strict)
+    unread = unread_of(columns, strict)
+    return recording_of(columns, road_beside(path), path.stem, unread, strict)
 
 
 def road_beside(path: Path) -> StraightRoad:

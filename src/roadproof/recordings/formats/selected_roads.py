@@ -27,6 +27,7 @@ from roadproof.recordings.formats.measured_roads import (
 )
 from roadproof.recordings.formats.recording import Bools, Floats, Integers, Recording, offsets
 from roadproof.recordings.formats.reliable import left_out_note, named
+from roadproof.recordings.formats.unread import unread_note
 from roadproof.world.lanelet_rules import shared_boundaries
 from roadproof.world.maps.lines import even_line
 from roadproof.world.maps.network import MeasuredLane, Network
@@ -56,19 +57,23 @@ def chart_of(road: str | None, path: Path, near: Sequence[Path] = ()) -> tuple[P
 
 
 def place_on_road(
-    traffic: MeasuredTraffic, road: str, origin: UtmPoint | None = None
+    traffic: MeasuredTraffic, road: str, origin: UtmPoint | None = None, strict: bool = False
 ) -> tuple[Recording, Integers]:
     """The recording of the vehicles on a road of a map, and the rows of ``traffic`` that are in it.
 
-    ``origin``: the point in UTM from which places of ``traffic`` count, for maps in degrees. Raises
-    ``InputError``, which begins with the name of ``traffic`` where no vehicle is on the road.
+    ``origin``: the point in UTM from which places of ``traffic`` count, for maps in degrees. ``strict``:
+    nothing of the map may be left out. Raises ``InputError``, which begins with the name of ``traffic`` where
+    no vehicle is on the road.
     """
     path, selection = read_selection(road)
-    return place_on(traffic, network_on(select(path, selection, origin), road))
+    return place_on(traffic, network_on(select(path, selection, origin), road, strict))
 
 
-def network_on(stretch: Stretch, called: str) -> Network:
-    """The lanelets of a stretch in the plane; s is measured on its reference line."""
+def network_on(stretch: Stretch, called: str, strict: bool = False) -> Network:
+    """The lanelets of a stretch in the plane; s is measured on its reference line.
+
+    Raises ``InputError`` where it is ``strict`` and parts of the map were not read.
+    """
     lanelets = {x.id: _measured(x, stretch.line) for x in stretch.lanelets}
     line = _points(stretch.line, (stretch.line.begin, stretch.line.end), Fraction(0))
     lanelets[_LINE] = MeasuredLanelet(_LINE, line, line, None, (), ())
@@ -84,7 +89,7 @@ def network_on(stretch: Stretch, called: str) -> Network:
         tuple(lanes),
         shared_boundaries(stretch.lanelets),
         ((_LINE,),),
-        (told,),
+        (told, *unread_note(Path(called.partition("#")[0]), stretch.unread, strict)),
     )
 
 

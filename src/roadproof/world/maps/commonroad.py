@@ -9,7 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.errors import InputError
-from roadproof.runtime.xml_reader import Element, by_id, number_in, read_xml
+from roadproof.runtime.xml_element import text_of
+from roadproof.runtime.xml_reader import Element, by_id, number_in, read_xml, summary_of, unread
+from roadproof.world.maps.harmless import COMMONROAD_MAP
 from roadproof.world.maps.topology import Floats, MeasuredLanelet
 from roadproof.world.road import Attribute
 
@@ -24,14 +26,15 @@ ATTRIBUTES: Mapping[str, Attribute] = {
 """Lanelet types that say what is main road and what is not, and the paper's attribute for them."""
 
 
-def read_map(path: Path) -> dict[str, MeasuredLanelet]:
-    """The lanelets of a file by id. Raises ``InputError``."""
+def read_map(path: Path) -> tuple[dict[str, MeasuredLanelet], tuple[str, ...]]:
+    """The lanelets of a file by id, and kinds of parts that were not read. Raises ``InputError``."""
     root = read_xml(path, "commonRoad")
     version = root.get("commonRoadVersion")
     if version not in VERSIONS:
         told = f"commonRoadVersion={version}: commonRoad of version {' or '.join(VERSIONS)} is needed"
         raise InputError(f"{path}: {told}")
-    return lanelets_of(path, root)
+    lanelets = lanelets_of(path, root)
+    return lanelets, summary_of(unread(root, COMMONROAD_MAP))
 
 
 def lanelets_of(path: Path, root: Element) -> dict[str, MeasuredLanelet]:
@@ -88,6 +91,7 @@ def _read_lanelet(path: Path, node: Element, known: Mapping[str, Element]) -> Me
     if len(left) != len(right):
         raise InputError(f"{path}: {where} has bounds of {len(left)} and {len(right)} points; must be equal")
     types = {(x.text or "").strip() for x in node.findall("laneletType")}
+    _read_users(node)
 
     def refs(*tags: str) -> tuple[str, ...]:
         found = [x for tag in tags for x in node.findall(tag)]
@@ -101,6 +105,24 @@ def _read_lanelet(path: Path, node: Element, known: Mapping[str, Element]) -> Me
     return MeasuredLanelet(
         name, left, right, attribute, refs("successor"), refs("adjacentLeft", "adjacentRight")
     )
+
+
+_VEHICLES = ("vehicle", "car", "truck", "bus", "motorcycle", "taxi", "priorityVehicle")
+
+
+def _read_users(node: Element) -> None:
+    """Count users as read that change no lane: vehicles along it, and others where vehicles drive, too.
+
+    Vehicles that drive both ways, and a lanelet that no vehicle uses, are left to be named.
+    """
+    along, both = (
+        [x for x in node if x.tag == tag and (text_of(x) or "").strip()]
+        for tag in ("userOneWay", "userBidirectional")
+    )
+    is_driven = not along or any((text_of(x) or "").strip() in _VEHICLES for x in along)
+    for x in (*(along if is_driven else ()), *both):
+        if x.tag == "userOneWay" or (text_of(x) or "").strip() not in _VEHICLES:
+            x.read_all()
 
 
 def _read_line(path: Path, node: Element | None, what: str) -> Floats:

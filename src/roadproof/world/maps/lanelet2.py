@@ -12,14 +12,15 @@ others are counted. Of lanelets that are driven both ways the direction of the b
 
 import math
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from roadproof.errors import InputError
-from roadproof.runtime.xml_reader import Element, by_id, number_in, read_xml
+from roadproof.runtime.xml_reader import Element, by_id, number_in, read_xml, summary_of, unread
+from roadproof.world.maps.harmless import LANELET2, OSM_KEYS
 from roadproof.world.maps.lines import resampled
 from roadproof.world.maps.projections import UtmPoint, transverse_mercator, utm_of
 from roadproof.world.maps.topology import Floats, MeasuredLanelet
@@ -28,6 +29,10 @@ ROADS = frozenset(("road", "highway"))
 """Subtypes of lanelets that vehicles drive on along a road."""
 _SPACING = 1.0
 """Metres between the points of bounds that have different numbers of them."""
+_VEHICLES = ("vehicle", "car", "truck", "bus", "motorcycle")
+_PLAIN = (("one_way", "yes"), ("dynamic", "no"))
+_NO_LANELETS = {"regulatory_element": "rules of traffic", "multipolygon": "areas"}
+"""Types of relations that place no lane, and the rule by which they are harmless."""
 
 
 @dataclass(frozen=True)
@@ -39,10 +44,17 @@ class Bounded:
     lines: tuple[Floats, Floats]
 
 
-def read_map(
-    path: Path, origin: UtmPoint | None = None
-) -> tuple[dict[str, MeasuredLanelet], tuple[tuple[str, int], ...]]:
-    """The lanelets by id, and how many others there are by subtype. Raises ``InputError``.
+@dataclass(frozen=True)
+class ReadLanelets:
+    """Lanelets by id; how many relations are no road, by their kind; kinds of parts that were not read."""
+
+    lanelets: dict[str, MeasuredLanelet]
+    others: tuple[tuple[str, int], ...]
+    unread: tuple[str, ...]
+
+
+def read_map(path: Path, origin: UtmPoint | None = None) -> ReadLanelets:
+    """The lanelets of a map, with what was left out. Raises ``InputError``.
 
     ``origin``: easting and northing (m) of the point in UTM from which places count, where nodes have no
     local ones.
@@ -51,20 +63,59 @@ def read_map(
     points = _points(path, by_id(path, root.findall("node")), origin)
     ways = by_id(path, root.findall("way"))
     found: dict[str, Bounded] = {}
-    others = Counter[str]()
-    for name, node in by_id(path, root.findall("relation")).items():
-        tags = _tags(node)
-        if tags.get("type") != "lanelet":
-            continue
-        kind = tags.get("subtype", "road")
-        if kind in ROADS:
-            left, right = (_nodes(path, name, node, x, ways, points) for x in ("left", "right"))
-            found[name] = directed(left, right, points)
-        else:
-            others[kind] += 1
+    relations, others = lanelets_among(root, lambda kind: kind in ROADS)
+    for name, node in by_id(path, relations).items():
+        left, right = (_nodes(path, name, node, x, ways, points) for x in ("left", "right"))
+        found[name] = directed(left, right, points)
     if not found:
         raise InputError(f"{path}: {_without_roads(others, ways)}")
-    return _linked(found), tuple(sorted(others.items()))
+    return ReadLanelets(_linked(found), tuple(sorted(others.items())), unread_of(root))
+
+
+def lanelets_among(root: Element, is_road: Callable[[str], bool]) -> tuple[list[Element], Counter[str]]:
+    """The lanelets that are of a road by their subtype, and how many other relations there are by kind.
+
+    All of a relation that is no road counts as read. A lanelet without a subtype is a road.
+    """
+    roads, others = list[Element](), Counter[str]()
+    for relation in root.findall("relation"):
+        form = tag_of(relation, "type")
+        kind = tag_of(relation, "subtype") or "road" if form == "lanelet" else f"relation of type {form}"
+        if form == "lanelet" and is_road(kind):
+            _read_users(relation)
+            roads.append(relation)
+            continue
+        relation.read_all()
+        if form not in _NO_LANELETS:
+            others[kind] += 1
+    return roads, others
+
+
+def _read_users(relation: Element) -> None:
+    """Count tags as read that let vehicles drive in the direction of a lanelet; others are named."""
+    for tag in (x for x in relation if x.tag == "tag"):
+        name, value = tag.peek("k") or "", tag.peek("v")
+        _, participant, user = name.partition("participant:")
+        others = bool(participant) and user.partition(":")[0] not in _VEHICLES
+        if others or (participant and value == "yes") or (name, value) in _PLAIN:
+            tag.read_all()
+
+
+def unread_of(root: Element) -> tuple[str, ...]:
+    """A line for each kind of parts that were not read; ways of which no node was read place no lanelet."""
+    for way in root.findall("way"):
+        if not any(x.is_read for x in way):
+            way.read_all()
+    return summary_of(unread(root, LANELET2, OSM_KEYS))
+
+
+def tag_of(node: Element, key: str) -> str:
+    """The value of a tag, empty where there is none; other tags do not count as read."""
+    for tag in node:
+        if tag.tag == "tag" and tag.peek("k") == key:
+            tag.note("k")
+            return tag.get("v", "")
+    return ""
 
 
 def _without_roads(others: Mapping[str, int], ways: Mapping[str, Element]) -> str:
@@ -72,25 +123,21 @@ def _without_roads(others: Mapping[str, int], ways: Mapping[str, Element]) -> st
     if others:
         told = ", ".join(f"{count} of {kind}" for kind, count in sorted(others.items()))
         return f"the file has no lanelet of subtype {' or '.join(sorted(ROADS))}, but {told}"
-    streets = sum("highway" in _tags(x) for x in ways.values())
+    streets = sum(bool(tag_of(x, "highway")) for x in ways.values())
     what = f"{streets} streets as lines (tag highway)" if streets else "none"
     return f"relations of type lanelet are needed, and the file has {what}; use a map in Lanelet2"
-
-
-def _tags(node: Element) -> dict[str, str]:
-    return {x.get("k", ""): x.get("v", "") for x in node.findall("tag")}
 
 
 def _points(
     path: Path, nodes: Mapping[str, Element], origin: UtmPoint | None
 ) -> dict[str, tuple[float, float]]:
     """Where the nodes are in the plane (m)."""
-    local = {name: _tags(node) for name, node in nodes.items()}
-    if all("local_x" in x and "local_y" in x for x in local.values()):
-        keys = "local_x", "local_y"
+    keys = "local_x", "local_y"
+    local = {name: [tag_of(node, key) for key in keys] for name, node in nodes.items()}
+    if all(x and y for x, y in local.values()):
         rows = {
-            name: [number_in(path, x[key], f"{key} of node {name}") for key in keys]
-            for name, x in local.items()
+            name: [number_in(path, x, f"{key} of node {name}") for key, x in zip(keys, texts, strict=True)]
+            for name, texts in local.items()
         }
         return {name: (x, y) for name, (x, y) in rows.items()}
     places = {
@@ -118,8 +165,9 @@ def _nodes(
     """Ids of the nodes of a side, whose ways follow each other. Raises ``InputError``."""
     where = f"{path}: lanelet {name}: {side} bound"
     parts = []
-    for member in relation.findall("member"):
-        if member.get("role") == side and member.get("type") == "way":
+    for member in (x for x in relation if x.tag == "member"):
+        if member.peek("role") == side and member.get("type") == "way":
+            member.note("role")
             way = ways.get(member.get("ref", ""))
             if way is None:
                 raise InputError(f"{where}: way {member.get('ref')} is not in the file")

@@ -34,11 +34,12 @@ _MANY = 50
 
 @dataclass(frozen=True)
 class LaneletMap:
-    """``left_out``: how many lanelets are no road, by their type."""
+    """``left_out``: how many lanelets are no road, by their type. ``unread``: kinds of parts of the file."""
 
     path: Path
     network: Network
     left_out: tuple[tuple[str, int], ...] = ()
+    unread: tuple[str, ...] = ()
 
     @cached_property
     def chains(self) -> tuple[tuple[str, ...], ...]:
@@ -102,9 +103,10 @@ class LaneletMap:
 def read_lanelets(path: Path, origin: UtmPoint | None = None) -> LaneletMap:
     """The map of a file, by its ending; ``origin`` as for ``lanelet2.read_map``. Raises ``InputError``."""
     if path.suffix == ".osm":
-        lanelets, left_out = lanelet2.read_map(path, origin)
-        return LaneletMap(path, network_of(path, lanelets), left_out)
-    return LaneletMap(path, network_of(path, commonroad.read_map(path)))
+        found = lanelet2.read_map(path, origin)
+        return LaneletMap(path, network_of(path, found.lanelets), found.others, found.unread)
+    lanelets, unread = commonroad.read_map(path)
+    return LaneletMap(path, network_of(path, lanelets), unread=unread)
 
 
 def way_of(known: LaneletMap, selection: Selection) -> tuple[str, ...]:
@@ -150,7 +152,7 @@ def stretch_of(known: LaneletMap, selection: Selection) -> Stretch:
             break
     _refuse_crossing(known, way, line, found)
     check_lanelets(tuple(found), where)
-    return Stretch(tuple(found), line, made.width_error)
+    return Stretch(tuple(found), line, made.width_error, known.unread)
 
 
 def _keeps_rules(lanelets: list[Lanelet], where: str) -> bool:

@@ -6,15 +6,16 @@ border, its type and its links are read; of a road its traffic rule and whether 
 
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
 from typing import Literal, TypeAlias
 
 from roadproof.errors import InputError
-from roadproof.runtime.xml_reader import Element, read_xml
+from roadproof.runtime.xml_reader import Element, read_xml, summary_of, unread
 from roadproof.world.curves import Coefficients, Cubic, Curve, Line, Spiral
+from roadproof.world.maps.harmless import OPENDRIVE, OPENDRIVE_FILE
 from roadproof.world.reference_line import Part, ReferenceLine
 from roadproof.world.road import Zone
 
@@ -102,7 +103,10 @@ class Link:
 
 @dataclass(frozen=True)
 class MapRoad:
-    """A road; ``offset`` is how far the lanes begin to the left of the reference line, by s."""
+    """A road; ``offset`` is how far the lanes begin to the left of the reference line, by s.
+
+    ``unread``: kinds of parts of it that were not read.
+    """
 
     id: str
     name: str
@@ -114,6 +118,7 @@ class MapRoad:
     sections: tuple[MapSection, ...]
     predecessor: Link | None
     successor: Link | None
+    unread: tuple[str, ...] = ()
 
     @property
     def length(self) -> Fraction:
@@ -122,15 +127,20 @@ class MapRoad:
 
 @dataclass(frozen=True)
 class RoadMap:
-    """The roads of a file, in its order. ``refused``: by id, why a road cannot be read."""
+    """The roads of a file, in its order. ``refused``: by id, why a road cannot be read.
+
+    ``unread``: kinds of parts of the file, apart from its roads, that were not read.
+    """
 
     roads: tuple[MapRoad, ...]
     refused: Mapping[str, str]
+    unread: tuple[str, ...] = ()
 
 
 def read_map(path: Path) -> RoadMap:
     """The map of a file. Raises ``InputError`` that names file, element and rule, if no road can be read."""
-    nodes = read_xml(path, "OpenDRIVE").findall("road")
+    root = read_xml(path, "OpenDRIVE")
+    nodes = root.findall("road")
     if not nodes:
         raise InputError(f"{path}: there is no road")
     if len(nodes) > _MOST:
@@ -145,7 +155,7 @@ def read_map(path: Path) -> RoadMap:
             refused[node.get("id", "")] = str(error)
     if not found:
         raise InputError(next(iter(refused.values())))
-    return RoadMap(tuple(found), refused)
+    return RoadMap(tuple(found), refused, summary_of(unread(root, OPENDRIVE_FILE)))
 
 
 def _road(node: Element, where: str) -> MapRoad:
@@ -156,7 +166,8 @@ def _road(node: Element, where: str) -> MapRoad:
     if rule is None:
         raise InputError(f"{where}: rule={node.get('rule')}: one of {', '.join(_RULES)} is needed")
     junction, line = node.get("junction", "-1"), _line(node, length, where)
-    return MapRoad(
+    before, after = _links(node)
+    made = MapRoad(
         node.get("id", ""),
         node.get("name") or "",
         where,
@@ -165,9 +176,16 @@ def _road(node: Element, where: str) -> MapRoad:
         line,
         _pieces(node.findall("lanes/laneOffset"), "s", _ZERO, f"{where}, laneOffset"),
         tuple(_sections(node, line.end, where)),
-        _link(node.find("link/predecessor")),
-        _link(node.find("link/successor")),
+        _link(before),
+        _link(after),
     )
+    return replace(made, unread=summary_of(unread(node, OPENDRIVE)))
+
+
+def _links(node: Element) -> tuple[Element | None, Element | None]:
+    """The predecessor and the successor of a road or lane."""
+    links = node.find("link")
+    return (None, None) if links is None else (links.find("predecessor"), links.find("successor"))
 
 
 def _link(node: Element | None) -> Link | None:
@@ -220,6 +238,7 @@ def _curve(node: Element, length: Fraction, where: str) -> Curve:
         told = " and ".join(x.tag for x in shapes) or "nothing"
         raise InputError(f"{where}: {told}: one of {', '.join(_CURVES)} is needed")
     (shape,) = shapes
+    shape.note()
     if shape.tag not in _CURVES:
         raise InputError(f"{where}: {shape.tag}: one of {', '.join(_CURVES)} is needed")
     return _CURVES[shape.tag](shape, length, f"{where}, {shape.tag}")
@@ -277,6 +296,7 @@ def _sections(road: Element, length: Fraction, where: str) -> Iterator[MapSectio
         raise InputError(f"{where}: laneSections must begin at s=0 and follow each other up to the length")
     for k, (node, begin, end) in enumerate(zip(nodes, begins, ends, strict=True), start=1):
         at = f"{where}, laneSection {k}"
+        _read_plain(node)
         lanes = dict[int, MapLane]()
         for side, sign in (("left", 1), ("right", -1)):
             for x in node.findall(f"{side}/lane"):
@@ -291,23 +311,45 @@ def _sections(road: Element, length: Fraction, where: str) -> Iterator[MapSectio
 def _lane(node: Element, begin: Fraction, where: str) -> MapLane:
     number = int(_number(node, "id", f"{where}, a lane"))
     at = f"{where}, lane {number}"
-    before, after = (node.find(f"link/{x}") for x in ("predecessor", "successor"))
+    before, after = _links(node)
     width = _pieces(node.findall("width"), "sOffset", begin, f"{at}, width")
-    borders = () if width else node.findall("border")
+    borders = node.findall("border")
+    if width:  # which has precedence
+        for x in borders:
+            x.read_all()
+        borders = []
+    _read_plain(node)
     return MapLane(
         number,
         node.get("type", ""),
         width,
-        _pieces(list(borders), "sOffset", begin, f"{at}, border"),
+        _pieces(borders, "sOffset", begin, f"{at}, border"),
         None if before is None else int(_number(before, "id", f"{at}, predecessor")),
         None if after is None else int(_number(after, "id", f"{at}, successor")),
         _zone(node, at),
     )
 
 
+_PLAIN = {
+    "advisory": ("none",),
+    "direction": ("standard",),
+    "dynamicLaneDirection": ("false", "0"),
+    "dynamicLaneType": ("false", "0"),
+    "roadWorks": ("false", "0"),
+    "singleSide": ("false", "0"),
+}
+"""Attributes of lanes and sections that are read where they have one of these values, and named elsewhere."""
+
+
+def _read_plain(node: Element) -> None:
+    for name, values in _PLAIN.items():
+        if node.peek(name) in values:
+            node.note(name)
+
+
 def _zone(lane: Element, where: str) -> Zone | None:
     """What a lane itself says of its zone."""
-    said = [x.get("value", "") for x in lane.findall("userData") if x.get("code") == ZONE]
+    said = [x.peek("value") or "" for x in lane if x.tag == "userData" and x.peek("code") == ZONE]
     found = next((zone for zone in ZONES if said == [zone]), None)
     if said and found is None:
         raise InputError(f"{where}: userData {ZONE}={', '.join(said)!r}: one of {', '.join(ZONES)} is needed")

@@ -47,11 +47,15 @@ class Selection:
 
 @dataclass(frozen=True)
 class Stretch:
-    """What is selected: lanelets, reference line, and how far (m) edges of lanelets are from the map's."""
+    """What is selected: lanelets, reference line, and how far (m) edges of lanelets are from the map's.
+
+    ``unread``: kinds of parts of the map that were not read and may have an effect.
+    """
 
     lanelets: tuple[Lanelet, ...]
     line: ReferenceLine
     width_error: Fraction
+    unread: tuple[str, ...] = ()
 
 
 def is_map(text: str | Path) -> bool:
@@ -116,7 +120,8 @@ def stretch_of(path: Path, known_map: RoadMap, selection: Selection) -> Stretch:
     line = ReferenceLine(tuple(part for way in ways for part in _parts(way)))
     lanelets = tuple(cut(path, made, _span(ways, selection)))
     check_lanelets(lanelets, ways[0].road.where)
-    return Stretch(lanelets, line, made.width_error)
+    unread = (*known_map.unread, *dict.fromkeys(x for way in ways for x in way.road.unread))
+    return Stretch(lanelets, line, made.width_error, unread)
 
 
 def directed(path: Path, known_map: RoadMap, selection: Selection) -> tuple[DirectedRoad, ...]:

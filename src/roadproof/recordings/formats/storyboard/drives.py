@@ -89,7 +89,7 @@ def read_storyboard_drive(path: Path) -> StoryboardDrive:
     All of them have to be on the road, and to drive along it, all the time, without jumps of place or speed.
     """
     stage, play = played(open_stage(path))
-    unread = stage.document.left_out()
+    unread = (*stage.document.left_out(), *stage.road.unread)
     error, vehicles, where = _Error(), dict[str, Motion](), str(path)
     end = len(play.states) - 1
     for name, box in stage.boxes.items():

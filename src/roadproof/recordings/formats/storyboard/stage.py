@@ -6,10 +6,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from roadproof.errors import InputError
+from roadproof.recordings.formats.reliable import LEFT_OUT
 from roadproof.recordings.formats.storyboard.box import Box
 from roadproof.recordings.formats.storyboard.document import Document, open_document
 from roadproof.recordings.formats.storyboard.routes import longer, stretch_of
 from roadproof.recordings.formats.storyboard.run import Play, run_storyboard
+from roadproof.recordings.formats.unread import unread_note
 from roadproof.runtime.records import dataclass
 from roadproof.runtime.xml_reader import Element, number_in
 from roadproof.world.models import load_road
@@ -61,6 +63,13 @@ def played(stage: Stage) -> tuple[Stage, Play]:
         stage = replace(stage, road=road, stretch=more)
         play = run_storyboard(stage.document, stage.boxes, road)
     return stage, play
+
+
+def unread_of(stage: Stage) -> tuple[str, ...]:
+    """Notes on parts of a file and of its map that were not read and may have an effect."""
+    parts = stage.document.left_out()
+    told = (f"{LEFT_OUT}, as it is not supported: {'; '.join(parts)}",) if parts else ()
+    return (*told, *unread_note(stage.road_path, stage.road.unread, strict=False))
 
 
 def map_of(document: Document) -> Path:
