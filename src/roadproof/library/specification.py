@@ -19,7 +19,7 @@ from roadproof.logic import syntax
 from roadproof.logic.custom_names import freedom_of, own_signal
 from roadproof.logic.formula import Formula
 from roadproof.logic.show import text
-from roadproof.runtime.files import read_limited, refuse_name
+from roadproof.runtime.files import read_text, refuse_name
 from roadproof.runtime.records import dataclass
 from roadproof.world.signals import FIXED, SIGNALS
 
@@ -168,13 +168,7 @@ def read_specification(path: Path) -> Source:
     """
     path = on_request().get(str(path), path)
     refuse_name(path)
-    data = read_limited(path, LARGEST_FILE, "split it, or name another file")
-    try:
-        return Source(str(path), data.decode("utf-8"))
-    except UnicodeDecodeError as error:
-        raise InputError(
-            f"{path} is not UTF-8 text: byte {error.start} is 0x{data[error.start]:02x}; save it as UTF-8"
-        ) from None
+    return Source(str(path), read_text(path, LARGEST_FILE, "split it, or name another file"))
 
 
 # Names that mean something without a definition; spec.elaborate gives their meaning.

@@ -9,17 +9,20 @@ _BEGINNINGS: tuple[tuple[bytes, str], ...] = (
     (b"7z\xbc\xaf\x27\x1c", "is a 7z archive; unpack it first"),
     (b"PAR1", "is a Parquet file; let its name end in .parquet, or write it as CSV"),
     (b"\x89HDF", "is an HDF5 file; write its table as CSV"),
-    (b"%PDF", "is a PDF file; the recordings are CSV files"),
+    (b"%PDF", "is a PDF file; name the file that it describes"),
     (b"version https://git-lfs", "is a pointer of Git LFS, not the file itself; fetch it with git lfs pull"),
 )
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 _PAGES = (b"<!doctype html", b"<html", b"<head", b"<body")
 
 
-def other_format(content: bytes) -> str | None:
-    """What ``content`` is and what to do about it, where that is neither CSV nor XML; else None."""
+def other_format(content: bytes, expected: bytes = b"") -> str | None:
+    """What ``content`` is and what to do about it, where that is neither CSV nor XML; else None.
+
+    ``expected``: how the files begin that are read.
+    """
     for beginning, told in _BEGINNINGS:
-        if content.startswith(beginning):
+        if content.startswith(beginning) and beginning != expected:
             return told
     start = content[:200].lstrip(b"\xef\xbb\xbf \t\r\n").lower()
     if start.startswith(_PAGES):

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from roadproof.errors import InputError
-from roadproof.runtime.file_kind import other_text
+from roadproof.runtime.file_kind import other_encoding, other_format
 
 
 @contextmanager
@@ -193,13 +193,21 @@ def read_limited(path: Path, most: int, advice: str) -> bytes:
     return data
 
 
-def read_text(path: Path, most: int, advice: str, remedy: str = "") -> str:
-    """As ``read_limited``, a text in UTF-8; ``remedy``: what is said of one that is not."""
-    data = read_limited(path, most, advice)
+def read_text(path: Path, most: int, advice: str) -> str:
+    """As ``read_limited``, a text in UTF-8. Raises ``InputError`` that names files of other kinds."""
+    return as_text(path, read_limited(path, most, advice))
+
+
+def as_text(path: Path, data: bytes) -> str:
+    """The text in UTF-8 that a file has. Raises ``InputError`` that names files of other kinds."""
+    other = other_format(data)
+    if other is not None:
+        raise InputError(f"{path}: the file {other}")
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError as error:
-        other = other_text(data)
+        other = other_encoding(data)
         if other is not None:
             raise InputError(f"{path}: the file {other}") from None
-        raise InputError(f"{path}: byte {error.start} is not UTF-8 text{remedy}") from None
+        strange = f"byte {error.start} is 0x{data[error.start]:02x}"
+        raise InputError(f"{path} is not UTF-8 text: {strange}; save it as UTF-8") from None

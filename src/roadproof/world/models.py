@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TypeAlias, cast, get_args
 
 from roadproof.errors import InputError
+from roadproof.runtime.files import read_text
 from roadproof.runtime.package_data import shipped
 from roadproof.world.lanelet_rules import check_lanelets, shared_boundaries
 from roadproof.world.road import Attribute, Lanelet, Road, Zone, pairs
@@ -114,18 +115,11 @@ def read_toml(path: Path) -> Content:
     """The content of a file, its numbers exact. Raises ``InputError``."""
     import tomllib
 
+    text = read_text(path, LARGEST_MODEL, "divide it, or name another file")
     try:
-        with path.open("rb") as file:
-            data = file.read(LARGEST_MODEL + 1)
-        if len(data) > LARGEST_MODEL:
-            raise InputError(f"the file is larger than {LARGEST_MODEL} bytes")
-        return tomllib.loads(data.decode("utf-8"), parse_float=_exact)
+        return tomllib.loads(text, parse_float=_exact)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
-    except OSError as error:
-        raise InputError(f"cannot read {path}: {error.strerror or error}") from None
-    except UnicodeDecodeError:
-        raise InputError(f"{path} is not UTF-8 text") from None
     except (tomllib.TOMLDecodeError, RecursionError) as error:
         raise InputError(f"{path} is no TOML: {error}") from None
 

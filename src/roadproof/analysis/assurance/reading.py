@@ -16,8 +16,9 @@ from roadproof.analysis.assurance.case import Case, Element, Evidence, Kind
 from roadproof.analysis.assurance.rules import top_goal
 from roadproof.errors import InputError
 from roadproof.library.specification import unknown
+from roadproof.runtime.files import read_text
 from roadproof.verdict import Verdict
-from roadproof.world.models import read_toml
+from roadproof.world.models import LARGEST_MODEL, read_toml
 
 _HEADER = re.compile(r"\s*\[\s*(\"?)([^\"\]]+?)\1\s*\]")
 _KEY = re.compile(r"\s*(\"?)([A-Za-z0-9_-]+)\1\s*=")
@@ -35,7 +36,7 @@ LONGEST = 1000  # characters of a text
 def read_case(path: Path) -> Case:
     """The case in a file. Raises ``InputError`` for what is no case, or is not well-formed."""
     content = read_toml(path)
-    place = _Place(str(path), _lines_of(path.read_text("utf-8")))
+    place = _Place(str(path), _lines_of(read_text(path, LARGEST_MODEL, "")))
     title = content.get("title", path.stem)
     if not isinstance(title, str):
         raise place.error("title", "", "the title must be a text")

@@ -21,6 +21,7 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import split
 from roadproof.library.scenario_references import claimed
 from roadproof.library.specification import Query, Specification, unknown
+from roadproof.runtime.files import read_text
 from roadproof.world.models import LARGEST_MODEL, load_road, load_vehicle, read_toml
 
 _BEGIN = re.compile(r"\s*\[\[|\s*\[\s*test\s*\]")
@@ -75,8 +76,8 @@ def _of_content(content: Mapping[str, object], path: Path) -> tuple[Fragment, ..
 def _by_itself(path: Path) -> tuple[Fragment, ...]:
     """The tests of a file that is no TOML, each read alone; none where texts may go over several lines."""
     try:
-        text = path.read_bytes().decode("utf-8") if path.stat().st_size <= LARGEST_MODEL else ""
-    except (OSError, UnicodeDecodeError):
+        text = read_text(path, LARGEST_MODEL, "")
+    except InputError:
         return ()
     if '"""' in text or "'''" in text:
         return ()

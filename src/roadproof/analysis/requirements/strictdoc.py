@@ -40,7 +40,7 @@ class _Node:
 
 def read_strictdoc(path: Path) -> Requirements:
     """The requirements of a .sdoc file. Raises ``InputError`` with the line of what is not understood."""
-    lines = read_text(path, LARGEST, "divide the document", "; save it as UTF-8").splitlines()
+    lines = read_text(path, LARGEST, "divide the document").splitlines()
     found: list[Requirement] = []
     notes: list[str] = []
     for node in _nodes(lines, path):

@@ -21,7 +21,8 @@ from roadproof.analysis.requirements.requirement import (
 from roadproof.errors import InputError
 from roadproof.evidence.answers.trace import Position
 from roadproof.library.specification import on_request, unknown
-from roadproof.world.models import read_toml
+from roadproof.runtime.files import read_text
+from roadproof.world.models import LARGEST_MODEL, read_toml
 
 _HEAD = re.compile(r"(\s*)\[\[\s*requirement\s*\]\]")
 _TRACE = ("evidence", "specs", "set", "options", "parameters", "vehicles", "source")
@@ -115,7 +116,7 @@ def _requirements(content: Content, path: Path) -> Iterator[Requirement]:
 
 def _places(path: Path) -> list[Position]:
     """Where each ``[[requirement]]`` begins."""
-    lines = path.read_text("utf-8").splitlines()
+    lines = read_text(path, LARGEST_MODEL, "").splitlines()
     found = ((number, _HEAD.match(line)) for number, line in enumerate(lines, 1))
     return [Position(file=str(path), line=n, column=len(x[1]) + 1) for n, x in found if x is not None]
 

@@ -31,7 +31,7 @@ Value: TypeAlias = str | tuple[Item, ...]
 
 def read_yaml(path: Path) -> dict[str, Value]:
     """The keys of a file with their values, all as texts. Raises ``InputError`` with the line."""
-    lines = read_text(path, LARGEST, "an item of requirements is smaller", "; save it as UTF-8").splitlines()
+    lines = read_text(path, LARGEST, "an item of requirements is smaller").splitlines()
     found: dict[str, Value] = {}
     at = 0
     while at < len(lines):

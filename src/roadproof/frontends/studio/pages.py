@@ -16,6 +16,7 @@ from roadproof.frontends.report.viewer_page import viewer_modules, viewer_style
 from roadproof.frontends.studio.examples import EXAMPLES
 from roadproof.frontends.studio.requests import form
 from roadproof.library.specification import read_specification
+from roadproof.runtime.files import read_text
 
 _SCRIPT, _STYLE = "text/javascript; charset=utf-8", "text/css; charset=utf-8"
 _OWN = (
@@ -141,14 +142,7 @@ def is_drive(content: object) -> bool:
 
 
 def _text_of(path: Path) -> str:
-    try:
-        if path.stat().st_size > LARGEST_TOGETHER:
-            raise InputError(
-                f"{path} is larger than {LARGEST_TOGETHER // 1_000_000} MB: use roadproof evaluate"
-            )
-        return path.read_text("utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path} cannot be read as text: {error}") from None
+    return read_text(path, LARGEST_TOGETHER, "use roadproof evaluate")
 
 
 def found_in(folder: Path) -> Begun:

@@ -4,7 +4,7 @@ The format's own names mislead: ``width`` is a vehicle's length and ``height`` i
 the upper-left corner of the box, and y grows down. Direction 1 drives towards -x on the upper lanes.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
@@ -13,6 +13,7 @@ import numpy as np
 
 from roadproof.errors import InputError
 from roadproof.recordings.formats.clock import Rate
+from roadproof.recordings.formats.content import Content
 from roadproof.recordings.formats.contradictions import contradictions, seldom
 from roadproof.recordings.formats.plausible import (
     LARGEST_ACCELERATION,
@@ -33,7 +34,7 @@ from roadproof.recordings.formats.recording import (
 from roadproof.recordings.formats.reliable import reliable
 from roadproof.recordings.formats.source import Files, Format
 from roadproof.recordings.formats.straight import StraightRoad, of_bands, of_road, place
-from roadproof.recordings.formats.table import Table, kinds_of, names_in, read_table, sample_rows
+from roadproof.recordings.formats.table import Table, fits_kind, kinds_of, names_in, read_table
 from roadproof.recordings.formats.tracks import (
     RATE_AT,
     cells_of,
@@ -148,13 +149,30 @@ def _check_lanes(tracks: Table, recording: Recording, marked: Bools) -> Iterator
     return seldom(tracks, other, "laneId", rule, "do markings and positions fit?")
 
 
+def _sample_rows(table: Table, header: Sequence[str], names: Sequence[str], count: int) -> list[list[float]]:
+    """The numbers of ``names`` in about ``count`` rows, evenly over the file that ``read_table`` took."""
+    places = [header.index(name) for name in names]
+    found = []
+    content = table.content or Content.of(table.path)
+    with content.open() as file:
+        size = file.seek(0, 2)
+        for k in range(count):
+            file.seek(size * k // count)
+            file.readline()
+            cells = file.readline().decode("utf-8", "replace").strip().split(",")
+            numbers = [cells[place] for place in places] if len(cells) == len(header) else []
+            if numbers and all(fits_kind(x, "number") for x in numbers):
+                found.append([float(x) for x in numbers])
+    return found
+
+
 def _check_sight(meta: Table, tracks: Table) -> tuple[str, ...]:
     """x against the distance to the end of the section, which the format counts from the box's centre.
 
     x + width/2 less that distance is one number for short and long vehicles, unless x is not the left edge.
     """
     names = ("id", "x", "width", "frontSightDistance", "backSightDistance")
-    rows = np.array(sample_rows(tracks, SAMPLE_COLUMNS, names, 400)).reshape(-1, len(names))
+    rows = np.array(_sample_rows(tracks, SAMPLE_COLUMNS, names, 400)).reshape(-1, len(names))
     rows = rows[(rows[:, 3] > 0) & (rows[:, 4] > 0)]
     rows = rows[np.argsort(rows[:, 2], kind="stable")]
     third = len(rows) // 3

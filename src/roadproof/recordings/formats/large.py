@@ -30,9 +30,8 @@ from roadproof.recordings.formats.reliable import (
     stands,
     too_many,
 )
+from roadproof.recordings.formats.row_order import Mended, by_time, by_vehicle, steps_of
 from roadproof.recordings.formats.samples import (
-    ORDER,
-    by_vehicle,
     column_pieces,
     count_samples,
     number_vehicles,
@@ -91,20 +90,13 @@ def write_large(path: Path, folder: Path, digests: Mapping[str, str], form: str,
         groups = _divide_rows(path, survey, Path(temporary))
         require_unchanged(path, stamp)
         read = _GroupReader(path, road, survey, groups, strict)
+        read.begin()
         made = _write_parts(read, Selection(), Path(temporary))
         if not strict and not stands(made.checks):
             made = _write_parts(read, _chosen(read, made.checks), Path(temporary))
         whole = _joined(made.heads)
         chosen = made.chosen
-        left_out = (left_out_note([x], len(survey.names), Why.TOLD(y.told)) for x, y in read.faults.items())
-        notes = (
-            *left_out,
-            *survey.unread,
-            *survey.notes,
-            *survey.clock.notes,
-            *chosen.notes,
-            *read.doubts(made),
-        )
+        notes = (*read.notes, *chosen.notes, *read.doubts(made))
         table, head = folder / f"{path.stem}{SAMPLES}", folder / f"{path.stem}{HEAD}"
         head.unlink(missing_ok=True)  # it is there when the samples are
         _join(made.parts, Path(temporary) / "whole", table)
@@ -126,7 +118,7 @@ class _Written:
 
 def _write_parts(read: "_GroupReader", chosen: Selection, folder: Path) -> _Written:
     """Write the vehicles of each group that are ``chosen``."""
-    made = _Written(chosen, ContradictionChecks(read.survey.clock.rate, read.road.lanes), [], [])
+    made = _Written(chosen, ContradictionChecks(read.clock.rate, read.road.lanes), [], [])
     for number, group in enumerate(read.recordings()):
         recording = chosen.of(group)
         made.checks.add(recording)
@@ -151,60 +143,34 @@ def _chosen(read: "_GroupReader", checks: ContradictionChecks) -> Selection:
 
 @dataclass(frozen=True)
 class _Survey:
-    """What vehicles a file has, in the order of their numbers, and its clock.
+    """What vehicles a file has, in the order of their numbers.
 
-    ``index`` gives the place of each name; ``counts`` how many rows each has.
+    ``index`` gives the place of each name; ``counts`` how many rows each has. ``unread``: a note on columns.
     """
 
-    rows: int
     names: list[str]
     index: Mapping[str, int]
     numbers: Integers
     counts: Integers
-    clock: Clock
     notes: tuple[str, ...]
     unread: tuple[str, ...]
 
 
 def _survey(path: Path, strict: bool) -> _Survey:
-    last: dict[str, float] = {}
     counts: dict[str, int] = {}
-    steps: dict[float, int] = {}
-    times = np.zeros(0)
-    rows, unread = 0, tuple[str, ...]()
+    unread: tuple[str, ...] = ()
     for table in column_pieces(path):
         unread = unread_of(table, strict)
         names, index = _named(table)
-        ordered, codes = by_vehicle(table, index)
-        time = ordered["time"]
-        first = np.flatnonzero(np.diff(codes, prepend=-1) != 0)
-        before = np.concatenate(([np.nan], time[:-1]))
-        before[first] = [last.get(name, np.nan) for name in names]
-        ahead = time - before
-        ordered.require(np.isnan(before) | (ahead > 0), "time", ORDER)
-        for step, count in zip(*np.unique(ahead[~np.isnan(before)], return_counts=True), strict=True):
-            steps[float(step)] = steps.get(float(step), 0) + int(count)
-        ends = np.append(first[1:], len(time)) - 1
-        times = np.union1d(times, time)
-        for name, count, end in zip(names, np.diff(np.append(first, len(time))), ends, strict=True):
-            counts[name] = counts.get(name, 0) + int(count)
-            last[name] = float(time[end])
-        rows += table.rows
+        for name, count in zip(names, np.bincount(index).tolist(), strict=True):
+            counts[name] = counts.get(name, 0) + count
     unordered = np.array(sorted(counts))
     numbers, notes = number_vehicles(unordered)
     order = np.argsort(numbers, kind="stable")
     known = [str(name) for name in unordered[order]]
-    found = np.array(sorted(steps)), np.array([steps[x] for x in sorted(steps)], np.int64)
-    return _Survey(
-        rows,
-        known,
-        {name: k for k, name in enumerate(known)},
-        numbers[order],
-        np.array([counts[name] for name in known]),
-        clock_of(path, times, *found),
-        notes,
-        unread,
-    )
+    each = np.array([counts[name] for name in known])
+    index_of = {name: k for k, name in enumerate(known)}
+    return _Survey(known, index_of, numbers[order], each, notes, unread)
 
 
 def _named(table: Table) -> tuple[list[str], Integers]:
@@ -245,12 +211,12 @@ def _divide_rows(path: Path, survey: _Survey, folder: Path) -> list[Path]:
     return groups
 
 
-@dataclass(frozen=True)
+@dataclass
 class _GroupReader:
     """The recordings of groups of vehicles.
 
     ``faults``: by name the vehicles of which a cell breaks a rule, unless it is ``strict``; they are left
-    out.
+    out. ``begin`` sets the rest: the clock, what was done to the rows, and how many rows each vehicle has.
     """
 
     path: Path
@@ -259,6 +225,37 @@ class _GroupReader:
     groups: list[Path]
     strict: bool
     faults: dict[str, CellError] = field(default_factory=dict)
+    clock: Clock = field(init=False)
+    mended: Mended = field(init=False, default_factory=Mended)
+    counts: Integers = field(init=False)
+
+    def begin(self) -> None:
+        """Find the clock in the rows of all groups. Raises ``InputError``."""
+        times, steps = np.zeros(0), dict[float, int]()
+        self.counts = np.zeros_like(self.survey.counts)
+        for number in range(len(self.groups)):
+            found = self._ordered(number)
+            if found is None:
+                continue
+            table, ids, mended = found
+            self.mended += mended
+            vehicles, counts = np.unique(table["vehicle"], return_counts=True)
+            self.counts[vehicles] = counts
+            there, apart, often = steps_of(table, ids)
+            times = np.union1d(times, there)
+            for step, count in zip(apart.tolist(), often.tolist(), strict=True):
+                steps[step] = steps.get(step, 0) + count
+        known = sorted(steps)
+        often = np.array([steps[x] for x in known], np.int64)
+        self.clock = clock_of(self.path, times, np.array(known), often)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """On what was left out, on names of vehicles, on rows and on the clock, as of small files."""
+        known = len(self.survey.names)
+        left_out = (left_out_note([x], known, Why.TOLD(y.told)) for x, y in self.faults.items())
+        done = self.mended.notes(self.path)
+        return (*self.survey.unread, *left_out, *self.survey.notes, *done, *self.clock.notes)
 
     def table(self, number: int) -> tuple[Table, Integers]:
         """The rows of a group by vehicle, and the number of each row's vehicle.
@@ -280,27 +277,43 @@ class _GroupReader:
                 yield found
 
     def _recording(self, number: int) -> Recording | None:
+        while True:
+            found = self._ordered(number)
+            if found is None:
+                return None
+            table, ids, _ = found
+            try:
+                return vehicles_of(table, ids, self.clock, self.road, self.path.stem)
+            except CellError as error:
+                self._blame(table, error)
+
+    def _ordered(self, number: int) -> tuple[Table, Integers, Mended] | None:
+        """The rows of a group by vehicle and time, without vehicles with faults; None where none is left."""
         whole, numbers = self.table(number)
         while True:
-            bad = [self.survey.index[x] for x in self.faults]
-            rows = np.flatnonzero(~np.isin(whole["vehicle"], bad))
+            rows = np.flatnonzero(~np.isin(whole["vehicle"], [self.survey.index[x] for x in self.faults]))
             if not len(rows):
                 return None
             table, ids = (whole.at(rows), numbers[rows]) if len(rows) < whole.rows else (whole, numbers)
             try:
-                return vehicles_of(table, ids, self.survey.clock, self.road, self.path.stem)
+                return by_time(table, ids)
             except CellError as error:
-                if self.strict or len(self.faults) + 1 > MOST_LEFT_OUT * len(self.survey.names):
-                    raise next(iter(self.faults.values()), error) from None
-                row = int(np.argmax(table.places == error.place))
-                self.faults[self.survey.names[int(table["vehicle"][row])]] = error
+                self._blame(table, error)
+
+    def _blame(self, table: Table, error: CellError) -> None:
+        """Leave out the vehicle of a cell that breaks a rule. Raises the first error where none may be."""
+        if self.strict or len(self.faults) + 1 > MOST_LEFT_OUT * len(self.survey.names):
+            raise next(iter(self.faults.values()), error) from None
+        row = int(np.argmax(table.places == error.place))
+        self.faults[self.survey.names[int(table["vehicle"][row])]] = error
 
     def doubts(self, made: _Written) -> Iterator[str]:
         """What the vehicles that are written contradict themselves in. Raises ``InputError``."""
         bad = [self.survey.index[x] for x in self.faults]
         kept = ~np.isin(self.survey.numbers, made.chosen.lost)
         kept[bad] = False
-        counts = self.survey.counts
+        counts = self.counts.copy()
+        counts[bad] = 0
         begins, ours = offsets(counts)[:-1][kept], offsets(counts[kept])
 
         def whole_row(row: int) -> int:
@@ -319,13 +332,16 @@ class _GroupReader:
     def cell(self, row: int, column: str) -> tuple[str, str]:
         """The cell in a row of the whole, in order of vehicles, in words; and the name of its vehicle."""
         for number in range(len(self.groups)):
-            table, _ = self.table(number)
+            found = self._ordered(number)
+            if found is None:
+                continue
+            table = found[0]
             if row < table.rows:
                 name = self.survey.names[int(table["vehicle"][row])]
                 value = name if column == "vehicle" else table[column][row]
                 assert table.places is not None
-                found = Table(self.path, {column: np.array([value])}, 1, table.places[row : row + 1])
-                return found.cell(0, column), name
+                one = Table(self.path, {column: np.array([value])}, 1, table.places[row : row + 1])
+                return one.cell(0, column), name
             row -= table.rows
         raise IndexError(row)
 

@@ -37,6 +37,7 @@ from roadproof.recordings.formats.source import Files, Format, beside, with_suff
 from roadproof.recordings.formats.table import CellError
 from roadproof.recordings.formats.tracks import Rule, without_bad
 from roadproof.recordings.formats.unread import unread_note
+from roadproof.runtime.file_kind import other_format
 from roadproof.world.maps.network import ZONES_ENDING
 
 ENDING = ".osi"
@@ -227,6 +228,10 @@ def _read(path: Path) -> tuple[_Samples, Rate]:
 def _messages(path: Path) -> Iterator[bytes]:
     try:
         with path.open("rb") as file:
+            other = other_format(file.read(1000))
+            if other is not None:
+                raise InputError(f"{path}: the file {other}")
+            file.seek(0)
             number = 0
             while head := file.read(_LENGTH.size):
                 number += 1

@@ -30,6 +30,7 @@ from roadproof.recordings.formats.plausible import (
 )
 from roadproof.recordings.formats.recording import Floats, Integers, Recording, own_numbers, with_notes
 from roadproof.recordings.formats.reliable import MOST_LEFT_OUT, left_out_note, reliable
+from roadproof.recordings.formats.row_order import by_time, by_vehicle, steps_of
 from roadproof.recordings.formats.source import first_line
 from roadproof.recordings.formats.straight import StraightRoad, of_road, record
 from roadproof.recordings.formats.table import (
@@ -44,9 +45,9 @@ from roadproof.recordings.formats.table import (
     polars_module,
     read_pieces,
     read_table,
-    without_copies,
 )
 from roadproof.recordings.formats.unread import unread_columns
+from roadproof.runtime.file_kind import other_format
 from roadproof.runtime.files import refuse_name
 from roadproof.world.models import load_recorded_road
 from roadproof.world.signals import RECORDED, SIGNALS, SIZES
@@ -90,6 +91,10 @@ def _readable(path: Path) -> Iterator[None]:
         told = error.strerror or str(error).partition("\n")[0][:200]
         raise InputError(f"{path}: the file cannot be read ({told}); check the path") from None
     except (pl.exceptions.PolarsError, pl.exceptions.PanicException) as error:
+        with path.open("rb") as file:
+            other = other_format(file.read(1000), b"PAR1")
+        if other is not None:
+            raise InputError(f"{path}: the file {other}") from None
         told = str(error).partition("\n")[0][:200]
         raise InputError(f"{path}: no readable Parquet file ({told}); get it again from its source") from None
 
@@ -292,12 +297,6 @@ def number_vehicles(names: npt.NDArray[np.str_]) -> tuple[Integers, tuple[str, .
     return number, (f"vehicles are numbered: {shown}{', …' if len(names) > 12 else ''}",)
 
 
-def by_vehicle(table: Table, ids: Integers) -> tuple[Table, Integers]:
-    """The rows by vehicle, in the order of the file, and the number of each row's vehicle."""
-    order = np.argsort(ids, kind="stable")
-    return table.at(order), ids[order]
-
-
 @dataclass(frozen=True)
 class Ordered:
     """Rows by vehicle and time, the number of each row's vehicle, and the clock.
@@ -317,30 +316,9 @@ def in_order(columns: Table) -> Ordered:
     names, index = np.unique(columns["vehicle"].astype(np.str_), return_inverse=True)
     number, numbered = number_vehicles(names)
     table, ids = by_vehicle(columns, number[index])
-    table, ids, notes = _by_time(table, ids)
-    time = table["time"]
-    same = np.diff(ids, prepend=-1) == 0
-    steps, counts = np.unique(np.diff(time, prepend=0.0)[same], return_counts=True)
-    clock = clock_of(table.path, np.unique(time), steps, counts)
-    return Ordered(table, ids, clock, numbered, notes)
-
-
-ORDER = "the rows of a vehicle come in order of time, each time once"
-
-
-def _by_time(table: Table, ids: Integers) -> tuple[Table, Integers, tuple[str, ...]]:
-    """The rows of each vehicle in order of time, without repeated ones, and notes. Raises ``InputError``."""
-    same, ahead = np.diff(ids, prepend=-1) == 0, np.diff(table["time"], prepend=0.0)
-    if (~same | (ahead > 0)).all():
-        return table, ids, ()
-    notes = []
-    if not (~same | (ahead >= 0)).all():
-        order = np.lexsort((np.arange(table.rows), table["time"], ids))
-        table, ids = table.at(order), ids[order]
-        notes.append(f"{table.path.name}: rows were not in order of time; they were sorted")
-    again = (np.diff(ids, prepend=-1) == 0) & (np.diff(table["time"], prepend=0.0) == 0)
-    table, told = without_copies(table, again, "time")
-    return table, ids[~again], (*notes, *told)
+    table, ids, mended = by_time(table, ids)
+    clock = clock_of(table.path, *steps_of(table, ids))
+    return Ordered(table, ids, clock, numbered, mended.notes(table.path))
 
 
 def frames_of(table: Table, ids: Integers, clock: Clock) -> Integers:

@@ -132,8 +132,12 @@ def without_copies(table: Table, again: npt.NDArray[np.bool_], column: str) -> t
             raise table.refuse(
                 row, column, f"vehicle and {column} occur together once, but row {first} has them; {told}"
             )
-    note = f"{table.path.name}: {len(rows)} rows that repeat another row were left out"
-    return table.at(np.flatnonzero(~again)), (note,)
+    return table.at(np.flatnonzero(~again)), copies_note(table.path, len(rows))
+
+
+def copies_note(path: Path, count: int) -> tuple[str, ...]:
+    """A note on so many rows that repeat another one."""
+    return (f"{path.name}: {count} rows that repeat another row were left out",) if count else ()
 
 
 def names_in(*lines: str) -> tuple[str, ...]:
@@ -165,13 +169,7 @@ def read_table(
     Integers come as int64, numbers as finite float64, texts as str. Raises ``InputError`` for a
     file that cannot be read, is empty or truncated, or breaks a rule above.
     """
-    content = Content.of(path, thousands)
-    beginning = content.beginning()
-    other = other_table(beginning, len(header))
-    if other is not None:
-        raise InputError(f"{path}: the file {other}")
-    _check_header(path, beginning.partition(b"\n")[0], header)
-    rows = _check_shape(content, len(header))
+    content, rows = _checked(path, header, thousands)
     try:
         columns = _columns(content, content.source(), header, wanted, rows)
     except InputError:
@@ -184,10 +182,8 @@ def read_table(
 
 def read_pieces(path: Path, header: Sequence[str], wanted: Mapping[str, Kind]) -> Iterator[Table]:
     """As ``read_table``, in pieces of about PIECE bytes, of which one at a time is in memory."""
-    content = Content.of(path)
+    content, _ = _checked(path, header)
     names, _, _ = content.beginning().partition(b"\n")
-    _check_header(path, names, header)
-    _check_shape(content, len(header))
     done = 0
     with content.open() as file:
         file.readline()
@@ -197,6 +193,17 @@ def read_pieces(path: Path, header: Sequence[str], wanted: Mapping[str, Kind]) -
             yield Table(path, columns, rows, np.arange(done, done + rows))
             done += rows
     content.require_unchanged()
+
+
+def _checked(path: Path, header: Sequence[str], thousands: bool = False) -> tuple[Content, int]:
+    """The content of a file with this header, and the number of its rows. Raises ``InputError``."""
+    content = Content.of(path, thousands)
+    beginning = content.beginning()
+    other = other_table(beginning, len(header))
+    if other is not None:
+        raise InputError(f"{path}: the file {other}")
+    _check_header(path, beginning.partition(b"\n")[0], header)
+    return content, _check_shape(content, len(header))
 
 
 def count_lines(path: Path) -> int:
@@ -237,23 +244,6 @@ def read_named(path: Path, wanted: Mapping[str, Kind], gaps: Collection[str] = (
     """As ``read_table``, for a file that may have other columns too, in any order. Raises ``InputError``."""
     header = Content.of(path).beginning().partition(b"\n")[0].decode("utf-8", "replace").strip().split(",")
     return read_table(path, header if set(wanted) <= set(header) else tuple(wanted), wanted, gaps=gaps)
-
-
-def sample_rows(table: Table, header: Sequence[str], names: Sequence[str], count: int) -> list[list[float]]:
-    """The numbers of ``names`` in about ``count`` rows, evenly over the file that ``read_table`` took."""
-    places = [header.index(name) for name in names]
-    found = []
-    content = table.content or Content.of(table.path)
-    with content.open() as file:
-        size = file.seek(0, 2)
-        for k in range(count):
-            file.seek(size * k // count)
-            file.readline()
-            cells = file.readline().decode("utf-8", "replace").strip().split(",")
-            numbers = [cells[place] for place in places] if len(cells) == len(header) else []
-            if numbers and all(_fits(x, "number") for x in numbers):
-                found.append([float(x) for x in numbers])
-    return found
 
 
 def write_table(path: Path, columns: Mapping[str, Column], decimals: int | None = None) -> None:
@@ -379,11 +369,12 @@ def _blame(
                 f"{path}, row {row + 2}: the row has {len(cells)} fields, the format {len(header)}"
             )
         for place, name, kind in places:
-            if not _fits(cells[place], kind):
+            if not fits_kind(cells[place], kind):
                 raise cell_error(path, row, name, repr(cells[place]), RULES[kind])
 
 
-def _fits(cell: str, kind: Kind) -> bool:
+def fits_kind(cell: str, kind: Kind) -> bool:
+    """Whether the text of a cell is of a kind."""
     match kind:
         case "text":
             return cell != ""
