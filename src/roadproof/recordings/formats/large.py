@@ -19,7 +19,14 @@ from roadproof.recordings.formats import windows
 from roadproof.recordings.formats.clock import Clock, clock_of
 from roadproof.recordings.formats.content import require_unchanged, stamp_of
 from roadproof.recordings.formats.contradictions import contradictions
-from roadproof.recordings.formats.converted import HEAD, SAMPLES, divide_converted, frame_of_samples, head_of
+from roadproof.recordings.formats.converted import (
+    HEAD,
+    SAMPLES,
+    divide_converted,
+    frame_of_samples,
+    head_of,
+    read_converted,
+)
 from roadproof.recordings.formats.plausible import ContradictionChecks
 from roadproof.recordings.formats.recording import OF_SAMPLES, OF_VEHICLES, Integers, Recording, offsets
 from roadproof.recordings.formats.reliable import (
@@ -66,8 +73,8 @@ def divide_large(path: Path, strict: bool = True) -> WindowedRecording | None:
     if not path.is_file() or not is_large(path):
         return None
     folder = tempfile.TemporaryDirectory()
-    made = divide_converted(write_large(path, Path(folder.name), {}, "", strict), checked=True)
-    assert made is not None
+    head = write_large(path, Path(folder.name), {}, "", strict)
+    made = divide_converted(head, checked=True) or windows.undivided(read_converted(head))
 
     def read() -> Iterator[Window]:
         with folder:

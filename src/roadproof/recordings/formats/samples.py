@@ -236,10 +236,11 @@ def _readable_part(
     Without vehicles of which a cell breaks a rule, where it is not ``strict`` and they are not too many.
     """
     names = columns["vehicle"].astype(np.str_)
-    known, wanted, faults = len(np.unique(names)), np.ones(columns.rows, np.bool_), dict[str, CellError]()
+    everyone, wanted, faults = np.unique(names), np.ones(columns.rows, np.bool_), dict[str, CellError]()
+    known = len(everyone)
     while True:
         try:
-            rows = in_order(columns if wanted.all() else columns.at(np.flatnonzero(wanted)))
+            rows = in_order(columns if wanted.all() else columns.at(np.flatnonzero(wanted)), everyone)
             recording = vehicles_of(rows.table, rows.ids, rows.clock, road, name)
             break
         except CellError as error:
@@ -311,11 +312,15 @@ class Ordered:
     notes: tuple[str, ...]
 
 
-def in_order(columns: Table) -> Ordered:
-    """The rows by vehicle and time. Raises ``InputError`` where times are no clock or rows contradict."""
-    names, index = np.unique(columns["vehicle"].astype(np.str_), return_inverse=True)
+def in_order(columns: Table, names: npt.NDArray[np.str_] | None = None) -> Ordered:
+    """The rows by vehicle and time. Raises ``InputError`` where times are no clock or rows contradict.
+
+    ``names``: of all vehicles of the file, in order, by default those of the rows.
+    """
+    each = columns["vehicle"].astype(np.str_)
+    names = np.unique(each) if names is None else names
     number, numbered = number_vehicles(names)
-    table, ids = by_vehicle(columns, number[index])
+    table, ids = by_vehicle(columns, number[np.searchsorted(names, each)])
     table, ids, mended = by_time(table, ids)
     clock = clock_of(table.path, *steps_of(table, ids))
     return Ordered(table, ids, clock, numbered, mended.notes(table.path))
