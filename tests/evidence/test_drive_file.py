@@ -225,7 +225,8 @@ def test_texts_that_are_refused(text: str, message: str) -> None:
 
 def test_files_that_are_refused(tmp_path) -> None:
     path = tmp_path / "x.json"
-    for content, message in ((b"\xff{}", "not UTF-8 text: byte 0 is 0xff"), (b" " * 101, "larger than 100 bytes")):
+    told = "not UTF-8 text: byte 0 is 0xff"
+    for content, message in ((b"\xff{}", told), (b" " * 101, "larger than 100 bytes")):
         path.write_bytes(content)
         with pytest.raises(InputError, match=message):
             strict.read_json(path, 100)

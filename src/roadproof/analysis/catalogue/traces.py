@@ -78,16 +78,14 @@ def _all_of(
 ) -> Iterator[tuple[OneTrace, Mapping[str, str]]]:
     """All pairs and triples of vehicles of one direction that are seen together, in all orders.
 
-    SV is the vehicle that begins as a planning problem says, unless the test names it.
+    SV is the vehicle that begins as a planning problem says, unless the test names it (``_with_subject``).
     Where the test says who plays all roles of a pair or triple, that alone; of further vehicles those that
     it names play their role.
     """
     ids = [str(x) for x in recording.vehicle_id]
     given = entry.roles
     if SUBJECT not in given and entry.place.endswith(".xml"):
-        subject = subject_of_problem(Path(entry.place))
-        if subject in ids and subject not in given.values():
-            given = {**given, SUBJECT: subject}
+        given = _with_subject(given, ids, subject_of_problem(Path(entry.place)))
     check_roles(ids, known, given, f"{entry.place}: roles")
     complete = [x for x in (PAIR, TRIPLE) if set(x) <= set(given)]
     if recording.vehicles > MOST_VEHICLES and not complete:
@@ -103,6 +101,21 @@ def _all_of(
                 vehicles = dict(zip(names, chosen, strict=True))
                 trace = cut_trace(recording, entry.place, vehicles, (low, high))
                 yield trace, {n: ids[v] for n, v in vehicles.items()}
+
+
+def _with_subject(given: Mapping[str, str], ids: Sequence[str], subject: str) -> Mapping[str, str]:
+    """The roles with the subject of a planning problem as SV, where it is a vehicle without a role.
+
+    Where a test names no roles, and the vehicles are as many as a pair or triple has, the others play the
+    other roles in their order, as vehicles do that are called so.
+    """
+    if subject not in ids or subject in given.values():
+        return given
+    others = [x for x in ids if x != subject]
+    cast = next((x for x in (PAIR, TRIPLE) if len(x) == len(ids)), None)
+    if given or cast is None:
+        return {**given, SUBJECT: subject}
+    return dict(zip(cast, (subject, *others), strict=True))
 
 
 # --- how the vehicles of a test move, sampled to be drawn ------------------------------------------

@@ -201,7 +201,7 @@ def _read(on: "str | Path | OneTrace | Mapping[str, Any] | Frame", given: Monito
     if Path(on).suffix in (".csv", ".parquet", ".xosc") and not has_numbers(Path(on)):
         return read_samples(Path(on), None if road is None else as_road(road), given.strict)
     if isinstance(road, Road):
-        raise UsageError(f"--road: {on} is a recording; name a road of a map, or omit it")
+        raise UsageError(f"--road: {on} is a recording; name a road by its name, path or map, or omit it")
     chart = None if road is None else str(road)
     if is_pair(str(on)):
         if names:

@@ -25,7 +25,7 @@ from roadproof.recordings.formats import openscenario, samples
 from roadproof.recordings.formats.recording import BACKWARDS, Bools, Recording, kind_called, own_numbers
 from roadproof.recordings.formats.reliable import left_out_in
 from roadproof.recordings.formats.source import beside
-from roadproof.recordings.formats.sources import find_source
+from roadproof.recordings.formats.sources import find_source, has_numbers
 from roadproof.recordings.formats.straight import of_road, whole
 from roadproof.recordings.formats.table import Column, Table
 from roadproof.recordings.formats.unread import unread_note
@@ -96,6 +96,8 @@ def read_vehicles(
     road: str | None = None,
 ) -> OneTrace:
     """As ``read_pair``, the vehicles of a recording by the role that each plays; ``text`` names the trace."""
+    if road is None and is_samples_alone(path):
+        road = USUAL_ROAD
     recording = find_source(path, strict, road).read()
     index = [_find(recording, number, text) for number in by_role.values()]
     if len({int(recording.direction[v]) for v in index}) > 1:
@@ -109,6 +111,16 @@ def read_vehicles(
     made = cut_trace(recording, text, dict(zip(by_role, index, strict=True)), wanted)
     names = {role: str(number) for role, number in by_role.items()}
     return replace(made, notes=(*made.notes, *_overlaps(made), *backwards(made)), names=names)
+
+
+USUAL_ROAD = "main-2"
+"""The road of samples that say none."""
+
+
+def is_samples_alone(path: Path) -> bool:
+    """Whether a file is a table of samples without a road beside it."""
+    is_table = path.suffix == ".parquet" or (path.suffix == ".csv" and not has_numbers(path))
+    return is_table and not path.name.endswith(samples.CONVERTED) and not beside(path, samples.ROAD_ENDING)
 
 
 def play_samples(trace: OneTrace, roles: Roles) -> OneTrace:
@@ -259,7 +271,7 @@ def read_samples(path: Path, road: Road | None = None, strict: bool = False) -> 
         notes = samples.unread_of(table, strict)
     if road is None:
         known = beside(path, samples.ROAD_ENDING)
-        road = load_recorded_road(known[0])[0] if known else load_road("main-2")
+        road = load_recorded_road(known[0])[0] if known else load_road(USUAL_ROAD)
     if path.suffix != ".xosc":
         notes += unread_note(Path((road.map or "").partition("#")[0]), road.unread, strict)
     lists = {name: values.tolist() for name, values in table.columns.items()}

@@ -42,8 +42,9 @@ from roadproof.recordings.formats.samples import (
     column_pieces,
     count_samples,
     number_vehicles,
-    road_beside,
+    road_of,
     unread_of,
+    unread_of_road,
     vehicles_of,
 )
 from roadproof.recordings.formats.straight import StraightRoad
@@ -63,17 +64,17 @@ def is_large(path: Path) -> bool:
     return count_samples(path) > windows.MOST_SAMPLES
 
 
-def divide_large(path: Path, strict: bool = True) -> WindowedRecording | None:
+def divide_large(path: Path, strict: bool = True, road: str | None = None) -> WindowedRecording | None:
     """A file of samples in windows of time, None where it is small. Raises ``InputError``.
 
-    Unless it is ``strict``, bad vehicles are left out.
+    Unless it is ``strict``, bad vehicles are left out. ``road``: by default that beside it.
 
     It is converted into a temporary folder, which is gone when the windows are.
     """
     if not path.is_file() or not is_large(path):
         return None
     folder = tempfile.TemporaryDirectory()
-    head = write_large(path, Path(folder.name), {}, "", strict)
+    head = write_large(path, Path(folder.name), {}, "", strict, road)
     made = divide_converted(head, checked=True) or windows.undivided(read_converted(head))
 
     def read() -> Iterator[Window]:
@@ -83,27 +84,34 @@ def divide_large(path: Path, strict: bool = True) -> WindowedRecording | None:
     return replace(made, windows=read)
 
 
-def write_large(path: Path, folder: Path, digests: Mapping[str, str], form: str, strict: bool = True) -> Path:
+def write_large(
+    path: Path,
+    folder: Path,
+    digests: Mapping[str, str],
+    form: str,
+    strict: bool = True,
+    road: str | None = None,
+) -> Path:
     """Write a file of samples as ``converted.write_converted`` does, and return the path of its head.
 
     ``digests`` of what it is made of, in the format called ``form``. Unless it is ``strict``, bad vehicles
     are left out. Raises ``InputError``.
     """
-    road = road_beside(path)
+    lanes, unread = road_of(path, road), unread_of_road(road, strict)
     with tempfile.TemporaryDirectory(dir=folder, prefix=".") as temporary:
         stamp = stamp_of(path)
         survey = _survey(path, strict)
         require_unchanged(path, stamp)
         groups = _divide_rows(path, survey, Path(temporary))
         require_unchanged(path, stamp)
-        read = _GroupReader(path, road, survey, groups, strict)
+        read = _GroupReader(path, lanes, survey, groups, strict)
         read.begin()
         made = _write_parts(read, Selection(), Path(temporary))
         if not strict and not stands(made.checks):
             made = _write_parts(read, _chosen(read, made.checks), Path(temporary))
         whole = _joined(made.heads)
         chosen = made.chosen
-        notes = (*read.notes, *chosen.notes, *read.doubts(made))
+        notes = (*unread, *read.notes, *chosen.notes, *read.doubts(made))
         table, head = folder / f"{path.stem}{SAMPLES}", folder / f"{path.stem}{HEAD}"
         head.unlink(missing_ok=True)  # it is there when the samples are
         _join(made.parts, Path(temporary) / "whole", table)

@@ -46,10 +46,10 @@ from roadproof.recordings.formats.table import (
     read_pieces,
     read_table,
 )
-from roadproof.recordings.formats.unread import unread_columns
+from roadproof.recordings.formats.unread import unread_columns, unread_note
 from roadproof.runtime.file_kind import other_format
 from roadproof.runtime.files import refuse_name
-from roadproof.world.models import load_recorded_road
+from roadproof.world.models import load_recorded_road, load_road
 from roadproof.world.signals import RECORDED, SIGNALS, SIZES
 
 PIECE = 250_000
@@ -192,21 +192,30 @@ def unread_of(columns: Table, strict: bool) -> tuple[str, ...]:
     return unread_columns(columns.path, columns.columns, read, {}, strict)
 
 
-def read_recording(path: Path, strict: bool = True) -> Recording:
-    """The recording of a file, on the road beside it; unless ``strict``, bad vehicles are left out.
+def read_recording(path: Path, strict: bool = True, road: str | None = None) -> Recording:
+    """The recording of a file, on a road or that beside it; unless ``strict``, bad vehicles are left out.
 
     Raises ``InputError``. Vehicles that are not called by whole numbers are numbered; ``notes`` tell how.
     """
     columns = read_columns(path)
-    unread = unread_of(columns, strict)
-    return recording_of(columns, road_beside(path), path.stem, unread, strict)
+    unread = (*unread_of(columns, strict), *unread_of_road(road, strict))
+    return recording_of(columns, road_of(path, road), path.stem, unread, strict)
 
 
-def road_beside(path: Path) -> StraightRoad:
-    """The road beside a file of samples. Raises ``InputError``."""
+def unread_of_road(road: str | None, strict: bool) -> tuple[str, ...]:
+    """A note on parts of the map of a road that were not read; refused if ``strict``."""
+    parts = () if road is None else load_road(road).unread
+    return unread_note(Path(str(road).partition("#")[0]), parts, strict)
+
+
+def road_of(path: Path, road: str | None = None) -> StraightRoad:
+    """The ``road`` of a file of samples, by default that beside it. Raises ``InputError``."""
+    if road is not None:
+        return of_road(load_road(road), DIRECTION, path)
     road_file = path.with_name(f"{path.stem}{ROAD_ENDING}")
     if not road_file.is_file():
-        raise InputError(f"{path}: {road_file.name} is missing beside it, which says where the lanes are")
+        told = f"{road_file.name} is missing beside it, which says where the lanes are; or give --road"
+        raise InputError(f"{path}: {told}")
     return of_road(load_recorded_road(road_file)[0], DIRECTION, road_file)
 
 

@@ -1,6 +1,8 @@
 """Which recordings a path holds. A new format is a file of this folder and a line here."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from roadproof.errors import InputError, UsageError
@@ -25,7 +27,7 @@ from roadproof.recordings.formats.source import (
     first_line,
 )
 from roadproof.recordings.formats.storyboard.distributions import split
-from roadproof.world.maps.selection import read_selection
+from roadproof.world.maps.selection import is_map, read_selection
 
 
 def has_numbers(path: Path) -> bool:
@@ -47,9 +49,20 @@ def _find_parquet(path: Path) -> dict[str, Files]:
     return {x: y for x, y in found.items() if not y[-1].name.endswith(samples.CONVERTED)}
 
 
-_OF_SAMPLES = samples.read_recording, "{0}, column time in steps of 1/{rate} s", divide_large
-CSV = Format("CSV", f"NAME.csv with the header {','.join(samples.HEADER)}", _find_csv, *_OF_SAMPLES)
-PARQUET = Format("Parquet", "NAME.parquet with the same columns", _find_parquet, *_OF_SAMPLES)
+def _of_samples(name: str, told: str, find: Callable[[Path], dict[str, Files]]) -> Format:
+    """A format of samples, on the road beside them or on one that is named: a model or a stretch of a map."""
+
+    def on(road: str) -> Format:
+        read, divide = partial(samples.read_recording, road=road), partial(divide_large, road=road)
+        return replace(made, read=read, divide=divide)
+
+    rate_at = "{0}, column time in steps of 1/{rate} s"
+    made = Format(name, told, find, samples.read_recording, rate_at, divide_large, on)
+    return made
+
+
+CSV = _of_samples("CSV", f"NAME.csv with the header {','.join(samples.HEADER)}", _find_csv)
+PARQUET = _of_samples("Parquet", "NAME.parquet with the same columns", _find_parquet)
 FORMATS: tuple[Format, ...] = (
     highd.FORMAT,
     exid.FORMAT,
@@ -67,8 +80,8 @@ FORMATS: tuple[Format, ...] = (
 def find_sources(path: Path, strict: bool = False, road: str | None = None) -> tuple[RecordingSource, ...]:
     """The recordings of a folder, or the one that a file is of. Raises ``InputError``.
 
-    ``strict``: a recording is read as a whole or not at all. ``road``: of a map, for recordings that do not
-    say theirs; ``UsageError`` for others.
+    ``strict``: a recording is read as a whole or not at all. ``road``: for recordings that do not say theirs;
+    ``UsageError`` for others.
     """
     if not path.exists() and split(path) is None:
         raise InputError(f"recordings={path}: not a folder and not a file; check the path")
@@ -86,7 +99,8 @@ def find_sources(path: Path, strict: bool = False, road: str | None = None) -> t
     if road is not None:
         if chosen.on_road is None:
             raise UsageError(f"road {road}: {path} has the road of its recording; omit it")
-        read_selection(road)
+        if is_map(road):
+            read_selection(road)
         chosen = chosen.on_road(road)
         found = chosen.find(path)
     return tuple(RecordingSource(chosen, name, files, strict, road) for name, files in found.items())
