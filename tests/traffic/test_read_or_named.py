@@ -23,6 +23,7 @@ from roadproof.recordings.formats import (
 from roadproof.recordings.formats.reliable import left_out_in
 from roadproof.recordings.formats.table import Table
 from roadproof.recordings.formats.unread import unread_columns
+from roadproof.runtime.xml_element import parse
 from roadproof.world.maps import harmless, lanelet2, opendrive
 from roadproof.world.maps.opendrive import read_map
 from traffic.planar_exid import SAMPLES
@@ -246,3 +247,22 @@ def test_each_field_of_osi_is_read_harmless_or_named(message: str, field: int) -
     known = field in osi._READ[message] or field in osi._HARMLESS[message]
     assert bool(samples.unread) != known
     assert all(x.startswith(f"{message}.") for x in samples.unread)
+
+
+# --- adjacency of CommonRoad ---------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("dropped", range(3))
+def test_adjacency_that_a_file_leaves_out_is_that_of_common_bounds(dropped: int, tmp_path: Path) -> None:
+    """Though the file states other adjacencies."""
+    stated = commonroad.lanelets_of(Path("a"), parse(document().encode()))
+    root = ElementTree.fromstring(document())
+    nodes = [(x, y) for x in root.findall("lanelet") for y in x if y.tag.startswith("adjacent")]
+    owner, node = nodes[dropped]
+    pair = owner.get("id"), node.get("ref")
+    owner.remove(node)
+    found = commonroad.lanelets_of(Path("a"), parse(ElementTree.tostring(root)))
+    assert {frozenset((x.id, y)) for x in found.values() for y in x.beside} == {
+        frozenset((x.id, y)) for x in stated.values() for y in x.beside
+    }
+    assert pair[1] in found[str(pair[0])].by_bound

@@ -117,7 +117,7 @@ def _say_bounds(lanelets: Mapping[str, MeasuredLanelet]) -> Iterator[str]:
     if pairs:
         named = ", ".join(" and ".join(sorted(pair)) for pair in [*pairs][:6])
         more = ", …" if len(pairs) > 6 else ""
-        yield f"lanelets {named}{more} lie side by side by a common bound; the file states no adjacency"
+        yield f"lanelets {named}{more} lie side by side by a common bound; the file does not say so"
 
 
 def _say_inferred(
