@@ -266,3 +266,39 @@ def test_adjacency_that_a_file_leaves_out_is_that_of_common_bounds(dropped: int,
         frozenset((x.id, y)) for x in stated.values() for y in x.beside
     }
     assert pair[1] in found[str(pair[0])].by_bound
+
+
+def test_a_lanelet_that_states_a_neighbour_has_that_of_a_common_bound_too(tmp_path: Path) -> None:
+    text = document().replace(
+        '<adjacentLeft ref="3" drivingDir="same"/>', '<adjacentRight ref="5" drivingDir="same"/>'
+    )
+    found = commonroad.lanelets_of(Path("a"), parse(text.encode()))
+    assert {*found["1"].beside} == {"3", "5"}
+    assert found["1"].by_bound == ("3",)
+
+
+@pytest.mark.parametrize(
+    ("users", "named"),
+    [
+        ("<userOneWay>vehicle</userOneWay>", ""),
+        ("<userOneWay>car</userOneWay><userOneWay>bicycle</userOneWay>", ""),
+        ("<userOneWay>bicycle</userOneWay>", "userOneWay"),
+        ("<userBidirectional>vehicle</userBidirectional>", "userBidirectional"),
+        ("<userBidirectional>pedestrian</userBidirectional>", ""),
+    ],
+)
+def test_users_that_drive_otherwise_than_a_lanelet_goes_are_named(
+    users: str, named: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "a.xml"
+    path.write_text(document().replace("<laneletType>", f"{users}<laneletType>", 1), "utf-8")
+    told = " ".join(read_traffic(path))
+    assert (named in told) if named else not told
+
+
+def test_an_unknown_element_of_opendrive_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "a.xodr"
+    path.write_text(ROAD.replace("</OpenDRIVE>", "<stranger/></OpenDRIVE>"), "utf-8")
+    assert any("stranger" in x for x in read_road(path))
+    path.write_text(ROAD.replace("</road>", "<stranger/></road>"), "utf-8")
+    assert any("stranger" in x for x in read_road(path))
