@@ -116,12 +116,11 @@ def read_obstacles(path: Path, root: Element, rules: ObstacleRules) -> tuple[lis
         raise InputError(f"{path}: the file has no dynamicObstacle with a rectangle and a trajectory")
     shown = ", ".join(map(str, shapeless))
     notes = [f"{LEFT_OUT} obstacles (not one rectangle, or no trajectory): {shown}"] if shapeless else []
-    for tag in ("static", "phantom"):
-        others = root.findall(f"{tag}Obstacle")
-        for node in others:
-            node.read_all()
-        if others:
-            notes.append(f"{LEFT_OUT} {len(others)} {tag} obstacles: they are no traffic")
+    static = root.findall("staticObstacle")
+    for node in static:
+        node.read_all()
+    if static:
+        notes.append(f"{LEFT_OUT} {len(static)} static obstacles: they are no traffic")
     notes += [left_out_note(ids, len(nodes), Why.OF_KIND(what)) for what, ids in absent.items()]
     notes += [left_out_note([number], len(nodes), Why.TOLD(told)) for number, told in faults.items()]
     return sorted(obstacles, key=lambda o: o.id), (*notes, *_say_implied(obstacles))
