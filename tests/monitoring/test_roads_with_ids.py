@@ -59,3 +59,13 @@ def test_recordings_of_samples_are_evaluated_on_a_road_that_is_named(
 ) -> None:
     found = rp.evaluate(files[".csv"], tmp_path / "out", road="main-2")
     assert found.totals.vehicles == 2
+
+
+def test_a_road_beside_a_table_counts_with_ids(files: dict[str, Path], tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text(files[".csv"].read_text("utf-8"), "utf-8")
+    model = Path(__file__).parents[2] / "models" / "roads" / "main-3.toml"
+    (tmp_path / "a_road.toml").write_text(model.read_text("utf-8"), "utf-8")
+    road = rp.monitor(1, f"{path}:1,2").road
+    assert road is not None
+    assert len(road.lanes) == 3
