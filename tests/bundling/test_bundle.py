@@ -192,6 +192,12 @@ def test_the_script_checks_cases_and_requirements(
     (home / "asked.toml").write_text(TRACED.replace("LIMIT", str(limit)), "utf-8")
     found = rp.bundle(*CHECKED, specs=["own.spec"], out="safety.tar.gz", jobs=1)
     assert (found.exit_code == 0) is (codes == (0, 0))
+    told = [(x.command, x.file, x.exit_code) for x in found.manifest.arguments]
+    assert told == [("trace", "asked.toml", codes[1]), ("assurance", "case.toml", codes[0])]
+    assert json.loads(contents(home / "safety.tar.gz")["manifest.json"])["arguments"] == [
+        {"command": command, "file": file, "exit_code": code} for command, file, code in told
+    ]
+    assert f"trace asked.toml: exit code {codes[1]}" in str(found)
     folder = unpacked(home / "safety.tar.gz", tmp_path)
     lines = (folder / "check.sh").read_text("utf-8").splitlines()
     for path, command in (("asked.toml", "trace"), ("case.toml", "assurance")):
@@ -204,6 +210,31 @@ def test_the_script_checks_cases_and_requirements(
     assert (done.returncode == 0) is (codes == (0, 0)), done.stdout + done.stderr
     for command, code in zip(("assurance case.toml", "trace asked.toml"), codes, strict=True):
         assert (f"FAILED: the exit code of {command} is" in done.stdout) is (code != 0), done.stdout
+
+
+def test_cases_and_requirements_are_checked_with_the_files_of_the_bundle_alone(
+    home: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """A file that is beside them, and not in the bundle, shows nothing."""
+    (home / "case.toml").write_text(CASE.replace("EXPECTED", "PROVED"), "utf-8")
+    (home / "asked.toml").write_text(TRACED.replace("LIMIT", "4"), "utf-8")
+    assert main(["trace", "asked.toml", "--accept"]) == 0
+    held = rp.bundle(*CHECKED, specs=["own.spec"], out="safety.tar.gz", jobs=1)
+    assert held.exit_code == 0
+    assert "asked.lock.json" in held.manifest.files
+    (home / "asked.lock.json").unlink()
+    shutil.copytree(home / "proofs", home / "other")
+    for command, name in (("assurance", "case.toml"), ("trace", "asked.toml")):
+        path = home / name
+        path.write_text(path.read_text("utf-8").replace('"proofs"', '"other"'), "utf-8")
+        assert main([command, name, "--spec", "own.spec"]) == 0
+        code = main(["bundle", "proofs", name, "--spec", "own.spec", "-o", "x.tar.gz", "--jobs", "1"])
+        told = capfd.readouterr()
+        assert code != 0
+        assert (
+            f"name all files on which {name} rests" in told.err or f"{command} {name}: exit code" in told.out
+        )
+        assert "/tmp" not in told.err + told.out
 
 
 def test_it_checks_itself_in_an_empty_environment(

@@ -20,6 +20,15 @@ class Package:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Argument:
+    """An assurance case or requirements, which the check reads again with the evidence of the bundle."""
+
+    command: Literal["assurance", "trace"]
+    file: Annotated[str, Doc("The case or the requirements.")]
+    exit_code: Annotated[int, Doc("Exit code of the command when the bundle was made; the check demands 0.")]
+
+
+@dataclass(frozen=True, kw_only=True)
 class Manifest:
     """What is in a bundle."""
 
@@ -33,5 +42,6 @@ class Manifest:
     accepted: Annotated[int, Doc("Claims that were accepted when the bundle was made.")]
     claims: Annotated[int, Doc("Claims that were checked then.")]
     exit_code: Annotated[int, Doc("Exit code of roadproof check then.")]
+    arguments: tuple[Argument, ...]
     packages: tuple[Package, ...]
     files: Annotated[Mapping[str, str], Doc("SHA-256 of every other file but SHA256SUMS, by path.")]

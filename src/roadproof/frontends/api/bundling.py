@@ -14,9 +14,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypeAlias, Unpack
 
 from roadproof.analysis.assurance.case import Kind
+from roadproof.analysis.requirements.fingerprints import lock_path
 from roadproof.analysis.study.pool import Progress
 from roadproof.errors import InputError, MissingSolverError, UsageError
-from roadproof.evidence.answers.bundle import Manifest, Package
+from roadproof.evidence.answers.bundle import Argument, Manifest, Package
 from roadproof.evidence.answers.catalogue_index import SCHEMA as CATALOGUE
 from roadproof.evidence.codec import write
 from roadproof.evidence.strict import JsonObject
@@ -65,6 +66,7 @@ class Bundle:
         said = self.manifest
         size = f"{self.path.stat().st_size / 1e6:.1f} MB"
         lines = [f"{self.path}: {len(said.files)} files, {size}, {said.accepted} of {said.claims} accepted"]
+        lines += [f"{x.command} {x.file}: exit code {x.exit_code}" for x in said.arguments]
         lines += [] if self.signature is None else [f"signature: {self.signature}"]
         return "\n".join([*lines, f"tar xzf {self.path.name}; sh {_stem(self.path)}/check.sh"])
 
@@ -87,26 +89,25 @@ def bundle(*results: str | Path, out: str | Path, **options: Unpack[BundleKeywor
     key = None if asked.sign is None else _signing_key(Path(asked.sign))
     named, specs = [_inside(Path(x)) for x in results], [_inside(Path(x)) for x in asked.specs]
     evidence = [x for x in named if x.is_dir() or x.suffix == ".json"]
-    everything = dict.fromkeys([*named, *_tests_of(evidence), *specs])
+    everything = dict.fromkeys([*named, *_tests_of(evidence), *_locks_of(named), *specs])
     files = {path.as_posix(): path.read_bytes() for path in _files(everything)}
     content, checked = _page(evidence, specs, asked.progress)
     files[PAGE] = content
     pinned = _packages(files, asked.wheel, asked.wheels)
     files[REQUIREMENTS] = "".join(f"{x.line}\n" for x in pinned).encode()
     checkable = [x.as_posix() for x in read_results(evidence).checkable]
-    commands = {name: found for name in sorted(files) if (found := _command_of(Path(name))) is not None}
-    held = [_exit_code(command, Path(name), specs, asked) for name, command in commands.items()]
-    arguments = [shlex.join(["argue", command, name]) for name, command in commands.items()]
+    arguments = _arguments(files, specs, asked)
     script = _script(checkable, [x.as_posix() for x in specs], checked.exit_code, asked.wheels, arguments)
     files |= {"check.sh": script}
-    manifest = _manifest(checkable, specs, checked, pinned, files)
+    manifest = _manifest(checkable, specs, checked, arguments, pinned, files)
     files[MANIFEST] = (json.dumps(write(manifest), indent=1) + "\n").encode()
     files[SUMS] = "".join(f"{_digest(x)}  {name}\n" for name, x in sorted(files.items())).encode()
     packed = _packed(_stem(target), files)
     with whole_file(target) as file:
         file.write(packed)
     signature = None if key is None else _sign(key, target, packed)
-    return Bundle(target, manifest, checked, signature, max([checked.exit_code, *held]))
+    codes = [checked.exit_code, *(ExitCode(x.exit_code) for x in arguments)]
+    return Bundle(target, manifest, checked, signature, max(codes))
 
 
 def _inside(path: Path) -> Path:
@@ -125,6 +126,11 @@ def _tests_of(evidence: Sequence[Path]) -> Iterator[Path]:
         request = result.data.get("request") if result.schema == CATALOGUE else None
         paths = request.get("paths") if isinstance(request, Mapping) else None
         yield from (_inside(Path(str(x))) for x in (paths if isinstance(paths, list) else ()))
+
+
+def _locks_of(named: Sequence[Path]) -> Iterator[Path]:
+    """The lock files beside requirements, without which no link of them is stale."""
+    yield from (lock for x in named if _command_of(x) == "trace" and (lock := lock_path(x)).is_file())
 
 
 def _files(paths: Iterable[Path]) -> Iterator[Path]:
@@ -175,10 +181,33 @@ def _command_of(path: Path) -> _Command | None:
     return "assurance" if any(str(Kind.GOAL) in x or str(Kind.SOLUTION) in x for x in tables) else None
 
 
-def _exit_code(command: _Command, path: Path, specs: Sequence[Path], asked: Options) -> ExitCode:
+def _arguments(files: Mapping[str, bytes], specs: Sequence[Path], asked: Options) -> tuple[Argument, ...]:
+    """Check cases and requirements where only the files of the bundle are. Raises ``InputError``."""
+    commands = {name: found for name in sorted(files) if (found := _command_of(Path(name))) is not None}
+    if not commands:
+        return ()
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place).resolve()
+        for name, content in files.items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (folder / name).write_bytes(content)
+        inside = [folder / x for x in specs]
+        return tuple(
+            Argument(
+                command=command, file=name, exit_code=int(_exit_code(command, folder, name, inside, asked))
+            )
+            for name, command in commands.items()
+        )
+
+
+def _exit_code(command: _Command, folder: Path, name: str, specs: Sequence[Path], asked: Options) -> ExitCode:
     """The exit code of the command that checks a case or requirements. Raises ``InputError``."""
     run = assurance if command == "assurance" else requirements
-    return run(path, specs=specs, jobs=asked.jobs).exit_code
+    try:
+        return run(folder / name, specs=specs, jobs=asked.jobs).exit_code
+    except InputError as error:
+        told = str(error).replace(f"{folder}/", "")
+        raise InputError(f"in the bundle {told}: name all files on which {name} rests") from None
 
 
 def _script(
@@ -186,7 +215,7 @@ def _script(
     specs: Sequence[str],
     code: ExitCode,
     with_wheels: bool,
-    arguments: Sequence[str],
+    arguments: Sequence[Argument],
 ) -> bytes:
     index = "--no-index " if with_wheels else ""
     values = {
@@ -196,7 +225,7 @@ def _script(
         "evidence": shlex.join(evidence),
         "specs": shlex.join(word for x in specs for word in ("--spec", x)),
         "code": str(int(code)),
-        "arguments": "\n".join(arguments),
+        "arguments": "\n".join(shlex.join(["argue", x.command, x.file]) for x in arguments),
     }
     text = SCRIPT.read_text("utf-8")
     for name, value in values.items():
@@ -208,6 +237,7 @@ def _manifest(
     evidence: Sequence[str],
     specs: Sequence[Path],
     checked: CheckReport,
+    arguments: tuple[Argument, ...],
     pinned: Sequence[packages.Pin],
     files: Mapping[str, bytes],
 ) -> Manifest:
@@ -221,6 +251,7 @@ def _manifest(
         accepted=sum(x.outcome.exit_code is ExitCode.AS_EXPECTED for x in checked.findings),
         claims=len(checked.findings),
         exit_code=int(checked.exit_code),
+        arguments=arguments,
         packages=tuple(Package(**vars(x)) for x in pinned),
         files={name: _digest(x) for name, x in sorted(files.items())},
     )
