@@ -2,17 +2,22 @@
 
 import hashlib
 import json
+import shutil
+import tomllib
 from pathlib import Path
 
 import pytest
 
 import roadproof as rp
+from roadproof.analysis.assurance.case import Kind
 from roadproof.analysis.assurance.reading import read_case
 from roadproof.analysis.assurance.states import State
+from roadproof.analysis.assurance.template import fill_template
 from roadproof.errors import InputError
 from roadproof.frontends.api.solutions import whole_verdict
 from roadproof.frontends.cli.main import main
 
+ROOT = Path(__file__).parents[2]
 CLAIMS = ("false -> danger(SV,POV)", "v_lon(SV) > 2 m/s -> v_lon(SV) > 3 m/s")
 CASE = """\
 title = "Trial"
@@ -184,16 +189,13 @@ def test_a_case_is_drawn_and_written_as_a_page(case: Path, tmp_path: Path) -> No
     assert "<script" not in page
 
 
-def test_the_template_is_filled_in_with_folders(case: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_template_refuses_folders_without_its_evidence(
+    case: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     out = case.parent / "new.toml"
     asked = ["assurance", "--template", "catalogue-coverage", "--evidence", str(case.parent / "claims")]
-    assert main([*asked, "--out", str(out)]) == 0
-    read = read_case(out)
-    assert [x.evidence.path for x in read.solutions if x.evidence] == ["claims"]
-    assert [x.id for x in read.elements.values() if x.undeveloped] == ["G3", "G4"]
-    assert main(["assurance", str(out), "--jobs", "1"]) == 10  # the claims are no template properties
-    assert "no entry of claims matches P*" in capsys.readouterr().out
     for words, told in (
+        ([], "claims has no claim of a template property: run prove"),
         (["--evidence", str(case.parent)], "has no answers: name a folder"),
         (["--template", "other"], "template='other'; there is catalogue-coverage"),
     ):
@@ -228,6 +230,70 @@ def test_the_template_claims_what_the_plates_show(tmp_path: Path, lemmas: bool, 
     assert (f"{proofs} lemmas" in solution.text) is lemmas
     state = rp.assurance(told, jobs=1).states
     assert state[solution.id] is State.HOLDS
+
+
+def answered(home: Path) -> dict[str, tuple[Path, str]]:
+    """Small answers of four kinds, and the number in words that the goal about each may state."""
+    drives = home / "tests"
+    drives.mkdir()
+    for name in ("braking", "cut-in"):
+        shutil.copy(ROOT / "examples" / "catalogue" / "tests" / "drives" / f"{name}.json", drives)
+    rp.prove("P2", "P4", out=home / "index", jobs=1)
+    rp.witness("1", "F v_lon(SV) > 20 m/s", out=home / "witness", pictures=False, jobs=1)
+    rp.overlap(among="1-3", out=home / "overlap", jobs=1)
+    rp.catalogue(drives, among="1,4", classes=False, drivers=(), out=home / "catalogue", jobs=1)
+    count = len(json.loads((home / "index" / "index.json").read_text("utf-8"))["claims"])
+    told = {
+        "index": f"{count} claims of template properties P2, P4 hold",
+        "witness": "2 formulas can happen",
+        "overlap": "Of 3 pairs of scenarios of set base",
+        "catalogue": "show 2 scenarios of set base",
+    }
+    return {kind: (home / kind, words) for kind, words in told.items()}
+
+
+def test_the_template_counts_what_each_folder_has(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A goal states how much its evidence shows, and breaks where the folder holds less."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("ROADPROOF_KNOWN", "on")
+    found = answered(tmp_path)
+    folders = ",".join(str(folder) for folder, _ in found.values())
+    assert (
+        main(["assurance", "--template", "catalogue-coverage", "--evidence", folders, "--out", "c.toml"]) == 0
+    )
+    read = read_case(Path("c.toml"))
+    texts = {x.evidence.path: read.elements[x.id] for x in read.solutions if x.evidence}
+    assert {*texts} == {*found}
+    goals = " | ".join(x.text for x in read.elements.values())
+    for _, words in found.values():
+        assert words in goals
+    for wide in ("foreseeable", "every scenario", "A collision that is missed"):
+        assert wide not in goals
+    whole = rp.assurance("c.toml", jobs=1)
+    assert {x.id: whole.states[x.id] for x in read.solutions} == {x.id: State.HOLDS for x in read.solutions}
+    text = Path("c.toml").read_text("utf-8")
+    for count in {str(x.evidence.entries) for x in read.solutions if x.evidence}:
+        Path("d.toml").write_text(
+            text.replace(f"entries = {count}\n", f"entries = {int(count) + 1}\n"), "utf-8"
+        )
+        assert rp.assurance("d.toml", jobs=1).exit_code != 0
+    capsys.readouterr()
+
+
+def test_the_example_claims_what_the_template_does() -> None:
+    """The example is a case of the template, whose goals name sets, manoeuvres and values."""
+    example = read_case(ROOT / "examples" / "assurance" / "case.toml")
+    plain = tomllib.loads(fill_template("catalogue-coverage", [], Path()))
+    assert [name for name, x in plain.items() if "undeveloped" in x] == ["G2", "G3", "G4"]
+    fixed = {name: table for name, table in plain.items() if isinstance(table, dict)}
+    for name, table in fixed.items():
+        (text,) = (table[str(kind)] for kind in Kind if str(kind) in table)
+        assert example.elements[name].text == text
+    kinds = {Path(x.evidence.path).name: x for x in example.solutions if x.evidence}
+    assert all(x.evidence and x.evidence.entries for x in kinds.values())
+    assert {*kinds} == {"coverage", "catalogue", "cut-out", "cut-in", "deceleration"}
 
 
 @pytest.mark.parametrize(

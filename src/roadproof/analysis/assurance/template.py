@@ -4,6 +4,7 @@ import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
 from fractions import Fraction
 from pathlib import Path
 
@@ -20,6 +21,7 @@ from roadproof.world.units import UNITS
 TEMPLATES = ("catalogue-coverage",)
 Table = Mapping[str, str | Sequence[str] | bool | int]
 _MOST = 6  # values of a quantity that a goal names
+_PROPERTIES = "P*"  # the template properties in an index of proofs
 _MODEL = "careful"  # the driver model that the argument is about
 
 
@@ -40,21 +42,21 @@ _SCENARIOS: Mapping[str, _Use] = {
         ("COVERED",),
     ),
     "index": _Use(
-        "The formal scenarios have the properties that their names promise",
+        "{claims} of template {properties} hold in the formal scenarios",
         "Proofs of the template properties",
         ("PROVED",),
-        ("P*",),
+        (_PROPERTIES,),
     ),
-    "witness": _Use("The scenarios can happen", "Judged drives of scenarios", ("WITNESSED",)),
+    "witness": _Use("{drives} can happen", "Judged drives of {drives}", ("WITNESSED",)),
     "overlap": _Use(
-        "The pairs of scenarios that can hold at once are known",
+        "Of {pairs} of scenarios of set {set} it is known whether both can hold at once",
         "Overlaps of set {set}",
         ("WITNESSED", "IMPOSSIBLE"),
     ),
 }
 _TESTS: Mapping[str, _Use] = {
     "catalogue": _Use(
-        "The tests show every scenario and are what they claim",
+        "The tests show {targets} of set {set} and are what they claim",
         "Review of the test catalogue",
         ("COVERED",),
         (EVERY_SCENARIO,),
@@ -70,27 +72,26 @@ _DRIVER: Mapping[str, _Use] = {
 }
 _BRANCHES: Sequence[tuple[str, str, Mapping[str, _Use]]] = (
     (
-        "The scenarios contain the reasonably foreseeable traffic disturbances",
+        "The formal scenarios have the properties below",
         "Argument over the properties of the formal scenarios",
         _SCENARIOS,
     ),
-    ("The catalogue tests the scenarios", "Argument over the review of the tests", _TESTS),
+    ("Tests show the formal scenarios below", "Argument over the review of the tests", _TESTS),
     (
-        "The collisions that a competent and careful driver prevents are known for the manoeuvres and values "
-        "below",
+        f"The collisions that driver model {_MODEL} prevents are known for the manoeuvres and values below",
         "Argument over the manoeuvres with evidence",
         _DRIVER,
     ),
 )
 _TOP = (
-    "The catalogue covers the reasonably foreseeable traffic disturbances of ISO 34502, and the collisions "
-    "that a competent and careful driver prevents are known for the manoeuvres and values below"
+    "Tests show the formal traffic disturbance scenarios below, and the collisions that driver model "
+    f"{_MODEL} prevents are known for the manoeuvres and values below"
 )
 _BESIDE: Mapping[str, Table] = {
     "C1": {"context": "The traffic disturbance scenarios of ISO 34502, formal in signal temporal logic"},
     "C2": {"context": "Danger: two vehicles are closer than their RSS distances for minDanger"},
     "A1": {"assumption": "The formal scenarios say what ISO 34502 means"},
-    "J1": {"justification": "A collision that is missed is missed by the scenarios, the tests or the driver"},
+    "A2": {"assumption": f"Driver model {_MODEL} drives as a competent and careful human driver does"},
 }
 
 
@@ -114,7 +115,7 @@ def fill_template(name: str, evidence: Sequence[Path], home: Path) -> str:
 class _Given:
     """A folder of evidence: ``kind`` of its answers, and words that the template puts in.
 
-    ``lemmas``: whether it has lemmas; ``entries``: how many entries the argument is about, None for all.
+    ``lemmas``: whether it has lemmas; ``entries``: how many entries the argument is about.
     """
 
     path: str
@@ -129,17 +130,56 @@ class _Given:
         for name, key in ((INDEX, "schema"), (HEAD, "of")):
             if (folder / name).is_file():
                 data = Fields(read_json(folder / name, LARGEST_INDEX), str(folder / name))
-                words: dict[str, str] = {
-                    x: str(data.content[x]) for x in ("set", "manoeuvre") if x in data.content
-                }
                 kind = [*data.text(key).split("/"), ""][1]
                 path = Path(os.path.relpath(folder, home)).as_posix()
-                if kind != "preventable":
-                    return _Given(path, kind, words)
+                if kind == "witness":
+                    return _of_drives(path, folder)
                 if name != INDEX:
                     raise InputError(f"{folder} has no {INDEX}: its run has not ended; run it again")
-                return _of_plates(path, read(Index, data.content, str(folder / name)))
+                if kind == "preventable":
+                    return _of_plates(path, read(Index, data.content, str(folder / name)))
+                return _of_answer(path, kind, data)
         raise InputError(f"{folder} has no answers: name a folder that a command has written with --out")
+
+
+def _of_answer(path: str, kind: str, data: Fields) -> _Given:
+    """The parts of a whole answer, which its goal names."""
+    match kind:
+        case "coverage":
+            return _Given(path, kind, {"set": data.text("set")}, entries=len(data.items("claims")))
+        case "index":
+            names = [str(x["property"]) for x in data.items("claims") if isinstance(x, dict)]
+            own = [x for x in names if fnmatchcase(x, _PROPERTIES)]
+            if not own:
+                raise InputError(
+                    f"{path} has no claim of a template property: run prove with names such as P2"
+                )
+            told = ", ".join(dict.fromkeys(own))
+            properties = f"propert{'y' if len({*own}) == 1 else 'ies'} {told}"
+            words = {"properties": properties, "claims": _number(len(own), "claim")}
+            return _Given(path, kind, words, entries=len(own))
+        case "overlap":
+            pairs = len(data.items("verdicts"))
+            return _Given(
+                path, kind, {"set": data.text("set"), "pairs": _number(pairs, "pair")}, entries=pairs
+            )
+        case "catalogue":
+            names = [str(x["name"]) for x in data.items("targets") if isinstance(x, dict)]
+            count = sum(fnmatchcase(x, EVERY_SCENARIO) for x in names)
+            return _Given(
+                path,
+                kind,
+                {"set": data.text("set"), "targets": _number(count, "scenario")},
+                entries=len(data.items("tests")) + 1,
+            )
+    return _Given(path, kind, {})
+
+
+def _of_drives(path: str, folder: Path) -> _Given:
+    """The drives of a folder of ``witness``."""
+    names = [x.stem for x in folder.glob("answers/*.json")]
+    word = "scenario" if all(x.startswith("scenario-") for x in names) else "formula"
+    return _Given(path, "witness", {"drives": _number(len(names), word)}, entries=len(names))
 
 
 def _of_plates(path: str, index: Index) -> _Given:
@@ -177,10 +217,10 @@ def _number(count: int, what: str) -> str:
 
 def _tables(found: Sequence[_Given]) -> Iterator[tuple[str, Table]]:
     goals = [f"G{k}" for k in range(2, 2 + len(_BRANCHES))]
-    yield "G1", {"goal": _TOP, "supported-by": ["S1"], "in-context-of": ["C1", "C2", "A1"]}
+    yield "G1", {"goal": _TOP, "supported-by": ["S1"], "in-context-of": [*_BESIDE]}
     yield from _BESIDE.items()
     strategy = "Argument over scenarios, tests and driver"
-    yield "S1", {"strategy": strategy, "supported-by": goals, "in-context-of": ["J1"]}
+    yield "S1", {"strategy": strategy, "supported-by": goals}
     count = 0
     for goal, (text, way, uses) in zip(goals, _BRANCHES, strict=True):
         given = [(x, uses[x.kind]) for kind in uses for x in found if x.kind == kind]
