@@ -21,6 +21,7 @@ _LINK = re.compile(r"(?<!!)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s#]+)(#[^)]*)?\)"
 _FOR_DEVELOPERS = ("tests", "map")
 _SHIM = "https://unpkg.com/iframe-worker/shim"
 _DATA = re.compile(r"^\[([^\]]+)\]\(([^)\s]+\.csv)\)$", re.M)
+_HEADING = re.compile(r"^## (.+)$", re.M)
 _FILE_BLOCK = re.compile(r"^```file (\S+)$", re.M)
 
 
@@ -59,8 +60,17 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
         name = path.relative_to(ROOT).as_posix()
         return label if name in label.replace("`", "") else f"{label} (`{name}`)"
 
+    if page.file.src_uri == "reference/index.md":
+        markdown = _HEADING.sub(_linked, markdown)
     shown = _DATA.sub(lambda x: table(x[1], here / x[2]), markdown)
     return _LINK.sub(outside, _FILE_BLOCK.sub(r'```text title="\1"', shown))
+
+
+def _linked(heading: re.Match[str]) -> str:
+    """The heading about a generated page, as a link to it."""
+    made = {write().partition("\n")[0].removeprefix("# "): Path(name).name for name, write in PAGES.items()}
+    title = heading[1]
+    return f"## [{title}]({made[title]}) {{: #{title.lower().replace(' ', '-')} }}"
 
 
 def table(title: str, path: Path) -> str:

@@ -1,4 +1,7 @@
-"""Reference pages that are generated from the program when the site is built."""
+"""Reference pages that are generated from the program.
+
+``PYTHONPATH=tests python -m documents.reference`` writes those of the checkout; the site has the others, too.
+"""
 
 import argparse
 import json
@@ -290,8 +293,13 @@ def _type(field: dict[str, Any]) -> str:
 PAGES: dict[str, Callable[[], str]] = {
     "reference/commands.md": commands,
     "reference/library.md": library,
-    "reference/exit-codes.md": exit_codes,
     "reference/api.md": python_api,
     "reference/json.md": json_fields,
 }
-"""The generated pages and the functions that write them."""
+"""The pages that are generated when the site is built, and the functions that write them."""
+CHECKED_IN: dict[str, Callable[[], str]] = {"reference/exit-codes.md": exit_codes}
+"""The generated pages of the checkout."""
+
+if __name__ == "__main__":
+    for page, content in CHECKED_IN.items():
+        (ROOT / "docs" / page).write_text(content(), "utf-8")
