@@ -41,6 +41,14 @@ def test_every_relative_link_leads_somewhere() -> None:
     assert [*dead(texts)] == []
     readme = (ROOT / "README.md").resolve()
     wrong = {
-        readme: "[a](docs/nowhere.md) [b](CONTRIBUTING.md#no-such-heading) [c](#none) [d](docs/reference/api.md)"
+        readme: "[a](docs/nowhere.md) [b](README.md#no-heading) [c](#none) [d](docs/reference/api.md)"
     }
     assert len([*dead(wrong)]) == 4
+
+
+def test_pages_that_the_source_names_are_there() -> None:
+    named = re.compile(r"\bdocs/[\w/-]+\.md\b")
+    files = [x for x in (ROOT / "src").rglob("*") if x.suffix in (".py", ".html", ".js", ".toml", ".sh")]
+    found = {page for x in files for page in named.findall(x.read_text("utf-8"))}
+    assert len(found) > 5
+    assert [x for x in sorted(found) if not (ROOT / x).is_file()] == []

@@ -13,8 +13,11 @@ from typing import Any, ClassVar
 import pytest
 
 import roadproof as rp
+from roadproof.errors import InputError, LostError, MissingSolverError, SharedError, UsageError
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding, exit_code
 from roadproof.frontends.api.ci import BuildResult
+from roadproof.frontends.cli.help import command_parser, written_files
+from roadproof.frontends.cli.main import COMMANDS, main
 from roadproof.frontends.report.ci.cases import Case, State
 from roadproof.frontends.report.ci.cases import test_location as location_of
 from roadproof.frontends.report.ci.junit import as_junit
@@ -182,8 +185,82 @@ def test_recordings_that_are_read_lost_skipped_or_contradictory() -> None:
     for lost, failed, broken in product(([], ["a"]), ({}, {"b": "damaged"}, {"a": "lost"}), ([], ["a fact"])):
         cases = list(recording_cases(["a", "b", "c"], failed, lost, broken, Path("nowhere")))
         states = {x.name: x.state for x in cases}
-        expected = {x: "undecided" if x in lost else "failed" if x in failed else "passed" for x in "abc"}
+        expected = {x: "undecided" if x in lost else "skipped" if x in failed else "passed" for x in "abc"}
         assert states == {**expected, **dict.fromkeys(broken, "failed")}
+        code = ExitCode.CROSSCHECK_FAILED if broken else ExitCode.UNKNOWN if lost else ExitCode.AS_EXPECTED
+        built = Built(tuple(cases), code)
+        agree(built.to_junit(), built.to_sarif(), code)
+        told = [
+            x.get("name")
+            for x in suites_of(built.to_junit()).iter("testcase")
+            if x.find("skipped") is not None
+        ]
+        assert told == [x for x in "abc" if states.get(x) == "skipped"]
+
+
+# --- commands that end without an answer --------------------------------------------------------------------
+
+WITH_FILES = [x for x in COMMANDS if {"junit", "sarif"} <= {*written_files(command_parser(x))}]
+ENDINGS = [
+    *(x("it is so") for x in (InputError, UsageError, MissingSolverError, LostError, SharedError)),
+    ValueError("it is so"),
+    OSError(28, "it is so"),
+    KeyboardInterrupt(),
+]
+ARGUMENTS = {
+    "prove": ["P1"],
+    "witness": ["1"],
+    "check": ["x.json"],
+    "coverage": [],
+    "catalogue": ["."],
+    "preventable": ["cut-in"],
+    "evaluate": ["."],
+    "trace": ["r.toml"],
+}
+
+
+def test_the_commands_with_files_of_build_results_are_those() -> None:
+    assert {*WITH_FILES} == {*ARGUMENTS}
+
+
+@pytest.mark.parametrize("command", WITH_FILES)
+@pytest.mark.parametrize("ending", ENDINGS, ids=lambda x: type(x).__name__)
+def test_a_command_that_ends_without_an_answer_says_so(
+    command: str, ending: BaseException, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The files of an earlier run, in which all passed, do not stand for it."""
+    monkeypatch.chdir(tmp_path)
+    for name in ("j.xml", "s.sarif"):
+        Path(name).write_text("all passed", "utf-8")
+
+    def run(parsed: Any) -> int:
+        raise ending
+
+    monkeypatch.setattr(f"roadproof.frontends.cli.{command}.run", run)
+    code = main([command, *ARGUMENTS[command], "--junit", "j.xml", "--sarif", "s.sarif"])
+    junit, sarif = (Path(x).read_text("utf-8") for x in ("j.xml", "s.sarif"))
+    agree(junit, sarif, ExitCode(code))
+    assert (code == 0) is isinstance(ending, SharedError)
+    for asked in ("--junit", "--sarif"):
+        Path("only").unlink(missing_ok=True)
+        assert main([command, *ARGUMENTS[command], asked, "only"]) == code
+        assert Path("only").read_text("utf-8") == (junit if asked == "--junit" else sarif)
+
+
+@pytest.mark.parametrize("option", ["--junit", "--sarif"])
+@pytest.mark.parametrize(
+    "words", [["trace", "--baseline", "a", "b"], ["check", "x", "--kernel", "coq", "--write", "d"]]
+)
+def test_ways_to_ask_that_have_no_cases_refuse_the_files(
+    words: list[str],
+    option: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main([*words, option, "file"]) == 2
+    assert "omit" in capsys.readouterr().err
 
 
 # --- claims, drives, plates: one that passed beside one that did not ---------------------------------------
@@ -340,3 +417,38 @@ def test_links_of_requirements() -> None:
         shown = "passed" if state.is_shown else "undecided" if state is LinkState.UNKNOWN else "failed"
         rest = {Acceptance.ACCEPTED: [], Acceptance.UNDECIDED: ["undecided"]}.get(outcome, ["failed"])
         assert [x.state for x in cases] == [shown, "failed", *rest]
+
+
+def test_requirements_of_every_mixture() -> None:
+    """Requirements with links, parts and evidence beside them: files and exit code say one thing."""
+    from roadproof.analysis.requirements.states import worst
+    from roadproof.evidence.answers.trace import Answer, LinkState
+    from roadproof.frontends.report.ci.requirements import requirement_cases
+
+    place = answer(file="requirements.toml", line=3, column=1)
+    fields: dict[str, Any] = {"place": place, "text": "", "title": ""}
+    chooser, codes = random.Random(39), set()
+
+    def link(state: LinkState) -> Any:
+        return answer(kind="claim", target="P4", state=state, reason=NO_REASON, changes=(), evidence=())
+
+    shown = [x for x in LinkState if x.is_shown]
+    for round_ in range(1500):
+        states = [*LinkState] if round_ % 3 else [*shown, chooser.choice([*LinkState])]
+        parts = []
+        for k in range(chooser.randint(1, 3)):
+            links = tuple(
+                link(chooser.choice(states))
+                for _ in range(chooser.choice((0, 1, 1, 2, 3)) or round_ % 3 == 0)
+            )
+            state = worst(x.state for x in links) if links else LinkState.MISSING
+            parts.append(answer(id=f"R{k}", links=links, parents=("P",), state=state, **fields))
+        whole = answer(id="P", links=(), parents=(), state=worst(x.state for x in parts), **fields)
+        outcomes = chooser.choices([Acceptance.ACCEPTED, *Acceptance], k=chooser.randint(0, 2))
+        beside = tuple(answer(where="a.json", label="", outcome=x, reason=NO_REASON) for x in outcomes)
+        given = answer(requirements=(whole, *parts), unlinked=beside)
+        code = Answer.exit_code.fget(given)  # type: ignore[attr-defined]
+        codes.add(code)
+        built = Built(tuple(requirement_cases(given)), code)
+        agree(built.to_junit(), built.to_sarif(), code)
+    assert codes == {ExitCode.AS_EXPECTED, ExitCode.UNEXPECTED, ExitCode.UNKNOWN}

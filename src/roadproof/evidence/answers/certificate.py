@@ -101,7 +101,7 @@ class Certificate:
         LEFT_OUT,
         Doc(
             "The facts about motion and the inductions over time that the proof uses; inductions are true on "
-            "every trace; formulas are made anew of schema and arguments (docs/motion.md)."
+            "every trace; formulas are made anew of schema and arguments (docs/explanation/motion.md)."
         ),
     ] = None
     unused: Annotated[

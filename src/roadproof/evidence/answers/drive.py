@@ -11,7 +11,7 @@ from roadproof.runtime.records import dataclass
 from roadproof.world.road import Attribute, Zone
 from roadproof.world.signals import Kind
 
-_ZONES = "zone= and attribute= are described in docs/semantics.md §4"
+_ZONES = "zone= and attribute= are described in docs/explanation/semantics.md"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -122,8 +122,12 @@ class Answer(PlainHeading):
     @property
     def exit_code(self) -> ExitCode:
         """10 where a requirement is not shown or evidence is rejected, 20 where one is not decided."""
-        codes = [x.state.exit_code for x in self.requirements]
-        if any(x.outcome is Acceptance.REJECTED or x.outcome is Acceptance.UNREADABLE for x in self.unlinked):
-            return ExitCode.UNEXPECTED
-        bad = ExitCode.UNEXPECTED in codes
-        return ExitCode.UNEXPECTED if bad else max(codes, default=ExitCode.UNKNOWN)
+        codes = [x.state.exit_code for x in self.requirements] or [ExitCode.UNKNOWN]
+        codes += [_beside(x.outcome) for x in self.unlinked]
+        return ExitCode.UNEXPECTED if ExitCode.UNEXPECTED in codes else max(codes)
+
+
+def _beside(outcome: Acceptance) -> ExitCode:
+    """The exit code of evidence that no requirement names."""
+    decided = outcome.exit_code in (ExitCode.AS_EXPECTED, ExitCode.UNKNOWN)
+    return outcome.exit_code if decided else ExitCode.UNEXPECTED

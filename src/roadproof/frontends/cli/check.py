@@ -78,8 +78,9 @@ def _check_case(args: argparse.Namespace) -> int:
 def _write(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.checking import write_sources
 
-    if args.kernel is None or args.json:
-        raise UsageError("--write DIR only writes files for a kernel: add --kernel, and omit --json")
+    if args.kernel is None or args.json or args.junit or args.sarif:
+        told = "add --kernel, and omit --json, --junit and --sarif"
+        raise UsageError(f"--write DIR only writes files for a kernel: {told}")
     written = write_sources(
         *args.paths, folder=args.write, specs=args.specs or (), jobs=args.jobs, kernel=args.kernel
     )

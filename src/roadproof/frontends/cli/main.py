@@ -5,6 +5,7 @@ A sub-command is a module in this folder with ``SUMMARY`` (a plain literal), ``E
 flags are made of, and ``add_arguments(parser)`` for others. Only the one that is asked for is imported.
 """
 
+import argparse
 import atexit
 import contextlib
 import errno
@@ -67,24 +68,27 @@ def answer(arguments: list[str]) -> int:
         if sys.stdout is not None:
             sys.stdout.flush()
         return code
-    except RoadproofError as error:
-        return _complain(str(error), error.exit_code)
-    except KeyboardInterrupt:
-        return _complain("interrupted", ExitCode.INTERRUPTED)
     except BrokenPipeError:
         forget_output()  # the reader has gone away
         return ExitCode.READER_GONE
-    except Exception as error:
-        if isinstance(error, OSError) and error.errno is not None:
-            return _complain(_of_system(error), ExitCode.BAD_INPUT)
-        if os.environ.get(TRACEBACK):
+    except (Exception, KeyboardInterrupt) as error:
+        message, code = _ending(error)
+        if code is ExitCode.OUR_FAULT and os.environ.get(TRACEBACK):
             raise
-        reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-        return _complain(
-            f"this is our fault: {reason}\n"
-            f"Set {TRACEBACK}=1 to see where it happened, and report it with the command line.",
-            ExitCode.OUR_FAULT,
-        )
+        return _complain(message, code)
+
+
+def _ending(error: BaseException) -> tuple[str, ExitCode]:
+    """What ended a command, in words, and its exit code."""
+    if isinstance(error, RoadproofError):
+        return str(error), ExitCode(error.exit_code)
+    if isinstance(error, KeyboardInterrupt):
+        return "interrupted", ExitCode.INTERRUPTED
+    if isinstance(error, OSError) and error.errno is not None:
+        return _of_system(error), ExitCode.BAD_INPUT
+    reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+    told = f"Set {TRACEBACK}=1 to see where it happened, and report it with the command line."
+    return f"this is our fault: {reason}\n{told}", ExitCode.OUR_FAULT
 
 
 def _run(arguments: list[str]) -> int:
@@ -115,8 +119,23 @@ def _run(arguments: list[str]) -> int:
         _try_path(getattr(parsed, option), folder)
     if getattr(parsed, "json", None) != "-" and getattr(parsed, "format", "text") == "text":
         dress_output()
-    code: int = import_module(f"{PACKAGE}.{name}").run(parsed)
+    try:
+        code: int = import_module(f"{PACKAGE}.{name}").run(parsed)
+    except (Exception, KeyboardInterrupt) as error:
+        _write_ended(parsed, name, error)
+        raise
     return code
+
+
+def _write_ended(parsed: argparse.Namespace, name: str, error: BaseException) -> None:
+    """Say in the files of ``--junit`` and ``--sarif`` that the command ended, where they can be written."""
+    if isinstance(error, BrokenPipeError):
+        return
+    from roadproof.frontends.cli.options import write_ended
+
+    with contextlib.suppress(RoadproofError, OSError):
+        message, code = _ending(error)
+        write_ended(parsed, name, code, message)
 
 
 def _try_path(target: str | Path | None, out: Path | None) -> None:

@@ -11,6 +11,7 @@ from roadproof.errors import UsageError
 from roadproof.frontends.cli.streams import takes_everything
 from roadproof.frontends.settings.flags import section
 from roadproof.runtime.files import utf8, whole_file, write_whole
+from roadproof.verdict import ExitCode
 
 if TYPE_CHECKING:
     from roadproof.evidence.strict import JsonObject
@@ -35,6 +36,21 @@ def write_build_results(args: argparse.Namespace, found: object) -> None:
         write_whole(args.junit, utf8(found.to_junit()))
     if args.sarif is not None:
         write_whole(args.sarif, utf8(found.to_sarif()))
+
+
+def write_ended(args: argparse.Namespace, command: str, code: ExitCode, message: str) -> None:
+    """JUnit XML and SARIF of a command that ends without an answer, so that no earlier file stands for it."""
+    if not (vars(args).get("junit") or vars(args).get("sarif")):
+        return
+    from roadproof.frontends.report.ci.cases import ended_case
+    from roadproof.frontends.report.ci.junit import as_junit
+    from roadproof.frontends.report.ci.sarif import as_sarif
+
+    cases = (ended_case(command, code, message),)
+    if args.junit is not None:
+        write_whole(args.junit, utf8(as_junit(f"roadproof {command}", cases)))
+    if args.sarif is not None:
+        write_whole(args.sarif, utf8(as_sarif(command, cases, code)))
 
 
 def print_answer(found: _Answer, target: str | None) -> None:

@@ -54,8 +54,9 @@ def run(args: argparse.Namespace) -> int:
     if (args.file is None) == (args.baseline is None):
         raise UsageError("name a file of requirements, or two answers with --baseline A B")
     if args.baseline is not None:
-        if args.accept or args.out is not None or args.reqif is not None:
-            raise UsageError("--baseline compares saved answers: omit --accept, --out and --reqif")
+        if args.accept or any(x is not None for x in (args.out, args.reqif, args.junit, args.sarif)):
+            told = "omit --accept, --out, --reqif, --junit and --sarif"
+            raise UsageError(f"--baseline compares saved answers: {told}")
         changes = requirement_changes(*args.baseline)
         print_answer(changes, args.json)
         return changes.exit_code

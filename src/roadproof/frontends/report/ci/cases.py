@@ -14,7 +14,7 @@ from roadproof.verdict import ExitCode, Verdict
 
 _LIBRARY = Path(__file__).parents[3] / "library" / "sets"
 
-State: TypeAlias = Literal["passed", "failed", "undecided"]
+State: TypeAlias = Literal["passed", "failed", "undecided", "skipped"]
 
 
 class Rule(StrEnum):
@@ -27,6 +27,7 @@ class Rule(StrEnum):
     UNREADABLE = "UNREADABLE"
     MISSING = "MISSING"
     STALE = "STALE"
+    NO_ANSWER = "NO-ANSWER"
 
 
 MEANINGS = {
@@ -47,6 +48,7 @@ MEANINGS = {
     Rule.UNREADABLE: "A file cannot be read.",
     Rule.MISSING: "There is no evidence for a requirement.",
     Rule.STALE: "What a requirement rests on changed since it was accepted.",
+    Rule.NO_ANSWER: "The command ended without an answer.",
 }
 """What each rule means, in a sentence."""
 
@@ -104,6 +106,17 @@ def whole_case(command: str, cases: Iterable[Case], code: ExitCode) -> Case | No
     told = f"the exit code is {int(code)}, which no part of the answer alone has"
     rule = rules.get(code, Rule.REJECTED)
     return Case(suite="the answer", name=f"roadproof {command}", state=state, rule=rule, message=told)
+
+
+def ended_case(command: str, code: ExitCode, message: str) -> Case:
+    """The case of a command that ended without an answer."""
+    states: dict[ExitCode, tuple[State, Verdict | Rule]] = {
+        ExitCode.AS_EXPECTED: ("skipped", Rule.NO_ANSWER),  # a share of the work is done
+        ExitCode.UNKNOWN: ("undecided", Verdict.UNKNOWN),
+        ExitCode.BAD_INPUT: ("failed", Rule.UNREADABLE),
+    }
+    state, rule = states.get(code, ("failed", Rule.NO_ANSWER))
+    return Case(suite="the answer", name=f"roadproof {command}", state=state, rule=rule, message=message)
 
 
 def definition_location(specification: Specification, definition: Definition) -> Location | None:

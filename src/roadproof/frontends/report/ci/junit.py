@@ -6,7 +6,7 @@ from xml.etree import ElementTree as xml
 
 from roadproof.frontends.report.ci.cases import Case, State
 
-_ELEMENTS: dict[State, str] = {"failed": "failure", "undecided": "error"}
+_ELEMENTS: dict[State, str] = {"failed": "failure", "undecided": "error", "skipped": "skipped"}
 _FORBIDDEN = {code: "\N{REPLACEMENT CHARACTER}" for code in range(32) if chr(code) not in "\t\n\r"}
 """Characters that XML cannot hold."""
 
@@ -14,6 +14,7 @@ _FORBIDDEN = {code: "\N{REPLACEMENT CHARACTER}" for code in range(32) if chr(cod
 def as_junit(title: str, cases: Sequence[Case], in_force: Sequence[str] = ()) -> str:
     """A suite for each kind of case: a failure where one came out otherwise, an error where it is undecided.
 
+    A case that the user lets roadproof skip is ``skipped``.
     ``in_force``: what was asked otherwise than by default, a property of each suite.
     """
     suites = xml.Element("testsuites", {"name": title} | _counts(cases))

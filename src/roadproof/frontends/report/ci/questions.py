@@ -206,10 +206,13 @@ def finding_cases(findings: Sequence[Finding], strict: bool) -> Iterator[Case]:
 def recording_cases(
     names: Iterable[str], failed: Mapping[str, str], lost: Sequence[str], broken: Sequence[str], path: Path
 ) -> Iterator[Case]:
-    """A case for each recording, and for each fact that the results violate; ``path``: the recordings."""
+    """A case for each recording, and for each fact that the results violate; ``path``: the recordings.
+
+    ``failed``: those that ``--keep-going`` skips, and why.
+    """
     for name in names:
         reason = failed.get(name, "")
-        state: State = "undecided" if name in lost else "failed" if reason else "passed"
+        state: State = "undecided" if name in lost else "skipped" if reason else "passed"
         rule = Verdict.UNKNOWN if name in lost else Rule.UNREADABLE
         yield Case(
             suite="recordings",

@@ -12,7 +12,7 @@ from roadproof.verdict import ExitCode
 
 SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 _ROOT = "SRCROOT"
-_LEVELS = {"failed": "error", "undecided": "warning"}
+_LEVELS = {"failed": "error", "undecided": "warning", "skipped": "note"}
 
 
 def as_sarif(command: str, cases: Sequence[Case], code: ExitCode) -> str:
