@@ -51,6 +51,25 @@ def test_a_scenario_that_is_met_twice_is_a_predicate(shape):
         assert refusal(stored, LIBRARY, answer) is None
 
 
+@pytest.mark.parametrize("scenario", [*SCENARIOS[:2], "danger(SV,POV)", "dangerArises(SV,POV)"])
+@pytest.mark.parametrize("turn", ["G F ", "F G "])
+def test_a_definition_that_is_a_predicate_costs_as_much_as_any_other(scenario, turn):
+    """However deep it is nested: its own intervals and operators say nothing about the proof."""
+    for depth in (3, 5, 8):
+        plain, named = (decided(f"{turn * depth}{x} -> {turn}{x}") for x in ("atLane(SV,L)", scenario))
+        assert {plain.verdict, named.verdict} == {Verdict.PROVED}
+        again = prover._prove(
+            HOME,
+            read_claim(HOME, f"{turn * depth}{scenario} -> {turn}{scenario}"),
+            Effort(0.4),
+            NOTHING,
+            None,
+            "names",
+        )
+        assert len(again.certificate.instances) == len(plain.certificate.instances)
+        assert again.work < plain.work + 0.01
+
+
 @pytest.mark.parametrize("shape", NOT_VALID)
 def test_what_is_not_valid_is_not_proved_by_names(shape):
     for scenario in SCENARIOS[:2]:

@@ -12,6 +12,7 @@ from fractions import Fraction
 from typing import TypeAlias, assert_never
 
 from roadproof.engines.prove.roads import Roster
+from roadproof.engines.prove.states import is_plain
 from roadproof.engines.solve.recall import RecallingSession
 from roadproof.evidence.atoms import Atoms, is_rigid
 from roadproof.evidence.road_axioms import ZONES, membership, true_of_roads
@@ -258,7 +259,7 @@ class Grounding:
         self.session.tell(f"(assert (=> {switch} (and {' '.join(parts)})))")
 
     def _wait(self, site: Site, switch: str, window: Window, body: Formula, positive: bool) -> None:
-        flat = f.is_state(body) and not _has_quantifier(body)
+        flat = is_plain(body)
         self.universals.append(
             Universal(
                 site,
@@ -329,13 +330,3 @@ class Grounding:
     def _next_switch(self) -> str:
         """The switch of the clause that is being made."""
         return f"i${len(self.switches) + 1}"
-
-
-def _has_quantifier(formula: Formula) -> bool:
-    match formula:
-        case f.Application():
-            return False
-        case f.Some() | f.Every():
-            return True
-        case _:
-            return any(_has_quantifier(child) for child in f.children(formula))

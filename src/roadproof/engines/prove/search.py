@@ -22,7 +22,7 @@ from roadproof.evidence.sites import Lemma, Site
 from roadproof.evidence.times import ZERO, Moment, at, bound_parameters, constant, moment_of, read_moment
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import free_lanelets, intervals_of, road_names
+from roadproof.logic.rewrite import free_lanelets, road_names
 from roadproof.reasons import Reason, Why
 from roadproof.runtime.budget import Budget
 from roadproof.runtime.records import dataclass
@@ -344,10 +344,16 @@ def _missing(
 
 
 def _bounds_of(formula: Formula) -> list[Moment]:
-    """The distinct interval bounds of a formula, but for zero."""
+    """The distinct interval bounds of an abstracted formula, but for zero and those inside of atoms."""
     found: dict[Moment, None] = {}
-    for interval in intervals_of(formula):
-        for bound in (interval.low, interval.high):
-            if bound is not None:
-                found[moment_of(bound)] = None
+    waiting = [formula]
+    while waiting:
+        current = waiting.pop()
+        if isinstance(current, f.Application):
+            continue
+        waiting += reversed(f.children(current))
+        for interval in f.intervals(current):
+            for bound in (interval.low, interval.high):
+                if bound is not None:
+                    found[moment_of(bound)] = None
     return [moment for moment in found if moment != ZERO]
