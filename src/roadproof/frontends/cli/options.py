@@ -3,7 +3,7 @@
 import argparse
 import json
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
@@ -32,10 +32,7 @@ def write_build_results(args: argparse.Namespace, found: object) -> None:
     from roadproof.frontends.api.ci import BuildResult
 
     assert isinstance(found, BuildResult)
-    if args.junit is not None:
-        write_whole(args.junit, utf8(found.to_junit()))
-    if args.sarif is not None:
-        write_whole(args.sarif, utf8(found.to_sarif()))
+    _write_files(args, found.to_junit, found.to_sarif)
 
 
 def write_ended(args: argparse.Namespace, command: str, code: ExitCode, message: str) -> None:
@@ -47,10 +44,15 @@ def write_ended(args: argparse.Namespace, command: str, code: ExitCode, message:
     from roadproof.frontends.report.ci.sarif import as_sarif
 
     cases = (ended_case(command, code, message),)
+    title = f"roadproof {command}"
+    _write_files(args, lambda: as_junit(title, cases), lambda: as_sarif(command, cases, code))
+
+
+def _write_files(args: argparse.Namespace, junit: Callable[[], str], sarif: Callable[[], str]) -> None:
     if args.junit is not None:
-        write_whole(args.junit, utf8(as_junit(f"roadproof {command}", cases)))
+        write_whole(args.junit, utf8(junit()))
     if args.sarif is not None:
-        write_whole(args.sarif, utf8(as_sarif(command, cases, code)))
+        write_whole(args.sarif, utf8(sarif()))
 
 
 def print_answer(found: _Answer, target: str | None) -> None:
