@@ -1,7 +1,6 @@
 """Work is counted, the clock is a backstop that an answer names."""
 
 import pickle
-import time
 
 import pytest
 
@@ -120,9 +119,8 @@ def test_when_an_effort_began_is_no_part_of_it(clock):
 )
 def test_a_claim_ends_with_its_timeout_whatever_is_tried(claim, options):
     """Proofs, sampled drives and searches share the seconds; one step may be under way when they end."""
-    begun = time.monotonic()
     found = rp.prove(claim, jobs=1, timeout=2, effort=500, fresh=True, **options)
     answer = found.answers[0]
     cut_off = answer.verdict is Verdict.UNKNOWN and "after 2 s" in answer.settled.result.reason
     assert cut_off or answer.verdict is Verdict.REFUTED, "a machine may be quick enough to refute it"
-    assert time.monotonic() - begun < 2 + 60, "it does not go on for the effort of 500 units"
+    assert answer.settled.result.work < 500, "it does not go on for the effort"
