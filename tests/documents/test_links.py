@@ -40,9 +40,7 @@ def test_every_relative_link_leads_somewhere() -> None:
     assert sum(len(LINK.findall(x)) for x in texts.values()) > 100
     assert [*dead(texts)] == []
     readme = (ROOT / "README.md").resolve()
-    wrong = {
-        readme: "[a](docs/nowhere.md) [b](README.md#no-heading) [c](#none) [d](docs/reference/api.md)"
-    }
+    wrong = {readme: "[a](docs/nowhere.md) [b](README.md#no-heading) [c](#none) [d](docs/reference/api.md)"}
     assert len([*dead(wrong)]) == 4
 
 
