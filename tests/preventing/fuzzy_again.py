@@ -7,26 +7,32 @@ from fractions import Fraction as F
 
 STEP = F(1, 10)
 CHANGE = F(1, 100_000)  # s after a look in which a drive changes its speed; then it keeps it
-TAU, COMFORT, GREATEST, OTHER, MARGIN, JERK = F(3, 4), F(4), F(6), F(7), F(2), F("12.65")
+COMFORT, GREATEST, OTHER, MARGIN, JERK = 4, 6, 7, 2, F("12.65")
+
+
+def while_reacting(v: F) -> F:
+    """How far one goes in the reaction time of 0.75 s; it takes floats as well, as all of this."""
+    return v * 3 / 4
 
 
 def member(distance: F, safe: F, unsafe: F) -> F:
-    return min(F(1), max(F(0), (safe - distance) / (safe - unsafe)))
+    if safe == unsafe:  # of floats that are nearly the same
+        return F(distance < safe)
+    return min(1, max(0, (safe - distance) / (safe - unsafe)))
 
 
 def proactive(distance: F, v: F, w: F) -> F:
-    reaches = v * TAU - w**2 / (2 * OTHER)
+    reaches = while_reacting(v) - w**2 / (2 * OTHER)
     return member(distance - MARGIN, reaches + v**2 / (2 * COMFORT) + MARGIN, reaches + v**2 / (2 * GREATEST))
 
 
 def critical(distance: F, v: F, w: F, a: F) -> F:
     if v <= w:
-        return F(0)
-    limited = max(a, -COMFORT)
-    later = v + limited * TAU
+        return 0
+    later = v + while_reacting(max(a, -COMFORT))
     if later <= w:
-        return F(distance < (v - w) ** 2 / (2 * abs(a)))
-    reaches = ((v + later) / 2 - w) * TAU
+        return int(2 * abs(a) * distance < (v - w) ** 2)
+    reaches = while_reacting((v + later) / 2 - w)
     return member(
         distance, reaches + (later - w) ** 2 / (2 * COMFORT), reaches + (later - w) ** 2 / (2 * GREATEST)
     )
@@ -35,9 +41,13 @@ def critical(distance: F, v: F, w: F, a: F) -> F:
 def is_by(distance: F, lengths: F, v: F, w: F, beside: F, lateral: F) -> bool:
     if distance + lengths / 2 < 0:
         return True
-    if beside <= 0 or v == w:
+    if beside <= 0:
         return False
-    return beside / lateral > (distance + lengths) / (v - w) + F(1, 10)
+    if lateral <= 0:
+        return True
+    if v == w:
+        return False
+    return 10 * (beside / lateral - (distance + lengths) / (v - w)) > 1
 
 
 def rounded(a: F) -> F:
@@ -46,9 +56,9 @@ def rounded(a: F) -> F:
 
 def accelerations(states, lengths: F, first: int = 0):
     """From (gap, v, w, beside, lateral) at each look: the acceleration until the next."""
-    waited, asked, before = 0, F(0), F(0)
+    waited, asked, before = 0, F(0), 0
     for look, (gap, v, w, beside, lateral) in enumerate(states):
-        now = F(0)
+        now = 0
         if look >= first and not is_by(gap, lengths, v, w, beside, lateral):
             c, p = critical(gap, v, w, before), proactive(gap, v, w)
             if c + p > 0 and waited < 8:

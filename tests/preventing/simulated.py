@@ -3,15 +3,20 @@
 A vehicle is its first state and its pieces, all floats; models are as the regulations say, in m and s.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
+
+from preventing.fuzzy_again import accelerations
 
 STEP = 0.001
 WANDER, EVALUATION, DRIFT, DELAY, RAMP, FULL, AEB = 0.375, 0.4, 0.72, 0.75, 0.6, 7.59294, 8.3385
 TTC, HARD = 2.0, 5.0
 PAST, R157, EU = 0.3, (0.35, 6.0), (0.1 + 0.15, 6.0)
 RHO, FASTER, LEAST = 0.6, 5.0, 6.0
+LOOK = 100  # steps from look to look of the fuzzy safety model
 
 
 @dataclass(frozen=True)
@@ -60,6 +65,13 @@ def motion(car: Car, times: np.ndarray, brakes: bool = True, since: float = 0.0)
     return {"a": at, "v": v, "s": s, "u": u, "d": d}
 
 
+@lru_cache(maxsize=2)
+def motions(case: Case, seconds: float) -> list[dict[str, np.ndarray]]:
+    """SV's, without its braking, and those of the others."""
+    times = np.arange(round(seconds / STEP) + 1) * STEP
+    return [motion(case.cars[0], times, False, case.since), *(motion(x, times) for x in case.cars[1:])]
+
+
 def first(times: np.ndarray, condition: np.ndarray, since: float) -> float | None:
     found = np.flatnonzero(condition & (times >= since - 1e-9))
     return float(times[found[0]]) if len(found) else None
@@ -90,9 +102,8 @@ class Simulation:
     def __init__(self, case: Case, seconds: float = 40.0, nearer: float = 0.0) -> None:
         self.case = case
         self.times = np.arange(round(seconds / STEP) + 1) * STEP
-        self.me = motion(case.cars[0], self.times, False, case.since)
-        self.me["s"] = self.me["s"] + nearer
-        self.others = [motion(x, self.times) for x in case.cars[1:]]
+        mine, *self.others = motions(case, seconds)
+        self.me = {**mine, "s": mine["s"] + nearer}
 
     def beside(self, k: int) -> np.ndarray:
         me, other = self.case.cars[0], self.case.cars[k + 1]
@@ -180,11 +191,55 @@ class Simulation:
         since = wrap if begin is None else min(wrap, begin)
         return np.where(self.times >= wrap, ramp(self.times, since, AEB), driver)
 
+    def looks(self, knows: float) -> Iterator[tuple[float, ...]]:
+        """What the fuzzy safety model sees ten times a second, from when it ``knows`` of the other on.
+
+        As it is asked for the next look, SV is where its braking has brought it.
+        """
+        last, me, own = len(self.others) - 1, self.case.cars[0], self.me
+        other, car = self.others[last], self.case.cars[last + 1]
+        is_left = other["d"] - car.width / 2 >= own["d"] - me.width / 2
+        apart = np.where(is_left, other["d"] - car.width - own["d"], own["d"] - me.width - other["d"])
+        shrinks = np.where(is_left, own["u"] - other["u"], other["u"] - own["u"])
+        for k in range(round(self.case.since / STEP), len(self.times) - LOOK, LOOK):
+            gap = other["s"][k] - car.length - self.me["s"][k]
+            self.now = k
+            if self.times[k] >= knows - 1e-9:
+                yield tuple(map(float, (gap, self.me["v"][k], other["v"][k], apart[k], shrinks[k])))
+
+    def controlled(self, late: float) -> Found:
+        """SV has its new speed from each look on; before it first brakes it moves as in the test."""
+        known: float | None = self.case.since
+        if self.case.manoeuvre == "cut-out":
+            known = later(first(self.times, self.off(WANDER), self.case.since), late)
+        if known is None:
+            return self.judged()
+        lengths = self.case.cars[0].length + self.case.cars[-1].length
+        s, v = self.me["s"].copy(), self.me["v"].copy()
+        self.me = {**self.me, "s": s, "v": v}
+        has_braked = False
+        for acceleration in accelerations(self.looks(known), lengths):
+            has_braked = has_braked or acceleration < 0
+            if has_braked:
+                k = self.now
+                v[k : k + LOOK + 1] = max(0.0, v[k] + float(acceleration) * LOOK * STEP)
+                s[k : k + LOOK + 1] = s[k] + v[k] * STEP * np.arange(LOOK + 1)
+                if v[k] == 0:
+                    break
+        if has_braked:
+            v[self.now :] = v[self.now]
+            s[self.now :] = s[self.now] + v[self.now] * STEP * np.arange(len(s) - self.now)
+        return self.judged()
+
     def run(self, model: str, options: dict[str, str] | None = None, late: float = 0.0) -> Found:
+        if model == "fsm":
+            return self.controlled(late)
         braking = self.braking_of(model, options or {})
         steps = round(late / STEP)
-        if steps:
+        if steps > 0:
             braking = np.concatenate((np.zeros(steps), braking[:-steps]))
+        elif steps < 0:
+            braking = np.concatenate((braking[-steps:], np.full(-steps, braking[-1])))
         responds = np.flatnonzero(braking)
         if len(responds):
             k = responds[0]

@@ -139,6 +139,21 @@ def _array(number: int) -> Integers:
     return np.array([number])
 
 
+@pytest.mark.parametrize("name", MANOEUVRES)
+def test_a_controller_is_followed_in_matches(name: str) -> None:
+    """The label is what becomes of the frames of the match when the fuzzy safety model drives SV."""
+    asked = ask(replace(questions_with().settings, drivers=("fsm",)), 25)
+    seen = set()
+    for side in SIDES:
+        for _, recording in drives(name, "careful", side)[:2]:
+            found = evaluate_recording(recording, asked)
+            labels = {(x.scenario, x.begun, *x.labels) for x in found.matches if x.sv == 1 and x.labels}
+            assert list(recheck(recording, asked, found)) == []
+            seen |= {x[2] for x in labels if x[:2] == (SCENARIOS[name], BEFORE)}
+    assert seen
+    assert seen <= {"preventable", "unpreventable", "undecided"}
+
+
 def test_what_is_never_foreseen(questions: Questions) -> None:
     """POV drifts in without a speed across; it is in the way of SV, which comes nearer, and never brakes."""
     (_, recording), *_ = drives("cut-in", "careful", "unpreventable")
@@ -287,7 +302,6 @@ def test_from_python(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("drivers", "among", "said"),
     [
-        ("fsm", "1", "fsm is a controller and has no formula; these have: careful, r157, eu1426, rss"),
         ("carful", "1-8", "'carful'"),
         ("r157", "4", "r157 does not apply to the selected scenarios (4); it applies to 1, 9, 17"),
         ("careful,careful", "1", "one is named twice"),

@@ -34,13 +34,18 @@ class Box:
         return self.d - self.width / 2
 
 
-def across(road: Road, subject: Box, other: Box) -> Across:
+def across(road: Road, subject: Box, other: Box, comes_in: bool) -> Across:
     """Return where two vehicles are among the lanes of a road.
 
     Off the lanes POV is taken to begin in the middle of its lane, and the marking half-way between the boxes.
+    Where it ``comes_in``, and is in the lane of SV already, its lane is the one that it comes from: as wide as
+    that of SV, and beside it.
     """
     side = 1 if other.middle >= subject.middle else -1
     own, its = lane_at(road, subject), lane_at(road, other)
+    if own is not None and its == own and comes_in:
+        wide = own[1] - own[0]
+        its = own[0] + side * wide, own[1] + side * wide
     centre = other.middle if its is None else (its[0] + its[1]) / 2
     if own is None:
         near = subject.d if side > 0 else subject.d - subject.width

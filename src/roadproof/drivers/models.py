@@ -114,9 +114,14 @@ def check_drivers(names: Sequence[str], numbers: Collection[int]) -> None:
 
 
 def check_driver(name: str, said: str) -> None:
-    """The model is there and has formulas; ``said`` is what was asked. Raises ``UsageError``."""
+    """The model is there; ``said`` is what was asked. Raises ``UsageError``."""
     if name not in MODELS:
         raise UsageError(f"{said}: {unknown('driver model', name, MODELS)}")
+
+
+def check_formulas(name: str, said: str) -> None:
+    """As ``check_driver``, and the model has formulas. Raises ``UsageError``."""
+    check_driver(name, said)
     if MODELS[name].is_stepped:
         formulas = ", ".join(x.name for x in MODELS.values() if not x.is_stepped)
         raise UsageError(f"{said}: {name} is a controller and has no formula; these have: {formulas}")

@@ -90,7 +90,8 @@ class DriveScene:
     @cached_property
     def across(self) -> Across:
         """Where SV and the first POV begin across the road."""
-        return across(self.road, *(self._box(name) for name in self.vehicles[:2]))
+        me, other = (self._box(name) for name in self.vehicles[:2])
+        return across(self.road, me, other, len(self.vehicles) == 2)
 
     def _box(self, name: str) -> Box:
         motion, now = self.drive.vehicles[name], state_at(self.drive.vehicles[name], self.start)

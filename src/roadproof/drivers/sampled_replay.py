@@ -73,7 +73,7 @@ class SampledScene:
     def across(self) -> Across:
         """Where SV and the first POV begin across the road."""
         me, other = (self.tracks[x].box(self.first_sample) for x in self.vehicles[:2])
-        return across(self.road, me, other)
+        return across(self.road, me, other, len(self.vehicles) == 2)
 
     def offset(self, metres: Fraction) -> Fraction | None:
         other, here = self.tracks[self.vehicles[1]], self.across

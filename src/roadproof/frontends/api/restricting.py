@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, get_args
 
-from roadproof.drivers.models import DRIVERS, MODELS, check_courses, check_driver
+from roadproof.drivers.models import DRIVERS, MODELS, check_courses, check_formulas
 from roadproof.drivers.restriction import About, Restriction, Side, check_library, files_for
 from roadproof.errors import UsageError
 from roadproof.frontends.api.definitions import Among, Definitions, What
@@ -42,7 +42,7 @@ def restricted(
         raise UsageError(f"{told}: no drive satisfies both; omit one")
     [wanted] = named
     said = f"{wanted.side}={wanted.model}"
-    check_driver(wanted.model, said)
+    check_formulas(wanted.model, said)
     files = files_for(home.library.files)
     library = home.library if len(files) == len(home.library.files) else checked_library(files)
     check_library(library)

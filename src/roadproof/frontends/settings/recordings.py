@@ -103,7 +103,7 @@ class Evaluate(groups.Definitions, groups.Sharing, groups.Traces, groups.Reporte
     drivers: Iterable[str] = option(
         (),
         "--drivers NAME,…",
-        "say of each match whether driver models (careful, r157, eu1426, rss) prevent a collision in "
+        "say of each match whether driver models (careful, r157, eu1426, rss, fsm) prevent a collision in "
         "place of SV, all else moving as recorded; for scenarios 1, 2, 4 and the like on other road sectors",
         read=items_of("names", ", such as careful,r157"),
     )
