@@ -112,6 +112,10 @@ class Why(StrEnum):
     BOTH_SIDES = "drives were found on both sides"
     ONE_SIDE = "drives found: {}; no other was looked for; nothing is proved"
     ONE_SIDE_SOUGHT = "drives found: {}; a search found none on another side; nothing is proved"
+    NOT_DRIVEN = (
+        "{} drives begin in such a state, but with {} in place of SV they end otherwise ({}); a plate of "
+        "'preventable' has drives on each side"
+    )
     NOT_BEGUN = "no {} begins, of which the models speak"
     NO_PLACE = "no place of the plane is {}"
     TOO_LONG = "SV touches POV later than {} s after its start, up to which the controller is followed"

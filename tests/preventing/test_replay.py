@@ -222,8 +222,15 @@ EACH = [(x, model.name) for model in MODELS.values() for x in model.manoeuvres]
 @pytest.mark.parametrize("in_samples", [False, True])
 @pytest.mark.parametrize(("manoeuvre", "model"), EACH)
 def test_random_tests(manoeuvre: str, model: ModelName, in_samples: bool) -> None:
-    seen = [check(manoeuvre, model, k, in_samples) for k in range(FEW if MODELS[model].is_stepped else SEVERAL)]
+    number = FEW if MODELS[model].is_stepped else SEVERAL
+    seen = [check(manoeuvre, model, k, in_samples) for k in range(number)]
     assert seen.count("divided") < 0.5 * len(seen)
+
+
+@pytest.mark.parametrize("in_samples", [False, True])
+def test_what_is_in_the_lane_already_is_perceived(in_samples: bool) -> None:
+    """POV has its middle in SV's lane when the scenario begins: it comes from the lane beside it."""
+    assert check("cut-in", "careful", 574, in_samples) == "prevented"
 
 
 @pytest.mark.parametrize("in_samples", [False, True])

@@ -180,7 +180,7 @@ def test_evidence_is_about_the_side_that_was_asked(tmp_path: Path, capsys: Heard
     found = rp.witness(1, unpreventable="careful", out=tmp_path, pictures=False, jobs=1)
     assert found.verdict is Verdict.WITNESSED
     assert found.as_data()["prevention"]["scenarios"] == [1, 2, 4, 9, 10, 12, 17, 18, 20]
-    assert "unpreventable (competent and careful driver)" in found.supposed[0]
+    assert "unpreventable (competent and careful driver; by the formula of a state)" in found.supposed[0]
     assert main(["check", str(tmp_path)]) == 0
     [drive] = found.drives
     for side, holds in (("preventable", False), ("unpreventable", True)):

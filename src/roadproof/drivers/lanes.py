@@ -38,8 +38,8 @@ def across(road: Road, subject: Box, other: Box, comes_in: bool) -> Across:
     """Return where two vehicles are among the lanes of a road.
 
     Off the lanes POV is taken to begin in the middle of its lane, and the marking half-way between the boxes.
-    Where it ``comes_in``, and is in the lane of SV already, its lane is the one that it comes from: as wide as
-    that of SV, and beside it.
+    Where it ``comes_in``, and is in the lane of SV already, its lane is the one that it comes from: beside
+    that of SV, and as wide.
     """
     side = 1 if other.middle >= subject.middle else -1
     own, its = lane_at(road, subject), lane_at(road, other)

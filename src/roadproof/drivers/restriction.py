@@ -50,7 +50,7 @@ class Restriction:
         return {"side": self.side, "driver": self.model, "of": self.about, "scenarios": list(self.scenarios)}
 
     def __str__(self) -> str:
-        said = f"{self.side} ({models.MODELS[self.model].title})"
+        said = f"{self.side} ({models.MODELS[self.model].title}; by the formula of a state)"
         if self.about == "scenarios":
             numbers = ", ".join(map(str, self.scenarios))
             return f"{said}: scenarios {numbers} begin so, others are as they are"

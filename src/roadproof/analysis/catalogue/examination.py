@@ -74,7 +74,8 @@ def examine(
     asked, *others = (ask(name) for name in request.sets)
     concrete = tuple(x for x in tests.entries if isinstance(x, Concrete))
     earlier = [EarlierAnswers(asked, request.freedom, drivers)]
-    earlier += [EarlierAnswers(other, request.freedom, None) for other in others]
+    beside_drivers = None if restriction_of(home.options) is None else drivers
+    earlier += [EarlierAnswers(other, request.freedom, beside_drivers) for other in others]
     known = [{} if fresh else x.of(concrete) for x in earlier]
     judged = zip(earlier, known, strict=True)
     answers, *beside = (_shown(concrete, x, found, jobs, progress) for x, found in judged)

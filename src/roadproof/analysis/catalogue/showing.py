@@ -79,10 +79,7 @@ class ConcreteAnswer:
 def show(
     entry: Concrete, asked: Questions, freedom: Freedom, drivers: Drivers | None = None
 ) -> ConcreteAnswer:
-    """Look at one test. A test that cannot be read is answered with a fault.
-
-    ``drivers``: the models that are asked what becomes of the scenarios that it shows.
-    """
+    """Look at one test, and ask ``drivers`` of it. A test that cannot be read is answered with a fault."""
     digest = digest_of(entry.place)
     try:
         if entry.fault:
@@ -93,7 +90,37 @@ def show(
             found = _of_traces(entry, asked, freedom, drivers)
     except InputError as error:
         found = ConcreteAnswer(entry, entry.claims, fault=str(error))
-    return replace(found, sha256=digest)
+    return replace(_borne_out(found, asked), sha256=digest)
+
+
+def _borne_out(answer: ConcreteAnswer, asked: Questions) -> ConcreteAnswer:
+    """Return an answer without scenarios that begin as a restriction says and do not end so under its model.
+
+    The restriction is a formula of a state; the model that is put into the test decides. Classes of the same
+    vehicles are left out with them.
+    """
+    restriction = restriction_of(asked.specification.options)
+    if restriction is None:
+        return answer
+    model, side, decided = restriction.model, restriction.side, answer.decisions
+    sides = {(x.scenario, x.vehicles): x.side for x in decided if x.driver == model}
+    wrong = {
+        (x.what, x.vehicles): sides.get((x.what, x.vehicles), "undecided")
+        for x in answer.shown
+        if number_in(x.what) in restriction.scenarios and sides.get((x.what, x.vehicles)) != side
+    }
+    others = {vehicles for _, vehicles in wrong}
+
+    def stays(x: Shown) -> bool:
+        is_class = number_in(x.what) is None and x.what != ENDANGERED
+        return (x.what, x.vehicles) not in wrong and not (is_class and x.vehicles in others)
+
+    left = tuple(filter(stays, answer.shown))
+    told = (
+        f"{what} begins as {side}, but is {found} with {model} in place of SV"
+        for (what, _), found in wrong.items()
+    )
+    return replace(answer, shown=left, notes=(*answer.notes, *told))
 
 
 # --- drives --------------------------------------------------------------------------------------

@@ -4,6 +4,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from fractions import Fraction
 
+from roadproof.drivers.restriction import restriction_of
+from roadproof.engines.search.driven import Driven
 from roadproof.engines.search.initial_candidates import is_read
 from roadproof.engines.search.outcome import Outcome, Search, undecided
 from roadproof.engines.search.question import FoundDrive, SearchProblem, pose
@@ -22,6 +24,8 @@ from roadproof.runtime.timing import now, since
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
 
+TRIES, AGAIN = 5, 8.0
+"""Drives of a restricted search to which a driver model may object, and units of work for each after one."""
 # Units of work for a proof that there is none; and where no engine reads all, which is hard to prove, too.
 NEVER, NEVER_UNREAD = 10.0, 2.0
 
@@ -59,11 +63,12 @@ def _ask(search: Search) -> Outcome:
     search = replace(search, search_options=options)
     library = search.specification.library
     question = pose(library, search.query, search.setting)
-    answers = list(_answers(question, search))
+    objections: list[str] = []
+    answers = list(_answers(question, search, objections))
     first = answers[0]
     judged = tuple(judge_found(search, question, a.found) for a in answers if a.found is not None)
     impossibility = None
-    if first.found is None:
+    if first.found is None and not objections:
         effort = search.search_options.effort
         most = effort.of(max(1.0, min(NEVER if is_read(question) else NEVER_UNREAD, effort.units)))
         begin("explain", "is there a proof that there is none")
@@ -87,8 +92,15 @@ def _ask(search: Search) -> Outcome:
     )
 
 
-def _answers(question: SearchProblem, search: Search) -> Iterator[Attempt]:
-    """The answers to a search; a scenario takes the drive of its sibling where that answers it too."""
+def _answers(question: SearchProblem, search: Search, objections: list[str]) -> Iterator[Attempt]:
+    """The answers to a search; a scenario takes the drive of its sibling where that answers it too.
+
+    ``objections`` of a driver model to drives that were found are added.
+    """
+    restriction = restriction_of(search.specification.options)
+    if restriction is not None and restriction.scenarios:
+        yield from _driven(question, search, Driven(search, question, restriction), objections)
+        return
     if search.count > 1 or search.scenario is None or search.setting.road is not None:
         yield from _clearly_different(question, search)
         return
@@ -117,6 +129,38 @@ def _clearly_different(question: SearchProblem, search: Search) -> Iterator[Atte
         if answer.found is None:
             return
         drives.append(answer.found.drive)
+
+
+def _driven(
+    question: SearchProblem, search: Search, driven: Driven, objections: list[str]
+) -> Iterator[Attempt]:
+    """The answers as of ``_clearly_different``, without drives to which a driver model objects."""
+    drives: list[Drive] = []
+    options, shown = search.search_options, 0
+    while shown < search.count and len(objections) < TRIES:
+        if objections:
+            options = replace(options, effort=options.effort.of(min(AGAIN, options.effort.units)))
+        try:
+            attempt = find_witness(question, options, tuple(drives))
+        except BudgetExceeded:
+            if not drives:
+                raise
+            break
+        if attempt.found is None:
+            if not drives:
+                yield attempt
+                return
+            break
+        drives.append(attempt.found.drive)
+        objection = driven.objection(attempt.found)
+        if objection:
+            objections.append(objection)
+        else:
+            shown += 1
+            yield attempt
+    if shown < search.count:
+        model = driven.restriction.model
+        yield Attempt(Verdict.UNKNOWN, None, Why.NOT_DRIVEN(len(objections), model, "; ".join(objections)))
 
 
 def _reason(answers: list[Attempt], count: int) -> Reason:

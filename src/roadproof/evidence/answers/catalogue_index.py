@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import field
 from typing import Annotated, Final, Literal, TypeAlias
 
-from roadproof.drivers.models import ModelName
 from roadproof.evidence.answers import coverage, shared
+from roadproof.evidence.answers.driver_verdict import DriverVerdict
 from roadproof.evidence.codec import LEFT_OUT, Doc, Rule
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
@@ -32,7 +32,6 @@ VERDICTS: Mapping[Relation, FactVerdict] = {
     "reaches": Verdict.WITNESSED,
     "open": Verdict.UNKNOWN,
 }
-TestedSide: TypeAlias = Literal["preventable", "unpreventable", "not foreseen", "undecided", "partly"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -188,23 +187,13 @@ class Figure:
 
 
 @dataclass(frozen=True, kw_only=True)
-class KeptDecision:
-    """What becomes of a scenario that a test shows, under a driver model."""
-
+class _OfTest:
     test: Name
-    scenario: Name
-    vehicles: Vehicles
-    driver: ModelName
-    side: TestedSide
-    at: Annotated[Time | None, Doc("When the manoeuvre begins, in s; null where it never does.")]
-    gap: Annotated[float | None, Doc("The least gap that SV leaves, in m; null where it touches POV.")]
-    instant: Annotated[Time | None, Doc("When SV touches POV, in s.")]
-    speed: Annotated[float | None, Doc("How much faster SV then is, in m/s.")]
-    start: Annotated[
-        Mapping[str, float],
-        Doc("The state when the manoeuvre begins, as the sheets of UN R157 name it (SI)."),
-    ]
-    reason: Annotated[str, Doc("Why it is not foreseen or undecided, and what is to be known of the start.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class KeptDecision(DriverVerdict, _OfTest):
+    """What becomes of a scenario that a test shows, under a driver model."""
 
 
 @dataclass(frozen=True, kw_only=True)

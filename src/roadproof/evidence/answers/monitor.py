@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import field
 from typing import Annotated, Final, Literal, TypeAlias
 
+from roadproof.evidence.answers.driver_verdict import DriverVerdict
 from roadproof.evidence.answers.shared import Formula, OnRoad, PlainHeading, Rational, SetName
 from roadproof.evidence.codec import LEFT_OUT, Doc, Key, Rule
 from roadproof.runtime.records import dataclass
@@ -108,5 +109,10 @@ class Answer(Place, OnRoad, Observation):
         tuple[str, ...],
         LEFT_OUT,
         Doc("Those of the notes that say which vehicles and parts of the file were left out."),
+    ] = ()
+    drivers: Annotated[
+        tuple[DriverVerdict, ...],
+        LEFT_OUT,
+        Doc("What becomes of the trace from its start on where driver models drive SV."),
     ] = ()
     schema: Literal["roadproof/monitor/2"] = SCHEMA

@@ -213,7 +213,8 @@ def catalogue(
     given = settings.Catalogue.of(options)
     plain = definitions_of(using)
     wanted = restricted(plain, given, given.among)
-    models = tuple(MODELS if given.drivers is None else given.drivers)
+    restricting = (x for x in (given.preventable, given.unpreventable) if x is not None)
+    models = tuple(dict.fromkeys((*(MODELS if given.drivers is None else given.drivers), *restricting)))
     request = Request(
         tuple(map(str, paths)),
         wanted.sets,

@@ -7,6 +7,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, TypeAlias, Unpack
 
+from roadproof.analysis.catalogue.decisions import Decision
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.answers import monitor as kept
 from roadproof.evidence.answers.monitor import Override, Place, Truth
@@ -15,6 +16,7 @@ from roadproof.evidence.drive_file import DriveFile, load_drive
 from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.strict import JsonObject
+from roadproof.frontends.api import driven
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of, load
 from roadproof.frontends.api.settings import as_road, positive
@@ -67,6 +69,7 @@ class MonitorAnswer(Table):
     place: Place
     notes: tuple[str, ...] = ()
     road: Road | None = None
+    decisions: tuple[Decision, ...] = ()
 
     @property
     def length_error(self) -> LengthError | None:
@@ -127,6 +130,7 @@ class MonitorAnswer(Table):
             ),
             notes=self.notes,
             left_out=self.left_out,
+            drivers=tuple(map(driven.as_kept, self.decisions)),
             **vars(self.place),
         )
         return write(answer)
@@ -136,7 +140,7 @@ class MonitorAnswer(Table):
         return picture(draw_strips(self.observed))
 
     def __str__(self) -> str:
-        return f"{as_text(self.observed)}\n{self.place}"
+        return "\n".join((as_text(self.observed), *driven.driver_lines(self.decisions), str(self.place)))
 
     def __repr__(self) -> str:
         return f"<Monitored: {self.verdict}>"
@@ -175,7 +179,8 @@ def monitor(
     name, or a vehicle, whose lane at the start it is. ``roles``: a vehicle by role, such as {"SV": "Ego"}; by
     default the vehicle of that name, for SV also the only one called ego, hero or the like, and the others in
     the order of the file where they are as many as roles are left. ``end``: what the end of a recorded trace
-    means. Raises ``InputError``, ``UsageError``, ``TextError``.
+    means. ``drivers``: driver models that are put in place of SV, from the start on; so are those whose
+    boundary the formula names. Raises ``InputError``, ``UsageError``, ``TextError``.
     """
     given = Monitor.of(options)
     if isinstance(on, str | Path) and str(on).endswith(".json"):
@@ -238,8 +243,8 @@ def _on_drive(
     samples = sample_drive(file.drive, file.road, file.horizon, step, source)
     overruled = tuple(_overruled(file, home, values))
     if given.view == "recorded":
-        found = _on_trace(what, samples, home, values, file.lanes, given)
-        return replace(found, place=replace(found.place, overruled=overruled))
+        answer = _on_trace(what, samples, home, values, file.lanes, given)
+        return replace(answer, place=replace(answer.place, overruled=overruled))
     number, query = home.numbered(what, samples.lanes)
     roles = cast_of([*samples.lanes], query.vehicles, given.roles or {}, f"{source}: roles")
     played, drive = play_samples(samples, roles), file.drive
@@ -248,7 +253,9 @@ def _on_drive(
     formula = bind(query.formula, file.road, lanes, values)
     observed = observe_drive(query.text, formula, drive, file.horizon, step)
     place = _place(played, home, query, lanes, overruled)
-    return MonitorAnswer(home.library, observed, place, road=file.road)
+    casts = driven.casts_of(home, query, number, tuple(given.drivers))
+    found = tuple(driven.decisions_on(replace(file, drive=drive), casts, home, values))
+    return MonitorAnswer(home.library, observed, place, road=file.road, decisions=found)
 
 
 def _on_storyboard(what: What, path: Path, home: Definitions, given: Monitor) -> MonitorAnswer:
@@ -291,7 +298,9 @@ def _on_trace(
     refuse_unmeasured(samples, formula)
     observed = observe_samples(query.text, formula, samples.batch, given.end)
     place = _place(samples, home, query, lanes)
-    return MonitorAnswer(home.library, observed, place, samples.notes, samples.road)
+    casts = driven.casts_of(home, query, number, tuple(given.drivers))
+    found = tuple(driven.decisions_on(samples, casts, home, values))
+    return MonitorAnswer(home.library, observed, place, samples.notes, samples.road, found)
 
 
 def _place(

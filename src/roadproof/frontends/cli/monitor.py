@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 from roadproof.errors import UsageError
-from roadproof.frontends.cli.basis import read_definitions
+from roadproof.frontends.cli.basis import add_drivers, read_definitions
 from roadproof.frontends.cli.options import print_answer
 from roadproof.frontends.cli.progress import tell_bends
 from roadproof.frontends.settings.flags import read_keywords
@@ -31,6 +31,7 @@ examples:
   roadproof monitor 'initSafe(SV,POV)' samples.csv --road main-3
   roadproof monitor 1 ego-and-target.xosc --roles SV=Ego,POV=Target --view dense
   roadproof monitor 1 highd/01_tracks.csv:12,15 --set ext --picture pair.png
+  roadproof monitor 1 highd/01_tracks.csv:12,15 --drivers careful,r157
   roadproof monitor 'F danger(SV,POV)' highd/01_tracks.csv:12,15 --frames 100-400 --end clip
 """
 OPTIONS = Monitor
@@ -51,6 +52,8 @@ def run(args: argparse.Namespace) -> int:
     if file is not None:
         args.sets = args.sets or (file.set_name,)
         args.readings = [*file.options.items(), *(args.readings or ())]
+    if args.drivers:
+        add_drivers(args)
     home = read_definitions(args, Monitor)
     found = monitor(args.formula, args.trace, home, **read_keywords(args, Monitor))
     for line in found.notes:

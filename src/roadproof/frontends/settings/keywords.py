@@ -236,6 +236,7 @@ class MonitorKeywords(TracesKeywords, total=False):
     dt: Number
     frames: tuple[int | None, int | None]
     strict: bool
+    drivers: Iterable[str]
 
 
 class EvaluateKeywords(SharingKeywords, TracesKeywords, total=False):

@@ -73,6 +73,13 @@ class Monitor(groups.Definitions, groups.Traces):
         read=frame_range,
     )
     strict: bool = groups.strict_reading()
+    drivers: Iterable[str] = option(
+        (),
+        "--drivers NAME,…",
+        "say what becomes of the trace where driver models (careful, r157, eu1426, rss, fsm) drive SV, all "
+        "else moving as there; for scenarios 1, 2, 4 and the like on other road sectors",
+        read=items_of("names", ", such as careful,r157"),
+    )
     picture: Path | None = output(
         None, "--picture FILE", "draw the truth over time into FILE (.png or .svg)", read=Path, keyword=False
     )
