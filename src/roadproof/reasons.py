@@ -49,7 +49,7 @@ class Why(StrEnum):
     # Proofs
     FEW_LANES = "no countermodel on a road of few lanes"
     GROUND_QUERY = "z3 gave no answer to the ground query"
-    STATE = "z3 gave no answer about a state: {}"
+    STATE = "z3 gave no answer about a state with {} conditions: {}"
     ELEMENTS = "no end after {} lanes and lanelets that must exist"
     ROUNDS = "no end after {} rounds of instantiation"
     TRACES = "the only countermodels found over points in time are no traces"

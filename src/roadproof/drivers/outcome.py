@@ -30,3 +30,12 @@ class Outcome:
     instant: float | None = None
     speed: float | None = None
     reason: Reason = NO_REASON
+
+
+def told_faster(speed: float) -> str:
+    """Return in words how much faster SV is, in m/s.
+
+    >>> told_faster(-8.33)
+    '8.33 m/s slower'
+    """
+    return f"{abs(speed):g} m/s {'slower' if speed < 0 else 'faster'}"

@@ -6,7 +6,7 @@ general. An impossible
 combination comes back as a clause that holds at every instant.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
 from fractions import Fraction
 from typing import Literal, TypeAlias, assert_never
@@ -106,7 +106,7 @@ class StateChecker:
             if found is not None:
                 self.learnt.known[key] = found
                 return None
-        return Why.STATE(", ".join(name if positive else f"not {name}" for name, positive in literals))
+        return Why.STATE(len(literals), _in_short([x if yes else f"not {x}" for x, yes in literals]))
 
     def _always_holds(self, clause: Clause, meter: Budget, units: float = CASE) -> bool:
         """Whether each query of the clause, as a certificate will hold it, is answered unsat in time."""
@@ -213,6 +213,16 @@ class _Question:
     def core(self) -> list[tuple[str, bool]]:
         """The literals that the last refutation used."""
         return [self.switches[switch] for switch in self.session.core()]
+
+
+def _in_short(conditions: Sequence[str], most: int = 160) -> str:
+    """Return the first conditions of a list that have room in a line, the shortest first."""
+    chosen: list[str] = []
+    for x in sorted(conditions, key=len):
+        if len(", ".join((*chosen, x))) > most:
+            break
+        chosen.append(x)
+    return ", ".join(x for x in conditions if x in chosen) + (", …" if len(chosen) < len(conditions) else "")
 
 
 def _putting_in(defaults: Mapping[str, Fraction], numbers: dict[str, Fraction]) -> Callable[[t.Leaf], t.Term]:

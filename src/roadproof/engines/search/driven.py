@@ -10,7 +10,7 @@ from fractions import Fraction
 
 from roadproof.drivers.driving import DriverSettings
 from roadproof.drivers.models import MODELS, course_in
-from roadproof.drivers.outcome import Outcome, Result
+from roadproof.drivers.outcome import Outcome, Result, told_faster
 from roadproof.drivers.replay import replay
 from roadproof.drivers.restriction import Restriction
 from roadproof.engines.search.outcome import Search
@@ -67,7 +67,7 @@ class Driven:
 def _words(outcome: Outcome) -> str:
     match outcome.result:
         case Result.COLLIDES:
-            return f"SV touches POV at {outcome.instant:g} s, {outcome.speed:g} m/s faster"
+            return f"SV touches POV at {outcome.instant:g} s, {told_faster(outcome.speed or 0)}"
         case Result.PREVENTED:
             return "no collision" if outcome.gap is None else f"no collision, {outcome.gap:g} m left"
         case Result.UNDECIDED:

@@ -13,6 +13,7 @@ from roadproof.analysis.catalogue.ranges import Span
 from roadproof.analysis.catalogue.result import Result
 from roadproof.analysis.catalogue.tested import CLASSES, SCENARIOS, Targets, kind_of
 from roadproof.drivers.models import MODELS
+from roadproof.drivers.outcome import told_faster
 from roadproof.evidence.answers.catalogue_index import Figure, Remark, Target
 from roadproof.frontends.report.ci import junit
 from roadproof.frontends.report.ci.questions import catalogue_cases
@@ -63,7 +64,7 @@ def said(decision: Decision) -> str:
     if decision.gap is not None:
         return f"{decision.side} ({decision.gap:g} m left)"
     if decision.instant is not None and decision.speed is not None:
-        return f"{decision.side} (touches at {decision.instant:g} s, {decision.speed:g} m/s faster)"
+        return f"{decision.side} (touches at {decision.instant:g} s, {told_faster(decision.speed)})"
     return decision.side
 
 
