@@ -114,7 +114,11 @@ def test_when_an_effort_began_is_no_part_of_it(clock):
         ("G F scenario_4(SV,POV,L) -> G F G F scenario_5(SV,POV,L)", {}),
         ("G F scenario_4(SV,POV,L) -> G F G F scenario_5(SV,POV,L)", {"engine": "smt"}),
         ("scenario_4(SV,POV,L) -> F G scenario_9(SV,POV,L)", {"engine": "milp"}),
-        ("scenario_4(SV,POV,L) -> G s(SV) < s(POV) + 9 m", {"assume": "motion"}),
+        (
+            "s(SV) <= s(POV) and G[0, 2 s] (v_lon(SV) <= 30 m/s and v_lon(POV) >= 25 m/s) "
+            "-> G[0, 2 s] s(SV) <= s(POV) + 11 m and danger(SV,POV) or not danger(SV,POV)",
+            {"assume": "motion"},
+        ),
     ],
 )
 def test_a_claim_ends_with_its_timeout_whatever_is_tried(claim, options):

@@ -70,7 +70,7 @@ def answered(monkeypatch):
     for name, (answer, _) in ANSWERS.items():
         monkeypatch.setattr(bounded, "ask", lambda request, answer=answer: answer)
         monkeypatch.setattr(bounded, "falsifying_drive", lambda *_: None)
-        said[name] = bounded.check_bounded(search_for("true", **SHORT)).verdict
+        said[name] = bounded.check_bounded(search_for("v_lon(SV) >= 0 m/s", **SHORT)).verdict
     return said
 
 
