@@ -56,6 +56,10 @@ COMMANDS: dict[str, tuple[str, ...]] = {
 }  # fmt: skip
 
 
+SAME_ANSWERS = ("--timeout 700", "--needed")
+"""What the clock cuts off is never kept; and more answers beside the others change none of them."""
+
+
 class Asked(list[Any]):
     """What was asked, and no answer."""
 
@@ -93,6 +97,59 @@ def test_each_option_is_another_question(
     for (one, first), (two, second) in combinations(made.items(), 2):
         assert first != second, f"{one} is {two}"
     assert "it was asked" in capsys.readouterr().err
+
+
+KEPT = [x for x in COMMANDS if not x.startswith(("prove", "compare"))]
+"""Of claims other tests say when a kept answer counts; ``compare`` keeps none."""
+
+
+def digests(study: Any) -> tuple[Any, ...]:
+    """What tells a kept or known answer from those to another question."""
+    keys = sorted(str((name, study.key(name))) for name in study.wanted({}))
+    return study.question.fingerprint, *keys
+
+
+@pytest.mark.parametrize("command", KEPT)
+def test_no_answer_is_kept_for_two_questions(command: str, asked: Asked) -> None:
+    usual = digests(*question(command, asked))
+    assert digests(*question(command, asked)) == usual
+    made = {
+        x: digests(*question(f"{command} {x}", asked)) for x in COMMANDS[command] if x not in SAME_ANSWERS
+    }
+    for option, other in made.items():
+        assert other != usual, option
+    for (one, first), (two, second) in combinations(made.items(), 2):
+        assert first != second, f"{one} is {two}"
+
+
+def test_ranges_and_lanes_of_an_exploration_are_told_apart(asked: Asked) -> None:
+    lines = [f"explore 4 --vary minSafe={x}" for x in ("0:6", "0:5", "1:6")]
+    lines += [f"explore 4 --vary minSafe=0:6 --road main-2 --lane L=main-{k}" for k in (1, 2)]
+    assert len({digests(*question(x, asked)) for x in lines}) == len(lines)
+
+
+@pytest.mark.parametrize("line", ["--greatest 'v_lon(SV)' --when 'fast(SV)'", "--least 'far(SV)'"])
+def test_a_definition_of_a_measure_alone_is_a_part_of_its_key(
+    line: str, asked: Asked, tmp_path: Path
+) -> None:
+    keys = set()
+    for number in (20, 21):
+        fast = f"def fast(a: vehicle) := v_lon(a) > {number} m/s"
+        far = f"def far(a: vehicle) := s(a) + {number} m"
+        (tmp_path / "mine.spec").write_text(f"{fast}\n{far}\n")
+        [study] = question(f"explore 4 {line} --spec mine.spec", asked)
+        keys.add(tuple(study.key(name) for name in study.wanted({})))
+    assert len(keys) == 2
+
+
+def test_an_exploration_of_which_a_part_was_lost_is_asked_again(asked: Asked) -> None:
+    from roadproof.analysis.explore.answer import ExplorationResult
+    from roadproof.reasons import Why
+
+    [study] = question("explore 4 --vary minSafe=0:6", asked)
+    [doubt] = study.doubt(*study.pieces({}), Why.PROCESS("SIGKILL")).values()
+    assert {x.verdict for x in doubt.findings} == {"UNKNOWN"}
+    assert (doubt.late, study.is_sure(doubt), study.is_sure(ExplorationResult())) == (True, False, True)
 
 
 def test_claims_of_a_file_are_asked_beside_those_of_the_line(
