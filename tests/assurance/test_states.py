@@ -50,6 +50,8 @@ def test_open_points_lead_to_the_top(seed: int) -> None:
     leaves = {x for x in leaves_below(case, case.top) if found[x] is not State.HOLDS}
     assert {x.element for x in points} == leaves
     assert bool(points) == (found[case.top] is not State.HOLDS)
+    worst_first = (State.BROKEN, State.UNDECIDED, State.UNDEVELOPED)
+    assert [x.state for x in points] == sorted((x.state for x in points), key=worst_first.index)
     for x in points:
         assert (x.path[0], x.path[-1]) == (x.element, case.top)
         assert all(

@@ -67,6 +67,8 @@ def checked(*findings: Finding) -> list[CheckedEvidence]:
         ("PROVED-BOUNDED", "unknown", "unknown"),
         ("UNKNOWN", "unknown", "unknown"),
         ("CROSSCHECK-FAILED", "unknown", "unknown"),
+        ("COVERED", "proved", "proved"),
+        ("GAPS", "refuted", "refuted"),
     ],
 )
 def test_each_verdict_says_what_it_shows(verdict: str, claim: str, scenario: str) -> None:
@@ -107,6 +109,36 @@ def test_a_refutation_counts_before_a_proof_and_a_proof_before_a_doubt() -> None
     assert state(Link("claim", OURS), doubt, proof)[0] == "proved"
     assert state(Link("claim", OURS), damaged, proof)[0] == "rejected"
     assert state(Link("claim", OURS), proof, no, damaged)[0] == "refuted"
+
+
+@pytest.mark.parametrize("outcome", Acceptance)
+@pytest.mark.parametrize(
+    ("verdict", "claim", "scenario"), [("PROVED", "refuted", "refuted"), ("WITNESSED", "refuted", "missing")]
+)
+def test_only_accepted_evidence_of_the_opposite_refutes(
+    outcome: Acceptance, verdict: str, claim: str, scenario: str
+) -> None:
+    found = Finding("x.json", "certificate", outcome, Why.TOLD("why"), verdict, "", f"not ({OURS})")
+    accepted = outcome is GOOD
+    assert state(Link("claim", OURS), found)[0] == (claim if accepted else "missing")
+    assert state(Link("scenario", OURS), found)[0] == (scenario if accepted else "missing")
+
+
+@pytest.mark.parametrize("subject", [x for x in SubjectKind if x is not NAMED])
+def test_a_label_names_properties_alone(subject: SubjectKind) -> None:
+    found = Finding(
+        "x.json", "certificate", GOOD, NO_REASON, "PROVED", "", OURS, subject=subject, name="P1 base"
+    )
+    assert state(Link("claim", "P1 base"), found)[0] == "missing"
+    assert state(Link("claim", "P1 base"), replace(found, subject=NAMED))[0] == "proved"
+
+
+def test_a_folder_of_evidence_shows_what_its_weakest_part_shows(tmp_path: Path) -> None:
+    proof = Finding(str(tmp_path / "x.json"), "certificate", GOOD, NO_REASON, "PROVED", "", OURS)
+    doubt = replace(proof, where=str(tmp_path / "y.json"), verdict="UNKNOWN")
+    link = Link("evidence", str(tmp_path))
+    assert state(link, proof)[0] == "proved"
+    assert state(link, proof, doubt)[0] == state(link, doubt, proof)[0] == "unknown"
 
 
 def test_assumptions_are_a_part_of_a_claim() -> None:

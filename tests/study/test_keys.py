@@ -212,6 +212,8 @@ def changes_of(name: str) -> dict[str, Change]:
     found |= {f"--{x}": lambda y, x=x, v=v: y.with_more(**{x: v}) for x, v in MORE[name].items()}
     if name == "preventable":
         found |= {f"driver {x}": lambda y, x=x, v=v: replace(y, params={x: v}) for x, v in DRIVER.items()}
+    if name == "explore":
+        del found["param low"]  # it is varied, and a value for it is refused
     return found
 
 
@@ -294,11 +296,10 @@ def test_the_question_asked_at_first_is_known_and_its_answer_the_same(
 
 @pytest.mark.parametrize(("name", "change"), [("prove", "text: a spare value"), ("overlap", "param spare")])
 def test_a_change_that_no_claim_sees_leaves_answers_known(name: str, change: str) -> None:
-    """A computed drive also lists parameters that the user has changed and that nothing mentions."""
     EVERY[name](Asking(), False)
     changed = changes_of(name)[change](Asking())
     recalled, computed = EVERY[name](changed, False), EVERY[name](changed, True)
-    assert recalled.verdicts == computed.verdicts
+    assert told(recalled) == told(computed)
     assert recalled.found.known
 
 
