@@ -51,7 +51,7 @@ def examining(monkeypatch: pytest.MonkeyPatch, results: dict[int, Result], drive
 
 
 CHANGES = list(redundancy.changes_of(HOME, redundancy._ExaminationJobs(BASIS, THREE).query))
-UNKNOWN = Result(verdict=V.UNKNOWN, reason=Why.STATE("none"))
+UNKNOWN = Result(verdict=V.UNKNOWN, reason=Why.STATE("none", ""))
 
 
 @pytest.mark.parametrize(
