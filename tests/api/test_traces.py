@@ -210,7 +210,7 @@ def test_traffic_is_evaluated_as_by_the_command_line(
 
 def test_frames_of_traffic(simulated: Simulation, evaluated: Evaluation) -> None:
     results, matches, pairs = evaluated.to_frame(), evaluated.matches(), evaluated.pairs()
-    counts = ["traces", "matching", "uncertain", "recall", "s1", "s2", "s3", "s4"]
+    counts = ["traces", "matching", "uncertain", "possible", "recall", "s1", "s2", "s3", "s4"]
     assert results.columns == ["sector", "minDanger", "set", *counts]
     assert results.height == 6
     for row in results.rows(named=True):

@@ -29,12 +29,13 @@ PINS = [Pin("cvc5", "1.3.0", "0" * 64), Pin("numpy", "2.4.0", "1" * 64)]
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with evidence: proofs with definitions of the user, and a catalogue with its tests."""
     home = tmp_path_factory.mktemp("made")
-    os.chdir(home)
     (home / "own.spec").write_text(SPEC, "utf-8")
-    rp.prove("slow(SV) -> v_lon(SV) < 4 m/s", using=rp.load(specs=["own.spec"]), out="proofs", jobs=1)
     (home / "tests").mkdir()
     shutil.copy(ROOT / "examples/catalogue/tests/drives/braking.json", home / "tests")
-    rp.catalogue("tests", among="4", classes=False, drivers=(), out="report", jobs=1)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(home)
+        rp.prove("slow(SV) -> v_lon(SV) < 4 m/s", using=rp.load(specs=["own.spec"]), out="proofs", jobs=1)
+        rp.catalogue("tests", among="4", classes=False, drivers=(), out="report", jobs=1)
     return home
 
 

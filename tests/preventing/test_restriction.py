@@ -35,6 +35,7 @@ from roadproof.world.road import Road
 
 pytestmark = pytest.mark.usefixtures("searched_once")
 
+TESTS = str(Path(__file__).parents[2] / "examples/catalogue/tests")
 EXAMPLE = Path(__file__).parents[2] / "examples" / "catalogue" / "tests"
 Heard: TypeAlias = pytest.CaptureFixture[str]
 WITH_FORMULA = [x.name for x in MODELS.values() if not x.is_stepped]
@@ -149,7 +150,10 @@ def test_what_is_proved_of_scenarios_stays_proved_and_no_more() -> None:
         (["witness", "1", "--preventable", "rss", "--unpreventable", "rss"], "no drive satisfies both"),
         (["witness", "G v_lon(SV) > 0 m/s", "--preventable", "rss"], "the selected scenarios (none)"),
         (["coverage", "--spec", "driver", "--spec", "prevention"], "prevention_of=drives"),
-        (["catalogue", "examples/catalogue/tests", "--gaps", "--preventable", "rss"], "coverage asks"),
+        (
+            ["catalogue", TESTS, "--gaps", "--preventable", "rss"],
+            "coverage asks",
+        ),
     ],
 )
 def test_what_means_nothing_is_refused(given: list[str], told: str, capsys: Heard) -> None:

@@ -16,6 +16,9 @@ from roadproof.analysis.study import known
 from roadproof.analysis.study.frame import look_up
 from roadproof.analysis.study.known import SWITCH
 from roadproof.frontends.api.studied import StudyAnswers
+from roadproof.library.elaborate import read_claim
+from roadproof.library.specification import Library
+from roadproof.logic.rewrite import parameters_of
 
 # `both` meets `bar` under two spec sets; `near` has a quantified variable that is called as a parameter is.
 SPEC = """
@@ -251,7 +254,28 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
 
 def told(answers: Answers) -> Any:
-    return without_seconds(answers.as_data())
+    """An answer as data; of drives only the parameters that their formula mentions.
+
+    A computed drive also lists what the user has changed and no formula mentions.
+    """
+    return without_seconds(with_mentioned(answers.as_data(), answers.study.question.library))
+
+
+def with_mentioned(data: Any, library: Library) -> Any:
+    match data:
+        case {"schema": str(schema), "formula": str(formula), "parameters": dict(said)} if (
+            "/drive/" in schema
+        ):
+            options = {name: said[name] for name in library.options if name in said}
+            read = read_claim(library.select(data["set"], options), formula).formula
+            wanted = {*parameters_of(read), *options}
+            return {**data, "parameters": {name: x for name, x in said.items() if name in wanted}}
+        case dict():
+            return {name: with_mentioned(x, library) for name, x in data.items()}
+        case list():
+            return [with_mentioned(x, library) for x in data]
+        case _:
+            return data
 
 
 @pytest.fixture(scope="module")

@@ -5,6 +5,7 @@ straight road, or follow a reference line in the plane.
 """
 
 from collections.abc import Iterable
+from dataclasses import field
 from fractions import Fraction
 from typing import Literal, TypeAlias
 
@@ -40,7 +41,7 @@ class Road:
     adjacent: frozenset[frozenset[str]]
     line: ReferenceLine | None = None
     map: str | None = None
-    unread: tuple[str, ...] = ()
+    unread: tuple[str, ...] = field(default=(), compare=False)
 
     def __repr__(self) -> str:
         """The same in every process, as answers are kept under fingerprints of what was asked."""

@@ -107,7 +107,7 @@ class CandidateDrives:
         for k, drive in enumerate(self.moved[place]):
             judge = self.judges.setdefault((place, k), LazyJudge.on(drive))
             if judge.holds(first) and judge.holds(formula):
-                told = telling_values(wanted.formula, values)
+                told = telling_values(library, wanted.formula, values)
                 here = replace(file, set_name=home.set_name, options=dict(home.options), values=told)
                 judged = judged_as(replace(here, drive=drive), wanted, library)
                 if judged is not None:

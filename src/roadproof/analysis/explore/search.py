@@ -267,7 +267,7 @@ def made_for(file: DriveFile, claim: DriveClaim) -> DriveFile:
 def claim_of(search: Search, query: Query) -> DriveClaim:
     """The claim ``query`` at the values of ``search``."""
     there = replace(search, query=query)
-    values = telling_values(query.formula, values_of(search))
+    values = telling_values(search.specification.library, query.formula, values_of(search))
     return DriveClaim(query, values, _clear(there))
 
 

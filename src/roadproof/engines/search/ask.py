@@ -13,6 +13,8 @@ from roadproof.engines.search.search import Attempt, find_witness
 from roadproof.engines.search.siblings import find_once, offered
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.library.bind import default_values
+from roadproof.library.specification import Library
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import parameters_of
 from roadproof.reasons import NO_REASON, Reason, Why
@@ -177,7 +179,7 @@ def judge_found(search: Search, question: SearchProblem, found: FoundDrive) -> J
         search.query.text,
         found.grid.horizon,
         found.lanes,
-        telling_values(search.query.formula, question.values),
+        telling_values(library, search.query.formula, question.values),
         search.specification.options,
         question.road,
         found.drive,
@@ -186,6 +188,8 @@ def judge_found(search: Search, question: SearchProblem, found: FoundDrive) -> J
     return JudgedDrive(file, library, found.assumptions.natural)
 
 
-def telling_values(formula: Formula, values: Mapping[str, Fraction]) -> dict[str, Fraction]:
-    """Return the values of the parameters that ``formula`` mentions: others are no part of its answer."""
-    return {name: values[name] for name in parameters_of(formula) if name in values}
+def telling_values(library: Library, formula: Formula, values: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    """Values of the parameters that ``formula`` speaks of, and of those that the user has changed."""
+    declared = default_values(library)
+    spoken = parameters_of(formula)
+    return {n: v for n, v in values.items() if n in spoken or v != declared.get(n)}

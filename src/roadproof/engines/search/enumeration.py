@@ -160,7 +160,7 @@ class _Search:
             question.query.text,
             question.grid.horizon,
             question.lanes[number],
-            telling_values(question.query.formula, question.values),
+            telling_values(specification.library, question.query.formula, question.values),
             specification.options,
             question.road,
             drive,

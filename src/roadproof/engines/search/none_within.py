@@ -40,7 +40,7 @@ def refute(search: Search) -> NoneWithinFile | None:
         question.grid.dt,
         question.assumptions.reach,
         question.assumptions.collisions,
-        telling_values(search.query.formula, question.values),
+        telling_values(specification.library, search.query.formula, question.values),
         specification.options,
         question.road,
         question.vehicles,

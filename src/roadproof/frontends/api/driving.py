@@ -106,7 +106,7 @@ def drive(
         query = home.numbered(f"{name_of(scenario)}({', '.join((*roles.own(known), LANE))})", vehicles)[1]
     place = usual_road(query.formula) if road is None else as_road(road)
     end = positive("horizon", horizon, "s")
-    told = telling_values(query.formula, values_with(home.library, home.values))
+    told = telling_values(home.library, query.formula, values_with(home.library, home.values))
     try:
         moving = Drive(vehicles)
     except ValueError as error:
