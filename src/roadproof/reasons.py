@@ -217,6 +217,7 @@ class Why(StrEnum):
     OPPOSITE_PROVED = "the opposite is proved"
     VACUOUS = "it holds only because its premise never does"
     VERDICT = "{}: {}"
+    DRIVER_SIDE = "{} is {} under this driver model"
     SHOWS_NONE = "it shows no scenario"
     NO_DRIVE_OF_FORMULA = "no drive of its formula was found"
     JUDGED_WITH = "judged with {}"

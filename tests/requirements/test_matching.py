@@ -2,11 +2,14 @@
 
 import json
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from random import Random
+from typing import get_args
 
 import pytest
 
+import roadproof as rp
 from roadproof.analysis.requirements.checked_evidence import CheckedEvidence, read_findings
 from roadproof.analysis.requirements.fingerprints import Surroundings, differences, parts_of
 from roadproof.analysis.requirements.matching import combined, read_target, shown_by
@@ -14,7 +17,7 @@ from roadproof.analysis.requirements.requirement import Link, Requirement
 from roadproof.errors import InputError, TextError
 from roadproof.evidence.answers.trace import LinkKind, LinkState, Position
 from roadproof.evidence.finding import Acceptance, Finding, Kind
-from roadproof.evidence.subject import SubjectKind
+from roadproof.evidence.subject import DriverSide, SubjectKind, TestedSide
 from roadproof.library.loading import bundled_library
 from roadproof.reasons import NO_REASON, Why
 
@@ -278,3 +281,81 @@ def test_no_rewording_of_labels_claims_and_checks_changes_the_state_of_a_link() 
             else replace(found, label=random.choice(words), claim=random.choice(words))
         )
         assert state(link, reworded)[0] is state(link, found)[0], (link, reworded)
+
+
+SIDES = get_args(TestedSide)
+
+
+@pytest.mark.parametrize("wanted", ["preventable", "unpreventable"])
+@pytest.mark.parametrize("sides", [*product(SIDES), *product(SIDES, repeat=2)])
+def test_a_driver_verdict_counts_in_each_scenario_that_a_test_shows(
+    wanted: str, sides: tuple[TestedSide, ...]
+) -> None:
+    decided = tuple(
+        DriverSide(driver="careful", scenario=f"scenario_{k}", side=x) for k, x in enumerate(sides, 1)
+    )
+    other = DriverSide(driver="rss", scenario="scenario_1", side="undecided")
+    found, reason = state(
+        Link("driver", f"CUT-1: careful {wanted}"), replace(TEST, drivers=(*decided, other))
+    )
+    if {"partly", *{"preventable", "unpreventable"} - {wanted}} & {*sides}:
+        assert found == "refuted"
+    else:
+        assert found == ("witnessed" if {*sides} == {wanted} else "unknown")
+    assert bool(reason) is (found != "witnessed")
+
+
+def test_a_driver_verdict_of_another_test_or_model_shows_nothing() -> None:
+    side = DriverSide(driver="careful", scenario="scenario_1", side="preventable")
+    evidence = replace(TEST, drivers=(side,))
+    assert state(Link("driver", "CUT-1: careful preventable"), evidence)[0] == "witnessed"
+    for target in ("CUT-2: careful preventable", "CUT-1: rss preventable"):
+        assert state(Link("driver", target), evidence)[0] == "missing"
+    rejected = replace(evidence, outcome=Acceptance.REJECTED, reason=Why.TOLD("another"))
+    assert state(Link("driver", "CUT-1: careful preventable"), rejected)[0] == "rejected"
+    plate = replace(evidence, subject=SubjectKind.PLATE)
+    assert state(Link("driver", "CUT-1: careful preventable"), plate)[0] == "missing"
+
+
+@pytest.mark.parametrize(
+    "target", ["CUT-1", "CUT-1: careful", "CUT-1: careless preventable", "CUT-1 careful"]
+)
+def test_a_driver_link_says_test_model_and_side(target: str) -> None:
+    with pytest.raises(InputError, match=r"here: drivers='.*': write TEST: MODEL preventable"):
+        read_target(Link("driver", target), HOME, "here")
+
+
+def test_a_driver_link_rests_on_the_verdicts_of_its_test() -> None:
+    requirement = Requirement("R", "text", Position(file="x"))
+    target = read_target(Link("driver", "CUT-1: careful preventable"), HOME, "here")
+    parts = []
+    for side in ("preventable", "undecided"):
+        decided = DriverSide(driver="careful", scenario="scenario_1", side=side)
+        evidence = checked(replace(TEST, drivers=(decided,)))
+        parts.append(parts_of(requirement, target, evidence, Surroundings(HOME, Path())))
+    assert any("driver verdicts of test CUT-1" in x for x in differences(*parts))
+
+
+def test_requirements_name_driver_verdicts_of_a_catalogue(tmp_path: Path) -> None:
+    [drive] = rp.witness(1, jobs=1).evidence
+    drive.save(tmp_path / "cut.json")
+    made = rp.catalogue(tmp_path / "cut.json", among="1", classes=False, drivers=["careful"], jobs=1)
+    made.save(tmp_path / "tests", pictures=False)
+    [side] = {x.side for _, x in made.decisions}
+    other = {"preventable": "unpreventable", "unpreventable": "preventable"}[side]
+    (tmp_path / "requirements.toml").write_text(
+        f"""
+[trace]
+evidence = ["tests"]
+[[requirement]]
+id = "A"
+text = "It is so."
+drivers = ["cut: careful {side}"]
+[[requirement]]
+id = "B"
+text = "It is otherwise."
+drivers = ["cut: careful {other}"]
+""".lstrip()
+    )
+    found = rp.requirements(tmp_path / "requirements.toml", jobs=1).states
+    assert found == {"A": "witnessed", "B": "refuted"}

@@ -6,7 +6,7 @@ from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers.shared import KernelWord, Reason
 from roadproof.evidence.codec import LEFT_OUT, Doc
-from roadproof.evidence.subject import SubjectKind, TestOutcome
+from roadproof.evidence.subject import DriverSide, SubjectKind, TestOutcome
 from roadproof.reasons import NO_REASON, Why
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
@@ -70,6 +70,9 @@ class Finding:
     ] = SubjectKind.OTHER
     name: Annotated[str, LEFT_OUT, Doc("The name of a subject that has a kind, such as that of a test.")] = ""
     shows: Annotated[TestOutcome, LEFT_OUT, Doc("What a test of a catalogue shows.")] = ""
+    drivers: Annotated[
+        tuple[DriverSide, ...], LEFT_OUT, Doc("What becomes of a test of a catalogue under driver models.")
+    ] = ()
     kernel: Annotated[
         KernelWord, LEFT_OUT, Doc("What Coq says of a certificate or drive, where it was asked.")
     ] = ""

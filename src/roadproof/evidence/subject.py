@@ -6,6 +6,8 @@ Links of requirements match on these, never on labels, which are words for peopl
 from enum import StrEnum
 from typing import Final, Literal, NamedTuple, TypeAlias
 
+from roadproof.runtime.records import dataclass
+
 
 class SubjectKind(StrEnum):
     """The kinds of subjects; OTHER: a claim or drive that no requirement names by itself."""
@@ -34,6 +36,18 @@ OTHER: Final = Subject()
 
 TestOutcome: TypeAlias = Literal["scenarios", "nothing", "unreadable", ""]
 """What a concrete test shows: at least one scenario, none, or its file cannot be read; empty of all else."""
+
+
+TestedSide: TypeAlias = Literal["preventable", "unpreventable", "not foreseen", "undecided", "partly"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class DriverSide:
+    """What becomes of a scenario that a test shows, under a driver model."""
+
+    driver: str
+    scenario: str
+    side: TestedSide
 
 
 def subject_of_fact(test: str, relation: str) -> Subject:

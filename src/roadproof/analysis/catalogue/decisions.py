@@ -16,8 +16,8 @@ from roadproof.drivers.models import MODELS, ModelName, course_in, foreseen
 from roadproof.drivers.outcome import Outcome
 from roadproof.drivers.replay import first_cut, replay
 from roadproof.drivers.sampled_replay import replay_samples
-from roadproof.evidence.answers.driver_verdict import TestedSide
 from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.subject import TestedSide
 from roadproof.library.elaborate import read_claim
 from roadproof.library.scenarios import number_in
 from roadproof.library.specification import Specification

@@ -1,7 +1,7 @@
 """Requirements of Doorstop: a folder with ``.doorstop.yml`` and an item in each other YAML file.
 
 The name of a file is the UID of its item. Links to evidence are further attributes: claims, scenarios,
-tests, plates and evidence, each a text or a list.
+tests, drivers, plates and evidence, each a text or a list.
 """
 
 from collections.abc import Mapping

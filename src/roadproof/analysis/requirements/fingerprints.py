@@ -36,7 +36,7 @@ from roadproof.world.vehicle import Vehicle
 Parts: TypeAlias = dict[str, str]
 """Digests and values by name."""
 _FILES = ("file ", "answer ")
-_TOOL, _VALUE, _DRIVES = "roadproof", "value of ", ("scenario", "test", "plate")
+_TOOL, _VALUE, _DRIVES = "roadproof", "value of ", ("scenario", "test", "driver", "plate")
 _MEANING, _WHY = "meaning of ", ("definition ", "parameter ")
 _NAME = re.compile(r"[A-Za-z_]\w*(?:@\w+)?")
 
@@ -68,6 +68,8 @@ def parts_of(
     for x in evidence:
         assumes = x.meaning is not None and bool(x.meaning.assuming)
         parts |= _of_text(x.specification, x.finding.claim, around, x.is_drive or assumes)
+        if link.kind == "driver":
+            parts[f"driver verdicts of test {x.finding.name}"] = digest(x.finding.drivers)[:16]
         if x.digest:
             parts[f"file {_relative(x.path, around.folder)}"] = x.digest
         else:

@@ -5,14 +5,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import TypeAlias
+from typing import TypeAlias, assert_never
 
 from roadproof.analysis.requirements.checked_evidence import CheckedEvidence, Meaning, meaning_of
 from roadproof.analysis.requirements.requirement import Link
+from roadproof.drivers.models import MODELS
 from roadproof.errors import InputError, TextError, UsageError
 from roadproof.evidence.answers.trace import LinkState
 from roadproof.evidence.finding import STALE, Acceptance
-from roadproof.evidence.subject import OF_TESTS, SubjectKind
+from roadproof.evidence.subject import OF_TESTS, DriverSide, SubjectKind, TestedSide
 from roadproof.library.bind import default_values
 from roadproof.library.elaborate import apply_definition
 from roadproof.library.scenario_references import read_query
@@ -21,6 +22,7 @@ from roadproof.logic.rewrite import without_names
 from roadproof.reasons import NO_REASON, Reason, Why
 
 _LABEL = re.compile(r"[A-Za-z][\w-]*( scenario \d+)? [A-Za-z][\w-]*")
+_DRIVER = re.compile(r"(?P<test>.+): (?P<model>\w+) (?P<side>preventable|unpreventable)")
 _SHOWN = {
     "PROVED": LinkState.PROVED,
     "IMPOSSIBLE": LinkState.PROVED,
@@ -64,6 +66,11 @@ def read_target(link: Link, home: Specification, source: str) -> Target:
             if _LABEL.fullmatch(link.target):
                 return Target(link, home)
             raise
+    if link.kind == "driver":
+        try:
+            driver_link(link)
+        except InputError as error:
+            raise InputError(f"{source}: {error}") from None
     if link.kind == "scenario":
         try:
             query, specification = _scenario(link.target, home, source)
@@ -94,6 +101,8 @@ def shown_by(
             found = _of_formula(target, evidence)
         case "test":
             found = _of_test(target.link.target, evidence)
+        case "driver":
+            found = _of_driver(driver_link(target.link), evidence)
         case "plate":
             found = (_by_itself(x) for x in evidence if _is_plate(x, target.link.target))
         case "evidence":
@@ -105,12 +114,12 @@ def shown_by(
 def combined(kind: str, found: Sequence[Shown]) -> tuple[LinkState, Reason]:
     """The state of a link. A refutation counts before all else, then evidence that is rejected.
 
-    Of plates and files all parts must be shown, of other links one is enough.
+    Of driver models, plates and files all parts must be shown, of other links one is enough.
     """
     if not found:
         return LinkState.MISSING, Why.NO_EVIDENCE()
     worst = max(found, key=lambda x: x.state.rank)
-    if worst.state in (LinkState.REFUTED, LinkState.REJECTED) or kind in ("plate", "evidence"):
+    if worst.state in (LinkState.REFUTED, LinkState.REJECTED) or kind in ("driver", "plate", "evidence"):
         return worst.state, worst.reason
     best = min(found, key=lambda x: x.state.rank)
     return best.state, best.reason
@@ -210,6 +219,56 @@ def _of_test(name: str, evidence: Sequence[CheckedEvidence]) -> Iterator[Shown]:
             yield Shown(x, LinkState.REFUTED, Why.NO_DRIVE_SHOWS())
         else:
             yield Shown(x, _SHOWN.get(x.finding.verdict, LinkState.UNKNOWN))
+
+
+@dataclass(frozen=True)
+class DriverLink:
+    """That a driver model in place of SV prevents the collision of a test, or does not."""
+
+    test: str
+    model: str
+    side: str
+
+
+def driver_link(link: Link) -> DriverLink:
+    """Return what a link such as ``CUT-1: careful preventable`` says. Raises ``InputError``."""
+    read = _DRIVER.fullmatch(" ".join(link.target.split()))
+    if read is None or read["model"] not in MODELS:
+        raise InputError(
+            f"drivers='{link.target[:60]}': write TEST: MODEL preventable, or unpreventable; models are "
+            f"{', '.join(MODELS)}"
+        )
+    return DriverLink(read["test"], read["model"], read["side"])
+
+
+def _of_driver(link: DriverLink, evidence: Sequence[CheckedEvidence]) -> Iterator[Shown]:
+    """What a catalogue says of a test under a driver model, in each scenario that it shows."""
+    for x in evidence:
+        if x.finding.subject is not SubjectKind.TEST or x.finding.name != link.test:
+            continue
+        wrong = _not_accepted(x)
+        if wrong is not None:
+            yield wrong
+            continue
+        for decided in x.finding.drivers:
+            if decided.driver == link.model:
+                yield Shown(x, _side_shown(decided.side, link.side), _side_reason(decided, link.side))
+
+
+def _side_shown(side: TestedSide, wanted: str) -> LinkState:
+    match side:
+        case "preventable" | "unpreventable":
+            return LinkState.WITNESSED if side == wanted else LinkState.REFUTED
+        case "partly":
+            return LinkState.REFUTED
+        case "not foreseen" | "undecided":
+            return LinkState.UNKNOWN
+        case _:
+            assert_never(side)
+
+
+def _side_reason(decided: DriverSide, wanted: str) -> Reason:
+    return NO_REASON if decided.side == wanted else Why.DRIVER_SIDE(decided.scenario, decided.side)
 
 
 def is_of_test(link: Link, x: CheckedEvidence) -> bool:

@@ -13,6 +13,7 @@ FIELDS: Mapping[str, LinkKind] = {
     "claims": "claim",
     "scenarios": "scenario",
     "tests": "test",
+    "drivers": "driver",
     "plates": "plate",
     "evidence": "evidence",
 }
@@ -21,7 +22,7 @@ FIELDS: Mapping[str, LinkKind] = {
 
 @dataclass(frozen=True)
 class Link:
-    """What a requirement rests on: a claim, scenario, test or plate by name, or a file of evidence."""
+    """What a requirement rests on: a claim, scenario, test, driver or plate by name, or a file."""
 
     kind: LinkKind
     target: str

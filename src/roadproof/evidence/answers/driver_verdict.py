@@ -1,14 +1,14 @@
 """What an answer has on a test in which a driver model drives SV."""
 
 from collections.abc import Mapping
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, TypeAlias
 
 from roadproof.drivers.models import ModelName
 from roadproof.evidence.codec import Doc, Rule
+from roadproof.evidence.subject import TestedSide
 from roadproof.runtime.records import dataclass
 
 Time: TypeAlias = Annotated[float, Rule(minimum=0)]
-TestedSide: TypeAlias = Literal["preventable", "unpreventable", "not foreseen", "undecided", "partly"]
 
 
 @dataclass(frozen=True, kw_only=True)

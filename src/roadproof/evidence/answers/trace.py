@@ -18,7 +18,7 @@ from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 
 SCHEMA: Final = "roadproof/trace/1"
-LinkKind: TypeAlias = Literal["claim", "scenario", "test", "plate", "evidence"]
+LinkKind: TypeAlias = Literal["claim", "scenario", "test", "driver", "plate", "evidence"]
 
 
 class LinkState(StrEnum):

@@ -24,7 +24,7 @@ from roadproof.evidence.codec import read, write
 from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.evidence.folder import INDEX, FolderStatements
 from roadproof.evidence.strict import Fields, JsonObject, read_json
-from roadproof.evidence.subject import OTHER, Subject, SubjectKind, subject_of_fact
+from roadproof.evidence.subject import OTHER, DriverSide, Subject, SubjectKind, subject_of_fact
 from roadproof.frontends.api.definitions import Definitions
 from roadproof.frontends.api.restricting import drivers_of
 from roadproof.frontends.api.settings import basis_of
@@ -150,7 +150,9 @@ def _tests(index: Fields, again: Index, where: str) -> Iterator[Finding]:
     if len(said) < len(index.items("tests")):
         yield _rejected(where, Why.ONE_ID())
     for name, test in now.items():
-        yield _of_test(name, said.get(name), test, where)
+        decided = (x for x in again.decisions if x.test == name)
+        sides = tuple(DriverSide(driver=x.driver, scenario=x.scenario, side=x.side) for x in decided)
+        yield replace(_of_test(name, said.get(name), test, where), drivers=sides)
     for name in said:
         if name not in now:
             yield _rejected(where, Why.TEST_GONE(), name, _test(name))

@@ -27,7 +27,7 @@ requirements.toml:
   text = "The vehicle keeps its distance from a vehicle ahead that brakes."
   claims = ["scenario_4(SV,POV,L) -> F danger(SV,POV)"]   # or a name that check prints: needs a proof
   scenarios = [4]                          # a number, name, class or formula: needs a judged drive
-  tests = ["cut-in-3"]                     # tests of a catalogue; also: plates, evidence, parent
+  tests = ["cut-in-3"]                     # tests of a catalogue; also: drivers, plates, evidence, parent
 
 Other fields of [trace]: specs, set, options, parameters, vehicles, and source, a file of requirements in
 another format (.reqif, .sdoc of StrictDoc, a folder of Doorstop) to which [[requirement]] adds links.
