@@ -5,6 +5,7 @@ little nearer or farther, or responds a step later.
 """
 
 import math
+import os
 from fractions import Fraction as F
 from random import Random
 
@@ -29,7 +30,7 @@ ROAD = Road(
     pairs([("R", "L")]),
 )
 SEVERAL, FEW = 12, 4  # tests of a manoeuvre; of the fuzzy safety model, whose simulation takes longer
-MANY = 5_000  # tests of a model as drives, and as samples
+MANY = int(os.environ.get("ROADPROOF_RANDOM_TESTS", "200"))  # of a model as drives, and as samples
 RATE = 25
 LOOKED = 0.61  # m/s: what the fuzzy safety model brakes from look to look
 OPTIONS: tuple[dict[str, str], ...] = (
