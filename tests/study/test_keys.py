@@ -254,9 +254,10 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
 
 def told(answers: Answers) -> Any:
-    """An answer as data; of drives only the parameters that their formula mentions.
+    """An answer as data; of drives only the parameters that their formula mentions, and no traces.
 
-    A computed drive also lists what the user has changed and no formula mentions.
+    A computed drive also lists what the user has changed and no formula mentions. Of the traces that refute
+    a claim for all values, a solver that has answered other questions before may find another one.
     """
     return without_seconds(with_mentioned(answers.as_data(), answers.study.question.library))
 
@@ -270,6 +271,8 @@ def with_mentioned(data: Any, library: Library) -> Any:
             read = read_claim(library.select(data["set"], options), formula).formula
             wanted = {*parameters_of(read), *options}
             return {**data, "parameters": {name: x for name, x in said.items() if name in wanted}}
+        case {"kind": "trace"}:
+            return {"kind": "trace"}
         case dict():
             return {name: with_mentioned(x, library) for name, x in data.items()}
         case list():
