@@ -353,6 +353,8 @@ SAME_ANSWERS = {
     },
     "index.json": {
         "roadproof: ": "which version made the folder: nothing rests on it",
+        "options: an object": "an option that is not named has its default",
+        "options: one less": "the default",
         "options.lateral_sign: removed": "the default",
         "options.lateral_rss: removed": "the default",
         "options.speed: removed": "the default",
