@@ -9,7 +9,7 @@ import pytest
 
 import roadproof as rp
 from report.reading import PALE, opened
-from report.test_page import HEADED, hostile_answers, hostile_overlap
+from report.test_page import HEADED, VERSIONS, hostile_answers, hostile_overlap
 from report.test_summary import claims_of, written
 from roadproof.engines.prove.properties import template_properties
 from studio.browser import CHROMIUM, why_none
@@ -33,9 +33,8 @@ def kinds(tmp_path_factory) -> Path:
     """A page with a section of each kind of result."""
     folder = tmp_path_factory.mktemp("kinds")
     drive = json.loads(min(DRIVES.glob("*.json")).read_text("utf-8"))
-    versions = {"compare": 2, "monitor": 2, "traffic-results": 3}
     answers = {
-        kind: {"schema": f"roadproof/{kind}/{versions.get(kind, 1)}", **HEADED, **data}
+        kind: {"schema": f"roadproof/{kind}/{VERSIONS.get(kind, 1)}", **HEADED, **data}
         for kind, data in hostile_answers(drive).items()
     }
     return rp.page(*written(folder, **answers), out=folder / "page.html", jobs=1).path

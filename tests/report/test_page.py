@@ -332,11 +332,15 @@ def explored(drive: dict) -> dict:
     }
 
 
+VERSIONS = {"compare": 2, "monitor": 2, "traffic-results": 5}
+"""Of the schemas of answers that are not the first."""
+
+
 def test_a_hostile_text_stays_text_in_every_section(tmp_path, drives):
     files = []
     for kind, data in hostile_answers(drive_in(drives)).items():
         files.append(tmp_path / f"{kind}.json")
-        version = {"compare": 2, "monitor": 2, "traffic-results": 5}.get(kind, 1)
+        version = VERSIONS.get(kind, 1)
         files[-1].write_text(json.dumps({"schema": f"roadproof/{kind}/{version}", **HEADED, **data}), "utf-8")
     found, text = made(*files, out=tmp_path / "page.html", title=f"{HOSTILE} {CLOSED}")
     assert found.results == len(files)
