@@ -359,3 +359,8 @@ drivers = ["cut: careful {other}"]
     )
     found = rp.requirements(tmp_path / "requirements.toml", jobs=1).states
     assert found == {"A": "witnessed", "B": "refuted"}
+    text = (tmp_path / "requirements.toml").read_text()
+    for more in ('parameters = {rho = "0.5 s"}', 'specs = ["driver"]\nparameters = {cc_braking = "4 m/s^2"}'):
+        (tmp_path / "other.toml").write_text(text.replace("[trace]\n", f"[trace]\n{more}\n"))
+        states = rp.requirements(tmp_path / "other.toml", jobs=1).states
+        assert states["A"] == "stale", "it was decided at other values"

@@ -16,10 +16,11 @@ from roadproof.evidence.folder import INDEX
 from roadproof.evidence.journal import HEAD
 from roadproof.evidence.specifications import read_beside
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, JsonObject, read_json
+from roadproof.library.bind import default_values
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import load_library
 from roadproof.library.motion import split
-from roadproof.library.specification import Library, Specification
+from roadproof.library.specification import Library, Specification, on_request
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
@@ -104,6 +105,7 @@ class _Reader:
         self.home = home
         self.libraries: dict[Path | None, Library] = {None: load_library(specs)}
         self.remarks: dict[Path, dict[str, str]] = {}
+        self.values: dict[Path, Mapping[str, Fraction]] = {}
 
     def read(self, finding: Finding) -> CheckedEvidence:
         path = Path(finding.where)
@@ -111,9 +113,8 @@ class _Reader:
         remark = self._remark(finding)
         if not path.is_file() or path.name in (INDEX, HEAD):
             specification = self._named_in(finding.label, library)
-            return CheckedEvidence(
-                finding, specification, _meaning(specification, finding.claim), remark=remark
-            )
+            meaning, values = _meaning(specification, finding.claim), self._values(finding)
+            return CheckedEvidence(finding, specification, meaning, values, remark=remark)
         digest = hashlib.sha256(read_limited(path, LARGEST_INDEX, "no evidence is larger")).hexdigest()
         try:
             said = read_evidence(path)
@@ -149,6 +150,16 @@ class _Reader:
         options = {name: x for name, x in self.home.options.items() if name in library.options}
         return library.select(last if last in library.sets else self.home.set_name, options)
 
+    def _values(self, finding: Finding) -> Mapping[str, Fraction]:
+        """The values that a test was judged with, and those of driver models that were put into it."""
+        if finding.kind != "test":
+            return {}
+        index = Path(finding.where)
+        if index not in self.values:
+            self.values[index] = _parameters(index)
+        models = default_values(load_library([on_request()["driver"]])) if finding.drivers else {}
+        return {**models, **self.values[index]}
+
     def _remark(self, finding: Finding) -> str:
         if finding.kind != "test":
             return ""
@@ -172,6 +183,15 @@ def _said(folder: Path) -> Fields | None:
         return Fields(read_json(folder / INDEX, LARGEST_INDEX), str(folder / INDEX))
     head = Fields(read_json(folder / HEAD), str(folder / HEAD))
     return Fields(head.mapping("said"), str(folder / HEAD)) if head.has("said") else None
+
+
+def _parameters(index: Path) -> Mapping[str, Fraction]:
+    """The values of parameters that an index names; none where it cannot be read."""
+    try:
+        said = Fields(Fields(read_json(index, LARGEST_INDEX), str(index)).mapping("parameters"), str(index))
+        return {name: said.rational(name) for name in said.content}
+    except RoadproofError:
+        return {}
 
 
 def _remarks(index: Path) -> Iterator[tuple[str, str]]:
