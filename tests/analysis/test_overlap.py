@@ -12,7 +12,7 @@ from report.edges import cut_off
 from roadproof.analysis import overlap
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.overlap import Core, Meeting, Overlap, PairVerdict, conjunctions, pairs_of
-from roadproof.analysis.placing import placed
+from roadproof.engines.search.placing import placed
 from roadproof.analysis.study.frame import conduct
 from roadproof.engines.solve.smt import ask
 from roadproof.errors import InputError, UsageError

@@ -20,7 +20,7 @@ import pytest
 import roadproof
 import roadproof as rp
 from roadproof.analysis.claims import Claims
-from roadproof.engines.search.question import Engine, Objective
+from roadproof.evidence.claim import Engine, Objective
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.answers.monitor import View
 from roadproof.frontends.api.checking import Kernel, Solver

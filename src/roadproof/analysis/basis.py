@@ -13,7 +13,7 @@ from roadproof.evidence.settled import Settled
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.bind import values_with
 from roadproof.library.specification import Library, Query, Specification
-from roadproof.runtime.budget import BudgetExceeded, Effort
+from roadproof.runtime.budget import BudgetExceeded, Effort, Work
 from roadproof.runtime.canonical import digest
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ProofVerdict, Verdict
@@ -22,7 +22,7 @@ from roadproof.world.vehicle import Vehicle
 
 if TYPE_CHECKING:
     from roadproof.engines.search.outcome import Search
-    from roadproof.engines.search.question import Objective
+    from roadproof.evidence.claim import Objective
 
 Asked = TypeVar("Asked")
 
@@ -67,6 +67,11 @@ class Basis:
         """The spec sets that are spoken of; that of the specification where no others are."""
         return self.sets or (self.specification.set_name,)
 
+    @property
+    def work(self) -> Work:
+        """The work that is allowed for a claim."""
+        return Work(self.effort, self.proof)
+
     def all_values(self) -> dict[str, Fraction]:
         """The value of every parameter. Raises ``InputError``."""
         return values_with(self.library, self.values)
@@ -80,7 +85,7 @@ class Basis:
         """The claim that there is a drive on which ``query`` holds, within the limits of this basis."""
         vehicles = {name: x for name, x in self.vehicles.items() if not name or name in query.vehicles}
         mode = Exists(vehicles=vehicles, horizon=self.horizon, objective=self.objective)
-        return claim_of(self.library, query, mode, self.values)
+        return claim_of(self.specification, query, mode, self.values)
 
     def key(self, queries: Iterable[Query], *more: object) -> str:
         """A digest of all that an answer depends on: the claims of ``queries``, limits, and ``more``.

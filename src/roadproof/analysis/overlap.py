@@ -12,11 +12,11 @@ from itertools import combinations, permutations
 from typing import ClassVar, Literal
 
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.placing import placed
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.engines.prove.prover import Result
 from roadproof.engines.search.ask import ask
-from roadproof.engines.search.impossible import explain, parts, told_parts
+from roadproof.engines.search.impossible import explain, told_parts
+from roadproof.engines.search.placing import placed
 from roadproof.engines.solve.milp import prepare
 from roadproof.evidence.answers import overlap as kept_answers
 from roadproof.evidence.answers.overlap import SCHEMA
@@ -27,6 +27,7 @@ from roadproof.library.compose import both, either, eventually, negation
 from roadproof.library.elaborate import StatedQuery, read_claim
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import Formula
+from roadproof.logic.parts import parts_of
 from roadproof.logic.rewrite import without_names
 from roadproof.reasons import Reason, Why, joined
 from roadproof.runtime.budget import BudgetExceeded
@@ -361,7 +362,7 @@ class _DecisionJobs:
     def _core_like(self, query: Query, core: Core) -> Core:
         """``core`` for ``query``, where all its parts are parts of that too; its own core otherwise."""
         wanted = {without_names(part) for part in core.parts}
-        mine = {without_names(part) for part in parts(query.formula)}
+        mine = {without_names(part) for part in parts_of(query.formula)}
         return Core(query, core.parts) if wanted and wanted <= mine else self._core(query)
 
 

@@ -11,11 +11,11 @@ from functools import cached_property
 from typing import ClassVar
 
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.placing import judged_as, placed
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.analysis.study.frame import Unprepared
 from roadproof.engines.search.ask import ask
 from roadproof.engines.search.outcome import Search
+from roadproof.engines.search.placing import judged_as, placed
 from roadproof.engines.search.question import usual_road
 from roadproof.errors import InputError
 from roadproof.evidence.answers.redundancy import SCHEMA, Finding, Index, Record, Word

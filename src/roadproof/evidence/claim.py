@@ -9,7 +9,7 @@ answers that are kept. ``text`` is for people: no answer depends on it.
 from collections.abc import Iterable, Mapping
 from dataclasses import field
 from fractions import Fraction
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
 from roadproof.library.motion import is_moving, under_limits, values_said
 from roadproof.library.specification import Library, Query, Specification
@@ -21,6 +21,9 @@ from roadproof.runtime.records import dataclass
 from roadproof.world.road import Road
 from roadproof.world.units import UNITS
 from roadproof.world.vehicle import Vehicle
+
+Objective: TypeAlias = Literal["any", "smooth", "margin", "mild", "severe", "short"]
+Engine: TypeAlias = Literal["milp", "smt"]
 
 
 @dataclass(frozen=True)
@@ -37,12 +40,14 @@ class OccurringParameter:
 class Valid:
     """The formula is to hold on all traces; on motions within limits where ``moving``.
 
-    ``restricted``: the formula under the limits and values that are assumed, where any are.
+    ``restricted``: the formula under the limits and values that are assumed, where any are. ``assuming``: the
+    words that say all this.
     """
 
     moving: bool = False
     values: tuple[tuple[str, Fraction], ...] = ()
     restricted: Formula | None = None
+    assuming: tuple[str, ...] = field(default=(), compare=False)
 
 
 @dataclass(frozen=True)
@@ -62,8 +67,8 @@ class Exists:
     reach: Fraction = Fraction(80)
     collisions: bool = False
     natural: bool = True
-    objective: str = "smooth"
-    engine: str = "milp"
+    objective: Objective = "smooth"
+    engine: Engine = "milp"
     solver: str = "highs"
     refinements: int = 2
     explain: bool = True
@@ -82,32 +87,45 @@ Mode: TypeAlias = Valid | Exists | On
 
 @dataclass(frozen=True)
 class Claim:
-    """A formula with its free names, how it is asked, and the parameters that occur in it."""
+    """A formula with its free names, how it is asked, and the parameters that occur in it.
+
+    ``query`` is the formula as it is written, and ``home`` has the definitions that its text is read with.
+    """
 
     formula: Formula
     vehicles: tuple[str, ...]
     lanes: tuple[str, ...]
     mode: Mode
     parameters: tuple[OccurringParameter, ...]
-    text: str = field(default="", compare=False)
+    query: Query = field(compare=False, repr=False)
+    home: Specification = field(compare=False, repr=False)
+
+    @property
+    def text(self) -> str:
+        """The claim as people read it."""
+        return self.query.text
 
     def digest(self) -> str:
         """64 hexadecimal digits that no other claim has."""
         return digest(self)
 
 
-def claim_of(library: Library, query: Query, mode: Mode, values: Mapping[str, Fraction]) -> Claim:
-    """Return the claim of a query. ``values``: parameters with another value than the declared one (SI)."""
+def claim_of(home: Specification, query: Query, mode: Mode, values: Mapping[str, Fraction]) -> Claim:
+    """Return the claim of a query that is read in ``home``.
+
+    ``values``: parameters with another value than the declared one (SI).
+    """
     more = [mode.restricted] if isinstance(mode, Valid) and mode.restricted is not None else []
-    occurring = parameters_in(library, (query.formula, *more), values)
-    return Claim(query.formula, query.vehicles, query.lanes, mode, occurring, query.written)
+    occurring = parameters_in(home.library, (query.formula, *more), values)
+    return Claim(query.formula, query.vehicles, query.lanes, mode, occurring, query, home)
 
 
 def valid_under(specification: Specification, query: Query, assuming: tuple[str, ...] = ()) -> Claim:
     """Return the claim that ``query`` holds on all traces under what is assumed. Raises ``InputError``."""
     values = tuple(values_said(specification, assuming).items())
     restricted = under_limits(specification, query, assuming).formula if assuming else None
-    return claim_of(specification.library, query, Valid(is_moving(assuming), values, restricted), {})
+    mode = Valid(is_moving(assuming), values, restricted, tuple(assuming))
+    return claim_of(specification, query, mode, {})
 
 
 def parameters_in(

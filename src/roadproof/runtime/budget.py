@@ -63,6 +63,14 @@ class Effort:
         return Budget(self.units, seconds, begun=begun)
 
 
+@dataclass(frozen=True)
+class Work:
+    """The work for a claim: ``effort`` for a drive, ``proof`` units for a proof before one is looked for."""
+
+    effort: Effort
+    proof: float
+
+
 @dataclass
 class Budget:
     """The work left for one search: ``limit`` units in all, ``seconds`` of wall clock from ``begun``.

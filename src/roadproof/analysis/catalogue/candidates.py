@@ -13,10 +13,10 @@ from functools import cache, cached_property
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.entries import Abstract
-from roadproof.analysis.placing import judged_as, placed
 from roadproof.analysis.study.known import shipped_answers
 from roadproof.engines.search.ask import telling_values
 from roadproof.engines.search.impossible import at_start
+from roadproof.engines.search.placing import judged_as, placed
 from roadproof.errors import RoadproofError
 from roadproof.evidence.answers import classify as kept
 from roadproof.evidence.codec import read

@@ -16,11 +16,11 @@ from roadproof.analysis.classify.drives import Example, find_examples
 from roadproof.analysis.classify.text import with_classes, write_classes
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.analysis.explore.answer import with_parts
-from roadproof.analysis.placing import judged_as
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.pool import Progress
 from roadproof.engines.search.ask import answer
 from roadproof.engines.search.initial_conditions import CLEARLY
+from roadproof.engines.search.placing import judged_as
 from roadproof.errors import UsageError
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.drive_file import DriveFile

@@ -15,11 +15,11 @@ from roadproof.analysis.catalogue.candidates import CandidateDrives
 from roadproof.analysis.catalogue.entries import Abstract, Freedom
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.showing import names_shown, shown_by
-from roadproof.analysis.placing import judged_as
 from roadproof.engines.prove.prover import SharedPremise
 from roadproof.engines.search.ask import answer
 from roadproof.engines.search.impossible import at_start
 from roadproof.engines.search.outcome import Outcome, Search
+from roadproof.engines.search.placing import judged_as
 from roadproof.engines.search.question import SearchOptions, Setting
 from roadproof.evidence.answers.catalogue_index import Relation
 from roadproof.evidence.judged import JudgedDrive

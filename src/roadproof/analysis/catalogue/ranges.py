@@ -16,7 +16,7 @@ from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.showing import ConcreteAnswer, signal_of
 from roadproof.analysis.explore.answer import Sense, read_measure
 from roadproof.analysis.explore.extreme import ExtremeQuestion, find_extreme
-from roadproof.analysis.placing import judged_as
+from roadproof.engines.search.placing import judged_as
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import both

@@ -15,11 +15,11 @@ from roadproof.analysis.catalogue.decisions import Decision, Drivers, course_of
 from roadproof.analysis.catalogue.entries import Abstract, Freedom
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.showing import all_shown_by, decisions_on, names_shown
-from roadproof.analysis.placing import judged_as
 from roadproof.drivers.models import MODELS
 from roadproof.drivers.restriction import Restriction, Side, check_library, files_for, said_in
 from roadproof.engines.search.ask import answer
 from roadproof.engines.search.outcome import Search
+from roadproof.engines.search.placing import judged_as
 from roadproof.engines.search.question import SearchOptions, Setting
 from roadproof.errors import InputError
 from roadproof.evidence.judged import JudgedDrive

@@ -9,8 +9,8 @@ from typing import get_args
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.classify.classes import Class
 from roadproof.analysis.explore.answer import with_parts
-from roadproof.analysis.placing import placed, placed_on
 from roadproof.engines.search.ask import ask
+from roadproof.engines.search.placing import placed, placed_on
 from roadproof.engines.search.question import usual_road, zones_of
 from roadproof.evidence.answers.classify import Word
 from roadproof.evidence.judged import JudgedDrive

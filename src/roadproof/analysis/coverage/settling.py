@@ -18,8 +18,8 @@ from roadproof.analysis.coverage.classes import (
 )
 from roadproof.analysis.coverage.found import FoundGap, Trials
 from roadproof.analysis.coverage.minimal import simplest
-from roadproof.analysis.placing import judged_as, placed
 from roadproof.engines.search.ask import ask
+from roadproof.engines.search.placing import judged_as, placed
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive

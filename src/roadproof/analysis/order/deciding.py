@@ -13,8 +13,8 @@ from fractions import Fraction
 from itertools import permutations
 
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.placing import judged_as, placed
 from roadproof.engines.search.ask import ask
+from roadproof.engines.search.placing import judged_as, placed
 from roadproof.engines.search.question import usual_road
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.drive_file import DriveFile

@@ -1,6 +1,6 @@
 """No is explained: a proof that no trace satisfies a formula, and the parts of it that clash."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from roadproof.drivers.restriction import left_open
@@ -13,6 +13,7 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
+from roadproof.logic.parts import parts_of
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
 from roadproof.runtime.budget import Effort
@@ -63,7 +64,7 @@ def explain(
         core, minimal = _core(specification, query, left)
         return Impossibility(core, minimal, proof.certificate)
     shorter, minimal = _core(outline, read_claim(outline, query.text), left)
-    said, whole = {*told_parts(shorter)}, tuple(dict.fromkeys(parts(query.formula)))
+    said, whole = {*told_parts(shorter)}, tuple(dict.fromkeys(parts_of(query.formula)))
     core = tuple(part for part in whole if {*told_parts((part,))} <= said)
     if not prove(specification, negation(of_parts(query, core)), effort.of(SHORTER)).holds:
         core, minimal = whole, False
@@ -80,7 +81,7 @@ def _core(specification: Specification, query: Query, effort: Effort) -> tuple[t
 
     Each step goes by a hunch, and what is left is proved; where that fails, each step is proved instead.
     """
-    whole = tuple(dict.fromkeys(parts(query.formula)))
+    whole = tuple(dict.fromkeys(parts_of(query.formula)))
     kept, minimal = _shortened(query, whole, effort, ProofHeuristic(specification).has_proof)
 
     def is_proved(claim: Query, most: Effort) -> tuple[bool, float]:
@@ -114,16 +115,4 @@ def _shortened(
 
 def at_start(formula: Formula) -> Formula:
     """What a formula says of time 0 alone, which is judged quickly; true where that is nothing."""
-    return f.conjunction(*(part for part in parts(formula) if f.is_state(part)))
-
-
-def parts(formula: Formula) -> Iterator[Formula]:
-    """The parts of a conjunction, through the names of definitions, down to temporal operators."""
-    match formula:
-        case f.And(every):
-            for part in every:
-                yield from parts(part)
-        case f.Application(_, _, body) if isinstance(body, f.And | f.Application) and not f.is_state(body):
-            yield from parts(body)
-        case _:
-            yield formula
+    return f.conjunction(*(part for part in parts_of(formula) if f.is_state(part)))

@@ -33,7 +33,7 @@ class Search:
     def claim(self) -> Claim:
         """The claim that there are such drives, without the effort of looking for them."""
         mode = exists(self.setting, self.search_options, self.count)
-        return claim_of(self.specification.library, self.query, mode, self.setting.values)
+        return claim_of(self.specification, self.query, mode, self.setting.values)
 
 
 @dataclass(frozen=True)

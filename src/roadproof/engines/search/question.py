@@ -6,7 +6,6 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import product
 from math import ceil, prod
-from typing import Literal, TypeAlias
 
 from roadproof.engines.encode.along import starting_range
 from roadproof.engines.encode.build import Assumptions
@@ -15,7 +14,7 @@ from roadproof.engines.encode.unroll import Grid, common_step
 from roadproof.engines.search.initial_conditions import Start
 from roadproof.engines.search.limits import Limits
 from roadproof.errors import UsageError
-from roadproof.evidence.claim import Exists
+from roadproof.evidence.claim import Engine, Exists, Objective
 from roadproof.library.bind import bind, values_with
 from roadproof.library.specification import Library, Query
 from roadproof.logic import formula as f
@@ -128,10 +127,6 @@ def durations(formula: Formula, values: Mapping[str, Fraction]) -> set[Fraction]
         rewrite.bounds_of(interval) for interval in rewrite.intervals_of(rewrite.with_values(formula, values))
     )
     return {bound for pair in bounds for bound in pair if bound is not None}
-
-
-Objective: TypeAlias = Literal["any", "smooth", "margin", "mild", "severe", "short"]
-Engine: TypeAlias = Literal["milp", "smt"]
 
 
 @dataclass(frozen=True)

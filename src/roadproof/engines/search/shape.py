@@ -12,10 +12,10 @@ from roadproof.engines.encode.motion import Layout
 from roadproof.engines.encode.problem import Column, ColumnInequality, Problem, evaluate, implicant
 from roadproof.engines.encode.unroll import unroll_at
 from roadproof.engines.search.initial_conditions import Start
-from roadproof.engines.search.question import Objective
 from roadproof.engines.solve.bounds import Affine, Bound, TooNonlinearError, value_of
 from roadproof.engines.solve.milp import box_of
 from roadproof.engines.solve.smooth import Square, minimise, narrow, near
+from roadproof.evidence.claim import Objective
 from roadproof.library.scenarios import is_violation
 from roadproof.logic.custom_names import HALF
 from roadproof.logic.formula import Application, Formula, subformulas

@@ -17,9 +17,9 @@ from roadproof.analysis.catalogue.tested import SCENARIOS, all_facts, kind_of
 from roadproof.analysis.catalogue.traces import Courses, courses_of, of_drive
 from roadproof.analysis.study.pool import Progress
 from roadproof.drivers.models import MODELS
-from roadproof.engines.search.question import Objective
 from roadproof.errors import UsageError
 from roadproof.evidence.answers import catalogue_index as kept
+from roadproof.evidence.claim import Objective
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.ci import BuildResult

@@ -11,9 +11,9 @@ from roadproof.analysis.claims import ClaimResult, Claims, former_claims, name_o
 from roadproof.analysis.study.frame import StudyResult
 from roadproof.analysis.study.pool import Progress
 from roadproof.engines.prove.properties import OWN, Task, choose, template_properties
-from roadproof.engines.search.question import Engine
 from roadproof.errors import UsageError
 from roadproof.evidence.answers.proofs import ANSWER_SCHEMA, Answer, Index, KernelSays, Record
+from roadproof.evidence.claim import Engine
 from roadproof.evidence.heading import heading
 from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from roadproof.analysis.study.pool import Progress, Say
-    from roadproof.engines.search.question import Engine
+    from roadproof.evidence.claim import Engine
     from roadproof.frontends.settings.value_types import RoadLike, Vehicles
     from roadproof.library.bind import Number
     from roadproof.runtime.executors import Jobs

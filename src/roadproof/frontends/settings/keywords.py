@@ -9,9 +9,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from roadproof.analysis.study.pool import Progress, Say
-    from roadproof.engines.search.question import Engine, Objective
     from roadproof.evidence.answers.catalogue_index import Look
     from roadproof.evidence.answers.monitor import View
+    from roadproof.evidence.claim import Engine, Objective
     from roadproof.evidence.drive_file import DriveFile
     from roadproof.evidence.judged import JudgedDrive
     from roadproof.frontends.api.checking import Kernel, Solver

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from roadproof.analysis.study.pool import Progress
-    from roadproof.engines.search.question import Objective
+    from roadproof.evidence.claim import Objective
     from roadproof.frontends.api.checking import Kernel, Solver
     from roadproof.frontends.api.definitions import What
     from roadproof.frontends.api.phrases import Term

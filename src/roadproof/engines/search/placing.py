@@ -4,7 +4,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
-from roadproof.engines.search.impossible import parts
 from roadproof.engines.search.question import zones_of
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, RejectedError
@@ -12,6 +11,7 @@ from roadproof.library.bind import bind, values_with
 from roadproof.library.specification import Library, Query
 from roadproof.logic import formula as f
 from roadproof.logic.formula import is_state
+from roadproof.logic.parts import parts_of
 from roadproof.semantics.exact.exact import LazyJudge
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road, names_of
@@ -34,7 +34,7 @@ def placed(
 def placed_on(file: DriveFile, query: Query, library: Library, roads: Iterable[Road]) -> JudgedDrive | None:
     """The motions of ``file`` on the first of ``roads`` on which they satisfy ``query``, judged."""
     values = values_with(library, file.values)
-    now = f.conjunction(*(part for part in parts(query.formula) if is_state(part)))
+    now = f.conjunction(*(part for part in parts_of(query.formula) if is_state(part)))
     judge = LazyJudge.on(file.drive)  # of all roads: what they have in common is judged once
     for road in roads:
         if not set(file.lanes.values()) <= set(road.lanes):

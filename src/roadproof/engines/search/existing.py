@@ -1,0 +1,135 @@
+"""Whether there are drives: claims that are alike, settled one after the other.
+
+A drive of one claim is put on roads of the next and judged there; parts that clash in one are looked for in
+the next and proved to clash there. So each claim has evidence of its own.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+from roadproof.engines.prove.induction import prove_of_scenarios
+from roadproof.engines.search.ask import ask
+from roadproof.engines.search.impossible import explain
+from roadproof.engines.search.outcome import Outcome, Search
+from roadproof.engines.search.placing import placed
+from roadproof.engines.search.question import SearchOptions, Setting
+from roadproof.evidence.answer import Answer, Doubt, undecided
+from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.claim import Claim, Exists
+from roadproof.library.compose import negation, of_parts
+from roadproof.library.specification import Query
+from roadproof.logic.formula import Formula, Not
+from roadproof.logic.parts import parts_of
+from roadproof.logic.rewrite import without_names
+from roadproof.runtime.budget import BudgetExceeded, Work
+from roadproof.verdict import Verdict
+
+FOR_A_PART = 10.0  # times the work of a first proof, for one that parts clash
+
+
+def search_of(claim: Claim, work: Work, explain: bool = False) -> Search:
+    """Return the search that a claim asks for. Raises ``ValueError`` for a claim about no drive."""
+    if not isinstance(claim.mode, Exists):
+        raise ValueError(f"a {type(claim.mode).__name__} claim asks for no drive")
+    mode = claim.mode
+    values = {x.name: x.value for x in claim.parameters}
+    setting = Setting(
+        road=mode.road,
+        lanes=mode.lanes,
+        vehicles=mode.vehicles,
+        limits=mode.limits,
+        values=values,
+        horizon=mode.horizon,
+        dt=mode.dt,
+        reach=mode.reach,
+        collisions=mode.collisions,
+        natural=mode.natural,
+    )
+    options = SearchOptions(
+        mode.objective, mode.engine, mode.solver, work.effort, mode.refinements, explain=explain
+    )
+    return Search(claim.home, claim.query, setting, options, mode.count)
+
+
+def settle_existing(claims: Sequence[Claim], work: Work) -> Iterator[Answer]:
+    """Yield the answer to each claim in turn; in doubt where the clock cuts one off."""
+    batch = _Batch(work)
+    for claim in claims:
+        try:
+            answer = batch.follow(claim) or batch.decide(claim)
+        except BudgetExceeded as late:
+            answer = undecided(claim, late.reason)
+        batch.learn(answer)
+        yield answer
+
+
+@dataclass(frozen=True)
+class _Batch:
+    """What earlier claims have shown: drives, and formulas whose parts clash."""
+
+    work: Work
+    drives: list[Answer] = field(default_factory=list)
+    clashes: list[Formula] = field(default_factory=list)
+
+    def learn(self, answer: Answer) -> None:
+        if answer.drive is not None:
+            self.drives.append(answer)
+        if answer.certificate is not None and answer.certificate.query is not None:
+            self.clashes.append(answer.certificate.query.formula)
+
+    def follow(self, claim: Claim) -> Answer | None:
+        """Return an answer that follows from an earlier one, or None."""
+        mine = {without_names(part): part for part in parts_of(claim.formula)}
+        for denied in self.clashes:
+            wanted = [without_names(part) for part in parts_of(_body(denied))]
+            if all(part in mine for part in wanted):
+                core = of_parts(claim.query, [mine[part] for part in wanted])
+                proof = self._proof(claim, core, FOR_A_PART)
+                if proof is not None:
+                    return Answer(claim, proof)
+        for earlier in self.drives:
+            if earlier.drive is not None:
+                found = placed(earlier.drive.file, claim.query, claim.home.library)
+                if found is not None:
+                    return Answer(claim, found)
+        return None
+
+    def decide(self, claim: Claim) -> Answer:
+        """Return an answer: a proof first, which is quick where there is one, then a drive."""
+        proof = self._clash(claim, 1.0)
+        if proof is not None:
+            return Answer(claim, proof)
+        found = ask(search_of(claim, self.work))
+        if not found.drives and found.verdict is not Verdict.IMPOSSIBLE:
+            found = ask(search_of(claim, self.work, explain=True))
+        if found.drives:
+            return Answer(claim, found.drives[0])
+        if found.impossibility is not None:
+            core = of_parts(claim.query, found.impossibility.core)
+            return Answer(claim, self._proof(claim, core, FOR_A_PART) or found.impossibility.certificate)
+        return _undecided(claim, found)
+
+    def _clash(self, claim: Claim, times: float) -> Certificate | None:
+        """Return a proof that parts of a claim clash, as few as are found."""
+        effort = self.work.effort.of(times * self.work.proof)
+        proof = prove_of_scenarios(claim.home, negation(claim.query), effort)
+        shown = explain(claim.home, claim.query, proof, self.work.effort.of(FOR_A_PART * self.work.proof))
+        if shown is None:
+            return None
+        core = of_parts(claim.query, shown.core)
+        return self._proof(claim, core, FOR_A_PART) or shown.certificate
+
+    def _proof(self, claim: Claim, core: Query, times: float) -> Certificate | None:
+        """Return a proof that ``core`` never holds."""
+        effort = self.work.effort.of(times * self.work.proof)
+        return prove_of_scenarios(claim.home, negation(core), effort).certificate
+
+
+def _body(denied: Formula) -> Formula:
+    return denied.body if isinstance(denied, Not) else denied
+
+
+def _undecided(claim: Claim, found: Outcome) -> Answer:
+    limits = None if found.limits is None else found.limits.as_json()
+    verdict: Doubt = Verdict.NONE_WITHIN if found.verdict is Verdict.NONE_WITHIN else Verdict.UNKNOWN
+    return undecided(claim, found.told(("--horizon",)), verdict, limits)

@@ -1,0 +1,309 @@
+"""Answers: a claim with the file of evidence that decides it.
+
+The verdict follows from the claim and the kind of the evidence, so none stands without evidence of its kind.
+A file is read as the answer to a claim only where it is about that claim, compared on trees.
+"""
+
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from typing import Annotated, Final, Literal, TypeAlias
+
+from roadproof.errors import InputError, RoadproofError
+from roadproof.evidence import certificate, drive_file, none_within
+from roadproof.evidence.answers import shared
+from roadproof.evidence.certificate import Certificate, certificate_data, read_certificate_data
+from roadproof.evidence.claim import Claim, Exists, Valid
+from roadproof.evidence.codec import LEFT_OUT, Doc, read, write
+from roadproof.evidence.countermodel import Countermodel, read_trace, trace_data
+from roadproof.evidence.drive_file import natural_of, read_drive
+from roadproof.evidence.judged import JudgedDrive
+from roadproof.evidence.none_within import NoneWithinFile, none_within_data, read_none_within
+from roadproof.evidence.refutation import fault_of
+from roadproof.evidence.strict import Fields, JsonObject
+from roadproof.library.bind import values_with
+from roadproof.library.elaborate import read_claim
+from roadproof.library.motion import under_limits
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula
+from roadproof.logic.parts import parts_of
+from roadproof.reasons import NO_REASON, Reason
+from roadproof.runtime.records import dataclass
+from roadproof.verdict import Verdict
+
+UNDECIDED: Final = "roadproof/undecided/1"
+REFUTATION: Final = "roadproof/refutation/1"
+Doubt: TypeAlias = Literal[
+    Verdict.UNKNOWN, Verdict.NONE_WITHIN, Verdict.PROVED_BOUNDED, Verdict.CROSSCHECK_FAILED
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class AboutClaim:
+    """What a file says of the claim that it is about."""
+
+    set: shared.SetName
+    options: shared.Options
+    claim: shared.Formula
+    assuming: Annotated[shared.Assuming, LEFT_OUT] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Undecided(AboutClaim):
+    """Why a claim is undecided, or within which limits the answer was looked for."""
+
+    schema: Literal["roadproof/undecided/1"] = UNDECIDED
+    verdict: Doubt
+    reason: shared.Reason
+    limits: Annotated[shared.KeptLimits | None, LEFT_OUT] = None
+    doubt: Annotated[object, LEFT_OUT, Doc("The cause of an UNKNOWN.")] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class RefutationFile(AboutClaim):
+    """A trace on which a claim is false at time 0."""
+
+    schema: Literal["roadproof/refutation/1"] = REFUTATION
+    trace: Annotated[object, Doc("The trace: instants, values and a road.")]
+
+
+@dataclass(frozen=True)
+class Refutation:
+    """A trace on which a claim is false, judged."""
+
+    trace: Countermodel
+
+
+Evidence: TypeAlias = Certificate | JudgedDrive | Refutation | NoneWithinFile | Undecided
+
+
+@dataclass(frozen=True)
+class Answer:
+    """A claim, and the evidence that decides it.
+
+    Raises ``ValueError`` for evidence that decides no claim of this mode.
+    """
+
+    claim: Claim
+    evidence: Evidence
+
+    def __post_init__(self) -> None:
+        _ = self.verdict
+
+    @property
+    def verdict(self) -> Verdict:
+        """The verdict that the evidence shows."""
+        match self.claim.mode, self.evidence:
+            case _, Undecided():
+                return self.evidence.verdict
+            case Valid(), Certificate():
+                return Verdict.PROVED
+            case Valid(), JudgedDrive() | Refutation():
+                return Verdict.REFUTED
+            case Exists(), JudgedDrive():
+                return Verdict.WITNESSED
+            case Exists(), Certificate():
+                return Verdict.IMPOSSIBLE
+            case Exists(), NoneWithinFile():
+                return Verdict.NONE_WITHIN
+            case mode, evidence:
+                raise ValueError(f"{type(evidence).__name__} decides no {type(mode).__name__} claim")
+
+    @property
+    def reason(self) -> Reason:
+        """Why the claim is undecided; nothing where it is decided."""
+        return self.evidence.reason if isinstance(self.evidence, Undecided) else NO_REASON
+
+    @property
+    def is_final(self) -> bool:
+        """Whether evidence decides the claim for ever."""
+        return not isinstance(self.evidence, Undecided)
+
+    @property
+    def drive(self) -> JudgedDrive | None:
+        """The drive that shows the verdict, if one does."""
+        return self.evidence if isinstance(self.evidence, JudgedDrive) else None
+
+    @property
+    def certificate(self) -> Certificate | None:
+        """The certificate that shows the verdict, if one does."""
+        return self.evidence if isinstance(self.evidence, Certificate) else None
+
+
+def undecided(
+    claim: Claim, reason: Reason, verdict: Doubt = Verdict.UNKNOWN, limits: object = None
+) -> Answer:
+    """Return the answer to a claim that nothing decides."""
+    home = claim.home
+    file = Undecided(
+        set=home.set_name,
+        options=dict(home.options),
+        claim=claim.query.text,
+        assuming=assumed_by(claim),
+        verdict=verdict,
+        reason=reason,
+        limits=limits,
+    )
+    return Answer(claim, file)
+
+
+def assumed_by(claim: Claim) -> tuple[str, ...]:
+    """Return what a claim says that it assumes."""
+    return claim.mode.assuming if isinstance(claim.mode, Valid) else ()
+
+
+# --- files ------------------------------------------------------------------------------------------
+
+
+def answer_data(answer: Answer) -> JsonObject:
+    """Return the file of an answer as plain data."""
+    match answer.evidence:
+        case Certificate() as proof:
+            return certificate_data(proof)
+        case JudgedDrive() as drive:
+            return drive.as_data()
+        case NoneWithinFile() as trees:
+            return none_within_data(trees)
+        case Undecided() as why:
+            return write(why)
+        case Refutation(trace):
+            home, claim = answer.claim.home, answer.claim
+            file = RefutationFile(
+                set=home.set_name,
+                options=dict(home.options),
+                claim=claim.query.text,
+                assuming=assumed_by(claim),
+                trace=trace_data(trace),
+            )
+            return write(file)
+
+
+def read_answer(claim: Claim, content: object, where: str) -> Answer:
+    """Return the answer to a claim that a file holds.
+
+    Drives and traces are judged; of a certificate the claim is compared, and ``certificate.rule`` checks the
+    proof. Raises ``InputError`` where the file is about another claim, or shows nothing.
+    """
+    schema = Fields(content, where).text("schema")
+    try:
+        if schema not in _READERS:
+            raise InputError(f"{where}: schema='{schema[:60]}' is none of {', '.join(_READERS)}")
+        return Answer(claim, _READERS[schema](claim, content, where))
+    except ValueError as error:
+        raise InputError(f"{where}: {error}") from None
+    except InputError:
+        raise
+    except RoadproofError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+def _certificate(claim: Claim, content: object, where: str) -> Certificate:
+    file = read_certificate_data(content, where)
+    _require_readings(claim, file.set_name, file.options, where)
+    _require(
+        file.assumed.said == assumed_by(claim),
+        where,
+        f"it assumes {', '.join(file.assumed.said) or 'nothing'}",
+    )
+    shown = read_claim(claim.home, file.claim).formula
+    wanted = isinstance(claim.mode, Valid) and shown == claim.formula
+    _require(wanted or _is_part_denied(claim, shown), where, f"it proves {_short(file.claim)}")
+    return file
+
+
+def _is_part_denied(claim: Claim, shown: Formula) -> bool:
+    """Whether a formula says that parts of a claim's conjunction never hold together."""
+    if not isinstance(claim.mode, Exists) or not isinstance(shown, f.Not):
+        return False
+    return {*parts_of(shown.body)} <= {*parts_of(claim.formula)}
+
+
+def _drive(claim: Claim, content: object, where: str) -> JudgedDrive:
+    file = read_drive(content, where)
+    _require_readings(claim, file.set_name, file.options, where)
+    shown = read_claim(claim.home, file.formula).formula
+    _require(shown == sought_by(claim), where, f"its drive is one of {_short(file.formula)}")
+    _require_values(claim, file.values, where)
+    return JudgedDrive(file, claim.home.library, natural_of(content, where))
+
+
+def sought_by(claim: Claim) -> Formula:
+    """Return what a drive shows that decides a claim: the formula, or that it is false within limits."""
+    if isinstance(claim.mode, Valid):
+        return f.negation(under_limits(claim.home, claim.query, claim.mode.assuming).formula)
+    return claim.formula
+
+
+def _refutation(claim: Claim, content: object, where: str) -> Refutation:
+    file = read(RefutationFile, content, where)
+    _require_about(claim, file, where)
+    trace = read_trace(file.trace, where)
+    values_with(claim.home.library, trace.parameters)
+    query = under_limits(claim.home, claim.query, assumed_by(claim))
+    fault = fault_of(trace, query.formula, claim.home.library.bounds)
+    _require(fault is None, where, f"its trace does not refute the claim: {fault}")
+    return Refutation(trace)
+
+
+def _none_within(claim: Claim, content: object, where: str) -> NoneWithinFile:
+    file = read_none_within(content, where)
+    _require_readings(claim, file.set_name, file.options, where)
+    _require(
+        read_claim(claim.home, file.formula).formula == claim.formula,
+        where,
+        f"it is about {_short(file.formula)}",
+    )
+    _require_values(claim, file.values, where)
+    return file
+
+
+def _undecided(claim: Claim, content: object, where: str) -> Undecided:
+    file = read(Undecided, content, where)
+    _require_about(claim, file, where)
+    return file
+
+
+_READERS: Mapping[str, Callable[[Claim, object, str], Evidence]] = {
+    certificate.SCHEMA: _certificate,
+    **dict.fromkeys(drive_file.SCHEMAS_READ, _drive),
+    none_within.SCHEMA: _none_within,
+    REFUTATION: _refutation,
+    UNDECIDED: _undecided,
+}
+SCHEMAS = tuple(_READERS)
+"""The schemas of files that are answers."""
+
+
+def _require_about(claim: Claim, file: AboutClaim, where: str) -> None:
+    _require_readings(claim, file.set, file.options, where)
+    _require(file.assuming == assumed_by(claim), where, f"it assumes {', '.join(file.assuming) or 'nothing'}")
+    _require(
+        read_claim(claim.home, file.claim).formula == claim.formula,
+        where,
+        f"it is about {_short(file.claim)}",
+    )
+
+
+def _require_assumed(claim: Claim, assuming: tuple[str, ...], where: str) -> None:
+    _require(assuming == assumed_by(claim), where, f"it assumes {', '.join(assuming) or 'nothing'}")
+
+
+def _require_readings(claim: Claim, set_name: str, options: Mapping[str, str], where: str) -> None:
+    home = claim.home
+    _require(set_name == home.set_name, where, f"it is about set {set_name}")
+    _require(home.library.select(set_name, options) is home, where, "it was read with other options")
+
+
+def _require_values(claim: Claim, values: Mapping[str, Fraction], where: str) -> None:
+    known = values_with(claim.home.library, values)
+    for x in claim.parameters:
+        _require(known[x.name] == x.value, where, f"it has {x.name}={known[x.name]}, and not {x.value}")
+
+
+def _require(holds: bool, where: str, otherwise: str) -> None:
+    """Raises ``InputError`` where a file is not about the claim that it is named after."""
+    if not holds:
+        raise InputError(f"{where} is no answer to its claim: {otherwise}")
+
+
+def _short(text: str) -> str:
+    return " ".join(text.split())[:120]

@@ -1,0 +1,106 @@
+"""A folder of answers read again: its question lists the claims, and each file has to answer its own.
+
+What is in a folder is read from the folder: links are refused, and so is a file that no claim is named after.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from roadproof.errors import InputError
+from roadproof.evidence.answer import Answer, assumed_by, read_answer, undecided
+from roadproof.evidence.claim import Claim
+from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
+from roadproof.evidence.strict import LARGEST_EVIDENCE, Fields, read_json
+from roadproof.library.motion import statement
+from roadproof.questions.data import QUESTION, SCHEMA, read_question
+from roadproof.questions.question import Question
+from roadproof.reasons import Why
+from roadproof.runtime.records import dataclass
+
+
+@dataclass(frozen=True)
+class QuestionFolder:
+    """A question with the answers of a folder, by name.
+
+    ``problems``: files that answer no claim, or not their own. ``others``: files that are no answers, such as
+    tables and pictures. ``specs``: the specification files beside the answers.
+    """
+
+    folder: Path
+    question: Question[Any]
+    specs: tuple[Path, ...]
+    answers: Mapping[str, Answer]
+    problems: tuple[Finding, ...]
+    others: tuple[str, ...]
+
+    @property
+    def files(self) -> dict[Path, str]:
+        """The files with evidence, each with the name of its claim."""
+        return {self.folder / f"{name}.json": name for name, x in self.answers.items() if x.is_final}
+
+    @property
+    def undecided(self) -> Iterator[Finding]:
+        """A finding for each claim without evidence."""
+        for name, answer in self.answers.items():
+            if not answer.is_final:
+                label, text = self.question.label(name), answer.claim.query.text
+                where = str(self.folder / f"{name}.json")
+                without = () if answer.verdict == "UNKNOWN" else ("there is no evidence for it",)
+                said = Finding(where, NO_EVIDENCE, Acceptance.ACCEPTED, label=label, claim=text)
+                yield replace(said, verdict=str(answer.verdict), unchecked=without)
+
+    def finding(self, name: str, found: Finding) -> Finding:
+        """Return what was found of a file, in the words of the question."""
+        answer = self.answers[name]
+        claim = statement(assumed_by(answer.claim), answer.claim.query.text)
+        return replace(found, verdict=str(answer.verdict), label=self.question.label(name), claim=claim)
+
+
+def is_question(folder: Path) -> bool:
+    """Return whether a folder holds answers to a question."""
+    path = folder / QUESTION
+    if not path.is_file() or path.is_symlink():
+        return False
+    content = read_json(path)
+    return isinstance(content, dict) and content.get("schema") == SCHEMA
+
+
+def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
+    """Return the answers of a folder. Raises ``InputError`` where ``question.json`` cannot be read."""
+    question = read_question(folder, given)
+    there = {x.stem: x for x in folder.iterdir() if x.suffix == ".json" and x.name != QUESTION}
+    answers: dict[str, Answer] = {}
+    problems: list[Finding] = []
+    while claims := _unlisted(question, answers):
+        for name, claim in claims.items():
+            try:
+                answers[name] = _read(claim, there.pop(name, None))
+            except InputError as error:
+                fault = Why.TOLD(error)
+                problems.append(Finding(str(folder / f"{name}.json"), "", Acceptance.REJECTED, fault))
+                answers[name] = undecided(claim, fault)
+    problems += [Finding(str(path), "", Acceptance.REJECTED, Why.UNNAMED()) for path in there.values()]
+    specs = tuple(folder / Path(x.name).name for x in question.basis.library.files)
+    specs = tuple(x for x in specs if x.is_file())
+    beside = {x for x in folder.rglob("*") if x.suffix != ".json" and not x.is_dir()} - {*specs}
+    strays = [x for x in folder.rglob("*.json") if x.parent != folder]
+    problems += [Finding(str(path), "", Acceptance.REJECTED, Why.UNNAMED()) for path in sorted(strays)]
+    others = tuple(sorted(x.relative_to(folder).as_posix() for x in beside))
+    return QuestionFolder(folder, question, specs, answers, tuple(problems), others)
+
+
+def _unlisted(question: Question[Any], known: Mapping[str, Answer]) -> dict[str, Claim]:
+    every = {name: claim for batch in question.batches(known) for name, claim in batch.items()}
+    return {name: claim for name, claim in every.items() if name not in known}
+
+
+def _read(claim: Claim, path: Path | None) -> Answer:
+    if path is None:
+        return undecided(claim, Why.TOLD("the folder has no answer to it"))
+    if path.is_symlink():
+        raise InputError(f"{path} is a link")
+    content = read_json(path, LARGEST_EVIDENCE)
+    Fields(content, str(path))
+    return read_answer(claim, content, str(path))

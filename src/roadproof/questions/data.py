@@ -1,0 +1,107 @@
+"""``question.json``: a question as plain data, from which its claims are listed again."""
+
+from collections.abc import Callable, Mapping, Sequence
+from fractions import Fraction
+from importlib import import_module
+from pathlib import Path
+from typing import Annotated, Any, Final, Literal
+
+from roadproof.analysis.basis import Basis
+from roadproof.errors import InputError
+from roadproof.evidence.answers import shared
+from roadproof.evidence.answers.none_within import Model
+from roadproof.evidence.codec import Doc, read, write
+from roadproof.evidence.heading import heading
+from roadproof.evidence.specifications import read_beside
+from roadproof.evidence.strict import LARGEST_INDEX, Fields, JsonObject, read_json
+from roadproof.questions.question import Question
+from roadproof.runtime.records import dataclass
+from roadproof.world.vehicle import Vehicle
+
+QUESTION: Final = "question.json"
+SCHEMA: Final = "roadproof/question/1"
+KINDS: Mapping[str, str] = {"overlap": "roadproof.questions.overlap:OverlapQuestion"}
+"""The class of each kind of question."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FullModel(Model):
+    """What a vehicle can do, and what a natural drive of it is."""
+
+    cruise: tuple[Fraction, Fraction]
+    jump_lon: Fraction
+    jump_lat: Fraction
+    a_bend: Fraction
+
+
+@dataclass(frozen=True, kw_only=True)
+class BasisSays:
+    """What all claims of a question are read with, and what drives may be."""
+
+    sets: shared.SetNames
+    options: shared.Options
+    parameters: shared.Parameters
+    specs: shared.Specifications
+    horizon: Annotated[Fraction, Doc("Seconds that are searched.")]
+    objective: Annotated[str, Doc("What drives are like.")]
+    vehicles: Annotated[Mapping[str, FullModel], Doc("Models by name; an empty name stands for all others.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class QuestionFile(shared.Heading):
+    """A question: its kind, what its claims are read with, and what is asked."""
+
+    schema: Literal["roadproof/question/1"] = SCHEMA
+    question: Annotated[str, Doc("The command that asks it.")]
+    basis: BasisSays
+    asked: Annotated[object, Doc("What is asked beside.")]
+
+
+def question_data(question: Question[Any]) -> JsonObject:
+    """Return ``question.json`` as plain data."""
+    basis = question.basis
+    said = BasisSays(
+        sets=basis.set_names,
+        options=basis.specification.options,
+        parameters={name: str(x) for name, x in sorted(basis.all_values().items())},
+        specs=tuple(Path(x.name).name for x in basis.library.files),
+        horizon=basis.horizon,
+        objective=basis.objective,
+        vehicles={name: FullModel(**vars(x)) for name, x in basis.vehicles.items()},
+    )
+    file = QuestionFile(
+        **heading(SCHEMA, basis.library), question=question.kind, basis=said, asked=write(question.asked)
+    )
+    return write(file)
+
+
+def read_question(folder: Path, given: Sequence[Path] = ()) -> Question[Any]:
+    """Return the question whose answers a folder holds.
+
+    ``given``: specification files that lie below those in the folder. Raises ``InputError``.
+    """
+    path = folder / QUESTION
+    content = read_json(path, LARGEST_INDEX)
+    file = read(QuestionFile, content, str(path))
+    if file.question not in KINDS:
+        raise InputError(f"{path}: question='{file.question[:40]}' is none of {', '.join(KINDS)}")
+    said = file.basis
+    library, _ = read_beside(Fields(_mapping(content)["basis"], str(path)), folder, given)
+    specification = library.select(said.sets[0], said.options)
+    values = {name: Fraction(x) for name, x in said.parameters.items()}
+    basis = Basis(
+        specification,
+        said.sets,
+        values,
+        said.horizon,
+        objective=said.objective,  # type: ignore[arg-type]
+        vehicles={name: Vehicle(**vars(x)) for name, x in said.vehicles.items()},
+    )
+    module, _, name = KINDS[file.question].partition(":")
+    made: Callable[[Basis, object, str], Question[Any]] = getattr(import_module(module), name).of
+    return made(basis, file.asked, f"{path}, asked")
+
+
+def _mapping(content: object) -> JsonObject:
+    assert isinstance(content, dict)
+    return content

@@ -1,0 +1,45 @@
+"""What a question is: plain data that list claims, and show the answers to them."""
+
+from collections.abc import Mapping, Sequence
+from typing import ClassVar, Protocol, Self, TypeAlias, TypeVar
+
+from roadproof.analysis.basis import Basis
+from roadproof.evidence.answer import Answer
+from roadproof.evidence.claim import Claim
+
+View = TypeVar("View", covariant=True)
+Batch: TypeAlias = Mapping[str, Claim]
+"""Claims by name that one process settles one after the other, since answers to some help with others."""
+Answers: TypeAlias = Mapping[str, Answer]
+"""Answers by the names of their claims."""
+
+
+class Question(Protocol[View]):
+    """A question about many claims. Names of claims are names of files."""
+
+    kind: ClassVar[str]
+    """The word for the question: the command that asks it."""
+
+    @property
+    def basis(self) -> Basis:
+        """What the claims are read with, and what drives may be."""
+
+    @property
+    def asked(self) -> object:
+        """What is asked beside the basis: a definition for ``evidence.codec``."""
+
+    @classmethod
+    def of(cls, basis: Basis, asked: object, where: str) -> Self:
+        """Return the question that plain data ask. Raises ``InputError``."""
+
+    def batches(self, known: Answers) -> Sequence[Batch]:
+        """Return the claims that are to be settled next, in groups; none where nothing is left.
+
+        It is asked again once they are settled, so later claims may follow from earlier answers.
+        """
+
+    def label(self, name: str) -> str:
+        """Return what the claim of a name is about, in words."""
+
+    def view(self, known: Answers) -> View:
+        """Return what the answers show together. Claims without an answer are in doubt."""

@@ -1,0 +1,109 @@
+"""Where answers are: in a folder, in this user's cache, and in the archive that is shipped.
+
+The folder has one file for each answer, named as its claim is named, and ``question.json``. In the cache and
+the archive a file stands under the digest of its claim, of the work that was allowed, and of the version.
+"""
+
+import json
+import lzma
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import Literal
+
+from roadproof.errors import InputError, UsageError
+from roadproof.evidence.answer import Answer, answer_data, read_answer
+from roadproof.evidence.claim import Claim
+from roadproof.evidence.strict import LARGEST_EVIDENCE, JsonObject, read_json
+from roadproof.questions.data import QUESTION
+from roadproof.runtime.cache import keep_bytes, kept_bytes, make_room
+from roadproof.runtime.canonical import digest
+from roadproof.runtime.files import make_folder, write_json
+from roadproof.runtime.package_data import program, shipped
+from roadproof.runtime.records import dataclass
+from roadproof.runtime.version import ANSWERS
+
+Origin = Literal["folder", "cache", "shipped"]
+CACHE = "answers"
+ARCHIVE = "answers.json.xz"
+
+
+@dataclass(frozen=True)
+class Store:
+    """The three places; ``folder`` None: answers are not written. ``work``: what was allowed for a claim.
+
+    ``reads_known``: whether cache and archive are read.
+    """
+
+    folder: Path | None
+    work: object
+    reads_known: bool = True
+
+    def open(self, question: JsonObject) -> None:
+        """Begin a folder, or go on in it. Raises ``UsageError`` where it holds another question's answers."""
+        if self.folder is None:
+            return
+        make_folder(self.folder)
+        head = self.folder / QUESTION
+        if not head.exists():
+            write_json(head, question)
+        elif read_json(head) != json.loads(json.dumps(question)):
+            raise UsageError(
+                f"{self.folder} holds answers to another question, or to this one under another library: "
+                "name another folder with --out, or remove it"
+            )
+
+    def key(self, claim: Claim) -> str:
+        """The digest of all that an answer depends on."""
+        return digest(claim.digest(), self.work, ANSWERS)
+
+    def find(self, name: str, claim: Claim) -> tuple[Answer, Origin] | None:
+        """Return the answer to a claim that is known, and from where; None where none stands."""
+        for origin, content in self._contents(name, claim):
+            try:
+                return read_answer(claim, content, f"the answer {name} of the {origin}"), origin
+            except InputError:
+                continue
+        return None
+
+    def _contents(self, name: str, claim: Claim) -> list[tuple[Origin, object]]:
+        found: list[tuple[Origin, object]] = []
+        path = None if self.folder is None else self.folder / f"{name}.json"
+        if path is not None and path.is_file():
+            found.append(("folder", read_json(path, LARGEST_EVIDENCE)))
+        if not self.reads_known:
+            return found
+        key = self.key(claim)
+        if key in _archive():
+            found.append(("shipped", _archive()[key]))
+        elif (data := kept_bytes(CACHE, digest(key, program()))) is not None:
+            found.append(("cache", json.loads(lzma.decompress(data))))
+        return found
+
+    def keep(self, name: str, answer: Answer, is_new: bool = True) -> None:
+        """Write an answer into the folder, and into the cache where it is new and stands."""
+        data = answer_data(answer)
+        if self.folder is not None:
+            write_json(self.folder / f"{name}.json", data)
+        if is_new and self.reads_known and answer.is_final:
+            key = digest(self.key(answer.claim), program())
+            keep_bytes(CACHE, key, lzma.compress(json.dumps(data).encode(), preset=0))
+
+    def make_room(self) -> None:
+        """Keep the cache within its bounds."""
+        make_room(CACHE)
+
+
+@cache
+def _archive() -> Mapping[str, object]:
+    """The answers that are shipped, by key."""
+    path = shipped("proofs") / "known" / ARCHIVE
+    if not path.is_file():
+        return {}
+    found: Mapping[str, object] = json.loads(lzma.decompress(path.read_bytes()))
+    return found
+
+
+def names_in(folder: Path) -> list[str]:
+    """Return the names of the answers that a folder has files of."""
+    return sorted(x.stem for x in folder.glob("*.json") if x.name != QUESTION)
