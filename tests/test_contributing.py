@@ -164,7 +164,7 @@ def test_a_field_of_an_answer_touches_four_files(copy):
     [row] = csv.DictReader((copy / "X/overlap.csv").read_text().splitlines())
     assert row["one_set"] == "True"
     [schema] = run(
-        copy, "from roadproof.evidence.schemas import schemas; print(dict(schemas())['overlap.json'])"
+        copy, "from roadproof.frontends.schemas import schemas; print(dict(schemas())['overlap.json'])"
     )
     assert "Whether both are of one spec set." in schema
     assert "1 of 1 accepted" in roadproof(copy, 0, "check X --jobs 1")

@@ -23,7 +23,7 @@ from roadproof.evidence.drive_file import load_drive, read_drive
 from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.none_within import none_within_data
-from roadproof.evidence.schemas import as_text, schemas
+from roadproof.frontends.schemas import as_text, schemas
 from roadproof.frontends.cli.main import COMMANDS, main
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
@@ -555,6 +555,6 @@ def test_the_answers_of_python_are_those_of_the_command_line() -> None:
 
 
 def test_schemas_are_those_of_the_definitions() -> None:
-    """Make them again with ``python -m roadproof.evidence.schemas docs/schema``."""
+    """Make them again with ``python -m roadproof.frontends.schemas docs/schema``."""
     for name, content in schemas():
         assert (ROOT / "docs" / "schema" / name).read_text("utf-8") == as_text(content)

@@ -6,14 +6,21 @@ A file is read as the answer to a claim only where it is about that claim, compa
 
 from collections.abc import Callable, Mapping
 from fractions import Fraction
-from typing import Annotated, Final, Literal, TypeAlias
+from typing import TypeAlias
 
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence import certificate, drive_file, none_within
-from roadproof.evidence.answers import shared
+from roadproof.evidence.answer_files import (
+    REFUTATION,
+    UNDECIDED,
+    AboutClaim,
+    Doubt,
+    RefutationFile,
+    Undecided,
+)
 from roadproof.evidence.certificate import Certificate, certificate_data, read_certificate_data
 from roadproof.evidence.claim import Claim, Exists, Valid
-from roadproof.evidence.codec import LEFT_OUT, Doc, read, write
+from roadproof.evidence.codec import read, write
 from roadproof.evidence.countermodel import Countermodel, read_trace, trace_data
 from roadproof.evidence.drive_file import natural_of, read_drive
 from roadproof.evidence.judged import JudgedDrive
@@ -29,41 +36,6 @@ from roadproof.logic.parts import parts_of
 from roadproof.reasons import NO_REASON, Reason
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
-
-UNDECIDED: Final = "roadproof/undecided/1"
-REFUTATION: Final = "roadproof/refutation/1"
-Doubt: TypeAlias = Literal[
-    Verdict.UNKNOWN, Verdict.NONE_WITHIN, Verdict.PROVED_BOUNDED, Verdict.CROSSCHECK_FAILED
-]
-
-
-@dataclass(frozen=True, kw_only=True)
-class AboutClaim:
-    """What a file says of the claim that it is about."""
-
-    set: shared.SetName
-    options: shared.Options
-    claim: shared.Formula
-    assuming: Annotated[shared.Assuming, LEFT_OUT] = ()
-
-
-@dataclass(frozen=True, kw_only=True)
-class Undecided(AboutClaim):
-    """Why a claim is undecided, or within which limits the answer was looked for."""
-
-    schema: Literal["roadproof/undecided/1"] = UNDECIDED
-    verdict: Doubt
-    reason: shared.Reason
-    limits: Annotated[shared.KeptLimits | None, LEFT_OUT] = None
-    doubt: Annotated[object, LEFT_OUT, Doc("The cause of an UNKNOWN.")] = None
-
-
-@dataclass(frozen=True, kw_only=True)
-class RefutationFile(AboutClaim):
-    """A trace on which a claim is false at time 0."""
-
-    schema: Literal["roadproof/refutation/1"] = REFUTATION
-    trace: Annotated[object, Doc("The trace: instants, values and a road.")]
 
 
 @dataclass(frozen=True)

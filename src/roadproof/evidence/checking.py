@@ -1,18 +1,22 @@
 """One file of evidence, checked by what its schema says that it is, without what made it."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
 from roadproof.errors import InputError, MissingSolverError, RoadproofError
 from roadproof.evidence import certificate, drive_file, none_within
+from roadproof.evidence.answer_files import REFUTATION, RefutationFile
 from roadproof.evidence.answers.proofs import misnamed, shown
 from roadproof.evidence.answers.reader import FindLabel
 from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.codec import read
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.finding import Acceptance, Finding, OtherVerdict
 from roadproof.evidence.judged import judge_file, times_data
 from roadproof.evidence.none_within import Derive, Derived, NoneWithinFile
+from roadproof.evidence.refutation import judge_trace
 from roadproof.evidence.strict import Fields, read_json
 from roadproof.evidence.subject import SubjectKind
 from roadproof.library.bind import default_values, values_with
@@ -57,6 +61,8 @@ class Checker:
                 return self._certificate(path, certificate.read_certificate_data(content, str(path)))
             if schema in drive_file.SCHEMAS_READ:
                 return self._drive(path, content)
+            if schema == REFUTATION:
+                return self._refutation(path, read(RefutationFile, content, str(path)))
             if schema == none_within.SCHEMA and self.derive is not None:
                 file = none_within.read_none_within(content, str(path))
                 return self._none_within(path, file, self.derive(file, self.library))
@@ -105,6 +111,17 @@ class Checker:
             return certificate.rule(file, self.library, self.ask)
         unreadable = certificate.unreadable(file, self.library)
         return (Acceptance.UNREADABLE, unreadable) if unreadable else (self.ruled.outcome, self.ruled.reason)
+
+    def _refutation(self, path: Path, file: RefutationFile) -> Finding:
+        home = self.library.select(file.set, file.options)
+        outcome, reason = judge_trace(file.trace, home, file.claim, str(path), file.assuming)
+        if self.ruled is not None and outcome is Acceptance.ACCEPTED:
+            outcome, reason = self.ruled.outcome, self.ruled.reason
+        claim = statement(file.assuming, file.claim)
+        checked = ("judged on its trace",) if outcome is Acceptance.ACCEPTED else ()
+        word = "" if self.ruled is None else self.ruled.word
+        said = Finding(str(path), "certificate", outcome, reason, "REFUTED", "", claim, checked)
+        return replace(said, kernel=word)
 
     def _none_within(self, path: Path, file: NoneWithinFile, derived: Derived) -> Finding:
         """Trees are checked against programs that the encoder derives again from the question."""

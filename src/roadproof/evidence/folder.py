@@ -5,7 +5,7 @@ there, and no file may be without an entry. What is in a folder is read from the
 """
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -71,8 +71,13 @@ class Survey:
     problems: tuple[Finding, ...]
 
 
-def survey(paths: Sequence[Path], given: tuple[Path, ...], find_label: FindLabel) -> Survey:
-    """What is in files and folders. Raises ``InputError`` for a path that is not there or holds nothing."""
+def survey(
+    paths: Sequence[Path], given: tuple[Path, ...], find_label: FindLabel, but: Collection[Path] = ()
+) -> Survey:
+    """What is in files and folders, but for the folders ``but``.
+
+    Raises ``InputError`` for a path that is not there or holds nothing.
+    """
     files: dict[Path, tuple[Path, ...]] = {}
     told: list[FolderStatements] = []
     problems: list[Finding] = []
@@ -82,7 +87,7 @@ def survey(paths: Sequence[Path], given: tuple[Path, ...], find_label: FindLabel
                 raise InputError(f"{path} does not exist")
             files.setdefault(path, given)
             continue
-        inside, links = _walk(path)
+        inside, links = _walk(path, but)
         problems += [Finding(str(x), "", Acceptance.REJECTED, Why.LINK()) for x in links]
         homes = sorted({x.parent for x in inside if x.name in (INDEX, HEAD)})
         by_home = {home: _read_told(home, given, find_label) for home in homes}
@@ -94,7 +99,7 @@ def survey(paths: Sequence[Path], given: tuple[Path, ...], find_label: FindLabel
             home = next((folder for folder in x.parents if folder in by_home), None)
             if home is not None and x not in by_home[home].specs:
                 by_home[home].others.append(x.relative_to(home).as_posix())
-        if not evidence and not homes and not links:
+        if not evidence and not homes and not links and not any(x.is_relative_to(path) for x in but):
             raise InputError(f"{path} holds no .json file: name a folder with certificates or drive files")
         for x in evidence:
             home = next((folder for folder in x.parents if folder in by_home), None)
@@ -104,17 +109,17 @@ def survey(paths: Sequence[Path], given: tuple[Path, ...], find_label: FindLabel
     return Survey(files, tuple(told), tuple(problems))
 
 
-def _walk(folder: Path) -> tuple[list[Path], list[Path]]:
-    """The files below a folder, in order, and the links."""
+def _walk(folder: Path, but: Collection[Path] = ()) -> tuple[list[Path], list[Path]]:
+    """The files below a folder, in order, and the links; none in the folders ``but``."""
     files: list[Path] = []
     links: list[Path] = []
-    waiting = [folder]
+    waiting = [folder] if folder not in but else []
     while waiting:
         for path in sorted(waiting.pop(0).iterdir()):
             if path.is_symlink():
                 links.append(path)
             elif path.is_dir():
-                waiting.append(path)
+                waiting += [path] if path not in but else []
             else:
                 files.append(path)
     return files, links

@@ -5,5 +5,6 @@ from typing import TypeAlias
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.countermodel import Countermodel
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.evidence.none_within import NoneWithinFile
 
-Evidence: TypeAlias = Certificate | JudgedDrive | Countermodel
+Evidence: TypeAlias = Certificate | JudgedDrive | Countermodel | NoneWithinFile

@@ -67,6 +67,12 @@ def is_question(folder: Path) -> bool:
     return isinstance(content, dict) and content.get("schema") == SCHEMA
 
 
+def folders_in(paths: Sequence[Path]) -> list[Path]:
+    """Return the folders among paths, and below them, that hold answers to a question."""
+    heads = (x for path in paths if path.is_dir() for x in [path / QUESTION, *sorted(path.rglob(QUESTION))])
+    return [*dict.fromkeys(x.parent for x in heads if is_question(x.parent))]
+
+
 def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
     """Return the answers of a folder. Raises ``InputError`` where ``question.json`` cannot be read."""
     question = read_question(folder, given)

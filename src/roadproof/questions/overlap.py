@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field
 from functools import cached_property
 from itertools import combinations, permutations
-from typing import Annotated, ClassVar, Literal, TypeAlias
+from typing import Annotated, Any, ClassVar, Final, Literal, TypeAlias
 
 from roadproof.analysis.basis import Basis
 from roadproof.engines.search.impossible import told_parts
@@ -16,7 +16,7 @@ from roadproof.errors import InputError
 from roadproof.evidence.answer import Answer
 from roadproof.evidence.answers import shared
 from roadproof.evidence.claim import Claim
-from roadproof.evidence.codec import Doc, read
+from roadproof.evidence.codec import Doc, Rule, read
 from roadproof.evidence.json_schema import Shared
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library import scenarios as s
@@ -26,11 +26,12 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import Not
 from roadproof.logic.parts import parts_of
-from roadproof.questions.question import Answers, Batch
+from roadproof.questions.question import Answers, Batch, Place, heading_of
 from roadproof.reasons import NO_REASON, Reason, Why, joined
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import DriveVerdict, Verdict
 
+SCHEMA: Final = "roadproof/overlap/2"
 OTHER_LANE = "L2"
 Choice: TypeAlias = Annotated[
     Literal["same", "any"], Doc("Whether both have the same, or each its own."), Shared("choice")
@@ -254,6 +255,19 @@ class OverlapQuestion:
     def _likes(self) -> dict[str, dict[int, int]]:
         return {name: likes_of(self.basis.specification.in_set(name)) for name in self.basis.set_names}
 
+    def data(self, view: OverlapView, place: Place, seconds: float) -> "OverlapData":
+        """Return the view as ``--json`` prints it."""
+        said: dict[str, Any] = {"set": ",".join(self.basis.set_names), **self.basis.said()}
+        return OverlapData(
+            **heading_of(SCHEMA, self.basis),
+            **said,
+            lanes=self.asked.lanes,
+            roles=self.asked.roles,
+            start=self.asked.start,
+            seconds=seconds,
+            verdicts=tuple(_pair_data(x, place) for x in view.pairs),
+        )
+
     def label(self, name: str) -> str:
         """Return which two scenarios the claim of a name is about."""
         a, b = next(pair for pair, claims in self._claims.items() if name in claims)
@@ -271,3 +285,67 @@ class OverlapQuestion:
 def name_of(a: s.Scenario, b: s.Scenario) -> str:
     """Return under which name the answer for a pair is kept."""
     return f"{a.set_name}-{a.number:02}-{b.set_name}-{b.number:02}"
+
+
+def _pair_data(pair: PairVerdict, place: Place) -> "PairData":
+    return PairData(
+        a=pair.a.number,
+        b=pair.b.number,
+        set_a=pair.a.set_name,
+        set_b=pair.b.set_name,
+        verdict=pair.verdict,
+        formula=pair.query.text,
+        core=pair.told,
+        cores=tuple(Clash(formula=x.whole.text, parts=x.parts) for x in pair.cores),
+        evidence=tuple(place(name, x) for name, x in pair.evidence.items()),
+        reason=pair.reason,
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Clash:
+    """Parts of a conjunction that contradict each other."""
+
+    formula: shared.Formula
+    parts: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PairData:
+    """Whether two scenarios can hold together."""
+
+    a: shared.Number
+    b: shared.Number
+    set_a: shared.SetName
+    set_b: shared.SetName
+    verdict: DriveVerdict
+    formula: Annotated[
+        str,
+        Doc(
+            "Of a WITNESSED what holds on the drive; of an IMPOSSIBLE what is proved; else what is in doubt."
+        ),
+    ]
+    core: Annotated[tuple[str, ...], Doc("Parts that clash, of all cores.")]
+    cores: Annotated[tuple[Clash, ...], Doc("For each way in which the two can meet, parts that clash.")]
+    evidence: Annotated[
+        tuple[shared.KeptFile, ...],
+        Doc("A drive; or for each way in which the two can meet, a certificate that its core clashes."),
+    ]
+    reason: shared.Reason = NO_REASON
+
+
+@dataclass(frozen=True, kw_only=True)
+class OverlapData(shared.Heading):
+    """Which pairs of scenarios can hold together."""
+
+    schema: Literal["roadproof/overlap/2"] = SCHEMA
+    set: Annotated[str, Rule(least=1), Doc("The spec set, or two with a comma between.")]
+    lanes: Annotated[Choice, Doc("Whether both speak of one lane, or each of its own.")]
+    roles: Annotated[Choice, Doc("Whether vehicles play the same parts in both.")]
+    start: Annotated[Choice, Doc("Whether both start at 0, or one then or later.")]
+    options: shared.Options
+    parameters: shared.Parameters
+    specs: shared.Specifications
+    view: shared.Dense = "dense"
+    seconds: shared.Seconds = 0.0
+    verdicts: tuple[PairData, ...]

@@ -1,13 +1,17 @@
 """What a question is: plain data that list claims, and show the answers to them."""
 
-from collections.abc import Mapping, Sequence
-from typing import ClassVar, Protocol, Self, TypeAlias, TypeVar
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, ClassVar, Protocol, Self, TypeAlias, TypeVar
 
 from roadproof.analysis.basis import Basis
+from roadproof.drivers import restriction
 from roadproof.evidence.answer import Answer
 from roadproof.evidence.claim import Claim
+from roadproof.evidence.heading import heading
 
 View = TypeVar("View", covariant=True)
+Place: TypeAlias = Callable[[str, Answer], object]
+"""Where an answer is: the path of its file, or the evidence itself."""
 Batch: TypeAlias = Mapping[str, Claim]
 """Claims by name that one process settles one after the other, since answers to some help with others."""
 Answers: TypeAlias = Mapping[str, Answer]
@@ -43,3 +47,11 @@ class Question(Protocol[View]):
 
     def view(self, known: Answers) -> View:
         """Return what the answers show together. Claims without an answer are in doubt."""
+
+    def data(self, view: Any, place: Place, seconds: float) -> object:
+        """Return a view as a definition for ``evidence.codec``, which ``--json`` prints."""
+
+
+def heading_of(schema: str, basis: Basis) -> dict[str, Any]:
+    """Return how a view begins as plain data: its kind, the version, the library, what begins so."""
+    return {**heading(schema, basis.library), **restriction.told(basis.specification.options)}

@@ -6,13 +6,14 @@ from pathlib import Path
 from typing import Any
 
 from roadproof.analysis.study import pool
+from roadproof.analysis.study.known import Origin
+from roadproof.analysis.study.known import told as told_known
 from roadproof.analysis.study.pool import Progress
 from roadproof.engines.settling import settle_batch
 from roadproof.errors import SharedError, UsageError
 from roadproof.evidence.answer import Answer, undecided
-from roadproof.questions.data import question_data
 from roadproof.questions.question import Batch, Question
-from roadproof.questions.store import Origin, Store
+from roadproof.questions.store import Store
 from roadproof.reasons import Reason
 from roadproof.runtime.executors import Jobs, hands_of
 from roadproof.runtime.records import dataclass
@@ -34,6 +35,7 @@ def settle(
     what: str = "claims",
     each: Callable[[str, Answer], None] | None = None,
     fresh: bool = False,
+    say: Callable[[str], None] | None = None,
 ) -> Settled:
     """Settle all claims of a question.
 
@@ -46,13 +48,18 @@ def settle(
     if shard is not None and folder is None:
         raise UsageError(f"--shard {shard} requires --out, the folder that the runs share")
     store = Store(folder, question.basis.work, reads_known=not fresh)
-    store.open(question_data(question))
+    store.open(question)
     run = _Run(question, store, each or _nobody)
     first = {name for batch in question.batches({}) for name in batch}
     dealt = (
         first if shard is None else {name for batch in shard.among(question.batches({})) for name in batch}
     )
-    while batches := run.open_batches():
+    batches = run.open_batches()
+    if say is not None:
+        listed = len(run.known) + sum(map(len, batches))
+        for line in told_known([*run.origins.values()], listed):
+            say(line)
+    while batches:
         ours = [x for x in batches if shard is None or _is_ours(x, first, dealt, shard.has)]
         if not ours:
             left = sum(len(batch) for batch in batches)
@@ -60,6 +67,7 @@ def settle(
                 f"shard {shard} is done: other runs settle {left} {what}; run again to join them"
             )
         run.ask(ours, hands, progress, what)
+        batches = run.open_batches()
     store.make_room()
     return Settled(run.known, run.origins)
 
@@ -96,7 +104,7 @@ class _Run:
         if found is None or not found[0].is_final:
             return False
         answer, origin = found
-        if origin != "folder":
+        if origin is not None:
             self.origins[name] = origin
             self.store.keep(name, answer, is_new=False)
         self._add(name, answer)

@@ -9,13 +9,16 @@ import lzma
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
-from typing import Literal
+from typing import Any
 
+from roadproof.analysis.study.evidence_store import keep_specifications
+from roadproof.analysis.study.known import Origin
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.answer import Answer, answer_data, read_answer
 from roadproof.evidence.claim import Claim
-from roadproof.evidence.strict import LARGEST_EVIDENCE, JsonObject, read_json
-from roadproof.questions.data import QUESTION
+from roadproof.evidence.strict import LARGEST_EVIDENCE, read_json
+from roadproof.questions.data import QUESTION, question_data
+from roadproof.questions.question import Answers, Question
 from roadproof.runtime.cache import keep_bytes, kept_bytes, make_room
 from roadproof.runtime.canonical import digest
 from roadproof.runtime.files import make_folder, write_json
@@ -23,7 +26,6 @@ from roadproof.runtime.package_data import program, shipped
 from roadproof.runtime.records import dataclass
 from roadproof.runtime.version import ANSWERS
 
-Origin = Literal["folder", "cache", "shipped"]
 CACHE = "answers"
 ARCHIVE = "answers.json.xz"
 
@@ -39,15 +41,16 @@ class Store:
     work: object
     reads_known: bool = True
 
-    def open(self, question: JsonObject) -> None:
+    def open(self, question: Question[Any]) -> None:
         """Begin a folder, or go on in it. Raises ``UsageError`` where it holds another question's answers."""
         if self.folder is None:
             return
         make_folder(self.folder)
-        head = self.folder / QUESTION
+        keep_specifications(self.folder, question.basis.library)
+        head, data = self.folder / QUESTION, question_data(question)
         if not head.exists():
-            write_json(head, question)
-        elif read_json(head) != json.loads(json.dumps(question)):
+            write_json(head, data)
+        elif read_json(head) != json.loads(json.dumps(data)):
             raise UsageError(
                 f"{self.folder} holds answers to another question, or to this one under another library: "
                 "name another folder with --out, or remove it"
@@ -57,20 +60,23 @@ class Store:
         """The digest of all that an answer depends on."""
         return digest(claim.digest(), self.work, ANSWERS)
 
-    def find(self, name: str, claim: Claim) -> tuple[Answer, Origin] | None:
-        """Return the answer to a claim that is known, and from where; None where none stands."""
+    def find(self, name: str, claim: Claim) -> tuple[Answer, Origin | None] | None:
+        """Return the answer to a claim that is known; None where none stands.
+
+        It comes with its origin, which is None where the folder has it.
+        """
         for origin, content in self._contents(name, claim):
             try:
-                return read_answer(claim, content, f"the answer {name} of the {origin}"), origin
+                return read_answer(claim, content, f"the answer {name}"), origin
             except InputError:
                 continue
         return None
 
-    def _contents(self, name: str, claim: Claim) -> list[tuple[Origin, object]]:
-        found: list[tuple[Origin, object]] = []
+    def _contents(self, name: str, claim: Claim) -> list[tuple[Origin | None, object]]:
+        found: list[tuple[Origin | None, object]] = []
         path = None if self.folder is None else self.folder / f"{name}.json"
         if path is not None and path.is_file():
-            found.append(("folder", read_json(path, LARGEST_EVIDENCE)))
+            found.append((None, read_json(path, LARGEST_EVIDENCE)))
         if not self.reads_known:
             return found
         key = self.key(claim)
@@ -104,6 +110,9 @@ def _archive() -> Mapping[str, object]:
     return found
 
 
-def names_in(folder: Path) -> list[str]:
-    """Return the names of the answers that a folder has files of."""
-    return sorted(x.stem for x in folder.glob("*.json") if x.name != QUESTION)
+def keep_all(folder: Path, question: Question[Any], answers: Answers) -> None:
+    """Write a question and its answers into a folder. Raises ``UsageError`` as ``Store.open``."""
+    store = Store(folder, question.basis.work, reads_known=False)
+    store.open(question)
+    for name, answer in answers.items():
+        store.keep(name, answer)

@@ -13,7 +13,8 @@ from roadproof.engines.search.impossible import explain
 from roadproof.engines.search.outcome import Outcome, Search
 from roadproof.engines.search.placing import placed
 from roadproof.engines.search.question import SearchOptions, Setting
-from roadproof.evidence.answer import Answer, Doubt, undecided
+from roadproof.evidence.answer import Answer, undecided
+from roadproof.evidence.answer_files import Doubt
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.claim import Claim, Exists
 from roadproof.library.compose import negation, of_parts

@@ -33,6 +33,7 @@ from roadproof.frontends.settings.value_types import KernelName
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library
 from roadproof.library.words import called_by, legend
+from roadproof.questions.checking import folders_in, read_folder
 from roadproof.reasons import Reason
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.executors import Jobs
@@ -146,8 +147,10 @@ def check(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
         find(asked.kernel)
     named = tuple(Path(x) for x in asked.specs)
     library = load_library(named)
-    surveyed = survey([Path(x) for x in paths], named, find_label)
-    given = list(surveyed.files.items())
+    given_paths = [Path(x) for x in paths]
+    answered_in = [read_folder(x, named) for x in folders_in(given_paths)]
+    surveyed = survey(given_paths, named, find_label, [x.folder for x in answered_in])
+    given = [*surveyed.files.items(), *((file, (*named, *x.specs)) for x in answered_in for file in x.files)]
     traces = () if asked.kernel is None else _traces(surveyed, named)
     answered, ruled = (
         (None, {}) if asked.kernel is None else _put_to_kernel(asked.kernel, given, traces, asked)
@@ -157,8 +160,15 @@ def check(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
     answers = pool.in_order(pool.work(judge, work, asked.jobs, _doubt, asked.progress, "files"))
     found = {path: finding for (path, _), finding in zip(given, answers, strict=True)}
     beside = tuple(path for told in surveyed.told for path in told.specs)
-    findings = [*conclude(surveyed, found, ruled)]
+    beside += tuple(path for x in answered_in for path in x.specs)
+    alone = {path: finding for path, finding in found.items() if path in surveyed.files}
+    findings = [*conclude(surveyed, alone, ruled)]
     left: dict[str, tuple[str, ...]] = {}
+    for x in answered_in:
+        findings += [*(x.finding(name, found[file]) for file, name in x.files.items()), *x.undecided]
+        findings += x.problems
+        if x.others:
+            left[str(x.folder)] = x.others
     for told in surveyed.told:
         again = _judged_again(told, asked)
         findings += () if again is None else again.findings

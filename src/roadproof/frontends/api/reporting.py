@@ -78,7 +78,7 @@ def page(*results: str | Path, out: str | Path, **options: Unpack[PageKeywords])
     if target.suffix.lower() not in (".html", ".htm"):
         raise UsageError(f"out={target}: name a file that ends with .html")
     named = tuple(Path(x) for x in asked.specs)
-    given = read_results(paths)
+    given = read_results(paths, named)
     checked = None
     if given.checkable:
         told = CheckKeywords(solver=asked.solver, specs=named, jobs=asked.jobs, progress=asked.progress)

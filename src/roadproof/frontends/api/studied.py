@@ -77,6 +77,11 @@ class StudyAnswers(Answer, Generic[S, A, R]):
     def _write_index(self, folder: Path, found: StudyResult[A, R]) -> None:
         write_index(folder, write(self._index(found.records), timed=False))
 
+    @property
+    def library(self) -> Library:
+        """The definitions that the answers were given with."""
+        return self.study.question.library
+
     def files(self, pictures: bool) -> dict[str, bytes]:
         """What is written beside the evidence to be looked at, by name."""
         return {}

@@ -7,15 +7,14 @@ from typing import Unpack
 
 from roadproof.analysis.order.deciding import Decisions, kinds_of
 from roadproof.analysis.order.study import Order, Ordering
-from roadproof.analysis.overlap import Meeting, Overlap, PairVerdict, pairs_of
 from roadproof.analysis.redundancy import ChangeFindings, Redundancy, name_of
 from roadproof.errors import UsageError
 from roadproof.evidence.answers import order as order_answers
-from roadproof.evidence.answers import overlap as overlap_answers
 from roadproof.evidence.answers import redundancy as redundancy_answers
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Among, Definitions, definitions_of, load
+from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import basis_of, positive
 from roadproof.frontends.api.studied import StudyAnswers, drawn
@@ -28,37 +27,34 @@ from roadproof.frontends.settings.keywords import OrderKeywords, OverlapKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.words import Called, called, called_in
+from roadproof.questions.overlap import Meeting, OverlapQuestion, OverlapView, PairVerdict
 from roadproof.verdict import ExitCode, Verdict, exit_code
 
 
-class Overlaps(StudyAnswers[Overlap, PairVerdict, overlap_answers.Record]):
+class Overlaps(QuestionAnswers[OverlapView]):
     """Which pairs of scenarios can hold together: a drive, or a proof that there is none, for each."""
 
     pieces = "groups of pairs"
 
-    @cached_property
-    def pairs(self) -> list[PairVerdict]:
-        """The answers in the order of the pairs."""
-        return self.study.verdicts(self.found.answers)
+    @property
+    def pairs(self) -> tuple[PairVerdict, ...]:
+        """The verdicts in the order of the pairs."""
+        return self.view.pairs
 
     @property
     def verdicts(self) -> dict[str, Verdict]:
         return {f"{x.a}, {x.b}": x.verdict for x in self.pairs}
 
-    @property
-    def evidence(self) -> tuple[Evidence, ...]:
-        return tuple(y for x in self.pairs if (y := x.certificate or x.drive) is not None)
-
     @cached_property
     def words(self) -> Called:
         """What the scenarios are called."""
-        basis, numbers = self.study.basis, {y.number for x in self.pairs for y in (x.a, x.b)}
+        basis, numbers = self.question.basis, {y.number for x in self.pairs for y in (x.a, x.b)}
         return called_in(basis.specification, basis.set_names, numbers)
 
     @property
     def across(self) -> bool:
         """Whether the pairs are of two spec sets."""
-        return len(self.study.basis.set_names) > 1
+        return len(self.question.basis.set_names) > 1
 
     @property
     def exit_code(self) -> ExitCode:
@@ -68,14 +64,11 @@ class Overlaps(StudyAnswers[Overlap, PairVerdict, overlap_answers.Record]):
     def _sheet(self) -> Sheet[PairVerdict]:
         return overlap_report.sheet_of(self.pairs, self.words)
 
-    def _index(self, records: Mapping[str, overlap_answers.Record]) -> overlap_answers.Index:
-        return self.study.index(records, self.seconds)
-
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """The heat map."""
-        said = self.study.question.said
-        how = f"lanes {said['lanes']}, roles {said['roles']}, start {said['start']}"
-        title = f"Which scenarios hold together: set {said['set']}; {how}"
+        meeting, sets = self.view.meeting, ",".join(self.question.basis.set_names)
+        how = f"lanes {meeting.lanes}, roles {meeting.roles}, start {meeting.start}"
+        title = f"Which scenarios hold together: set {sets}; {how}"
         yield "overlap", picture(overlap_report.draw_overlap(self.pairs, title, self.across, self.words))
 
     def files(self, pictures: bool) -> dict[str, bytes]:
@@ -107,11 +100,11 @@ def overlap(
     usual = 9 if given.start == "any" else 6
     horizon = positive("horizon", usual if given.horizon is None else given.horizon, "s")
     basis = replace(basis_of(home, given, given.vehicles), horizon=horizon)
-    pairs = pairs_of(basis, home.among(among))
-    if not pairs:
+    asked = Meeting(among=home.among(among) or None, lanes=given.lanes, roles=given.roles, start=given.start)
+    question = OverlapQuestion(basis, asked)
+    if not question.pairs:
         raise UsageError(f"--among {among} selects no pair: select at least two scenarios")
-    study = Overlap(basis, pairs, Meeting(given.lanes, given.roles, given.start))
-    return Overlaps.asked(study, given)
+    return Overlaps.settled(question, given)
 
 
 class Orders(StudyAnswers[Ordering, Decisions, order_answers.Record]):

@@ -1,7 +1,7 @@
 """The questions of the atlas and their answers, kept in folders of evidence below the pages."""
 
 import shlex
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final, TypeVar
@@ -11,7 +11,6 @@ from roadproof.errors import UsageError
 from roadproof.evidence.answers import classify as kept_classes
 from roadproof.evidence.answers import coverage as kept_gaps
 from roadproof.evidence.answers import order as kept_order
-from roadproof.evidence.answers import overlap as kept_pairs
 from roadproof.evidence.answers import plates as kept_plates
 from roadproof.evidence.answers import proofs as kept_claims
 from roadproof.evidence.answers import redundancy as kept_changes
@@ -28,6 +27,7 @@ from roadproof.frontends.settings.groups import Readings
 from roadproof.frontends.settings.studies import Atlas
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.specification import Library
+from roadproof.questions.overlap import OverlapData
 
 T = TypeVar("T")
 TOPICS: Final = ("proofs", "drives", "overlaps", "implications", "redundancy", "gaps", "classes", "plates")
@@ -67,7 +67,7 @@ class Answers:
     proofs: kept_claims.Index | None = None
     titles: Mapping[str, str] = field(default_factory=dict)
     drives: dict[str, dict[int, ShownDrive]] = field(default_factory=dict)
-    overlap: kept_pairs.Index | None = None
+    overlap: OverlapData | None = None
     order: kept_order.Index | None = None
     diagram: Picture | None = None
     redundancy: kept_changes.Index | None = None
@@ -81,6 +81,11 @@ class Answers:
         name = f"{EVIDENCE}/{place}/{file if isinstance(file, str) else INDEX}" if place else ""
         words = ["roadproof", command, *arguments.split(), *_flags(self.home, command)]
         return Source(shlex.join(words), name)
+
+
+def name_in(evidence: Sequence[object]) -> str | None:
+    """Return the name of the first of some files of evidence; None where there is none."""
+    return Path(str(evidence[0])).name if evidence else None
 
 
 def _flags(home: Definitions, command: str) -> list[str]:
@@ -158,8 +163,8 @@ class _Questions:
 
     def overlaps(self) -> None:
         if len(self.answers.numbers) > 1:
-            studies.overlap(self.among, self.answers.home, **self._keywords("overlap"))
-            self.answers.overlap = self._index(kept_pairs.Index, "overlap")
+            found = studies.overlap(self.among, self.answers.home, **self._keywords("overlap"))
+            self.answers.overlap = read(OverlapData, found.as_data(), "overlap")
 
     def implications(self) -> None:
         found = studies.order(self.among, self.using, **self._keywords("order"))

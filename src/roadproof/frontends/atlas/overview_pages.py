@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from roadproof.frontends.atlas.answers import Answers, Source
+from roadproof.frontends.atlas.answers import Answers, Source, name_in
 from roadproof.frontends.atlas.notation import shown
 from roadproof.frontends.atlas.pictures import DrivePicture
 from roadproof.frontends.atlas.scenario_page import Gap, Statement, all_gaps, claims
@@ -49,7 +49,7 @@ def overlap_values(answers: Answers) -> dict[str, object]:
     """The matrix of pairs: cells by both numbers."""
     cells: dict[tuple[int, int], tuple[str, Source]] = {}
     for x in () if answers.overlap is None else answers.overlap.verdicts:
-        source = answers.source("overlap", f"--among {x.a},{x.b}", "overlap", x.drive or x.certificate)
+        source = answers.source("overlap", f"--among {x.a},{x.b}", "overlap", name_in(x.evidence))
         cells[x.a, x.b] = cells[x.b, x.a] = x.verdict, source
     return {"names": [answers.home.words(n) for n in answers.numbers], "cells": cells}
 

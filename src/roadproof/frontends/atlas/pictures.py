@@ -9,12 +9,13 @@ from pathlib import Path
 from roadproof.analysis.study import pool
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.frontends.atlas.answers import EVIDENCE, OBJECTIVES, Answers
+from roadproof.frontends.atlas.answers import EVIDENCE, OBJECTIVES, Answers, name_in
 from roadproof.frontends.atlas.notation import shown
 from roadproof.frontends.report.drive_data import Span, strips_of
 from roadproof.frontends.report.miniature import miniature, small_scene
 from roadproof.frontends.settings.studies import Atlas
 from roadproof.library.specification import Library
+from roadproof.verdict import Verdict
 
 MOST_STRIPS, DEEPEST = 14, 2
 
@@ -72,8 +73,8 @@ def _drives(answers: Answers) -> Iterator[tuple[str, str]]:
         for number, drive in answers.drives.get(objective, {}).items():
             yield drive.source.file, f"A {objective} drive of {answers.home.words(number)}"
     for x in () if answers.overlap is None else answers.overlap.verdicts:
-        if isinstance(x.drive, str):
-            yield f"{EVIDENCE}/overlap/{x.drive}", f"A drive of scenarios {x.a} and {x.b} at once"
+        if x.verdict is Verdict.WITNESSED:
+            yield f"{EVIDENCE}/overlap/{name_in(x.evidence)}", f"A drive of scenarios {x.a} and {x.b} at once"
     for y in () if answers.classes is None else answers.classes.classes:
         if isinstance(y.drive, str):
             yield f"{EVIDENCE}/classes/{y.drive}", f"A drive of class {y.name}: {y.description}"

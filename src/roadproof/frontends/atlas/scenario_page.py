@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from roadproof.drivers.models import course_in
-from roadproof.evidence.answers import coverage, overlap, plates
-from roadproof.frontends.atlas.answers import OBJECTIVES, Answers, Source
+from roadproof.evidence.answers import coverage, plates
+from roadproof.frontends.atlas.answers import OBJECTIVES, Answers, Source, name_in
 from roadproof.frontends.atlas.notation import as_html, head_as_html, shown
 from roadproof.frontends.atlas.pictures import DrivePicture
 from roadproof.frontends.atlas.traffic import SOURCE, frequencies
@@ -16,11 +16,12 @@ from roadproof.library.specification import Specification
 from roadproof.library.uses import Used, used_in
 from roadproof.library.words import Words
 from roadproof.logic.show import decimal
+from roadproof.questions.overlap import PairData
 from roadproof.verdict import Verdict
 
 CAREFUL = "careful"
 _DECIDED = (Verdict.WITNESSED, Verdict.IMPOSSIBLE)
-_Pair: TypeAlias = tuple[Words, Source, overlap.Pair]
+_Pair: TypeAlias = tuple[Words, Source, PairData]
 
 
 @dataclass(frozen=True)
@@ -131,8 +132,7 @@ def _pairs(answers: Answers, number: int) -> Iterator[_Pair]:
     """The pairs of a scenario with others."""
     for x in () if answers.overlap is None else answers.overlap.verdicts:
         if number in (x.a, x.b):
-            file = x.drive or x.certificate
-            source = answers.source("overlap", f"--among {x.a},{x.b}", "overlap", file)
+            source = answers.source("overlap", f"--among {x.a},{x.b}", "overlap", name_in(x.evidence))
             yield answers.home.words(x.b if x.a == number else x.a), source, x
 
 

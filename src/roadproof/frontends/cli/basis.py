@@ -15,6 +15,7 @@ from roadproof.frontends.settings.option import Settings
 
 if TYPE_CHECKING:
     from roadproof.frontends.api.definitions import Definitions
+    from roadproof.frontends.api.questioned import QuestionAnswers
     from roadproof.frontends.api.studied import StudyAnswers
 
 A = TypeVar("A")
@@ -71,7 +72,11 @@ def in_order(names: Iterable[str], show: Callable[[str, A], None]) -> Callable[[
     return hear
 
 
-def hand_over(args: argparse.Namespace, found: "StudyAnswers[Any, Any, Any]", pictures: bool = False) -> int:
+def hand_over(
+    args: argparse.Namespace,
+    found: "StudyAnswers[Any, Any, Any] | QuestionAnswers[Any]",
+    pictures: bool = False,
+) -> int:
     """JSON, what is written to be looked at, and the text of an answer; its exit code."""
     if args.json:
         write_json(found.as_data(), args.json)
@@ -82,7 +87,7 @@ def hand_over(args: argparse.Namespace, found: "StudyAnswers[Any, Any, Any]", pi
         print(found)
         for line in found.supposed:
             print(line)
-        for name, said in found.study.question.library.freedom.items():
+        for name, said in found.library.freedom.items():
             print(f"{name} is {said}")
     tell_bends(found.road)
     return found.exit_code

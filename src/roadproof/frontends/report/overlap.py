@@ -5,10 +5,10 @@ from itertools import groupby
 from textwrap import wrap
 from typing import Any
 
-from roadproof.analysis.overlap import PairVerdict, name_of
 from roadproof.frontends.report.figures import draw_cell, hide_frame, legend_beside, make_figure, name_cells
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.words import Called, Words, legend
+from roadproof.questions.overlap import PairVerdict
 from roadproof.verdict import Verdict
 
 SIGNS = {Verdict.WITNESSED: "#", Verdict.IMPOSSIBLE: ".", Verdict.NONE_WITHIN: "-", Verdict.UNKNOWN: "?"}
@@ -63,22 +63,20 @@ def sheet_of(verdicts: Sequence[PairVerdict], words: Called) -> Sheet[PairVerdic
             Column("set_a", lambda x: x.a.set_name, "csv"),
             Column("set_b", lambda x: x.b.set_name, "csv"),
             Column("verdict", lambda x: x.verdict),
-            Column("formula", lambda x: "" if x.query is None else x.query.text, "csv"),
+            Column("formula", lambda x: x.query.text, "csv"),
             Column("core", lambda x: "; ".join(x.told), "csv"),
             Column("reason", lambda x: x.reason),
             Column("evidence", _evidence, "csv"),
             Column("name_a", lambda x: words[x.a.number].name, "csv"),
             Column("name_b", lambda x: words[x.b.number].name, "csv"),
-            Column("seconds", lambda x: x.seconds, "frame"),
         ),
         verdicts,
     )
 
 
 def _evidence(pair: PairVerdict) -> str:
-    """The name of the file that shows the verdict."""
-    name = name_of(pair.a, pair.b)
-    return f"impossible-{name}.json" if pair.certificate else f"drive-{name}.json" if pair.drive else ""
+    """The names of the files that show the verdict."""
+    return "; ".join(f"{name}.json" for name in pair.evidence)
 
 
 def draw_overlap(verdicts: Sequence[PairVerdict], title: str, across: bool, words: Called) -> Any:
@@ -174,7 +172,7 @@ def _captions(verdicts: Sequence[PairVerdict]) -> tuple[list[str], dict[tuple[in
     captions: list[str] = []
     numbers: dict[tuple[int, int], int] = {}
     for x in verdicts:
-        cores = dict.fromkeys("  ×  ".join(core.told) for core in x.cores)
+        cores = dict.fromkeys("  ×  ".join(core.parts) for core in x.cores)
         if not cores:
             continue
         caption = ";   ".join(cores)

@@ -101,6 +101,11 @@ class PageContext:
         wrong = [_wrong(x, at) for x, at in zip(document.formulas, since, strict=False)]
         return ShownDrive(len(self.documents) - 1, document, [x for x in wrong if x], svg)
 
+    def is_drive(self, file: Path) -> bool:
+        """Whether a file of evidence is a drive."""
+        found = self.findings.get(file.resolve())
+        return found is not None and found.kind == "drive"
+
     def rejected_in(self, folder: Path | None) -> int:
         """How much of the evidence in a folder is not accepted."""
         if folder is None:

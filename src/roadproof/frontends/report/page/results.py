@@ -11,6 +11,9 @@ from roadproof.errors import InputError
 from roadproof.evidence.checking import SCHEMAS
 from roadproof.evidence.journal import ANSWERS, HEAD
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, Json, read_json
+from roadproof.questions.checking import is_question, read_folder
+from roadproof.questions.data import QUESTION
+from roadproof.questions.views import view_data
 
 Words: TypeAlias = Mapping[int, str]
 """What scenarios are called."""
@@ -51,8 +54,11 @@ class Given:
         return (*dict.fromkeys(folders), *self.evidence)
 
 
-def read_results(paths: Sequence[Path]) -> Given:
-    """What is in files and folders. Raises ``InputError`` for what is not there, or is no result."""
+def read_results(paths: Sequence[Path], given: Sequence[Path] = ()) -> Given:
+    """What is in files and folders. Raises ``InputError`` for what is not there, or is no result.
+
+    ``given``: the specification files that it was made with.
+    """
     results: list[Result] = []
     evidence: list[Path] = []
     for path in paths:
@@ -64,6 +70,9 @@ def read_results(paths: Sequence[Path]) -> Given:
                 f"{path} holds no result: name a folder or a JSON answer that a command has written"
             )
         for file in found:
+            if file.name == QUESTION:
+                results.append(_answered(file.parent, given, len(results)))
+                continue
             schema, data, digest = _read(file)
             if schema in SCHEMAS:
                 evidence.append(file)
@@ -74,14 +83,25 @@ def read_results(paths: Sequence[Path]) -> Given:
     return Given(tuple(results), tuple(dict.fromkeys(evidence)))
 
 
+def _answered(folder: Path, given: Sequence[Path], number: int) -> Result:
+    """The view of a folder of answers."""
+    read = read_folder(folder, given)
+    data = view_data(read.question, read.answers, Path())
+    digest = hashlib.sha256((folder / QUESTION).read_bytes()).hexdigest()
+    return Result(folder.name or str(folder), str(data["schema"]), data, folder, number, digest)
+
+
 def _beside(file: Path) -> Path | None:
     """The folder in which the evidence of an answer of ``--json`` lies."""
     folder = file.with_name(f"{file.stem}-evidence")
-    return folder if (folder / INDEX).is_file() else None
+    return folder if (folder / INDEX).is_file() or is_question(folder) else None
 
 
 def _in_folder(folder: Path) -> Iterator[Path]:
     """The index of a folder, or its results; without these the evidence in it, and in the folders in it."""
+    if is_question(folder):
+        yield folder / QUESTION
+        return
     whole = [folder / name for name in (INDEX, TRAFFIC) if (folder / name).is_file()]
     if whole:
         yield from whole

@@ -8,7 +8,6 @@ from roadproof.evidence.answers import classify, drives, monitor
 from roadproof.evidence.answers import coverage as gaps
 from roadproof.evidence.answers import explore as explorations
 from roadproof.evidence.answers import order as implications
-from roadproof.evidence.answers import overlap as pairs
 from roadproof.evidence.answers import redundancy as changes
 from roadproof.evidence.answers import traffic as evaluations
 from roadproof.evidence.codec import read, write
@@ -20,6 +19,7 @@ from roadproof.frontends.report.page.results import Result, Words
 from roadproof.frontends.report.page.templates import in_unit, notes
 from roadproof.frontends.report.redundancy import sheet_of as sheet_of_changes
 from roadproof.frontends.report.sheet import Heading, Linked, Matrix
+from roadproof.questions.overlap import OverlapData
 
 
 def evidence(findings: Sequence[Finding]) -> dict[str, object]:
@@ -55,7 +55,7 @@ def witnessed(result: Result, context: PageContext, words: Words) -> dict[str, o
 
 def overlap(result: Result, context: PageContext, words: Words) -> dict[str, object]:
     """Pairs of scenarios, and a matrix of them."""
-    found = read(pairs.Index, result.data, result.name).verdicts
+    found = read(OverlapData, result.data, result.name).verdicts
     several = len({x for pair in found for x in (pair.set_a, pair.set_b)}) > 1
     names: dict[tuple[str, int], str] = {}
     cells: dict[tuple[object, object], Linked] = {}

@@ -1,4 +1,4 @@
-"""``python -m roadproof.evidence.schemas FOLDER``: write the JSON Schemas that follow from definitions."""
+"""``python -m roadproof.frontends.schemas FOLDER``: write the JSON Schemas that follow from definitions."""
 
 import json
 import sys
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal, get_args
 
+from roadproof.evidence.answer_files import RefutationFile, Undecided
 from roadproof.evidence.answers import (
     assurance,
     bundle,
@@ -23,7 +24,6 @@ from roadproof.evidence.answers import (
     monitor,
     none_within,
     order,
-    overlap,
     plates,
     proofs,
     redundancy,
@@ -51,6 +51,9 @@ from roadproof.evidence.json_schema import (
 )
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.motion import INDUCTIONS
+from roadproof.questions import overlap as overlap_question
+from roadproof.questions.data import QuestionFile
+from roadproof.questions.overlap import OverlapData
 
 TITLES: Mapping[type, str] = {
     proofs.Index: "index.json of roadproof prove --out: claims with the files that show them",
@@ -79,7 +82,10 @@ TITLES: Mapping[type, str] = {
         "roadproof explore --json, and index.json of its folder: for which values there is a drive"
     ),
     order.Index: "roadproof order --json, and index.json of its folder: which scenarios imply which",
-    overlap.Index: "roadproof overlap --json, and index.json of its folder: which scenarios hold together",
+    OverlapData: "roadproof overlap --json: which scenarios hold together",
+    QuestionFile: "question.json: a question, from which its claims are listed",
+    Undecided: "NAME.json in a folder of answers: why a claim is undecided",
+    RefutationFile: "NAME.json in a folder of answers: a trace on which a claim is false",
     plates.Index: (
         "roadproof preventable --json, and index.json of its folder: from which initial values a driver "
         "prevents a collision"
@@ -104,14 +110,14 @@ WITHOUT_ASSUMPTION: JsonObject = {
 }
 """Only inductions may stand in a certificate that assumes nothing."""
 DRIVES = (drive.Drive, drive.JerkDrive)
-KEEPING = (proofs, drives, plates, overlap, redundancy, order, coverage, classify, catalogue_index, explore)
+KEEPING = (proofs, drives, plates, redundancy, order, coverage, classify, catalogue_index, explore)
 """The questions whose answers are kept one by one."""
 RECORDS: Mapping[str, type] = {x.SCHEMA: x.Record for x in KEEPING}
 
 
 def shared_types() -> JsonObject:
     """The types that several answers share, by their name among the definitions of common.json."""
-    kinds = (x for module in (shared, overlap, drive, tree) for x in vars(module).values())
+    kinds = (x for module in (shared, overlap_question, drive, tree) for x in vars(module).values())
     return {note.name: x for x in kinds for note in notes_of(x) if isinstance(note, Shared)}
 
 

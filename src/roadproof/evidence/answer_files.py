@@ -1,0 +1,43 @@
+"""Files of answers that are neither certificate, drive nor tree: what is undecided, and refuting traces."""
+
+from typing import Annotated, Final, Literal, TypeAlias
+
+from roadproof.evidence.answers import shared
+from roadproof.evidence.codec import LEFT_OUT, Doc
+from roadproof.runtime.records import dataclass
+from roadproof.verdict import Verdict
+
+UNDECIDED: Final = "roadproof/undecided/1"
+REFUTATION: Final = "roadproof/refutation/1"
+Doubt: TypeAlias = Literal[
+    Verdict.UNKNOWN, Verdict.NONE_WITHIN, Verdict.PROVED_BOUNDED, Verdict.CROSSCHECK_FAILED
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class AboutClaim:
+    """What a file says of the claim that it is about."""
+
+    set: shared.SetName
+    options: shared.Options
+    claim: shared.Formula
+    assuming: Annotated[shared.Assuming, LEFT_OUT] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Undecided(AboutClaim):
+    """Why a claim is undecided, or within which limits the answer was looked for."""
+
+    schema: Literal["roadproof/undecided/1"] = UNDECIDED
+    verdict: Doubt
+    reason: shared.Reason
+    limits: Annotated[shared.KeptLimits | None, LEFT_OUT] = None
+    doubt: Annotated[object, LEFT_OUT, Doc("The cause of an UNKNOWN.")] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class RefutationFile(AboutClaim):
+    """A trace on which a claim is false at time 0."""
+
+    schema: Literal["roadproof/refutation/1"] = REFUTATION
+    trace: Annotated[object, Doc("The trace: instants, values and a road.")]
