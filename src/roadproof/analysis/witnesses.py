@@ -136,7 +136,9 @@ class WitnessStudy:
             from roadproof.engines.search.impossible import Impossibility
 
             parts = (read_claim(home, declared(query.claim.given) + part) for part in said.core)
-            shown = Impossibility(tuple(part.formula for part in parts), said.minimal, certificate)
+            shown = Impossibility(
+                tuple(part.formula for part in parts), said.minimal, certificate, certificate
+            )
         return name, Outcome(
             said.scenario,
             said.set,

@@ -179,6 +179,8 @@ def _certificate(claim: Claim, content: object, where: str) -> Certificate:
     shown = read_claim(claim.home, file.claim).formula
     wanted = isinstance(claim.mode, Valid) and shown == claim.formula
     _require(wanted or _is_part_denied(claim, shown), where, f"it proves {_short(file.claim)}")
+    fault = certificate.fault_of_queries(file, claim.home.library)
+    _require(fault is None, where, "" if fault is None else fault[1])
     return file
 
 

@@ -147,6 +147,20 @@ def rule(certificate: Certificate, library: Library, ask: Callable[[str], str]) 
     Unreadable where the library does not have what the claim speaks of; undecided where ``ask`` answers
     unknown.
     """
+    fault = fault_of_queries(certificate, library)
+    if fault is not None:
+        return fault
+    for title, script in certificate.queries:
+        answer = ask(script)
+        if answer == "unknown":
+            return Acceptance.UNDECIDED, Why.NOT_UNSAT(title, answer)
+        if answer != "unsat":
+            return Acceptance.REJECTED, Why.NOT_UNSAT(title, answer)
+    return Acceptance.ACCEPTED, NO_REASON
+
+
+def fault_of_queries(certificate: Certificate, library: Library) -> tuple[Acceptance, Reason] | None:
+    """Return why the stored queries do not follow from the claim and the instances; None where they do."""
     try:
         specification = library.select(certificate.set_name, certificate.options)
         query = read_claim(specification, certificate.claim)
@@ -166,15 +180,7 @@ def rule(certificate: Certificate, library: Library, ask: Callable[[str], str]) 
     except RoadproofError as error:
         return Acceptance.REJECTED, Why.NOT_DERIVED(error)
     difference = _difference(derived, certificate)
-    if difference:
-        return Acceptance.REJECTED, difference
-    for title, script in derived.queries:
-        answer = ask(script)
-        if answer == "unknown":
-            return Acceptance.UNDECIDED, Why.NOT_UNSAT(title, answer)
-        if answer != "unsat":
-            return Acceptance.REJECTED, Why.NOT_UNSAT(title, answer)
-    return Acceptance.ACCEPTED, NO_REASON
+    return (Acceptance.REJECTED, difference) if difference else None
 
 
 def unreadable(certificate: Certificate, library: Library) -> Reason:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from roadproof.analysis.study import pool
-from roadproof.analysis.study.known import Origin
+from roadproof.analysis.study.known import Origin, is_off
 from roadproof.analysis.study.known import told as told_known
 from roadproof.analysis.study.pool import Progress
 from roadproof.engines.settling import settle_batch
@@ -47,7 +47,7 @@ def settle(
     shard = hands_of(hands).shard
     if shard is not None and folder is None:
         raise UsageError(f"--shard {shard} requires --out, the folder that the runs share")
-    store = Store(folder, question.basis.work, reads_known=not fresh)
+    store = Store(folder, question.kind, question.basis.work, reads_known=not fresh and not is_off())
     store.open(question)
     run = _Run(question, store, each or _nobody)
     first = {name for batch in question.batches({}) for name in batch}

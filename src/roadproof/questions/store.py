@@ -21,23 +21,24 @@ from roadproof.questions.data import QUESTION, question_data
 from roadproof.questions.question import Answers, Question
 from roadproof.runtime.cache import keep_bytes, kept_bytes, make_room
 from roadproof.runtime.canonical import digest
-from roadproof.runtime.files import make_folder, write_json
+from roadproof.runtime.files import make_folder, write_json, write_whole
 from roadproof.runtime.package_data import program, shipped
 from roadproof.runtime.records import dataclass
 from roadproof.runtime.version import ANSWERS
 
 CACHE = "answers"
-ARCHIVE = "answers.json.xz"
 
 
 @dataclass(frozen=True)
 class Store:
-    """The three places; ``folder`` None: answers are not written. ``work``: what was allowed for a claim.
+    """The three places; ``folder`` None: answers are not written.
 
-    ``reads_known``: whether cache and archive are read.
+    ``kind`` of question; ``work``: what was allowed for a claim; ``reads_known``: whether cache and archive
+    are read.
     """
 
     folder: Path | None
+    kind: str
     work: object
     reads_known: bool = True
 
@@ -80,8 +81,8 @@ class Store:
         if not self.reads_known:
             return found
         key = self.key(claim)
-        if key in _archive():
-            found.append(("shipped", _archive()[key]))
+        if key in archived(self.kind):
+            found.append(("shipped", archived(self.kind)[key]))
         elif (data := kept_bytes(CACHE, digest(key, program()))) is not None:
             found.append(("cache", json.loads(lzma.decompress(data))))
         return found
@@ -101,18 +102,33 @@ class Store:
 
 
 @cache
-def _archive() -> Mapping[str, object]:
-    """The answers that are shipped, by key."""
-    path = shipped("proofs") / "known" / ARCHIVE
+def archived(kind: str) -> Mapping[str, object]:
+    """Return the answers to questions of a kind that are shipped, by key; none where they were changed."""
+    path = archive(shipped("proofs") / "known", kind)
     if not path.is_file():
         return {}
-    found: Mapping[str, object] = json.loads(lzma.decompress(path.read_bytes()))
-    return found
+    content = json.loads(lzma.decompress(path.read_bytes()))
+    answers: Mapping[str, object] = content["answers"]
+    return answers if content["seal"] == digest(answers) else {}
+
+
+def archive(folder: Path, kind: str) -> Path:
+    """Return the path of the answers that are shipped."""
+    return folder / f"{kind}.json.xz"
+
+
+def ship(folder: Path, kind: str, answers: Mapping[str, object]) -> Path:
+    """Write answers by key as those that are shipped."""
+    content = {"seal": digest(answers), "answers": dict(sorted(answers.items()))}
+    path = archive(folder, kind)
+    write_whole(path, lzma.compress(json.dumps(content).encode(), preset=9 | lzma.PRESET_EXTREME))
+    archived.cache_clear()
+    return path
 
 
 def keep_all(folder: Path, question: Question[Any], answers: Answers) -> None:
     """Write a question and its answers into a folder. Raises ``UsageError`` as ``Store.open``."""
-    store = Store(folder, question.basis.work, reads_known=False)
+    store = Store(folder, question.kind, question.basis.work, reads_known=False)
     store.open(question)
     for name, answer in answers.items():
         store.keep(name, answer)

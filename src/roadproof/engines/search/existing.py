@@ -106,8 +106,7 @@ class _Batch:
         if found.drives:
             return Answer(claim, found.drives[0])
         if found.impossibility is not None:
-            core = of_parts(claim.query, found.impossibility.core)
-            return Answer(claim, self._proof(claim, core, FOR_A_PART) or found.impossibility.certificate)
+            return Answer(claim, found.impossibility.of_core)
         return _undecided(claim, found)
 
     def _clash(self, claim: Claim, times: float) -> Certificate | None:
@@ -115,10 +114,7 @@ class _Batch:
         effort = self.work.effort.of(times * self.work.proof)
         proof = prove_of_scenarios(claim.home, negation(claim.query), effort)
         shown = explain(claim.home, claim.query, proof, self.work.effort.of(FOR_A_PART * self.work.proof))
-        if shown is None:
-            return None
-        core = of_parts(claim.query, shown.core)
-        return self._proof(claim, core, FOR_A_PART) or shown.certificate
+        return None if shown is None else shown.of_core
 
     def _proof(self, claim: Claim, core: Query, times: float) -> Certificate | None:
         """Return a proof that ``core`` never holds."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import TypeAlias
 
 from roadproof.drivers.restriction import left_open
 from roadproof.engines.prove.induction import prove_of_scenarios
@@ -26,12 +27,14 @@ SHORTER = 1.5  # units of work for a proof with one part less
 class Impossibility:
     """``certificate`` proves for all time that a formula never holds at 0; ``core`` are parts that clash.
 
-    ``minimal``: no part of the core can be left out and the rest still be proved to clash.
+    ``minimal``: no part of the core can be left out and the rest still be proved to clash. ``of_core`` proves
+    that the core never holds.
     """
 
     core: tuple[Formula, ...]
     minimal: bool
     certificate: Certificate
+    of_core: Certificate
 
     @property
     def told(self) -> tuple[str, ...]:
@@ -61,14 +64,15 @@ def explain(
     left = effort.of(effort.units - proof.work)
     outline = left_open(specification)
     if outline is None:
-        core, minimal = _core(specification, query, left)
-        return Impossibility(core, minimal, proof.certificate)
-    shorter, minimal = _core(outline, read_claim(outline, query.text), left)
+        core, minimal, shown = _core(specification, query, left)
+        return Impossibility(core, minimal, proof.certificate, shown or proof.certificate)
+    shorter, minimal, _ = _core(outline, read_claim(outline, query.text), left)
     said, whole = {*told_parts(shorter)}, tuple(dict.fromkeys(parts_of(query.formula)))
     core = tuple(part for part in whole if {*told_parts((part,))} <= said)
-    if not prove(specification, negation(of_parts(query, core)), effort.of(SHORTER)).holds:
+    again = prove(specification, negation(of_parts(query, core)), effort.of(SHORTER)).certificate
+    if again is None:
         core, minimal = whole, False
-    return Impossibility(core, minimal, proof.certificate)
+    return Impossibility(core, minimal, proof.certificate, again or proof.certificate)
 
 
 def told_parts(core: Sequence[Formula]) -> tuple[str, ...]:
@@ -76,21 +80,29 @@ def told_parts(core: Sequence[Formula]) -> tuple[str, ...]:
     return tuple(text(as_syntax(part)) for part in core)
 
 
-def _core(specification: Specification, query: Query, effort: Effort) -> tuple[tuple[Formula, ...], bool]:
-    """Leave out one part after the other where the rest still clashes.
+_Core: TypeAlias = tuple[tuple[Formula, ...], bool, Certificate | None]
+
+
+def _core(specification: Specification, query: Query, effort: Effort) -> _Core:
+    """Leave out one part after the other where the rest still clashes; with a proof that what is left does.
 
     Each step goes by a hunch, and what is left is proved; where that fails, each step is proved instead.
+    There is no proof where all parts are left.
     """
+    proofs: list[Certificate] = []
     whole = tuple(dict.fromkeys(parts_of(query.formula)))
     kept, minimal = _shortened(query, whole, effort, ProofHeuristic(specification).has_proof)
 
     def is_proved(claim: Query, most: Effort) -> tuple[bool, float]:
         found = prove(specification, claim, most)
+        proofs.extend(() if found.certificate is None else (found.certificate,))
         return found.holds, found.work
 
-    if kept == whole or is_proved(negation(of_parts(query, kept)), effort.of(SHORTER))[0]:
-        return kept, minimal
-    return _shortened(query, whole, effort, is_proved)
+    if kept == whole:
+        return kept, minimal, None
+    if not is_proved(negation(of_parts(query, kept)), effort.of(SHORTER))[0]:
+        kept, minimal = _shortened(query, whole, effort, is_proved)
+    return kept, minimal, proofs[-1] if proofs else None
 
 
 def _shortened(
