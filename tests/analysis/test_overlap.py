@@ -1,23 +1,21 @@
 """Overlap: verdicts against the known list, and the evidence behind each checked apart."""
 
 import json
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 
 import pytest
 
 from asking import prove
-from planting import plant
 from report.edges import cut_off
-from roadproof.analysis import overlap
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.overlap import Core, Meeting, Overlap, PairVerdict, conjunctions, pairs_of
 from roadproof.engines.search.placing import placed
-from roadproof.analysis.study.frame import conduct
 from roadproof.engines.solve.smt import ask
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence.certificate import refusal
-from roadproof.evidence.judged import judge_file
+from roadproof.evidence.answer import Answer, undecided
+from roadproof.evidence.certificate import read_certificate, refusal
+from roadproof.evidence.judged import JudgedDrive, judge_file
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.report.figures import as_bytes
 from roadproof.frontends.report.overlap import (
@@ -28,19 +26,24 @@ from roadproof.frontends.report.overlap import (
     sheet_of,
 )
 from roadproof.frontends.report.sheet import as_csv
-from roadproof.library.compose import negation, of_parts
 from roadproof.library.elaborate import apply_definition, read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenario_references import read_numbers
 from roadproof.library.scenarios import Scenario, without_sectors
 from roadproof.library.specification import Query
 from roadproof.library.words import Words, called
+from roadproof.logic.formula import Not
+from roadproof.logic.parts import parts_of
+from roadproof.questions.overlap import Meeting, OverlapQuestion, PairVerdict, conjunctions, name_of, pairs_of
+from roadproof.questions.settle import settle
+from roadproof.reasons import Why
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 
 BASE = bundled_library().select("base")
 WORDS = called(BASE)
 BASIS = Basis(BASE)
+PROOF = read_certificate(Path(__file__).parents[2] / "proofs/P4-scenario-03-base.json")
 
 
 def node(number: int, set_name: str = "base") -> Scenario:
@@ -55,8 +58,10 @@ def texts(queries: tuple[Query, ...]) -> tuple[str, ...]:
 def entries() -> dict[tuple[int, int], PairVerdict]:
     """Pairs of every kind: exclusive, possible, and with one disturbance on two road sectors."""
     wanted = {(4, 5), (5, 12), (4, 8), (4, 16), (4, 24), (8, 12), (12, 24), (4, 12), (12, 20)}
-    pairs = tuple(pair for pair in pairs_of(BASIS) if (pair[0].number, pair[1].number) in wanted)
-    found = conduct(Overlap(BASIS, pairs), hands=1).answers.values()
+    question = OverlapQuestion(BASIS, Meeting(among=(4, 5, 8, 12, 16, 20, 24)))
+    pairs = tuple(x for x in question.pairs if (x[0].number, x[1].number) in wanted)
+    vars(question)["pairs"] = pairs
+    found = question.view(settle(question, hands=1).answers).pairs
     return {(entry.a.number, entry.b.number): entry for entry in found}
 
 
@@ -76,14 +81,19 @@ def test_every_drive_is_one_of_its_own_pair(entries: dict[tuple[int, int], PairV
             assert judge_file(file, bundled_library()).accepted
 
 
-def test_every_certificate_proves_its_own_pair(entries: dict[tuple[int, int], PairVerdict]) -> None:
-    for (a, b), entry in entries.items():
+def test_every_certificate_proves_that_parts_of_its_pair_clash(
+    entries: dict[tuple[int, int], PairVerdict],
+) -> None:
+    for entry in entries.values():
         if entry.verdict is Verdict.IMPOSSIBLE:
-            assert entry.certificate is not None
-            assert f"scenario_{a}(SV, POV, L)" in entry.certificate.claim
-            assert f"scenario_{b}(SV, POV, L)" in entry.certificate.claim
-            assert entry.certificate.claim.startswith("not (")
-            assert refusal(entry.certificate, bundled_library(), ask) is None
+            [(name, answer)] = entry.evidence.items()
+            proof = answer.certificate
+            assert proof is not None
+            assert refusal(proof, bundled_library(), ask) is None
+            denied = read_claim(BASE, proof.claim).formula
+            assert isinstance(denied, Not)
+            assert {*parts_of(denied.body)} <= {*parts_of(entry.claims[name].formula)}
+            assert len({*parts_of(denied.body)}) < 8
 
 
 BOTH_ROLES = Meeting(roles="any")
@@ -91,23 +101,17 @@ BOTH_ROLES = Meeting(roles="any")
 
 def decided(a: int, b: int) -> PairVerdict:
     """The answer for a pair in either role, which is two readings of how they meet."""
-    study = Overlap(BASIS, ((node(a), node(b)),), BOTH_ROLES)
-    return study.verdicts(conduct(study).answers)[0]
-
-
-def is_proved_of_every_reading(entry: PairVerdict) -> bool:
-    """Whether the certificate is about every way in which the pair might meet, and so are the cores."""
-    assert entry.certificate is not None
-    readings = conjunctions(BASE, entry.a, entry.b, BOTH_ROLES)
-    proved = " and ".join(negation(x).text for x in readings)
-    return entry.certificate.claim == proved and [core.whole for core in entry.cores] == list(readings)
+    question = OverlapQuestion(BASIS, replace(BOTH_ROLES, among=(a, b)))
+    [pair] = question.view(settle(question).answers).pairs
+    return pair
 
 
 def test_impossible_is_proved_of_every_reading() -> None:
     entry = decided(5, 6)
+    readings = conjunctions(BASE, node(5), node(6), BOTH_ROLES)
     assert entry.verdict is Verdict.IMPOSSIBLE
-    assert len(conjunctions(BASE, node(5), node(6), BOTH_ROLES)) == 2
-    assert is_proved_of_every_reading(entry)
+    assert len(readings) == len(entry.evidence) == 2
+    assert [core.whole for core in entry.cores] == list(readings)
 
 
 def test_one_reading_that_is_impossible_does_not_make_the_pair_so() -> None:
@@ -117,40 +121,11 @@ def test_one_reading_that_is_impossible_does_not_make_the_pair_so() -> None:
     assert (entry.verdict, entry.query) == (Verdict.WITNESSED, second)
 
 
-@pytest.mark.parametrize("kept", ["queries[:1]", "queries[1:]"])
-def test_a_proof_of_one_reading_only_is_noticed(kept: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    right = "negation(x) for x in queries"
-    plant(monkeypatch, overlap._DecisionJobs, "_impossible", right, right.replace("queries", kept))
-    assert not is_proved_of_every_reading(decided(5, 6))
-
-
-def test_a_proof_of_one_reading_is_not_taken_for_that_of_all(monkeypatch: pytest.MonkeyPatch) -> None:
-    plant(
-        monkeypatch, overlap._DecisionJobs, "decide", "proofs[0] if len(proofs) == 1 else None", "proofs[0]"
-    )
-    assert not is_proved_of_every_reading(decided(5, 6))
-
-
-@pytest.mark.parametrize(
-    ("right", "wrong"),
-    [
-        ("zip(queries, proofs, strict=True) if", "zip(queries[:1], proofs) if"),
-        ("if not left:", "if len(left) < len(queries):"),
-    ],
-)
-def test_a_reading_that_is_forgotten_is_noticed(
-    right: str, wrong: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    plant(monkeypatch, overlap._DecisionJobs, "decide", right, wrong)
-    assert decided(3, 8).verdict is not Verdict.WITNESSED
-
-
 def test_a_core_clashes_by_itself(entries: dict[tuple[int, int], PairVerdict]) -> None:
     for entry in entries.values():
         for core in entry.cores:
-            claim = negation(of_parts(core.whole, core.parts))
-            assert prove(BASE, claim.text, Effort(5.0)).verdict is Verdict.PROVED
-            assert len(core.parts) < 8
+            claim = f"not ({' and '.join(f'({x})' for x in core.parts)})"
+            assert prove(BASE, claim, Effort(5.0)).verdict is Verdict.PROVED
 
 
 def test_a_drive_is_not_taken_for_what_it_does_not_show(entries: dict[tuple[int, int], PairVerdict]) -> None:
@@ -165,14 +140,13 @@ def test_a_drive_is_not_taken_for_what_it_does_not_show(entries: dict[tuple[int,
     assert not shows("scenario_3(SV,POV,L)")
 
 
-def test_groups_leave_no_pair_out_and_solve_36() -> None:
-    pairs = pairs_of(BASIS)
-    groups = Overlap(BASIS, pairs).pieces({})
-    assert len(pairs) == 276
-    assert len(groups) == 36
-    grouped = [frozenset(pair) for group in groups for pair in group.pairs]
-    assert len(grouped) == 276
-    assert set(grouped) == {frozenset(pair) for pair in pairs}
+def test_batches_leave_no_pair_out_and_are_36() -> None:
+    question = OverlapQuestion(BASIS)
+    batches = question.batches({})
+    assert len(question.pairs) == 276
+    assert len(batches) == 36
+    names = [name.rpartition("-")[0] if name.count("-") == 4 else name for x in batches for name in x]
+    assert sorted(names) == sorted(name_of(*pair) for pair in question.pairs)
 
 
 def test_rows_that_differ_in_more_than_their_sector_are_kept_apart() -> None:
@@ -189,7 +163,7 @@ def test_how_scenarios_may_meet() -> None:
         "scenario_3(SV, POV1, L) and scenario_2(SV, POV1, POV2, L)",
         "scenario_3(SV, POV2, L) and scenario_2(SV, POV1, POV2, L)",
     )
-    assert texts(conjunctions(BASE, node(1), node(4), Meeting("any", "any"))) == (
+    assert texts(conjunctions(BASE, node(1), node(4), Meeting(lanes="any", roles="any"))) == (
         "scenario_1(SV, POV, L) and scenario_4(SV, POV, L2)",
         "scenario_1(SV, POV, L) and scenario_4(POV, SV, L2)",
     )
@@ -205,7 +179,9 @@ def test_how_scenarios_may_meet() -> None:
 def test_across_sets_every_scenario_meets_every_other() -> None:
     basis = Basis(BASE, ("base", "ext"))
     assert len(pairs_of(basis)) == 576
-    (entry,) = conduct(Overlap(basis, ((node(1), node(3, "ext")),))).answers.values()
+    question = OverlapQuestion(basis, Meeting(among=(1, 3)))
+    vars(question)["pairs"] = ((node(1), node(3, "ext")),)
+    [entry] = question.view(settle(question).answers).pairs
     assert (entry.a.set_name, entry.b.set_name) == ("base", "ext")
     assert entry.verdict in (Verdict.WITNESSED, Verdict.IMPOSSIBLE)
 
@@ -225,7 +201,7 @@ def test_the_command_writes_what_it_promises_and_goes_on(
     line = ["overlap", "--among", "4-6", "--out", str(out), "--jobs", "1", "--json", "-", "--no-pictures"]
     assert main(line) == 0
     data = json.loads(capsys.readouterr().out)
-    assert (data["schema"], data["set"]) == ("roadproof/overlap/1", "base")
+    assert (data["schema"], data["set"]) == ("roadproof/overlap/2", "base")
     by_pair = {(x["a"], x["b"]): x for x in data["verdicts"]}
     assert {pair: x["verdict"] for pair, x in by_pair.items()} == {
         (4, 5): "IMPOSSIBLE",
@@ -235,29 +211,42 @@ def test_the_command_writes_what_it_promises_and_goes_on(
     assert by_pair[5, 6]["core"] == ["not sameLane(POV, SV, L)", "sameLane(POV, SV, L)"]
     assert main(["check", str(out), "--jobs", "1"]) == 0
     assert "3 of 3 accepted" in capsys.readouterr().out
-    # One answer lost with its evidence, one file cut short: both are asked again, the third is not.
-    third = Path(by_pair[4, 6]["drive"])
-    before = third.stat().st_mtime_ns
-    Path(by_pair[4, 5]["certificate"]).unlink()
-    cut = out / "answers/base-05-base-06.json"
-    cut.write_text(cut.read_text()[:50])
+    # One answer lost, one file cut short: both are asked again, the third is not.
+    files = {pair: Path(x["evidence"][0]) for pair, x in by_pair.items()}
+    before = {pair: (path.read_bytes(), path.stat().st_mtime_ns) for pair, path in files.items()}
+    files[4, 5].unlink()
+    files[5, 6].write_text(files[5, 6].read_text()[:50])
     assert main(line) == 0
     again = {(x["a"], x["b"]): x for x in json.loads(capsys.readouterr().out)["verdicts"]}
-    assert {pair: x["verdict"] for pair, x in again.items()} == {p: x["verdict"] for p, x in by_pair.items()}
-    assert third.stat().st_mtime_ns == before
+    assert again == by_pair
+    after = {pair: (path.read_bytes(), path.stat().st_mtime_ns) for pair, path in files.items()}
+    assert {pair: x for pair, (x, _) in after.items()} == {pair: x for pair, (x, _) in before.items()}
+    assert after[4, 6] == before[4, 6]
     assert main([*line, "--start", "any"]) == 2
     assert "another question" in capsys.readouterr().err
 
 
 def verdict(a: int, b: int, name: str, *core: str) -> PairVerdict:
-    query = read_claim(BASE, "aheadOf(SV,POV) and true")
-    cores = (Core(query, tuple(read_claim(BASE, part).formula for part in core)),) if core else ()
-    return PairVerdict(node(a), node(b), query, cores, verdict=Verdict(name))
+    """A pair with a verdict; of an IMPOSSIBLE the parts that clash."""
+    parts = core or ("aheadOf(SV, POV)", "not aheadOf(SV, POV)")
+    query = read_claim(BASE, " and ".join((*parts, "true")))
+    claim = BASIS.claim(query)
+    match Verdict(name):
+        case Verdict.WITNESSED:
+            drive: JudgedDrive = object.__new__(JudgedDrive)
+            answer = Answer(claim, drive)
+        case Verdict.IMPOSSIBLE:
+            denied = f"not ({' and '.join(parts)})"
+            answer = Answer(claim, replace(PROOF, claim=denied))
+        case _:
+            answer = undecided(claim, Why.TOLD("why"))
+    pair = name_of(node(a), node(b))
+    return PairVerdict(node(a), node(b), {pair: claim}, {pair: answer})
 
 
 def test_the_matrix_is_symmetric_within_a_set_only() -> None:
     answers = [
-        verdict(1, 4, "IMPOSSIBLE", "aheadOf(SV,POV)", "not aheadOf(SV,POV)"),
+        verdict(1, 4, "IMPOSSIBLE", "aheadOf(SV, POV)", "not aheadOf(SV, POV)"),
         verdict(1, 5, "WITNESSED"),
         verdict(4, 5, "UNKNOWN"),
     ]
@@ -265,7 +254,8 @@ def test_the_matrix_is_symmetric_within_a_set_only() -> None:
     assert rows[:4] == ["      1  4  5", "   1     .  #", "   4  .     ?", "   5  #  ?   "]
     assert as_matrix(answers, across=True).splitlines()[:3] == ["      4  5", "   1  .  #", "   4     ?"]
     assert as_csv(sheet_of(answers, WORDS)).splitlines()[1] == (
-        '1,4,base,base,IMPOSSIBLE,"aheadOf(SV,POV) and true","aheadOf(SV, POV); not aheadOf(SV, POV)",,,'
+        '1,4,base,base,IMPOSSIBLE,"not (aheadOf(SV, POV) and not aheadOf(SV, POV) and true)",'
+        '"aheadOf(SV, POV); not aheadOf(SV, POV)",,base-01-base-04.json,'
         '"cut-in, lane keep, main road","deceleration ahead, lane keep, main road"'
     )
 
@@ -314,8 +304,9 @@ def test_evidence_lies_beside_a_json_file(tmp_path: Path, capsys: pytest.Capture
     target = tmp_path / "answers"
     assert main(["overlap", "--among", "5,6", "--jobs", "1", "--json", str(target)]) == 0
     (answer,) = json.loads(target.read_text())["verdicts"]
-    assert Path(answer["certificate"]).parent == tmp_path / "answers-evidence"
-    assert main(["check", answer["certificate"]]) == 0
+    [file] = answer["evidence"]
+    assert Path(file).parent == tmp_path / "answers-evidence"
+    assert main(["check", file]) == 0
 
 
 @pytest.mark.parametrize(

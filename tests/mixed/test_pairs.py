@@ -1,73 +1,60 @@
 """Pairs of scenarios with several readings: one proved beside one that is not, one in doubt among others."""
 
-import json
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from roadproof.analysis import overlap
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.overlap import Core, Group, Meeting, Overlap, PairVerdict, conjunctions, name_of
-from roadproof.engines.prove.prover import Result
-from roadproof.evidence.certificate import read_certificate_data
+from roadproof.engines.search import existing
+from roadproof.engines.search.existing import settle_existing
+from roadproof.evidence.answer import Answer, undecided
+from roadproof.evidence.certificate import read_certificate
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import both, negation
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import Scenario
-from roadproof.reasons import NO_REASON, Why
+from roadproof.logic.parts import parts_of
+from roadproof.questions.overlap import Meeting, OverlapQuestion, PairVerdict, conjunctions, name_of
+from roadproof.questions.settle import settle
+from roadproof.reasons import Why
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.verdict import Verdict
 
 V = Verdict
-PROOF = Path(__file__).parents[2] / "proofs/P4-scenario-03-base.json"
-CERTIFICATE: Any = read_certificate_data(json.loads(PROOF.read_text("utf-8")), "proof")
+PROOF = read_certificate(Path(__file__).parents[2] / "proofs/P4-scenario-03-base.json")
 HOME = bundled_library().select()
-PAIR = (Scenario(3, "base"), Scenario(4, "base"))
-ANY_START = Meeting(start="any")
-READINGS = conjunctions(HOME, *PAIR, ANY_START)
-WHOLE = both(*map(negation, READINGS))
-DRIVE: Any = SimpleNamespace(file=SimpleNamespace())
+BASIS = Basis(HOME)
+ANY_START = Meeting(among=(3, 4), start="any")
+QUESTION = OverlapQuestion(BASIS, ANY_START)
+READINGS = conjunctions(HOME, *QUESTION.pairs[0], ANY_START)
+DRIVE: Any = object.__new__(JudgedDrive)
 
 
-def outcome(verdict: Verdict, said: str, drive: Any = None) -> Any:
-    told = NO_REASON if verdict is V.IMPOSSIBLE else Why.TOLD(said)
-    return SimpleNamespace(verdict=verdict, drives=() if drive is None else (drive,), told=lambda _: told)
+def answered(claim: Any, verdict: Verdict, reason: str = "") -> Answer:
+    match verdict:
+        case V.WITNESSED:
+            return Answer(claim, DRIVE)
+        case V.IMPOSSIBLE:
+            return Answer(claim, replace(PROOF, claim=negation(claim.query).text))
+        case V.UNKNOWN | V.NONE_WITHIN:
+            return undecided(claim, Why.TOLD(reason or "why"), verdict)
+        case _:
+            raise AssertionError(verdict)
 
 
-class Engines:
-    """What provers and searches answer, by the text of what is asked; all that was asked is noted."""
-
-    def __init__(
-        self, monkeypatch: pytest.MonkeyPatch, proofs: dict[str, Any], found: dict[str, Any]
-    ) -> None:
-        self.proofs, self.found, self.asked = proofs, found, list[str]()
-        monkeypatch.setattr(Basis, "proof_of", lambda basis, query, *_, **__: self.prove(query))
-        monkeypatch.setattr(overlap, "ask", self.ask)
-        monkeypatch.setattr(overlap, "explain", lambda *_: None)
-
-    def prove(self, query: Any) -> Any:
-        self.asked.append(query.text)
-        result = self.proofs.get(query.text, Result(verdict=V.UNKNOWN))
-        if isinstance(result, Exception):
-            raise result
-        return result
-
-    def ask(self, search: Any) -> Any:
-        return self.found[search.query.text]
-
-
-def proof(name: str) -> Result:
-    return Result(verdict=V.PROVED, certificate=replace(CERTIFICATE, claim=name))
-
-
-def settled(meeting: Meeting = ANY_START, pair: Any = PAIR) -> PairVerdict:
-    study = Overlap(Basis(HOME), (pair,), meeting)
-    [piece] = study.pieces({})
-    [answer] = study.settle(piece).values()
-    return answer
+def seen(verdicts: Any, question: OverlapQuestion = QUESTION) -> PairVerdict:
+    """The pair whose readings have these verdicts, None where one is not asked."""
+    names = [*question._claims[question.pairs[0]].items()]
+    known = {
+        name: answered(claim, verdict, f"why-{k}")
+        for k, ((name, claim), verdict) in enumerate(zip(names, verdicts, strict=True))
+        if verdict is not None
+    }
+    [pair] = question.view(known).pairs
+    return pair
 
 
 def test_there_are_two_readings() -> None:
@@ -75,123 +62,106 @@ def test_there_are_two_readings() -> None:
     assert READINGS[0].formula != READINGS[1].formula
 
 
-@pytest.mark.parametrize("verdicts", list(product((V.IMPOSSIBLE, V.NONE_WITHIN, V.UNKNOWN), repeat=2)))
-def test_one_reading_in_doubt_is_a_doubt(verdicts: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    found = {x.text: outcome(v, f"why-{k}") for k, (x, v) in enumerate(zip(READINGS, verdicts, strict=True))}
-    Engines(monkeypatch, {}, found)
-    answer = settled()
-    assert answer.verdict is (V.UNKNOWN if V.UNKNOWN in verdicts else V.NONE_WITHIN)
+@pytest.mark.parametrize(
+    "verdicts", list(product((V.WITNESSED, V.IMPOSSIBLE, V.NONE_WITHIN, V.UNKNOWN, None), repeat=2))
+)
+def test_a_pair_is_what_its_readings_are_together(verdicts: Any) -> None:
+    """One drive shows a pair; only proofs against all readings rule it out; the gravest doubt counts."""
+    pair = seen(verdicts)
+    known = {V.UNKNOWN if x is None else x for x in verdicts}
+    if V.WITNESSED in known:
+        expected = V.WITNESSED
+    elif known == {V.IMPOSSIBLE}:
+        expected = V.IMPOSSIBLE
+    else:
+        expected = V.UNKNOWN if V.UNKNOWN in known else V.NONE_WITHIN
+    assert pair.verdict is expected
+    assert (pair.drive is DRIVE) is (expected is V.WITNESSED)
+    assert len(pair.evidence) == {V.WITNESSED: 1, V.IMPOSSIBLE: 2}.get(expected, 0)
+    assert len(pair.cores) == (2 if expected is V.IMPOSSIBLE else 0)
     for k, verdict in enumerate(verdicts):
-        assert (f"why-{k}" in answer.reason) is (verdict is not V.IMPOSSIBLE)
-    assert answer.certificate is None
+        is_doubt = expected in (V.UNKNOWN, V.NONE_WITHIN) and verdict in (V.UNKNOWN, V.NONE_WITHIN)
+        assert (f"why-{k}" in pair.reason) is is_doubt
 
 
-def test_all_readings_impossible_with_a_proof_of_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
-    found = {x.text: outcome(V.IMPOSSIBLE, "") for x in READINGS}
-    Engines(monkeypatch, {WHOLE.text: proof("whole")}, found)
-    answer = settled()
-    assert answer.verdict is V.IMPOSSIBLE
-    assert answer.certificate is not None
-    assert answer.certificate.claim == "whole"
+def test_what_is_claimed_of_a_pair() -> None:
+    whole = both(*map(negation, READINGS))
+    assert seen((V.IMPOSSIBLE, V.IMPOSSIBLE)).query.formula == whole.formula
+    assert seen((V.IMPOSSIBLE, V.WITNESSED)).query == READINGS[1]
+    assert seen((V.IMPOSSIBLE, V.UNKNOWN)).query.formula == READINGS[1].formula
 
 
-@pytest.mark.parametrize("place", [0, 1])
-def test_one_impossible_reading_does_not_make_the_pair_so(
-    place: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    verdicts = [V.NONE_WITHIN, V.NONE_WITHIN]
-    verdicts[place] = V.IMPOSSIBLE
-    found = {x.text: outcome(v, "why") for x, v in zip(READINGS, verdicts, strict=True)}
-    Engines(monkeypatch, {WHOLE.text: proof("whole")}, found)
-    assert settled().verdict is V.NONE_WITHIN
-
-
-def test_proofs_of_all_readings_are_proved_together(monkeypatch: pytest.MonkeyPatch) -> None:
-    proofs: dict[str, Any] = {negation(x).text: proof(f"reading-{k}") for k, x in enumerate(READINGS)}
-    engines = Engines(monkeypatch, {**proofs, WHOLE.text: proof("whole")}, {})
-    answer = settled()
-    assert answer.verdict is V.IMPOSSIBLE
-    assert answer.certificate is not None
-    assert (answer.certificate.claim, answer.query and answer.query.formula) == ("whole", WHOLE.formula)
-    assert [x.whole.text for x in answer.cores] == [x.text for x in READINGS]
-    assert WHOLE.text in engines.asked
-    Engines(monkeypatch, proofs, {})  # the proof of the whole is lost
-    lost = settled()
-    assert (lost.verdict, lost.certificate) == (V.UNKNOWN, None)
-    assert lost.reason == Why.PROOF_LOST()
-
-
-@pytest.mark.parametrize("place", [0, 1])
-def test_a_drive_of_the_reading_that_is_not_proved_impossible(
-    place: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    proofs: dict[str, Any] = {negation(READINGS[1 - place]).text: proof("one")}
-    Engines(monkeypatch, proofs, {READINGS[place].text: outcome(V.WITNESSED, "", DRIVE)})
-    answer = settled()
-    assert (answer.verdict, answer.drive) == (V.WITNESSED, DRIVE)
-    assert answer.query is not None
-    assert answer.query.text == READINGS[place].text
+def test_the_next_reading_is_asked_until_one_holds() -> None:
+    [batch] = QUESTION.batches({})
+    [first] = batch
+    for verdict, left in ((V.WITNESSED, 0), (V.IMPOSSIBLE, 1), (V.NONE_WITHIN, 1), (V.UNKNOWN, 1)):
+        following = QUESTION.batches({first: answered(batch[first], verdict)})
+        assert len(following) == left, verdict
+        assert all(first not in x for x in following)
 
 
 def test_what_the_clock_cuts_off_is_in_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
-    Engines(monkeypatch, {negation(READINGS[1]).text: BudgetExceeded(3.0)}, {})
-    answer = settled()
-    assert answer.verdict is V.UNKNOWN
-    assert "--timeout" in answer.reason
+    def late(*_: Any) -> Any:
+        raise BudgetExceeded(3.0)
+
+    monkeypatch.setattr(existing, "prove_of_scenarios", late)
+    claims = [BASIS.claim(x) for x in READINGS]
+    answers = [*settle_existing(claims, BASIS.work)]
+    assert [x.verdict for x in answers] == [V.UNKNOWN, V.UNKNOWN]
+    assert all("--timeout" in x.reason for x in answers)
 
 
-def test_a_lost_group_is_a_doubt_of_all_its_pairs() -> None:
-    pairs = tuple((Scenario(a, "base"), Scenario(a + 1, "base")) for a in (3, 11, 19))
-    study = Overlap(Basis(HOME), pairs)
-    [piece] = study.pieces({})
-    doubts = study.doubt(piece, Why.PROCESS("SIGKILL"))
-    assert {x.verdict for x in doubts.values()} == {V.UNKNOWN}
-    assert [*doubts] == [name_of(*x) for x in pairs]
-    sure = {x: study.is_sure(PairVerdict(*PAIR, verdict=x)) for x in (V.NONE_WITHIN, V.UNKNOWN)}
-    assert sure == {V.NONE_WITHIN: False, V.UNKNOWN: False}
-    assert study.is_sure(PairVerdict(*PAIR, verdict=V.IMPOSSIBLE))
-    assert study.is_sure(PairVerdict(*PAIR, verdict=V.WITNESSED))
-
-
-@pytest.mark.parametrize("place", [0, 1])
-def test_the_drive_of_a_group_is_put_to_the_same_reading(place: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    other = (Scenario(11, "base"), Scenario(12, "base"))
-    asked: list[str] = []
-    monkeypatch.setattr(overlap, "placed", lambda file, query, library: asked.append(query.text) or DRIVE)
-    jobs = overlap._DecisionJobs(Basis(HOME), ANY_START)
-    first = PairVerdict(*PAIR, READINGS[place], verdict=V.WITNESSED, drive=DRIVE)
-    answer = jobs.answer(other, PAIR, first)
-    expected = conjunctions(HOME, *other, ANY_START)[place].text
-    assert asked == [expected]
-    assert (answer.verdict, answer.query and answer.query.text) == (V.WITNESSED, expected)
-
-
-def test_parts_that_another_pair_does_not_have_are_not_its_core(monkeypatch: pytest.MonkeyPatch) -> None:
-    Engines(monkeypatch, {}, {})
-    jobs = overlap._DecisionJobs(Basis(HOME), Meeting())
-    [mine] = conjunctions(HOME, *PAIR, Meeting())
+def test_parts_that_another_claim_does_not_have_do_not_clash_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    [mine] = conjunctions(HOME, Scenario(3, "base"), Scenario(4, "base"), Meeting())
     [other] = conjunctions(HOME, Scenario(5, "base"), Scenario(6, "base"), Meeting())
-    here, there = (list(overlap.parts(x.formula)) for x in (mine, other))
-    common, foreign = tuple(here[:1]), tuple(x for x in there if x not in here)
+    asked: list[str] = []
+
+    def note(home: Any, query: Any, effort: Any) -> Any:
+        asked.append(query.text)
+        raise BudgetExceeded(1.0)
+
+    monkeypatch.setattr(existing, "prove_of_scenarios", note)
+    here, there = ([*parts_of(x.formula)] for x in (mine, other))
+    foreign = [x for x in there if x not in here]
     assert foreign
-    assert jobs._core_like(mine, Core(other, common)).parts == common
-    assert jobs._core_like(mine, Core(other, foreign)).parts == ()
-    assert jobs._core_like(mine, Core(other, (*common, *foreign))).parts == ()
+    batch = existing._Batch(BASIS.work)
+    for core, is_tried in ((here[:1], True), (foreign, False), ([*here[:1], *foreign], False)):
+        batch.clashes[:] = [negation(existing.of_parts(other, core)).formula]
+        asked.clear()
+        try:
+            assert batch.follow(BASIS.claim(mine)) is None
+        except BudgetExceeded:
+            assert asked
+        assert bool(asked) is is_tried
+
+
+def test_the_claims_of_a_lost_batch_are_asked_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    question = OverlapQuestion(BASIS, Meeting(among=(3, 4, 11, 12)))
+    sizes: list[int] = []
+
+    def work(job: Any, batches: Any, hands: Any, lost: Any, *_: Any) -> Any:
+        sizes.extend(map(len, batches))
+        for place, batch in enumerate(batches):
+            yield place, lost(batch, Why.PROCESS("SIGKILL"))
+
+    monkeypatch.setattr("roadproof.analysis.study.pool.work", work)
+    found = settle(question, hands=1, fresh=True).answers
+    assert len(found) == len(question.pairs)
+    assert {x.verdict for x in found.values()} == {V.UNKNOWN}
+    assert {x.reason for x in found.values()} == {Why.PROCESS("SIGKILL")}
+    assert max(sizes) > 1
+    assert sizes.count(1) >= len(question.pairs)
 
 
 def test_pairs_across_two_sets_keep_their_order_and_their_names() -> None:
     basis = Basis(HOME, ("base", "ext"))
-    pairs = tuple((Scenario(a, "base"), Scenario(b, "ext")) for a, b in product((3, 4), repeat=2))
-    study = Overlap(basis, pairs)
-    pieces = study.pieces({})
-    assert [x for piece in pieces for x in piece.pairs] == [*pairs]
-    assert all((a.set_name, b.set_name) == ("base", "ext") for piece in pieces for a, b in [piece.seed])
-    sets = ("base", "extA", "ext")
-    every = [(Scenario(a, x), Scenario(b, y)) for a, b in pairs_of_numbers() for x, y in product(sets, sets)]
+    question = OverlapQuestion(basis, Meeting(among=(3, 4)))
+    expected = [(Scenario(a, "base"), Scenario(b, "ext")) for a, b in product((3, 4), repeat=2)]
+    assert [*question.pairs] == expected
+    listed = [name for batch in question.batches({}) for name in batch]
+    assert sorted(listed) == sorted(name_of(*pair) for pair in expected)
+    sets, numbers = ("base", "extA", "ext"), [(3, 4), (4, 3), (3, 3), (11, 12)]
+    every = [(Scenario(a, x), Scenario(b, y)) for a, b in numbers for x, y in product(sets, sets)]
     assert len({name_of(a, b) for a, b in every}) == len(every)
-    assert len({study.key(name_of(*x)) for x in pairs}) == len(pairs)
-    assert isinstance(pieces[0], Group)
-
-
-def pairs_of_numbers() -> list[tuple[int, int]]:
-    return [(3, 4), (4, 3), (3, 3), (11, 12)]
+    digests = {claim.digest() for batch in question.batches({}) for claim in batch.values()}
+    assert len(digests) == len(expected)

@@ -49,7 +49,7 @@ def settle(
         raise UsageError(f"--shard {shard} requires --out, the folder that the runs share")
     store = Store(folder, question.kind, question.basis.work, reads_known=not fresh and not is_off())
     store.open(question)
-    run = _Run(question, store, each or _nobody)
+    run = _Run(question, store, each or _nobody, say)
     first = {name for batch in question.batches({}) for name in batch}
     dealt = (
         first if shard is None else {name for batch in shard.among(question.batches({})) for name in batch}
@@ -80,8 +80,14 @@ def _is_ours(batch: Batch, first: set[str], dealt: set[str], has: Callable[[str]
 class _Run:
     """The answers that are known so far."""
 
-    def __init__(self, question: Question[Any], store: Store, each: Callable[[str, Answer], None]) -> None:
-        self.question, self.store, self.each = question, store, each
+    def __init__(
+        self,
+        question: Question[Any],
+        store: Store,
+        each: Callable[[str, Answer], None],
+        say: Callable[[str], None] | None,
+    ) -> None:
+        self.question, self.store, self.each, self.say = question, store, each, say
         self.known: dict[str, Answer] = {}
         self.origins: dict[str, Origin] = {}
         self.doubts: set[str] = set()
@@ -100,7 +106,7 @@ class _Run:
         return [batch for batch in left if batch]
 
     def _look_up(self, name: str, claim: Any) -> bool:
-        found = self.store.find(name, claim)
+        found = self.store.find(name, claim, self.say)
         if found is None or not found[0].is_final:
             return False
         answer, origin = found

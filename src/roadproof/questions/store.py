@@ -6,7 +6,8 @@ the archive a file stands under the digest of its claim, of the work that was al
 
 import json
 import lzma
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -61,31 +62,32 @@ class Store:
         """The digest of all that an answer depends on."""
         return digest(claim.digest(), self.work, ANSWERS)
 
-    def find(self, name: str, claim: Claim) -> tuple[Answer, Origin | None] | None:
+    def find(
+        self, name: str, claim: Claim, say: Callable[[str], None] | None = None
+    ) -> tuple[Answer, Origin | None] | None:
         """Return the answer to a claim that is known; None where none stands.
 
-        It comes with its origin, which is None where the folder has it.
+        It comes with its origin, which is None where the folder has it. ``say`` is told of a file in the
+        folder that does not stand.
         """
-        for origin, content in self._contents(name, claim):
+        if self.folder is not None and (path := self.folder / f"{name}.json").is_file():
             try:
-                return read_answer(claim, content, f"the answer {name}"), origin
-            except InputError:
-                continue
+                return read_answer(claim, read_json(path, LARGEST_EVIDENCE), str(path)), None
+            except InputError as error:
+                if say is not None:
+                    say(f"a stored answer is invalid and is computed again: {error}")
+        known = self._known(claim) if self.reads_known else None
+        if known is not None:
+            with suppress(InputError):
+                return read_answer(claim, known[0], "a known answer"), known[1]
         return None
 
-    def _contents(self, name: str, claim: Claim) -> list[tuple[Origin | None, object]]:
-        found: list[tuple[Origin | None, object]] = []
-        path = None if self.folder is None else self.folder / f"{name}.json"
-        if path is not None and path.is_file():
-            found.append((None, read_json(path, LARGEST_EVIDENCE)))
-        if not self.reads_known:
-            return found
+    def _known(self, claim: Claim) -> tuple[object, Origin] | None:
         key = self.key(claim)
         if key in archived(self.kind):
-            found.append(("shipped", archived(self.kind)[key]))
-        elif (data := kept_bytes(CACHE, digest(key, program()))) is not None:
-            found.append(("cache", json.loads(lzma.decompress(data))))
-        return found
+            return archived(self.kind)[key], "shipped"
+        data = kept_bytes(CACHE, digest(key, program()))
+        return None if data is None else (json.loads(lzma.decompress(data)), "cache")
 
     def keep(self, name: str, answer: Answer, is_new: bool = True) -> None:
         """Write an answer into the folder, and into the cache where it is new and stands."""

@@ -1,0 +1,141 @@
+"""Folders of answers with one thing changed: what ``check`` shows of them is the same, or they are rejected."""
+
+import json
+import random
+import shutil
+from collections.abc import Callable, Iterator
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import roadproof as rp
+from roadproof.frontends.api.checking import check
+from roadproof.questions.checking import read_folder
+from roadproof.questions.data import QUESTION
+from roadproof.verdict import ExitCode
+
+FOLDERS: dict[str, Callable[[Path], object]] = {
+    "overlap": lambda out: rp.overlap("4,5,8", out=out, jobs=1),
+}
+MOST = 60
+"""Fields of a file that are changed; of more there is a sample."""
+
+
+@pytest.fixture(scope="module", params=FOLDERS)
+def folder(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    place = tmp_path_factory.mktemp(request.param) / "answers"
+    FOLDERS[request.param](place)
+    for path in place.iterdir():
+        if path.suffix != ".json":
+            path.unlink()
+    assert check(place, jobs=1).exit_code is ExitCode.AS_EXPECTED
+    return place
+
+
+def answers_in(folder: Path) -> list[Path]:
+    return sorted(x for x in folder.glob("*.json") if x.name != QUESTION)
+
+
+def shown(folder: Path) -> tuple[object, ...]:
+    """What is said of each claim: its label, its words and the verdict."""
+    return tuple((x.label, x.claim, x.verdict) for x in check(folder, jobs=1).findings)
+
+
+def leaves(content: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+    match content:
+        case dict():
+            for key, value in content.items():
+                yield from leaves(value, (*path, key))
+        case list():
+            for place, value in enumerate(content):
+                yield from leaves(value, (*path, place))
+        case _:
+            yield path
+
+
+def changed(value: Any) -> Any:
+    match value:
+        case bool():
+            return not value
+        case int() | float():
+            return value + 1
+        case str():
+            return f"{value}1" if value[-1:].isdigit() else f"{value} x"
+        case _:
+            return 1
+
+
+def test_a_changed_field_is_rejected_or_has_no_effect(folder: Path, tmp_path: Path) -> None:
+    before = shown(folder)
+    sample = random.Random(0)
+    counts = {"rejected": 0, "without effect": 0}
+    for path in [folder / QUESTION, *answers_in(folder)]:
+        content = json.loads(path.read_text())
+        every = [*leaves(content)]
+        for field in sample.sample(every, min(MOST, len(every))):
+            copy = tmp_path / "copy"
+            shutil.rmtree(copy, ignore_errors=True)
+            shutil.copytree(folder, copy)
+            forged = json.loads(path.read_text())
+            inner = forged
+            for key in field[:-1]:
+                inner = inner[key]
+            inner[field[-1]] = changed(inner[field[-1]])
+            (copy / path.name).write_text(json.dumps(forged))
+            try:
+                found = check(copy, jobs=1)
+            except rp.InputError:
+                counts["rejected"] += 1
+                continue
+            if found.exit_code is ExitCode.AS_EXPECTED:
+                assert shown(copy) == before, (path.name, field)
+                counts["without effect"] += 1
+            else:
+                counts["rejected"] += 1
+    assert counts["rejected"] > counts["without effect"]
+
+
+def test_two_files_that_are_swapped_are_rejected(folder: Path, tmp_path: Path) -> None:
+    for one, other in combinations(answers_in(folder), 2):
+        copy = tmp_path / f"{one.stem}-{other.stem}"
+        shutil.copytree(folder, copy)
+        (copy / one.name).write_bytes(other.read_bytes())
+        (copy / other.name).write_bytes(one.read_bytes())
+        assert check(copy, jobs=1).exit_code is ExitCode.UNEXPECTED
+
+
+def test_a_file_that_is_removed_leaves_a_claim_in_doubt(folder: Path, tmp_path: Path) -> None:
+    for path in answers_in(folder):
+        copy = tmp_path / path.stem
+        shutil.copytree(folder, copy)
+        (copy / path.name).unlink()
+        found = check(copy, jobs=1, strict=True)
+        assert found.exit_code is ExitCode.UNKNOWN
+        assert read_folder(copy).answers[path.stem].reason
+
+
+def test_a_file_that_no_claim_asks_for_is_rejected(folder: Path, tmp_path: Path) -> None:
+    first = answers_in(folder)[0]
+    for name in ("other.json", "answers/other.json", f"{first.stem}-1.json"):
+        copy = tmp_path / name.replace("/", "-")
+        shutil.copytree(folder, copy)
+        (copy / name).parent.mkdir(exist_ok=True)
+        (copy / name).write_bytes(first.read_bytes())
+        assert check(copy, jobs=1).exit_code is ExitCode.UNEXPECTED
+    copy = tmp_path / "link"
+    shutil.copytree(folder, copy)
+    (copy / first.name).unlink()
+    (copy / first.name).symlink_to(first)
+    assert check(copy, jobs=1).exit_code is ExitCode.UNEXPECTED
+
+
+def test_no_other_question_has_these_answers(folder: Path, tmp_path: Path) -> None:
+    copy = tmp_path / "copy"
+    shutil.copytree(folder, copy)
+    data = json.loads((copy / QUESTION).read_text())
+    data["question"] = "nothing"
+    (copy / QUESTION).write_text(json.dumps(data))
+    with pytest.raises(rp.InputError, match="question='nothing' is none of"):
+        check(copy, jobs=1)
