@@ -205,13 +205,14 @@ def test_a_digest_changes_with_all_that_an_answer_depends_on(other: Any) -> None
 
 
 def studies(basis: Basis) -> dict[str, Any]:
+    from roadproof.analysis.overlap import Overlap, pairs_of
+
     from roadproof.analysis.classify.classes import plan_of
     from roadproof.analysis.classify.divide import Dividing
     from roadproof.analysis.coverage.classes import GapSurvey
     from roadproof.analysis.coverage.study import Coverage
     from roadproof.analysis.order.deciding import kinds_of
     from roadproof.analysis.order.study import Ordering
-    from roadproof.analysis.overlap import Overlap, pairs_of
     from roadproof.analysis.redundancy import Redundancy
 
     home = basis.specification

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from roadproof.analysis.basis import Basis
-from roadproof.engines.search import existing
-from roadproof.engines.search.existing import settle_existing
+from roadproof.engines.search import batches
+from roadproof.engines.search.batches import settle_batch
 from roadproof.evidence.answer import Answer, undecided
 from roadproof.evidence.certificate import read_certificate
 from roadproof.evidence.judged import JudgedDrive
@@ -104,9 +104,9 @@ def test_what_the_clock_cuts_off_is_in_doubt(monkeypatch: pytest.MonkeyPatch) ->
     def late(*_: Any) -> Any:
         raise BudgetExceeded(3.0)
 
-    monkeypatch.setattr(existing, "prove_of_scenarios", late)
+    monkeypatch.setattr(batches, "prove_of_scenarios", late)
     claims = [BASIS.claim(x) for x in READINGS]
-    answers = [*settle_existing(claims, BASIS.work)]
+    answers = [*settle_batch(claims, BASIS.work)]
     assert [x.verdict for x in answers] == [V.UNKNOWN, V.UNKNOWN]
     assert all("--timeout" in x.reason for x in answers)
 
@@ -120,13 +120,13 @@ def test_parts_that_another_claim_does_not_have_do_not_clash_there(monkeypatch: 
         asked.append(query.text)
         raise BudgetExceeded(1.0)
 
-    monkeypatch.setattr(existing, "prove_of_scenarios", note)
+    monkeypatch.setattr(batches, "prove_of_scenarios", note)
     here, there = ([*parts_of(x.formula)] for x in (mine, other))
     foreign = [x for x in there if x not in here]
     assert foreign
-    batch = existing._Batch(BASIS.work)
+    batch = batches._Batch(BASIS.work)
     for core, is_tried in ((here[:1], True), (foreign, False), ([*here[:1], *foreign], False)):
-        batch.clashes[:] = [negation(existing.of_parts(other, core)).formula]
+        batch.clashes[:] = [negation(batches.of_parts(other, core)).formula]
         asked.clear()
         try:
             assert batch.follow(BASIS.claim(mine)) is None

@@ -1,4 +1,4 @@
-"""Folders of answers with one thing changed: what ``check`` shows of them is the same, or they are rejected."""
+"""Folders of answers with one thing changed: ``check`` shows the same of them, or they are rejected."""
 
 import json
 import random

@@ -20,7 +20,10 @@ from roadproof.world.vehicle import Vehicle
 
 QUESTION: Final = "question.json"
 SCHEMA: Final = "roadproof/question/1"
-KINDS: Mapping[str, str] = {"overlap": "roadproof.questions.overlap:OverlapQuestion"}
+KINDS: Mapping[str, str] = {
+    "overlap": "roadproof.questions.overlap:OverlapQuestion",
+    "redundancy": "roadproof.questions.redundancy:RedundancyQuestion",
+}
 """The class of each kind of question."""
 
 

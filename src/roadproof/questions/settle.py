@@ -9,7 +9,6 @@ from roadproof.analysis.study import pool
 from roadproof.analysis.study.known import Origin, is_off
 from roadproof.analysis.study.known import told as told_known
 from roadproof.analysis.study.pool import Progress
-from roadproof.engines.settling import settle_batch
 from roadproof.errors import SharedError, UsageError
 from roadproof.evidence.answer import Answer, undecided
 from roadproof.questions.question import Batch, Question
@@ -145,6 +144,8 @@ class _Job:
     work: Any
 
     def __call__(self, batch: Batch) -> list[tuple[str, Answer]]:
+        from roadproof.engines.search.batches import settle_batch  # here: known answers need no solver
+
         return [*zip(batch, settle_batch([*batch.values()], self.work), strict=True)]
 
 

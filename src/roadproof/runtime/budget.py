@@ -65,10 +65,14 @@ class Effort:
 
 @dataclass(frozen=True)
 class Work:
-    """The work for a claim: ``effort`` for a drive, ``proof`` units for a proof before one is looked for."""
+    """The work for a claim: ``effort`` for a drive, ``proof`` units for a proof before one is looked for.
+
+    ``seek_drive``: whether a drive is looked for that refutes a claim about all traces.
+    """
 
     effort: Effort
     proof: float
+    seek_drive: bool = False
 
 
 @dataclass

@@ -84,7 +84,7 @@ def settle(
     if seek_drive:
         return _Settler(specification, query, effort, (label, scenario), tuple(said), begun).run()
     try:
-        found = _proved(specification, query, effort, (label, scenario), tuple(said))
+        found = prove_claim(specification, query, effort, (label, scenario), tuple(said))
     except BudgetExceeded as late:
         return in_doubt(late.reason, begun)
     if is_moving(said) and not found.holds:
@@ -144,7 +144,7 @@ class _Settler:
 
     def _prove(self, units: float) -> Result:
         effort = self.effort.of(min(units, self.effort.units))
-        return _proved(self.specification, self.query, effort, self.called, self.said)
+        return prove_claim(self.specification, self.query, effort, self.called, self.said)
 
     def _may_change(self, result: Result, units: float) -> bool:
         """Whether more work than ``units`` may bring another answer."""
@@ -193,7 +193,7 @@ def _beyond(drive: JudgedDrive) -> str:
     return beyond_limits(drive)
 
 
-def _proved(
+def prove_claim(
     specification: Specification,
     query: Query,
     effort: Effort,

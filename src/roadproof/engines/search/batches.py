@@ -1,4 +1,4 @@
-"""Whether there are drives: claims that are alike, settled one after the other.
+"""Claims that are alike, settled one after the other.
 
 A drive of one claim is put on roads of the next and judged there; parts that clash in one are looked for in
 the next and proved to clash there. So each claim has evidence of its own.
@@ -6,6 +6,7 @@ the next and proved to clash there. So each claim has evidence of its own.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import assert_never
 
 from roadproof.engines.prove.induction import prove_of_scenarios
 from roadproof.engines.search.ask import ask
@@ -13,10 +14,11 @@ from roadproof.engines.search.impossible import explain
 from roadproof.engines.search.outcome import Outcome, Search
 from roadproof.engines.search.placing import placed
 from roadproof.engines.search.question import SearchOptions, Setting
+from roadproof.engines.search.valid import settle_valid
 from roadproof.evidence.answer import Answer, undecided
 from roadproof.evidence.answer_files import Doubt
 from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.claim import Claim, Exists
+from roadproof.evidence.claim import Claim, Exists, On, Valid
 from roadproof.library.compose import negation, of_parts
 from roadproof.library.specification import Query
 from roadproof.logic.formula import Formula, Not
@@ -52,12 +54,12 @@ def search_of(claim: Claim, work: Work, explain: bool = False) -> Search:
     return Search(claim.home, claim.query, setting, options, mode.count)
 
 
-def settle_existing(claims: Sequence[Claim], work: Work) -> Iterator[Answer]:
+def settle_batch(claims: Sequence[Claim], work: Work) -> Iterator[Answer]:
     """Yield the answer to each claim in turn; in doubt where the clock cuts one off."""
     batch = _Batch(work)
     for claim in claims:
         try:
-            answer = batch.follow(claim) or batch.decide(claim)
+            answer = batch.settle(claim)
         except BudgetExceeded as late:
             answer = undecided(claim, late.reason)
         batch.learn(answer)
@@ -77,6 +79,18 @@ class _Batch:
             self.drives.append(answer)
         if answer.certificate is not None and answer.certificate.query is not None:
             self.clashes.append(answer.certificate.query.formula)
+
+    def settle(self, claim: Claim) -> Answer:
+        """Return the answer to a claim of either mode. Raises ``BudgetExceeded``."""
+        match claim.mode:
+            case Valid():
+                return settle_valid(claim, self.work, (x.drive for x in self.drives if x.drive is not None))
+            case Exists():
+                return self.follow(claim) or self.decide(claim)
+            case On():
+                raise NotImplementedError("a claim about given files is settled by their reader")
+            case _:
+                assert_never(claim.mode)
 
     def follow(self, claim: Claim) -> Answer | None:
         """Return an answer that follows from an earlier one, or None."""
