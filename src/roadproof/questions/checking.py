@@ -15,7 +15,7 @@ from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
 from roadproof.evidence.strict import LARGEST_EVIDENCE, Fields, read_json
 from roadproof.library.motion import statement
 from roadproof.questions.data import QUESTION, SCHEMA, read_question
-from roadproof.questions.question import Question
+from roadproof.questions.question import Question, walk
 from roadproof.reasons import Why
 from roadproof.runtime.records import dataclass
 
@@ -79,14 +79,22 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
     there = {x.stem: x for x in folder.iterdir() if x.suffix == ".json" and x.name != QUESTION}
     answers: dict[str, Answer] = {}
     problems: list[Finding] = []
-    while claims := _unlisted(question, answers):
-        for name, claim in claims.items():
+
+    def find(name: str, claim: Claim) -> Answer:
+        if name not in answers:
             try:
                 answers[name] = _read(claim, there.pop(name, None))
             except InputError as error:
                 fault = Why.TOLD(error)
                 problems.append(Finding(str(folder / f"{name}.json"), "", Acceptance.REJECTED, fault))
                 answers[name] = undecided(claim, fault)
+        return answers[name]
+
+    seen: set[str] = set()
+    while new := [x for x in question.batches(answers) if x.name not in seen]:
+        for batch in new:
+            seen.add(batch.name)
+            [*walk(batch, find)]
     problems += [Finding(str(path), "", Acceptance.REJECTED, Why.UNNAMED()) for path in there.values()]
     specs = tuple(folder / Path(x.name).name for x in question.basis.library.files)
     specs = tuple(x for x in specs if x.is_file())
@@ -95,11 +103,6 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
     problems += [Finding(str(path), "", Acceptance.REJECTED, Why.UNNAMED()) for path in sorted(strays)]
     others = tuple(sorted(x.relative_to(folder).as_posix() for x in beside))
     return QuestionFolder(folder, question, specs, answers, tuple(problems), others)
-
-
-def _unlisted(question: Question[Any], known: Mapping[str, Answer]) -> dict[str, Claim]:
-    every = {name: claim for batch in question.batches(known) for name, claim in batch.items()}
-    return {name: claim for name, claim in every.items() if name not in known}
 
 
 def _read(claim: Claim, path: Path | None) -> Answer:

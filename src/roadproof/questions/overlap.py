@@ -4,7 +4,7 @@ Pairs that differ only in their road sectors (eq. disturbFormat: rows 9 to 24 re
 one after the other: a drive of one is put on roads of the others, and parts that clash are looked for there.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import field
 from functools import cached_property
 from itertools import combinations, permutations
@@ -26,7 +26,7 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import Not
 from roadproof.logic.parts import parts_of
-from roadproof.questions.question import Answers, Batch, Place, heading_of
+from roadproof.questions.question import Answers, Place, Steps, heading_of
 from roadproof.reasons import NO_REASON, Reason, Why, joined
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import DriveVerdict, Verdict
@@ -109,7 +109,7 @@ class PairVerdict:
 
     a: s.Scenario
     b: s.Scenario
-    claims: Batch
+    claims: Mapping[str, Claim]
     answers: Mapping[str, Answer | None]
 
     @property
@@ -218,24 +218,18 @@ class OverlapQuestion:
         """The pairs that are asked about."""
         return pairs_of(self.basis, self.asked.among)
 
-    def batches(self, known: Answers) -> list[Batch]:
-        """Of each pair the next conjunction, until one holds; pairs that are alike come together."""
-        groups: dict[Pair, dict[str, Claim]] = {}
+    def batches(self, known: Answers) -> list["PairBatch"]:
+        """A batch for pairs that differ in road sectors only."""
+        groups: dict[Pair, list[Pair]] = {}
         for pair in self.pairs:
-            name = next(self._open(pair, known), None)
-            if name is not None:
-                groups.setdefault(self._seed(*pair), {})[name] = self._claims[pair][name]
-        return list(groups.values())
-
-    def _open(self, pair: Pair, known: Answers) -> Iterator[str]:
-        for name in self._claims[pair]:
-            if name not in known:
-                yield name
-            elif known[name].verdict is Verdict.WITNESSED:
-                return
+            groups.setdefault(self._seed(*pair), []).append(pair)
+        return [
+            PairBatch(name_of(*seed), tuple(self.claims[pair] for pair in pairs))
+            for seed, pairs in groups.items()
+        ]
 
     @cached_property
-    def _claims(self) -> dict[Pair, dict[str, Claim]]:
+    def claims(self) -> dict[Pair, dict[str, Claim]]:
         """The claims of each pair, by name."""
         return {pair: self._claims_of(pair) for pair in self.pairs}
 
@@ -270,16 +264,32 @@ class OverlapQuestion:
 
     def label(self, name: str) -> str:
         """Return which two scenarios the claim of a name is about."""
-        a, b = next(pair for pair, claims in self._claims.items() if name in claims)
+        a, b = next(pair for pair, claims in self.claims.items() if name in claims)
         return f"scenarios {a} and {b}"
 
     def view(self, known: Answers) -> OverlapView:
         """Return the verdict on each pair."""
         pairs = (
             PairVerdict(*pair, claims, {name: known.get(name) for name in claims})
-            for pair, claims in self._claims.items()
+            for pair, claims in self.claims.items()
         )
         return OverlapView(self.asked, tuple(pairs))
+
+
+@dataclass(frozen=True)
+class PairBatch:
+    """The claims of pairs that are alike, by name; of each pair they are asked until one holds."""
+
+    name: str
+    pairs: tuple[Mapping[str, Claim], ...]
+
+    def steps(self) -> Steps:
+        """Yield each claim, and be sent its answer."""
+        for claims in self.pairs:
+            for name, claim in claims.items():
+                answer = yield name, claim
+                if answer.verdict is Verdict.WITNESSED:
+                    break
 
 
 def name_of(a: s.Scenario, b: s.Scenario) -> str:

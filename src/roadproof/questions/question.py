@@ -1,6 +1,6 @@
 """What a question is: plain data that list claims, and show the answers to them."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from typing import Any, ClassVar, Protocol, Self, TypeAlias, TypeVar
 
 from roadproof.analysis.basis import Basis
@@ -12,10 +12,21 @@ from roadproof.evidence.heading import heading
 View = TypeVar("View", covariant=True)
 Place: TypeAlias = Callable[[str, Answer], object]
 """Where an answer is: the path of its file, or the evidence itself."""
-Batch: TypeAlias = Mapping[str, Claim]
-"""Claims by name that one process settles one after the other, since answers to some help with others."""
 Answers: TypeAlias = Mapping[str, Answer]
 """Answers by the names of their claims."""
+Steps: TypeAlias = Generator[tuple[str, Claim], Answer, None]
+"""Claims with their names; after each its answer is sent, on which the next may depend."""
+
+
+class Batch(Protocol):
+    """Claims that one process settles, since answers to some help with others. It can be sent elsewhere."""
+
+    @property
+    def name(self) -> str:
+        """A word that no other batch of the question has."""
+
+    def steps(self) -> Steps:
+        """Yield each claim, and be sent its answer."""
 
 
 class Question(Protocol[View]):
@@ -37,9 +48,9 @@ class Question(Protocol[View]):
         """Return the question that plain data ask. Raises ``InputError``."""
 
     def batches(self, known: Answers) -> Sequence[Batch]:
-        """Return the claims that are to be settled next, in groups; none where nothing is left.
+        """Return the batches that can be settled, given what is known of others.
 
-        It is asked again once they are settled, so later claims may follow from earlier answers.
+        Those that were settled before are among them. It is asked again until there is no new one.
         """
 
     def label(self, name: str) -> str:
@@ -50,6 +61,19 @@ class Question(Protocol[View]):
 
     def data(self, view: Any, place: Place, seconds: float) -> object:
         """Return a view as a definition for ``evidence.codec``, which ``--json`` prints."""
+
+
+def walk(batch: Batch, find: Callable[[str, Claim], Answer | None]) -> Iterator[tuple[str, Claim]]:
+    """Yield the claim of a batch that ``find`` has no answer to; what follows depends on it."""
+    steps = batch.steps()
+    try:
+        name, claim = next(steps)
+        while (answer := find(name, claim)) is not None:
+            name, claim = steps.send(answer)
+    except StopIteration:
+        return
+    steps.close()
+    yield name, claim
 
 
 def heading_of(schema: str, basis: Basis) -> dict[str, Any]:

@@ -26,7 +26,7 @@ from roadproof.logic.formula import Formula, is_state, subformulas
 from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
 from roadproof.logic.syntax import Claim as Written
-from roadproof.questions.question import Answers, Batch, Place, heading_of
+from roadproof.questions.question import Answers, Place, Steps, heading_of
 from roadproof.reasons import NO_REASON, Reason, joined
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
@@ -180,6 +180,13 @@ def _decides(answer: Answer) -> bool:
     return proved or answer.drive is not None
 
 
+def _finding(
+    number: int, change: Change, claims: ChangeClaims, names: tuple[str, str, str], known: Answers
+) -> ChangeFinding:
+    equal, moving, apart = (known.get(name) for name in names)
+    return ChangeFinding(number, change, claims, equal, moving, apart, names)
+
+
 @dataclass(frozen=True)
 class RedundancyView:
     """The findings on all changes, by scenario, in the order in which they are met."""
@@ -208,28 +215,16 @@ class RedundancyQuestion:
         """Return the question that plain data ask. Raises ``InputError``."""
         return cls(basis, read(Changes, asked, where))
 
-    def batches(self, known: Answers) -> list[Batch]:
+    def batches(self, known: Answers) -> list["ChangeBatch"]:
         """A batch for scenarios that differ in their road sector only: a drive of each, then its changes."""
-        groups: dict[int, dict[str, Claim]] = {}
+        groups: dict[int, list[int]] = {}
         for number in self.asked.among:
-            group = groups.setdefault(self._likes[number], {})
-            drive = f"scenario-{number:02}"
-            if drive not in known:
-                group[drive] = self._existing(number, self._query(number))
-            for names, claims in self._named(number):
-                wanted = self._next(names, claims, known)
-                group |= {name: claim for name, claim in wanted if name not in known}
-        return [group for group in groups.values() if group]
+            groups.setdefault(self._likes[number], []).append(number)
+        return [ChangeBatch(self, tuple(numbers)) for numbers in groups.values()]
 
-    @staticmethod
-    def _next(
-        names: tuple[str, str, str], claims: ChangeClaims, known: Answers
-    ) -> Iterator[tuple[str, Claim]]:
-        """Yield the claims of a change up to the first that is not settled, or that decides."""
-        for name, claim in zip(names, (claims.equal, claims.moving, claims.apart), strict=True):
-            yield name, claim
-            if name not in known or _decides(known[name]):
-                return
+    def drive_of(self, number: int) -> Claim:
+        """Return the claim that there is a drive of a scenario."""
+        return self._existing(number, self._query(number))
 
     @cached_property
     def _likes(self) -> dict[int, int]:
@@ -249,7 +244,7 @@ class RedundancyQuestion:
         )
         return claim_of(basis.specification, query, mode, basis.values)
 
-    def _named(self, number: int) -> list[tuple[tuple[str, str, str], ChangeClaims]]:
+    def named(self, number: int) -> list[tuple[tuple[str, str, str], ChangeClaims]]:
         """The claims of each change with their names; changes that come to the same have one."""
         if number not in self._worked_out:
             first: dict[Formula, int] = {}
@@ -287,7 +282,7 @@ class RedundancyQuestion:
 
     def label(self, name: str) -> str:
         """Return which change of which scenario the claim of a name is about."""
-        kind, number, *place = name.split("-")
+        _, number, *place = name.split("-")
         if not place:
             return f"scenario {int(number)}"
         change = self.changes(int(number))[int(place[0]) - 1]
@@ -298,8 +293,8 @@ class RedundancyQuestion:
         """Return what is known of each change."""
         found = {
             number: tuple(
-                ChangeFinding(number, change, claims, *(known.get(name) for name in names), names)
-                for change, (names, claims) in zip(self.changes(number), self._named(number), strict=True)
+                _finding(number, change, claims, names, known)
+                for change, (names, claims) in zip(self.changes(number), self.named(number), strict=True)
             )
             for number in self.asked.among
         }
@@ -311,6 +306,29 @@ class RedundancyQuestion:
         every = (x for each in view.findings.values() for x in each)
         verdicts = tuple(_finding_data(x, place) for x in every)
         return RedundancyData(**heading_of(SCHEMA, self.basis), **said, seconds=seconds, verdicts=verdicts)
+
+
+@dataclass(frozen=True)
+class ChangeBatch:
+    """The claims of scenarios that are alike: of each change they are asked until one decides."""
+
+    question: RedundancyQuestion
+    numbers: tuple[int, ...]
+
+    @property
+    def name(self) -> str:
+        """The name of the first scenario."""
+        return f"scenario-{self.numbers[0]:02}"
+
+    def steps(self) -> Steps:
+        """Yield each claim, and be sent its answer."""
+        for number in self.numbers:
+            yield f"scenario-{number:02}", self.question.drive_of(number)
+            for names, claims in dict(self.question.named(number)).items():
+                for name, claim in zip(names, (claims.equal, claims.moving, claims.apart), strict=True):
+                    answer = yield name, claim
+                    if _decides(answer):
+                        break
 
 
 def _finding_data(x: ChangeFinding, place: Place) -> "FindingData":

@@ -2,18 +2,21 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.known import Origin, is_off
 from roadproof.analysis.study.known import told as told_known
-from roadproof.analysis.study.pool import Progress
+from roadproof.analysis.study.pool import Progress, Say
 from roadproof.errors import SharedError, UsageError
 from roadproof.evidence.answer import Answer, undecided
-from roadproof.questions.question import Batch, Question
+from roadproof.evidence.claim import Claim
+from roadproof.questions.question import Batch, Question, walk
 from roadproof.questions.store import Store
 from roadproof.reasons import Reason
+from roadproof.runtime.budget import Work
 from roadproof.runtime.executors import Jobs, hands_of
 from roadproof.runtime.records import dataclass
 
@@ -34,7 +37,7 @@ def settle(
     what: str = "claims",
     each: Callable[[str, Answer], None] | None = None,
     fresh: bool = False,
-    say: Callable[[str], None] | None = None,
+    say: Say | None = None,
 ) -> Settled:
     """Settle all claims of a question.
 
@@ -46,34 +49,28 @@ def settle(
     shard = hands_of(hands).shard
     if shard is not None and folder is None:
         raise UsageError(f"--shard {shard} requires --out, the folder that the runs share")
-    store = Store(folder, question.kind, question.basis.work, reads_known=not fresh and not is_off())
+    work = question.basis.work
+    store = Store(folder, question.kind, work, reads_known=not fresh and not is_off())
     store.open(question)
     run = _Run(question, store, each or _nobody, say)
-    first = {name for batch in question.batches({}) for name in batch}
-    dealt = (
-        first if shard is None else {name for batch in shard.among(question.batches({})) for name in batch}
-    )
+    first = [batch.name for batch in question.batches({})]
+    dealt = first if shard is None else shard.among(first)
     batches = run.open_batches()
-    if say is not None:
-        listed = len(run.known) + sum(map(len, batches))
-        for line in told_known([*run.origins.values()], listed):
-            say(line)
+    for line in told_known([*run.origins.values()], len(run.known) + len(batches)) if say else ():
+        say(line) if say else None
     while batches:
-        ours = [x for x in batches if shard is None or _is_ours(x, first, dealt, shard.has)]
+        ours = [
+            x for x in batches if shard is None or (x.name in dealt if x.name in first else shard.has(x.name))
+        ]
         if not ours:
-            left = sum(len(batch) for batch in batches)
             raise SharedError(
-                f"shard {shard} is done: other runs settle {left} {what}; run again to join them"
+                f"shard {shard} is done: other runs settle {len(batches)} {what}. When all runs are done, "
+                "run once without --shard to merge"
             )
         run.ask(ours, hands, progress, what)
         batches = run.open_batches()
     store.make_room()
     return Settled(run.known, run.origins)
-
-
-def _is_ours(batch: Batch, first: set[str], dealt: set[str], has: Callable[[str], bool]) -> bool:
-    name = next(iter(batch))
-    return name in dealt if name in first else has(name)
 
 
 class _Run:
@@ -84,69 +81,144 @@ class _Run:
         question: Question[Any],
         store: Store,
         each: Callable[[str, Answer], None],
-        say: Callable[[str], None] | None,
+        say: Say | None,
     ) -> None:
         self.question, self.store, self.each, self.say = question, store, each, say
         self.known: dict[str, Answer] = {}
         self.origins: dict[str, Origin] = {}
-        self.doubts: set[str] = set()
 
-    def open_batches(self) -> Sequence[Batch]:
-        """Look up claims until none that is listed is known; return those that are left."""
-        while batches := self._listed():
-            found = [name for batch in batches for name, claim in batch.items() if self._look_up(name, claim)]
-            if not found:
-                return batches
-        return []
+    def open_batches(self) -> list[Batch]:
+        """Look up claims, and return the batches of which some are not known."""
+        seen: set[str] = set()
+        left: list[Batch] = []
+        while new := [x for x in self.question.batches(self.known) if x.name not in seen]:
+            seen |= {x.name for x in new}
+            left += [x for x in new if [*walk(x, self._find)]]
+        return left
 
-    def _listed(self) -> list[Batch]:
-        every = self.question.batches(self.known)
-        left = ({k: x for k, x in batch.items() if k not in self.known} for batch in every)
-        return [batch for batch in left if batch]
-
-    def _look_up(self, name: str, claim: Any) -> bool:
+    def _find(self, name: str, claim: Claim) -> Answer | None:
+        if name in self.known:
+            return self.known[name]
         found = self.store.find(name, claim, self.say)
         if found is None or not found[0].is_final:
-            return False
+            return None
         answer, origin = found
         if origin is not None:
             self.origins[name] = origin
             self.store.keep(name, answer, is_new=False)
         self._add(name, answer)
-        return True
+        return answer
 
     def _add(self, name: str, answer: Answer) -> None:
         self.known[name] = answer
         self.each(name, answer)
 
     def ask(self, batches: Sequence[Batch], hands: Jobs, progress: Progress | None, what: str) -> None:
-        """Settle batches; the claims of one whose process ends are asked alone."""
-        alone: list[Batch] = []
+        """Settle batches; of one whose process ends, claims are asked one by one."""
+        lost: list[Batch] = []
 
-        def lose(batch: Batch, reason: Reason) -> list[tuple[str, Answer]]:
-            if len(batch) > 1:
-                alone.extend({name: claim} for name, claim in batch.items())
-                return []
-            return [(name, undecided(claim, reason)) for name, claim in batch.items()]
+        def lose(job: "_Job", reason: Reason) -> list[tuple[str, Answer]]:
+            lost.append(job.batch)
+            return []
 
-        job = _Job(self.question.basis.work)
-        with closing(pool.work(job, batches, hands, lose, progress, what)) as answered:
+        jobs = [_Job(batch, self._known_of(batch), self.store) for batch in batches]
+        with closing(pool.work(_settle, jobs, hands, lose, progress, what)) as answered:
             for _, answers in answered:
                 for name, answer in answers:
-                    self.store.keep(name, answer)
-                    self._add(name, answer)
-        if alone:
-            self.ask(alone, hands, progress, what)
+                    self._keep(name, answer)
+        for batch in lost:
+            self._ask_alone(batch, hands)
+
+    def _keep(self, name: str, answer: Answer) -> None:
+        self.store.keep(name, answer)
+        self._add(name, answer)
+
+    def _known_of(self, batch: Batch) -> dict[str, Answer]:
+        """Return the known answers to claims of a batch."""
+        found: dict[str, Answer] = {}
+
+        def find(name: str, claim: Claim) -> Answer | None:
+            return found.setdefault(name, self.known[name]) if name in self.known else None
+
+        [*walk(batch, find)]
+        return found
+
+    def _ask_alone(self, batch: Batch, hands: Jobs) -> None:
+        """Settle each claim of a batch in a process of its own; one whose process ends is in doubt."""
+        while left := [*walk(batch, self._find)]:
+            [(name, claim)] = left
+
+            def lose(
+                job: "_Job", reason: Reason, asked: Claim = claim, named: str = name
+            ) -> list[tuple[str, Answer]]:
+                return [(named, undecided(asked, reason))]
+
+            job = _Job(_One(name, claim), {}, self.store)
+            with closing(pool.work(_settle, [job, _NOTHING], hands, lose)) as answered:
+                for _, answers in answered:
+                    for found, answer in answers:
+                        self._keep(found, answer)
+
+
+@dataclass(frozen=True)
+class _One:
+    """A claim alone."""
+
+    name: str
+    claim: Claim
+
+    def steps(self) -> Any:
+        yield self.name, self.claim
+
+
+@dataclass(frozen=True)
+class _None:
+    """No claim."""
+
+    name: str = ""
+
+    def steps(self) -> Any:
+        yield from ()
 
 
 @dataclass(frozen=True)
 class _Job:
-    work: Any
+    """A batch, the answers to its claims that are known, and where further ones may be."""
 
-    def __call__(self, batch: Batch) -> list[tuple[str, Answer]]:
-        from roadproof.engines.search.batches import settle_batch  # here: known answers need no solver
+    batch: Any
+    known: Mapping[str, Answer] = field(default_factory=dict)
+    store: Store | None = None
 
-        return [*zip(batch, settle_batch([*batch.values()], self.work), strict=True)]
+    @property
+    def work(self) -> Work:
+        """The work that is allowed for a claim."""
+        return Work() if self.store is None else self.store.work
+
+
+_NOTHING = _Job(_None())
+
+
+def _settle(job: _Job) -> list[tuple[str, Answer]]:
+    """Settle what is left of a batch."""
+    from roadproof.engines.search.batches import Engines  # here: known answers need no solver
+
+    engines, new = Engines(job.work), list[tuple[str, Answer]]()
+
+    def answer_to(name: str, claim: Claim) -> Answer:
+        if name in job.known:
+            return job.known[name]
+        found = None if job.store is None else job.store.find(name, claim)
+        answer = found[0] if found is not None and found[0].is_final else engines.settle(claim)
+        new.append((name, answer))
+        return answer
+
+    def find(name: str, claim: Claim) -> Answer:
+        answer = answer_to(name, claim)
+        engines.learn(answer)
+        return answer
+
+    [*walk(job.batch, find)]
+    return new
 
 
 def _nobody(name: str, answer: Answer) -> None:

@@ -20,6 +20,7 @@ from roadproof.evidence.claim import Claim
 from roadproof.evidence.strict import LARGEST_EVIDENCE, read_json
 from roadproof.questions.data import QUESTION, question_data
 from roadproof.questions.question import Answers, Question
+from roadproof.runtime.budget import Work
 from roadproof.runtime.cache import keep_bytes, kept_bytes, make_room
 from roadproof.runtime.canonical import digest
 from roadproof.runtime.files import make_folder, write_json, write_whole
@@ -40,7 +41,7 @@ class Store:
 
     folder: Path | None
     kind: str
-    work: object
+    work: Work
     reads_known: bool = True
 
     def open(self, question: Question[Any]) -> None:

@@ -70,8 +70,8 @@ class Work:
     ``seek_drive``: whether a drive is looked for that refutes a claim about all traces.
     """
 
-    effort: Effort
-    proof: float
+    effort: Effort = field(default_factory=Effort)
+    proof: float = 3.0
     seek_drive: bool = False
 
 

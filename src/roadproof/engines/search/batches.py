@@ -4,7 +4,6 @@ A drive of one claim is put on roads of the next and judged there; parts that cl
 the next and proved to clash there. So each claim has evidence of its own.
 """
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import assert_never
 
@@ -15,11 +14,15 @@ from roadproof.engines.search.outcome import Outcome, Search
 from roadproof.engines.search.placing import placed
 from roadproof.engines.search.question import SearchOptions, Setting
 from roadproof.engines.search.valid import settle_valid
-from roadproof.evidence.answer import Answer, undecided
+from roadproof.evidence.answer import Answer, Refutation, undecided
 from roadproof.evidence.answer_files import Doubt
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.claim import Claim, Exists, On, Valid
+from roadproof.evidence.countermodel import Countermodel
+from roadproof.evidence.judged import JudgedDrive
+from roadproof.evidence.refutation import fault_of
 from roadproof.library.compose import negation, of_parts
+from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Query
 from roadproof.logic.formula import Formula, Not
 from roadproof.logic.parts import parts_of
@@ -54,43 +57,38 @@ def search_of(claim: Claim, work: Work, explain: bool = False) -> Search:
     return Search(claim.home, claim.query, setting, options, mode.count)
 
 
-def settle_batch(claims: Sequence[Claim], work: Work) -> Iterator[Answer]:
-    """Yield the answer to each claim in turn; in doubt where the clock cuts one off."""
-    batch = _Batch(work)
-    for claim in claims:
-        try:
-            answer = batch.settle(claim)
-        except BudgetExceeded as late:
-            answer = undecided(claim, late.reason)
-        batch.learn(answer)
-        yield answer
-
-
 @dataclass(frozen=True)
-class _Batch:
-    """What earlier claims have shown: drives, and formulas whose parts clash."""
+class Engines:
+    """The engines for claims of a batch, and what earlier claims have shown: drives, traces, clashes."""
 
     work: Work
-    drives: list[Answer] = field(default_factory=list)
+    drives: list[JudgedDrive] = field(default_factory=list)
+    traces: list[Countermodel] = field(default_factory=list)
     clashes: list[Formula] = field(default_factory=list)
 
     def learn(self, answer: Answer) -> None:
+        """Remember what an answer shows, for later claims."""
         if answer.drive is not None:
-            self.drives.append(answer)
-        if answer.certificate is not None and answer.certificate.query is not None:
-            self.clashes.append(answer.certificate.query.formula)
+            self.drives.append(answer.drive)
+        if isinstance(answer.evidence, Refutation):
+            self.traces.append(answer.evidence.trace)
+        if isinstance(answer.claim.mode, Exists) and answer.certificate is not None:
+            self.clashes.append(read_claim(answer.claim.home, answer.certificate.claim).formula)
 
     def settle(self, claim: Claim) -> Answer:
-        """Return the answer to a claim of either mode. Raises ``BudgetExceeded``."""
-        match claim.mode:
-            case Valid():
-                return settle_valid(claim, self.work, (x.drive for x in self.drives if x.drive is not None))
-            case Exists():
-                return self.follow(claim) or self.decide(claim)
-            case On():
-                raise NotImplementedError("a claim about given files is settled by their reader")
-            case _:
-                assert_never(claim.mode)
+        """Return the answer to a claim; in doubt where the clock cuts it off."""
+        try:
+            match claim.mode:
+                case Valid():
+                    return settle_valid(claim, self.work, self.drives)
+                case Exists():
+                    return self.follow(claim) or self.decide(claim)
+                case On():
+                    raise NotImplementedError("a claim about given files is settled by their reader")
+                case _:
+                    assert_never(claim.mode)
+        except BudgetExceeded as late:
+            return undecided(claim, late.reason)
 
     def follow(self, claim: Claim) -> Answer | None:
         """Return an answer that follows from an earlier one, or None."""
@@ -103,15 +101,17 @@ class _Batch:
                 if proof is not None:
                     return Answer(claim, proof)
         for earlier in self.drives:
-            if earlier.drive is not None:
-                found = placed(earlier.drive.file, claim.query, claim.home.library)
-                if found is not None:
-                    return Answer(claim, found)
+            found = placed(earlier.file, claim.query, claim.home.library)
+            if found is not None:
+                return Answer(claim, found)
         return None
 
     def decide(self, claim: Claim) -> Answer:
-        """Return an answer: a proof first, which is quick where there is one, then a drive."""
-        proof = self._clash(claim, 1.0)
+        """Return an answer: a proof first, which is quick where there is one, then a drive.
+
+        Where a known trace has the formula, there is no proof that it never holds.
+        """
+        proof = None if self._has_trace(claim) else self._clash(claim, 1.0)
         if proof is not None:
             return Answer(claim, proof)
         found = ask(search_of(claim, self.work))
@@ -122,6 +122,10 @@ class _Batch:
         if found.impossibility is not None:
             return Answer(claim, found.impossibility.of_core)
         return _undecided(claim, found)
+
+    def _has_trace(self, claim: Claim) -> bool:
+        never, bounds = negation(claim.query).formula, claim.home.library.bounds
+        return any(fault_of(trace, never, bounds) is None for trace in self.traces)
 
     def _clash(self, claim: Claim, times: float) -> Certificate | None:
         """Return a proof that parts of a claim clash, as few as are found."""
