@@ -28,6 +28,7 @@ from roadproof.logic.formula import Not
 from roadproof.logic.parts import parts_of
 from roadproof.questions.question import Answers, Place, Steps, heading_of
 from roadproof.reasons import NO_REASON, Reason, Why, joined
+from roadproof.runtime.budget import Work
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import DriveVerdict, Verdict
 
@@ -205,6 +206,11 @@ class OverlapQuestion:
     kind: ClassVar[str] = "overlap"
     basis: Basis
     asked: Meeting = field(default_factory=Meeting)
+
+    @property
+    def work(self) -> Work:
+        """The work that is allowed for a claim."""
+        return Work(self.basis.effort, self.basis.proof, explain=True)
 
     @classmethod
     def of(cls, basis: Basis, asked: object, where: str) -> "OverlapQuestion":

@@ -8,6 +8,7 @@ from roadproof.drivers import restriction
 from roadproof.evidence.answer import Answer
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.heading import heading
+from roadproof.runtime.budget import Work
 
 View = TypeVar("View", covariant=True)
 Place: TypeAlias = Callable[[str, Answer], object]
@@ -38,6 +39,10 @@ class Question(Protocol[View]):
     @property
     def basis(self) -> Basis:
         """What the claims are read with, and what drives may be."""
+
+    @property
+    def work(self) -> Work:
+        """The work that is allowed for a claim."""
 
     @property
     def asked(self) -> object:

@@ -28,6 +28,7 @@ from roadproof.logic.show import text
 from roadproof.logic.syntax import Claim as Written
 from roadproof.questions.question import Answers, Place, Steps, heading_of
 from roadproof.reasons import NO_REASON, Reason, joined
+from roadproof.runtime.budget import Work
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
 
@@ -209,6 +210,11 @@ class RedundancyQuestion:
     kind: ClassVar[str] = "redundancy"
     basis: Basis
     asked: Changes = field(default_factory=lambda: Changes(among=(1,)))
+
+    @property
+    def work(self) -> Work:
+        """The work that is allowed for a claim."""
+        return Work(self.basis.effort, self.basis.proof)
 
     @classmethod
     def of(cls, basis: Basis, asked: object, where: str) -> "RedundancyQuestion":

@@ -49,7 +49,7 @@ def settle(
     shard = hands_of(hands).shard
     if shard is not None and folder is None:
         raise UsageError(f"--shard {shard} requires --out, the folder that the runs share")
-    work = question.basis.work
+    work = question.work
     store = Store(folder, question.kind, work, reads_known=not fresh and not is_off())
     store.open(question)
     run = _Run(question, store, each or _nobody, say)

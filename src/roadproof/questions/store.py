@@ -131,7 +131,7 @@ def ship(folder: Path, kind: str, answers: Mapping[str, object]) -> Path:
 
 def keep_all(folder: Path, question: Question[Any], answers: Answers) -> None:
     """Write a question and its answers into a folder. Raises ``UsageError`` as ``Store.open``."""
-    store = Store(folder, question.kind, question.basis.work, reads_known=False)
+    store = Store(folder, question.kind, question.work, reads_known=False)
     store.open(question)
     for name, answer in answers.items():
         store.keep(name, answer)

@@ -23,13 +23,16 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.refutation import fault_of
 from roadproof.library.compose import negation, of_parts
 from roadproof.library.elaborate import read_claim
+from roadproof.library.scenarios import is_sector, without_sectors
 from roadproof.library.specification import Query
-from roadproof.logic.formula import Formula, Not
+from roadproof.logic.formula import Application, Formula, Not
 from roadproof.logic.parts import parts_of
 from roadproof.logic.rewrite import without_names
 from roadproof.runtime.budget import BudgetExceeded, Work
 from roadproof.verdict import Verdict
 
+MOVED = 5
+"""So many drives are tried on other roads for a claim that is about no road sector."""
 FOR_A_PART = 10.0  # times the work of a first proof, for one that parts clash
 
 
@@ -63,6 +66,7 @@ class Engines:
 
     work: Work
     drives: list[JudgedDrive] = field(default_factory=list)
+    alike: dict[Formula, list[JudgedDrive]] = field(default_factory=dict)
     traces: list[Countermodel] = field(default_factory=list)
     clashes: list[Formula] = field(default_factory=list)
 
@@ -70,6 +74,7 @@ class Engines:
         """Remember what an answer shows, for later claims."""
         if answer.drive is not None:
             self.drives.append(answer.drive)
+            self.alike.setdefault(without_sectors(answer.claim.formula), []).append(answer.drive)
         if isinstance(answer.evidence, Refutation):
             self.traces.append(answer.evidence.trace)
         if isinstance(answer.claim.mode, Exists) and answer.certificate is not None:
@@ -80,7 +85,8 @@ class Engines:
         try:
             match claim.mode:
                 case Valid():
-                    return settle_valid(claim, self.work, self.drives)
+                    alike = self.alike.get(without_sectors(claim.formula), ())
+                    return settle_valid(claim, self.work, self.drives, alike)
                 case Exists():
                     return self.follow(claim) or self.decide(claim)
                 case On():
@@ -100,7 +106,8 @@ class Engines:
                 proof = self._proof(claim, core, FOR_A_PART)
                 if proof is not None:
                     return Answer(claim, proof)
-        for earlier in self.drives:
+        elsewhere = self.drives[:MOVED] if not _has_sector(claim.formula) else ()
+        for earlier in (*self.alike.get(without_sectors(claim.formula), ()), *elsewhere):
             found = placed(earlier.file, claim.query, claim.home.library)
             if found is not None:
                 return Answer(claim, found)
@@ -115,7 +122,7 @@ class Engines:
         if proof is not None:
             return Answer(claim, proof)
         found = ask(search_of(claim, self.work))
-        if not found.drives and found.verdict is not Verdict.IMPOSSIBLE:
+        if self.work.explain and not found.drives and found.verdict is not Verdict.IMPOSSIBLE:
             found = ask(search_of(claim, self.work, explain=True))
         if found.drives:
             return Answer(claim, found.drives[0])
@@ -138,6 +145,10 @@ class Engines:
         """Return a proof that ``core`` never holds."""
         effort = self.work.effort.of(times * self.work.proof)
         return prove_of_scenarios(claim.home, negation(core), effort).certificate
+
+
+def _has_sector(formula: Formula) -> bool:
+    return any(isinstance(x, Application) and is_sector(x.name) for x in parts_of(formula))
 
 
 def _body(denied: Formula) -> Formula:

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from roadproof.engines.prove.prover import Result
-from roadproof.engines.search.placing import judged_as
+from roadproof.engines.search.placing import judged_as, placed
 from roadproof.engines.search.settle import Settlement, prove_claim, settle
 from roadproof.evidence.answer import Answer, Refutation, assumed_by, sought_by, undecided
 from roadproof.evidence.claim import Claim
@@ -17,9 +17,17 @@ from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict
 
 
-def settle_valid(claim: Claim, work: Work, drives: Iterable[JudgedDrive]) -> Answer:
-    """Return the answer to a claim. ``drives``: they are tried first. Raises ``BudgetExceeded``."""
+def settle_valid(
+    claim: Claim, work: Work, drives: Iterable[JudgedDrive], alike: Iterable[JudgedDrive] = ()
+) -> Answer:
+    """Return the answer to a claim.
+
+    ``drives``: they are tried first; those that refute claims which are ``alike`` on other roads, too. Raises
+    ``BudgetExceeded``.
+    """
     shown = _refuting(claim, drives)
+    for known in alike if shown is None else ():
+        shown = shown or placed(known.file, _against(claim), claim.home.library)
     if shown is not None:
         return Answer(claim, shown)
     if work.seek_drive:
