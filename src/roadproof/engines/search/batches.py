@@ -13,7 +13,7 @@ from roadproof.engines.search.impossible import explain
 from roadproof.engines.search.outcome import Outcome, Search
 from roadproof.engines.search.placing import placed
 from roadproof.engines.search.question import SearchOptions, Setting
-from roadproof.engines.search.valid import settle_valid
+from roadproof.engines.search.valid import is_refuted_by, settle_valid
 from roadproof.evidence.answer import Answer, Refutation, undecided
 from roadproof.evidence.answer_files import Doubt
 from roadproof.evidence.certificate import Certificate
@@ -68,17 +68,27 @@ class Engines:
     drives: list[JudgedDrive] = field(default_factory=list)
     alike: dict[Formula, list[JudgedDrive]] = field(default_factory=dict)
     traces: list[Countermodel] = field(default_factory=list)
+    unrefuted: list[Claim] = field(default_factory=list)
     clashes: list[Formula] = field(default_factory=list)
 
     def learn(self, answer: Answer) -> None:
         """Remember what an answer shows, for later claims."""
         if answer.drive is not None:
             self.drives.append(answer.drive)
-            self.alike.setdefault(without_sectors(answer.claim.formula), []).append(answer.drive)
+            for claim in (answer.claim, *self._refuted_by(answer.drive)):
+                self.alike.setdefault(without_sectors(claim.formula), []).append(answer.drive)
+        elif isinstance(answer.claim.mode, Valid) and answer.certificate is None:
+            self.unrefuted.append(answer.claim)
         if isinstance(answer.evidence, Refutation):
             self.traces.append(answer.evidence.trace)
         if isinstance(answer.claim.mode, Exists) and answer.certificate is not None:
             self.clashes.append(read_claim(answer.claim.home, answer.certificate.claim).formula)
+
+    def _refuted_by(self, drive: JudgedDrive) -> list[Claim]:
+        """Return the claims that no drive refuted before, and that this one refutes."""
+        refuted = [x for x in self.unrefuted if is_refuted_by(x, drive)]
+        self.unrefuted[:] = [x for x in self.unrefuted if x not in refuted]
+        return refuted
 
     def settle(self, claim: Claim) -> Answer:
         """Return the answer to a claim; in doubt where the clock cuts it off."""
@@ -106,7 +116,7 @@ class Engines:
                 proof = self._proof(claim, core, FOR_A_PART)
                 if proof is not None:
                     return Answer(claim, proof)
-        elsewhere = self.drives[:MOVED] if not _has_sector(claim.formula) else ()
+        elsewhere = self.drives[-MOVED:] if not _has_sector(claim.formula) else ()
         for earlier in (*self.alike.get(without_sectors(claim.formula), ()), *elsewhere):
             found = placed(earlier.file, claim.query, claim.home.library)
             if found is not None:

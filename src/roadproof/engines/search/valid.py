@@ -42,14 +42,19 @@ def settle_valid(
 
 def _refuting(claim: Claim, drives: Iterable[JudgedDrive]) -> JudgedDrive | None:
     """Return the first drive on which a claim is false, as evidence of that."""
-    sought = sought_by(claim)
     for known in drives:
-        file = known.file
-        if {*claim.vehicles} <= {*file.drive.vehicles} and {*claim.lanes} <= {*file.lanes}:
-            values = values_with(claim.home.library, file.values)
-            if judge(bind(sought, file.road, file.lanes, values), file.drive).holds:
-                return judged_as(file, _against(claim), claim.home.library)
+        if is_refuted_by(claim, known):
+            return judged_as(known.file, _against(claim), claim.home.library)
     return None
+
+
+def is_refuted_by(claim: Claim, drive: JudgedDrive) -> bool:
+    """Return whether a claim is false on a drive, judged exactly."""
+    file = drive.file
+    if not ({*claim.vehicles} <= {*file.drive.vehicles} and {*claim.lanes} <= {*file.lanes}):
+        return False
+    values = values_with(claim.home.library, file.values)
+    return judge(bind(sought_by(claim), file.road, file.lanes, values), file.drive).holds
 
 
 def _against(claim: Claim) -> Query:
