@@ -20,9 +20,9 @@ import pytest
 import roadproof
 import roadproof as rp
 from roadproof.analysis.claims import Claims
-from roadproof.evidence.claim import Engine, Objective
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.answers.monitor import View
+from roadproof.evidence.claim import Engine, Objective
 from roadproof.frontends.api.checking import Kernel, Solver
 from roadproof.frontends.cli import options, prove
 from roadproof.frontends.cli.basis import read_definitions

@@ -23,8 +23,8 @@ from roadproof.evidence.drive_file import load_drive, read_drive
 from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.none_within import none_within_data
-from roadproof.frontends.schemas import as_text, schemas
 from roadproof.frontends.cli.main import COMMANDS, main
+from roadproof.frontends.schemas import as_text, schemas
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.library.specification import Query, Specification

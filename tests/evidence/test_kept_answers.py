@@ -10,10 +10,10 @@ from typing import Annotated, Any
 
 import pytest
 from jsonschema import Draft202012Validator
+from roadproof.analysis.overlap import SCHEMA
 
 from asking import prove
 from evidence.folders import changes, check, places
-from roadproof.analysis.overlap import SCHEMA
 from roadproof.errors import InputError
 from roadproof.evidence.certificate import to_json
 from roadproof.evidence.codec import Rule, read

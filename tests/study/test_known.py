@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from roadproof.analysis.overlap import Overlap
 
 import roadproof as rp
 from api.doors import MINE
-from roadproof.analysis.overlap import Overlap
 from roadproof.analysis.study import known
 from roadproof.analysis.study.known import SWITCH, KnownAnswers
 from roadproof.errors import InputError
