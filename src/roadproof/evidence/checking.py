@@ -120,7 +120,7 @@ class Checker:
         claim = statement(file.assuming, file.claim)
         checked = ("judged on its trace",) if outcome is Acceptance.ACCEPTED else ()
         word = "" if self.ruled is None else self.ruled.word
-        said = Finding(str(path), "certificate", outcome, reason, "REFUTED", "", claim, checked)
+        said = Finding(str(path), "trace", outcome, reason, "REFUTED", "", claim, checked)
         return replace(said, kernel=word)
 
     def _none_within(self, path: Path, file: NoneWithinFile, derived: Derived) -> Finding:

@@ -26,7 +26,6 @@ from roadproof.evidence.answers import (
     order,
     plates,
     proofs,
-    redundancy,
     road_map,
     shared,
     show,
@@ -54,6 +53,7 @@ from roadproof.library.motion import INDUCTIONS
 from roadproof.questions import overlap as overlap_question
 from roadproof.questions.data import QuestionFile
 from roadproof.questions.overlap import OverlapData
+from roadproof.questions.redundancy import RedundancyData
 
 TITLES: Mapping[type, str] = {
     proofs.Index: "index.json of roadproof prove --out: claims with the files that show them",
@@ -95,9 +95,7 @@ TITLES: Mapping[type, str] = {
     trace.Answer: "roadproof trace --json: which requirements are shown",
     trace_changes.Changes: "roadproof trace --baseline --json: what changed between two states",
     trace_lock.Lock: "requirements.lock.json: what every link of a trace rested on when it was accepted",
-    redundancy.Index: (
-        "roadproof redundancy --json, and index.json of its folder: which parts could be left out"
-    ),
+    RedundancyData: ("roadproof redundancy --json: which parts could be left out"),
 }
 WITHOUT_ASSUMPTION: JsonObject = {
     "dependentRequired": {"assuming": ["axioms"], "unused": ["assuming"]},
@@ -110,7 +108,7 @@ WITHOUT_ASSUMPTION: JsonObject = {
 }
 """Only inductions may stand in a certificate that assumes nothing."""
 DRIVES = (drive.Drive, drive.JerkDrive)
-KEEPING = (proofs, drives, plates, redundancy, order, coverage, classify, catalogue_index, explore)
+KEEPING = (proofs, drives, plates, order, coverage, classify, catalogue_index, explore)
 """The questions whose answers are kept one by one."""
 RECORDS: Mapping[str, type] = {x.SCHEMA: x.Record for x in KEEPING}
 

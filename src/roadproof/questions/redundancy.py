@@ -310,7 +310,7 @@ class RedundancyQuestion:
         """Return the view as ``--json`` prints it."""
         said: dict[str, Any] = {"set": self.basis.specification.set_name, **self.basis.said()}
         every = (x for each in view.findings.values() for x in each)
-        verdicts = tuple(_finding_data(x, place) for x in every)
+        verdicts = tuple(finding_data(x, place) for x in every)
         return RedundancyData(**heading_of(SCHEMA, self.basis), **said, seconds=seconds, verdicts=verdicts)
 
 
@@ -337,7 +337,8 @@ class ChangeBatch:
                         break
 
 
-def _finding_data(x: ChangeFinding, place: Place) -> "FindingData":
+def finding_data(x: ChangeFinding, place: Place) -> "FindingData":
+    """Return what ``--json`` prints of a change."""
     return FindingData(
         scenario=x.scenario,
         part=x.change.part,

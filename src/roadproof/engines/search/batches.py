@@ -10,10 +10,10 @@ from typing import assert_never
 from roadproof.engines.prove.induction import prove_of_scenarios
 from roadproof.engines.search.ask import ask
 from roadproof.engines.search.impossible import explain
+from roadproof.engines.search.known_drive import KnownDrive
 from roadproof.engines.search.outcome import Outcome, Search
-from roadproof.engines.search.placing import placed
 from roadproof.engines.search.question import SearchOptions, Setting
-from roadproof.engines.search.valid import is_refuted_by, settle_valid
+from roadproof.engines.search.valid import settle_valid
 from roadproof.evidence.answer import Answer, Refutation, undecided
 from roadproof.evidence.answer_files import Doubt
 from roadproof.evidence.certificate import Certificate
@@ -65,8 +65,8 @@ class Engines:
     """The engines for claims of a batch, and what earlier claims have shown: drives, traces, clashes."""
 
     work: Work
-    drives: list[JudgedDrive] = field(default_factory=list)
-    alike: dict[Formula, list[JudgedDrive]] = field(default_factory=dict)
+    drives: list[KnownDrive] = field(default_factory=list)
+    alike: dict[Formula, list[KnownDrive]] = field(default_factory=dict)
     traces: list[Countermodel] = field(default_factory=list)
     unrefuted: list[Claim] = field(default_factory=list)
     clashes: list[Formula] = field(default_factory=list)
@@ -74,9 +74,9 @@ class Engines:
     def learn(self, answer: Answer) -> None:
         """Remember what an answer shows, for later claims."""
         if answer.drive is not None:
-            self.drives.append(answer.drive)
-            for claim in (answer.claim, *self._refuted_by(answer.drive)):
-                self.alike.setdefault(without_sectors(claim.formula), []).append(answer.drive)
+            known = self._known(answer.drive)
+            for claim in (answer.claim, *self._refuted_by(known)):
+                self.alike.setdefault(without_sectors(claim.formula), []).append(known)
         elif isinstance(answer.claim.mode, Valid) and answer.certificate is None:
             self.unrefuted.append(answer.claim)
         if isinstance(answer.evidence, Refutation):
@@ -84,9 +84,17 @@ class Engines:
         if isinstance(answer.claim.mode, Exists) and answer.certificate is not None:
             self.clashes.append(read_claim(answer.claim.home, answer.certificate.claim).formula)
 
-    def _refuted_by(self, drive: JudgedDrive) -> list[Claim]:
+    def _known(self, drive: JudgedDrive) -> KnownDrive:
+        """Return the drive with its judge; one that shows several formulas is remembered once."""
+        same = next((x for x in self.drives if x.moves_as(drive)), None)
+        if same is None:
+            same = KnownDrive(drive)
+            self.drives.append(same)
+        return same
+
+    def _refuted_by(self, drive: KnownDrive) -> list[Claim]:
         """Return the claims that no drive refuted before, and that this one refutes."""
-        refuted = [x for x in self.unrefuted if is_refuted_by(x, drive)]
+        refuted = [x for x in self.unrefuted if drive.refutes(x)]
         self.unrefuted[:] = [x for x in self.unrefuted if x not in refuted]
         return refuted
 
@@ -116,9 +124,9 @@ class Engines:
                 proof = self._proof(claim, core, FOR_A_PART)
                 if proof is not None:
                     return Answer(claim, proof)
-        elsewhere = self.drives[-MOVED:] if not _has_sector(claim.formula) else ()
+        elsewhere = self.drives[-MOVED:]
         for earlier in (*self.alike.get(without_sectors(claim.formula), ()), *elsewhere):
-            found = placed(earlier.file, claim.query, claim.home.library)
+            found = earlier.elsewhere(claim.query, claim)
             if found is not None:
                 return Answer(claim, found)
         return None

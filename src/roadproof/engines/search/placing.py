@@ -19,27 +19,33 @@ from roadproof.world.road import Lanelet, Road
 
 
 def placed(
-    file: DriveFile, query: Query, library: Library, roads: Sequence[Road] | None = None
+    file: DriveFile,
+    query: Query,
+    library: Library,
+    roads: Sequence[Road] | None = None,
+    judge: LazyJudge | None = None,
 ) -> JudgedDrive | None:
     """The motions of ``file`` on a road on which they satisfy ``query``, judged; None where none is.
 
     Tried are the drive's own road and the reference roads with the zones that ``query`` speaks of,
     as they are and moved along so that a zone begins or ends under one of the vehicles at time 0;
-    with ``roads`` only these, whatever zones they have.
+    with ``roads`` only these, whatever zones they have. ``judge`` of its drive: one who remembers.
     """
     chosen = _roads(file, zones_of(query.formula)) if roads is None else _with_moved(roads, file.drive)
-    return placed_on(file, query, library, chosen)
+    return placed_on(file, query, library, chosen, judge)
 
 
-def placed_on(file: DriveFile, query: Query, library: Library, roads: Iterable[Road]) -> JudgedDrive | None:
+def placed_on(
+    file: DriveFile, query: Query, library: Library, roads: Iterable[Road], judge: LazyJudge | None = None
+) -> JudgedDrive | None:
     """The motions of ``file`` on the first of ``roads`` on which they satisfy ``query``, judged."""
     values = values_with(library, file.values)
     now = f.conjunction(*(part for part in parts_of(query.formula) if is_state(part)))
-    judge = LazyJudge.on(file.drive)  # of all roads: what they have in common is judged once
+    judge = judge or LazyJudge.on(file.drive)  # of all roads: what they have in common is judged once
     for road in roads:
         if not set(file.lanes.values()) <= set(road.lanes):
             continue
-        if not judge.holds(bind(now, road, file.lanes, values)):
+        if not all(judge.holds(bind(x, road, file.lanes, values)) for x in (now, query.formula)):
             continue
         judged = judged_as(replace(file, road=road), query, library)
         if judged is not None:

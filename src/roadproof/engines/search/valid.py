@@ -3,31 +3,25 @@
 from collections.abc import Iterable
 
 from roadproof.engines.prove.prover import Result
-from roadproof.engines.search.placing import judged_as, placed
+from roadproof.engines.search.known_drive import KnownDrive, against, first_refuting
 from roadproof.engines.search.settle import Settlement, prove_claim, settle
-from roadproof.evidence.answer import Answer, Refutation, assumed_by, sought_by, undecided
+from roadproof.evidence.answer import Answer, Refutation, assumed_by, undecided
 from roadproof.evidence.claim import Claim
-from roadproof.evidence.judged import JudgedDrive
-from roadproof.library.bind import bind, values_with
-from roadproof.library.compose import negation
-from roadproof.library.motion import under_limits
-from roadproof.library.specification import Query
 from roadproof.runtime.budget import Work
-from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict
 
 
 def settle_valid(
-    claim: Claim, work: Work, drives: Iterable[JudgedDrive], alike: Iterable[JudgedDrive] = ()
+    claim: Claim, work: Work, drives: Iterable[KnownDrive], alike: Iterable[KnownDrive] = ()
 ) -> Answer:
     """Return the answer to a claim.
 
     ``drives``: they are tried first; those that refute claims which are ``alike`` on other roads, too. Raises
     ``BudgetExceeded``.
     """
-    shown = _refuting(claim, drives)
+    shown = first_refuting(claim, drives)
     for known in alike if shown is None else ():
-        shown = shown or placed(known.file, _against(claim), claim.home.library)
+        shown = shown or known.elsewhere(against(claim), claim)
     if shown is not None:
         return Answer(claim, shown)
     if work.seek_drive:
@@ -38,28 +32,6 @@ def settle_valid(
     if found.drive is not None:
         return Answer(claim, found.drive)
     return _answer(claim, found.result)
-
-
-def _refuting(claim: Claim, drives: Iterable[JudgedDrive]) -> JudgedDrive | None:
-    """Return the first drive on which a claim is false, as evidence of that."""
-    for known in drives:
-        if is_refuted_by(claim, known):
-            return judged_as(known.file, _against(claim), claim.home.library)
-    return None
-
-
-def is_refuted_by(claim: Claim, drive: JudgedDrive) -> bool:
-    """Return whether a claim is false on a drive, judged exactly."""
-    file = drive.file
-    if not ({*claim.vehicles} <= {*file.drive.vehicles} and {*claim.lanes} <= {*file.lanes}):
-        return False
-    values = values_with(claim.home.library, file.values)
-    return judge(bind(sought_by(claim), file.road, file.lanes, values), file.drive).holds
-
-
-def _against(claim: Claim) -> Query:
-    """Return that a claim is false within the limits that it assumes."""
-    return negation(under_limits(claim.home, claim.query, assumed_by(claim)))
 
 
 def _answer(claim: Claim, result: Result) -> Answer:

@@ -1,16 +1,14 @@
 """What scenarios are to each other: which hold together, which imply which, what could be left out."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Unpack
 
 from roadproof.analysis.order.deciding import Decisions, kinds_of
 from roadproof.analysis.order.study import Order, Ordering
-from roadproof.analysis.redundancy import ChangeFindings, Redundancy, name_of
 from roadproof.errors import UsageError
 from roadproof.evidence.answers import order as order_answers
-from roadproof.evidence.answers import redundancy as redundancy_answers
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Among, Definitions, definitions_of, load
@@ -28,6 +26,14 @@ from roadproof.frontends.settings.option import takes
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.words import Called, called, called_in
 from roadproof.questions.overlap import Meeting, OverlapQuestion, OverlapView, PairVerdict
+from roadproof.questions.redundancy import (
+    ChangeFinding,
+    Changes,
+    FindingData,
+    RedundancyQuestion,
+    RedundancyView,
+    finding_data,
+)
 from roadproof.verdict import ExitCode, Verdict, exit_code
 
 
@@ -165,20 +171,20 @@ def order(among: Among = None, using: Definitions | None = None, **options: Unpa
     return Orders.asked(Ordering(basis, kinds), given)
 
 
-class Redundancies(StudyAnswers[Redundancy, ChangeFindings, redundancy_answers.Record]):
+class Redundancies(QuestionAnswers[RedundancyView]):
     """Which parts of scenarios could be left out, and what shows the others needed."""
 
     pieces = "scenarios"
 
-    @cached_property
-    def findings(self) -> dict[int, ChangeFindings]:
+    @property
+    def findings(self) -> Mapping[int, Sequence[ChangeFinding]]:
         """The findings on every change, by the number of the scenario."""
-        return {number: self.found.answers[name_of(number)] for number in self.study.numbers}
+        return self.view.findings
 
     @cached_property
     def words(self) -> Called:
         """What the scenarios are called."""
-        return called(self.study.basis.specification, self.study.numbers)
+        return called(self.question.basis.specification, tuple(self.findings))
 
     @property
     def verdicts(self) -> dict[str, Verdict]:
@@ -186,17 +192,10 @@ class Redundancies(StudyAnswers[Redundancy, ChangeFindings, redundancy_answers.R
         return {f"scenario {number}, change {k}": x.verdict for number, k, x in every}
 
     @property
-    def evidence(self) -> tuple[Evidence, ...]:
-        every = (x for each in self.findings.values() for x in each)
-        return tuple(y for x in every if (y := x.certificate or x.drive or x.trace) is not None)
-
-    @property
-    def _sheet(self) -> Sheet[redundancy_answers.Finding]:
+    def _sheet(self) -> Sheet[FindingData]:
         names = {number: x.name for number, x in self.words.items()}
-        return redundancy_report.sheet_of(self._index(self.found.records).verdicts, names)
-
-    def _index(self, records: Mapping[str, redundancy_answers.Record]) -> redundancy_answers.Index:
-        return self.study.index(records, self.seconds)
+        every = (x for each in self.findings.values() for x in each)
+        return redundancy_report.sheet_of([finding_data(x, lambda *_: None) for x in every], names)
 
     def __str__(self) -> str:
         return redundancy_report.as_text(self.findings, self.seconds, self.words)
@@ -214,5 +213,5 @@ def redundancy(
     home = definitions_of(using)
     every = numbers_of(home.alone)
     basis = basis_of(home, given, given.vehicles)
-    study = Redundancy(basis, home.among(among) or every, given.whole)
-    return Redundancies.asked(study, given)
+    asked = Changes(among=home.among(among) or every, whole=given.whole)
+    return Redundancies.settled(RedundancyQuestion(basis, asked), given)

@@ -13,7 +13,6 @@ from roadproof.evidence.answers import coverage as kept_gaps
 from roadproof.evidence.answers import order as kept_order
 from roadproof.evidence.answers import plates as kept_plates
 from roadproof.evidence.answers import proofs as kept_claims
-from roadproof.evidence.answers import redundancy as kept_changes
 from roadproof.evidence.codec import read
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.folder import INDEX
@@ -28,6 +27,7 @@ from roadproof.frontends.settings.studies import Atlas
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.specification import Library
 from roadproof.questions.overlap import OverlapData
+from roadproof.questions.redundancy import RedundancyData
 
 T = TypeVar("T")
 TOPICS: Final = ("proofs", "drives", "overlaps", "implications", "redundancy", "gaps", "classes", "plates")
@@ -70,7 +70,7 @@ class Answers:
     overlap: OverlapData | None = None
     order: kept_order.Index | None = None
     diagram: Picture | None = None
-    redundancy: kept_changes.Index | None = None
+    redundancy: RedundancyData | None = None
     coverage: kept_gaps.Index | None = None
     classes: kept_classes.Index | None = None
     library: Library | None = None
@@ -172,8 +172,8 @@ class _Questions:
         self.answers.order = self._index(kept_order.Index, "order")
 
     def redundancy(self) -> None:
-        studies.redundancy(self.among, self.answers.home, **self._keywords("redundancy"))
-        self.answers.redundancy = self._index(kept_changes.Index, "redundancy")
+        found = studies.redundancy(self.among, self.answers.home, **self._keywords("redundancy"))
+        self.answers.redundancy = read(RedundancyData, found.as_data(), "redundancy")
 
     def gaps(self) -> None:
         covering.coverage(self.answers.home, **self._keywords("coverage"))

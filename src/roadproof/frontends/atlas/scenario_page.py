@@ -170,7 +170,8 @@ def _parts(answers: Answers, number: int) -> list[Statement]:
     made = []
     for x in () if answers.redundancy is None else answers.redundancy.verdicts:
         if x.scenario == number:
-            source = answers.source("redundancy", f"--among {number}", "redundancy", x.certificate or x.drive)
+            file = name_in([] if x.evidence is None else [x.evidence])
+            source = answers.source("redundancy", f"--among {number}", "redundancy", file)
             told = f"{x.where[-1]}, with {str(x.value).lower()} in place of" if x.where else ""
             made.append(Statement(x.verdict, shown(x.part), source, told))
     return sorted(made, key=lambda x: (x.verdict != Verdict.PROVED, x.verdict == Verdict.REFUTED))

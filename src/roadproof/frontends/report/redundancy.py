@@ -2,14 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 
-from roadproof.analysis.redundancy import ChangeFinding, ChangeFindings
-from roadproof.evidence.answers.redundancy import Finding
 from roadproof.frontends.report.sheet import Column, Sheet, Trail
 from roadproof.library.words import Called, legend
+from roadproof.questions.redundancy import ChangeFinding, FindingData
 from roadproof.verdict import Verdict
 
 
-def as_text(findings: Mapping[int, ChangeFindings], seconds: float, words: Called) -> str:
+def as_text(findings: Mapping[int, Sequence[ChangeFinding]], seconds: float, words: Called) -> str:
     """What is redundant and what is in doubt, by scenario; how the others were told apart, in numbers."""
     every = [(number, x) for number, each in findings.items() for x in each]
     lines = []
@@ -22,8 +21,8 @@ def as_text(findings: Mapping[int, ChangeFindings], seconds: float, words: Calle
     lines += [f"  {line}" for line in legend(words)] if lines else []
     redundant = sum(x.redundant is True and x.assuming is None for _, x in every)
     moving = sum(x.redundant is True and x.assuming is not None for _, x in every)
-    drives = sum(x.drive is not None for _, x in every)
-    traces = sum(x.trace is not None for _, x in every)
+    drives = sum(x.shown is not None and x.shown.drive is not None for _, x in every)
+    traces = sum(x.verdict is Verdict.REFUTED for _, x in every) - drives
     lines.append(
         f"{len(every)} changes: {redundant} redundant, {moving} more for motion, {drives} told apart by a "
         f"drive, {traces} by a trace, {len(doubts)} in doubt, in {seconds:.1f} s"
@@ -38,7 +37,7 @@ _SIGNS: Mapping[bool | None, str] = {
 }
 
 
-def sheet_of(findings: Sequence[Finding], names: Mapping[int, str]) -> Sheet[Finding]:
+def sheet_of(findings: Sequence[FindingData], names: Mapping[int, str]) -> Sheet[FindingData]:
     """An entry for each change; ``names``: what scenarios are called."""
     return Sheet(
         (

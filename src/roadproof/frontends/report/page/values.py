@@ -8,7 +8,6 @@ from roadproof.evidence.answers import classify, drives, monitor
 from roadproof.evidence.answers import coverage as gaps
 from roadproof.evidence.answers import explore as explorations
 from roadproof.evidence.answers import order as implications
-from roadproof.evidence.answers import redundancy as changes
 from roadproof.evidence.answers import traffic as evaluations
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.finding import Acceptance, Finding
@@ -20,6 +19,7 @@ from roadproof.frontends.report.page.templates import in_unit, notes
 from roadproof.frontends.report.redundancy import sheet_of as sheet_of_changes
 from roadproof.frontends.report.sheet import Heading, Linked, Matrix
 from roadproof.questions.overlap import OverlapData
+from roadproof.questions.redundancy import RedundancyData
 
 
 def evidence(findings: Sequence[Finding]) -> dict[str, object]:
@@ -125,7 +125,7 @@ def order(result: Result, context: PageContext, words: Words) -> dict[str, objec
 
 def redundancy(result: Result, context: PageContext, words: Words) -> dict[str, object]:
     """Changes of scenarios, those that are needed last."""
-    found = read(changes.Index, result.data, result.name).verdicts
+    found = read(RedundancyData, result.data, result.name).verdicts
     entries = sorted(found, key=lambda x: x.redundant is False)
     said = [x.redundant for x in entries]
     sheet = sheet_of_changes(entries, words)
