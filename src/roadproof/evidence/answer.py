@@ -4,8 +4,9 @@ The verdict follows from the claim and the kind of the evidence, so none stands 
 A file is read as the answer to a claim only where it is about that claim, compared on trees.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
+from functools import cached_property
 from typing import TypeAlias
 
 from roadproof.errors import InputError, RoadproofError
@@ -14,10 +15,11 @@ from roadproof.evidence.answer_files import (
     REFUTATION,
     UNDECIDED,
     AboutClaim,
-    Doubt,
+    OpenVerdict,
     RefutationFile,
     Undecided,
 )
+from roadproof.evidence.answers.doubt import Doubt
 from roadproof.evidence.certificate import Certificate, certificate_data, read_certificate_data
 from roadproof.evidence.claim import Claim, Exists, Valid
 from roadproof.evidence.codec import read, write
@@ -28,12 +30,14 @@ from roadproof.evidence.none_within import NoneWithinFile, none_within_data, rea
 from roadproof.evidence.refutation import fault_of
 from roadproof.evidence.strict import Fields, JsonObject
 from roadproof.library.bind import values_with
+from roadproof.library.compose import denied_premise, never
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import under_limits
+from roadproof.library.specification import Query
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.parts import parts_of
-from roadproof.reasons import NO_REASON, Reason
+from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
 
@@ -68,7 +72,7 @@ class Answer:
             case _, Undecided():
                 return self.evidence.verdict
             case Valid(), Certificate():
-                return Verdict.PROVED
+                return Verdict.VACUOUS if self._denied is not None else Verdict.PROVED
             case Valid(), JudgedDrive() | Refutation():
                 return Verdict.REFUTED
             case Exists(), JudgedDrive():
@@ -82,8 +86,18 @@ class Answer:
 
     @property
     def reason(self) -> Reason:
-        """Why the claim is undecided; nothing where it is decided."""
+        """Why the claim is undecided, or says nothing; nothing where it is decided."""
+        if self._denied is not None:
+            return Why.CONTRADICTION() if self._denied == f.FALSE else Why.PREMISE()
         return self.evidence.reason if isinstance(self.evidence, Undecided) else NO_REASON
+
+    @cached_property
+    def _denied(self) -> Formula | None:
+        """What a certificate denies that proves a claim to say nothing; None of all other evidence."""
+        if not isinstance(self.claim.mode, Valid) or not isinstance(self.evidence, Certificate):
+            return None
+        shown = read_claim(self.claim.home, self.evidence.claim).formula
+        return next((x.formula for x in vacuities(self.claim) if x.formula == shown), None)
 
     @property
     def is_final(self) -> bool:
@@ -101,8 +115,23 @@ class Answer:
         return self.evidence if isinstance(self.evidence, Certificate) else None
 
 
+def vacuities(claim: Claim) -> Iterator[Query]:
+    """Yield what shows that a claim says nothing: that its premise never holds, or that what is assumed is a
+    contradiction.
+    """
+    denied = denied_premise(claim.query)
+    if denied is not None:
+        yield denied
+    if assumed_by(claim):
+        yield never(claim.query)
+
+
 def undecided(
-    claim: Claim, reason: Reason, verdict: Doubt = Verdict.UNKNOWN, limits: object = None
+    claim: Claim,
+    reason: Reason,
+    verdict: OpenVerdict = Verdict.UNKNOWN,
+    limits: object = None,
+    doubt: Doubt | None = None,
 ) -> Answer:
     """Return the answer to a claim that nothing decides."""
     home = claim.home
@@ -114,6 +143,7 @@ def undecided(
         verdict=verdict,
         reason=reason,
         limits=limits,
+        doubt=doubt,
     )
     return Answer(claim, file)
 
@@ -177,7 +207,8 @@ def _certificate(claim: Claim, content: object, where: str) -> Certificate:
         f"it assumes {', '.join(file.assumed.said) or 'nothing'}",
     )
     shown = read_claim(claim.home, file.claim).formula
-    wanted = isinstance(claim.mode, Valid) and shown == claim.formula
+    about = (claim.formula, *(x.formula for x in vacuities(claim)))
+    wanted = isinstance(claim.mode, Valid) and shown in about
     _require(wanted or _is_part_denied(claim, shown), where, f"it proves {_short(file.claim)}")
     fault = certificate.fault_of_queries(file, claim.home.library)
     _require(fault is None, where, "" if fault is None else fault[1])

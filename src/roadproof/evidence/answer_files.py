@@ -3,13 +3,14 @@
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers import shared
+from roadproof.evidence.answers.doubt import Doubt
 from roadproof.evidence.codec import LEFT_OUT, Doc
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
 
 UNDECIDED: Final = "roadproof/undecided/1"
 REFUTATION: Final = "roadproof/refutation/1"
-Doubt: TypeAlias = Literal[
+OpenVerdict: TypeAlias = Literal[
     Verdict.UNKNOWN, Verdict.NONE_WITHIN, Verdict.PROVED_BOUNDED, Verdict.CROSSCHECK_FAILED
 ]
 
@@ -29,10 +30,10 @@ class Undecided(AboutClaim):
     """Why a claim is undecided, or within which limits the answer was looked for."""
 
     schema: Literal["roadproof/undecided/1"] = UNDECIDED
-    verdict: Doubt
+    verdict: OpenVerdict
     reason: shared.Reason
     limits: Annotated[shared.KeptLimits | None, LEFT_OUT] = None
-    doubt: Annotated[object, LEFT_OUT, Doc("The cause of an UNKNOWN.")] = None
+    doubt: Annotated[Doubt | None, LEFT_OUT] = None
 
 
 @dataclass(frozen=True, kw_only=True)

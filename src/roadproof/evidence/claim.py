@@ -40,13 +40,14 @@ class OccurringParameter:
 class Valid:
     """The formula is to hold on all traces; on motions within limits where ``moving``.
 
-    ``restricted``: the formula under the limits and values that are assumed, where any are. ``assuming``: the
-    words that say all this.
+    ``restricted``: the formula under the limits and values that are assumed, where any are. ``within``: on
+    drives only, as they are looked for. ``assuming``: the words that say what is assumed.
     """
 
     moving: bool = False
     values: tuple[tuple[str, Fraction], ...] = ()
     restricted: Formula | None = None
+    within: "Exists | None" = None
     assuming: tuple[str, ...] = field(default=(), compare=False)
 
 
@@ -72,7 +73,6 @@ class Exists:
     solver: str = "highs"
     refinements: int = 2
     explain: bool = True
-    count: int = 1
 
 
 @dataclass(frozen=True)
@@ -120,12 +120,21 @@ def claim_of(home: Specification, query: Query, mode: Mode, values: Mapping[str,
     return Claim(query.formula, query.vehicles, query.lanes, mode, occurring, query, home)
 
 
-def valid_under(specification: Specification, query: Query, assuming: tuple[str, ...] = ()) -> Claim:
-    """Return the claim that ``query`` holds on all traces under what is assumed. Raises ``InputError``."""
+def valid_under(
+    specification: Specification,
+    query: Query,
+    assuming: tuple[str, ...] = (),
+    within: Exists | None = None,
+    at: Mapping[str, Fraction] | None = None,
+) -> Claim:
+    """Return the claim that ``query`` holds on all traces under what is assumed, or on drives ``within``.
+
+    ``at``: other values of parameters (SI) than the declared ones, on drives. Raises ``InputError``.
+    """
     values = tuple(values_said(specification, assuming).items())
     restricted = under_limits(specification, query, assuming).formula if assuming else None
-    mode = Valid(is_moving(assuming), values, restricted, tuple(assuming))
-    return claim_of(specification, query, mode, {})
+    mode = Valid(is_moving(assuming), values, restricted, within, tuple(assuming))
+    return claim_of(specification, query, mode, (at or {}) if within is not None else {})
 
 
 def parameters_in(

@@ -25,7 +25,6 @@ from roadproof.evidence.answers import (
     none_within,
     order,
     plates,
-    proofs,
     road_map,
     shared,
     show,
@@ -53,11 +52,11 @@ from roadproof.library.motion import INDUCTIONS
 from roadproof.questions import overlap as overlap_question
 from roadproof.questions.data import QuestionFile
 from roadproof.questions.overlap import OverlapData
+from roadproof.questions.prove import ClaimsData
 from roadproof.questions.redundancy import RedundancyData
 
 TITLES: Mapping[type, str] = {
-    proofs.Index: "index.json of roadproof prove --out: claims with the files that show them",
-    proofs.Answer: "roadproof prove --json: claims, proved or refuted",
+    ClaimsData: "roadproof prove --json: claims, proved or refuted",
     compare.Answer: "roadproof compare --json: which of two formulas implies the other",
     library.Answer: "roadproof list --json: what the library holds",
     show.Answer: "roadproof show --format json: a scenario, a definition or a formula",
@@ -108,7 +107,7 @@ WITHOUT_ASSUMPTION: JsonObject = {
 }
 """Only inductions may stand in a certificate that assumes nothing."""
 DRIVES = (drive.Drive, drive.JerkDrive)
-KEEPING = (proofs, drives, plates, order, coverage, classify, catalogue_index, explore)
+KEEPING = (drives, plates, order, coverage, classify, catalogue_index, explore)
 """The questions whose answers are kept one by one."""
 RECORDS: Mapping[str, type] = {x.SCHEMA: x.Record for x in KEEPING}
 

@@ -45,6 +45,29 @@ def implication(premise: Query, conclusion: Query) -> Query:
     return _joined((premise, conclusion), said, f.implication(premise.formula, conclusion.formula))
 
 
+def denied_premise(query: Query) -> Query | None:
+    """``not A`` of ``A -> B``; None of other claims."""
+    body = query.claim.body
+    if not isinstance(body, Binary) or body.op != "->":
+        return None
+    match query.formula:
+        case f.Or((f.Not() as denied, _)):
+            formula: Formula = denied
+        case whole if body.right == syntax.Literal_(False):
+            formula = whole
+        case _:
+            return None
+    return replace(
+        query, claim=Claim(query.claim.given, Prefix("not", body.left)), formula=formula, written=""
+    )
+
+
+def never(query: Query) -> Query:
+    """``false``, with the names of ``query``."""
+    said = syntax.Literal_(False)
+    return replace(query, claim=Claim(query.claim.given, said), formula=f.FALSE, written="")
+
+
 def equivalence(one: Query, other: Query) -> Query:
     """``one <-> other``."""
     said = Binary("<->", one.claim.body, other.claim.body)

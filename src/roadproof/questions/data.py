@@ -9,32 +9,22 @@ from typing import Annotated, Any, Final, Literal
 from roadproof.analysis.basis import Basis
 from roadproof.errors import InputError
 from roadproof.evidence.answers import shared
-from roadproof.evidence.answers.none_within import Model
 from roadproof.evidence.codec import Doc, read, write
 from roadproof.evidence.heading import heading
 from roadproof.evidence.specifications import read_beside
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, JsonObject, read_json
+from roadproof.questions.place import VehicleModel, model_of, vehicles_of
 from roadproof.questions.question import Question
 from roadproof.runtime.records import dataclass
-from roadproof.world.vehicle import Vehicle
 
 QUESTION: Final = "question.json"
 SCHEMA: Final = "roadproof/question/1"
 KINDS: Mapping[str, str] = {
     "overlap": "roadproof.questions.overlap:OverlapQuestion",
+    "prove": "roadproof.questions.prove:ProveQuestion",
     "redundancy": "roadproof.questions.redundancy:RedundancyQuestion",
 }
 """The class of each kind of question."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class FullModel(Model):
-    """What a vehicle can do, and what a natural drive of it is."""
-
-    cruise: tuple[Fraction, Fraction]
-    jump_lon: Fraction
-    jump_lat: Fraction
-    a_bend: Fraction
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +37,7 @@ class BasisSays:
     specs: shared.Specifications
     horizon: Annotated[Fraction, Doc("Seconds that are searched.")]
     objective: Annotated[str, Doc("What drives are like.")]
-    vehicles: Annotated[Mapping[str, FullModel], Doc("Models by name; an empty name stands for all others.")]
+    vehicles: Annotated[Mapping[str, VehicleModel], Doc("Models by name; an empty name: all others.")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,20 +52,26 @@ class QuestionFile(shared.Heading):
 
 def question_data(question: Question[Any]) -> JsonObject:
     """Return ``question.json`` as plain data."""
-    basis = question.basis
-    said = BasisSays(
+    file = QuestionFile(
+        **heading(SCHEMA, question.basis.library),
+        question=question.kind,
+        basis=basis_data(question.basis),
+        asked=write(question.asked),
+    )
+    return write(file)
+
+
+def basis_data(basis: Basis) -> BasisSays:
+    """Return what all claims are read with as data."""
+    return BasisSays(
         sets=basis.set_names,
         options=basis.specification.options,
         parameters={name: str(x) for name, x in sorted(basis.all_values().items())},
         specs=tuple(Path(x.name).name for x in basis.library.files),
         horizon=basis.horizon,
         objective=basis.objective,
-        vehicles={name: FullModel(**vars(x)) for name, x in basis.vehicles.items()},
+        vehicles={name: model_of(x) for name, x in basis.vehicles.items()},
     )
-    file = QuestionFile(
-        **heading(SCHEMA, basis.library), question=question.kind, basis=said, asked=write(question.asked)
-    )
-    return write(file)
 
 
 def read_question(folder: Path, given: Sequence[Path] = ()) -> Question[Any]:
@@ -98,7 +94,7 @@ def read_question(folder: Path, given: Sequence[Path] = ()) -> Question[Any]:
         values,
         said.horizon,
         objective=said.objective,  # type: ignore[arg-type]
-        vehicles={name: Vehicle(**vars(x)) for name, x in said.vehicles.items()},
+        vehicles=vehicles_of(said.vehicles),
     )
     module, _, name = KINDS[file.question].partition(":")
     made: Callable[[Basis, object, str], Question[Any]] = getattr(import_module(module), name).of

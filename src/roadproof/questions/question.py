@@ -1,13 +1,14 @@
 """What a question is: plain data that list claims, and show the answers to them."""
 
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
-from typing import Any, ClassVar, Protocol, Self, TypeAlias, TypeVar
+from typing import Any, ClassVar, Protocol, Self, TypeAlias, TypeVar, runtime_checkable
 
 from roadproof.analysis.basis import Basis
 from roadproof.drivers import restriction
 from roadproof.evidence.answer import Answer
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.heading import heading
+from roadproof.evidence.subject import Subject
 from roadproof.runtime.budget import Work
 
 View = TypeVar("View", covariant=True)
@@ -66,6 +67,22 @@ class Question(Protocol[View]):
 
     def data(self, view: Any, place: Place, seconds: float) -> object:
         """Return a view as a definition for ``evidence.codec``, which ``--json`` prints."""
+
+
+@runtime_checkable
+class Growing(Protocol):
+    """A question whose folder holds the answers to former ones, too."""
+
+    def beside(self, former: Any) -> Any:
+        """Return the question about what was asked before, too."""
+
+
+@runtime_checkable
+class Linkable(Protocol):
+    """A question about subjects that requirements link to."""
+
+    def subject(self, name: str) -> Subject:
+        """Return what the claim of a name is about."""
 
 
 def walk(batch: Batch, find: Callable[[str, Claim], Answer | None]) -> Iterator[tuple[str, Claim]]:

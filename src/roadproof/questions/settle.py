@@ -4,12 +4,13 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import field
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.known import Origin, is_off
 from roadproof.analysis.study.known import told as told_known
 from roadproof.analysis.study.pool import Progress, Say
+from roadproof.engines.prove.doubt import Cause, Doubt
 from roadproof.errors import SharedError, UsageError
 from roadproof.evidence.answer import Answer, undecided
 from roadproof.evidence.claim import Claim
@@ -19,14 +20,19 @@ from roadproof.reasons import Reason
 from roadproof.runtime.budget import Work
 from roadproof.runtime.executors import Jobs, hands_of
 from roadproof.runtime.records import dataclass
+from roadproof.runtime.timing import now, since
+
+Timed: TypeAlias = tuple[str, Answer, float]
+"""The name of a claim, its answer, and the seconds that it took."""
 
 
 @dataclass(frozen=True)
 class Settled:
-    """All answers by name, and from where those came that were known."""
+    """All answers by name, from where those came that were known, and the seconds that others took."""
 
     answers: Mapping[str, Answer]
     origins: Mapping[str, Origin]
+    seconds: Mapping[str, float] = field(default_factory=dict)
 
 
 def settle(
@@ -35,7 +41,7 @@ def settle(
     hands: Jobs = None,
     progress: Progress | None = None,
     what: str = "claims",
-    each: Callable[[str, Answer], None] | None = None,
+    each: Callable[[str, Answer, float], None] | None = None,
     fresh: bool = False,
     say: Say | None = None,
 ) -> Settled:
@@ -70,7 +76,7 @@ def settle(
         run.ask(ours, hands, progress, what)
         batches = run.open_batches()
     store.make_room()
-    return Settled(run.known, run.origins)
+    return Settled(run.known, run.origins, run.seconds)
 
 
 class _Run:
@@ -80,12 +86,13 @@ class _Run:
         self,
         question: Question[Any],
         store: Store,
-        each: Callable[[str, Answer], None],
+        each: Callable[[str, Answer, float], None],
         say: Say | None,
     ) -> None:
         self.question, self.store, self.each, self.say = question, store, each, say
         self.known: dict[str, Answer] = {}
         self.origins: dict[str, Origin] = {}
+        self.seconds: dict[str, float] = {}
 
     def open_batches(self) -> list[Batch]:
         """Look up claims, and return the batches of which some are not known."""
@@ -109,29 +116,30 @@ class _Run:
         self._add(name, answer)
         return answer
 
-    def _add(self, name: str, answer: Answer) -> None:
+    def _add(self, name: str, answer: Answer, seconds: float = 0.0) -> None:
         self.known[name] = answer
-        self.each(name, answer)
+        self.each(name, answer, seconds)
 
     def ask(self, batches: Sequence[Batch], hands: Jobs, progress: Progress | None, what: str) -> None:
         """Settle batches; of one whose process ends, claims are asked one by one."""
         lost: list[Batch] = []
 
-        def lose(job: "_Job", reason: Reason) -> list[tuple[str, Answer]]:
+        def lose(job: "_Job", reason: Reason) -> list[Timed]:
             lost.append(job.batch)
             return []
 
         jobs = [_Job(batch, self._known_of(batch), self.store) for batch in batches]
         with closing(pool.work(_settle, jobs, hands, lose, progress, what)) as answered:
             for _, answers in answered:
-                for name, answer in answers:
-                    self._keep(name, answer)
+                for found in answers:
+                    self._keep(*found)
         for batch in lost:
             self._ask_alone(batch, hands)
 
-    def _keep(self, name: str, answer: Answer) -> None:
+    def _keep(self, name: str, answer: Answer, seconds: float) -> None:
+        self.seconds[name] = seconds
         self.store.keep(name, answer)
-        self._add(name, answer)
+        self._add(name, answer, seconds)
 
     def _known_of(self, batch: Batch) -> dict[str, Answer]:
         """Return the known answers to claims of a batch."""
@@ -148,16 +156,15 @@ class _Run:
         while left := [*walk(batch, self._find)]:
             [(name, claim)] = left
 
-            def lose(
-                job: "_Job", reason: Reason, asked: Claim = claim, named: str = name
-            ) -> list[tuple[str, Answer]]:
-                return [(named, undecided(asked, reason))]
+            def lose(job: "_Job", reason: Reason, asked: Claim = claim, named: str = name) -> list[Timed]:
+                doubt = Doubt(Cause.PROCESS, (), job.work.effort.units, reason).kept
+                return [(named, undecided(asked, reason, doubt=doubt), 0.0)]
 
             job = _Job(_One(name, claim), {}, self.store)
             with closing(pool.work(_settle, [job, _NOTHING], hands, lose)) as answered:
                 for _, answers in answered:
-                    for found, answer in answers:
-                        self._keep(found, answer)
+                    for found in answers:
+                        self._keep(*found)
 
 
 @dataclass(frozen=True)
@@ -198,18 +205,19 @@ class _Job:
 _NOTHING = _Job(_None())
 
 
-def _settle(job: _Job) -> list[tuple[str, Answer]]:
+def _settle(job: _Job) -> list[Timed]:
     """Settle what is left of a batch."""
     from roadproof.engines.search.batches import Engines  # here: known answers need no solver
 
-    engines, new = Engines(job.work), list[tuple[str, Answer]]()
+    engines, new = Engines(job.work), list[Timed]()
 
     def answer_to(name: str, claim: Claim) -> Answer:
         if name in job.known:
             return job.known[name]
         found = None if job.store is None else job.store.find(name, claim)
+        begun = now()
         answer = found[0] if found is not None and found[0].is_final else engines.settle(claim)
-        new.append((name, answer))
+        new.append((name, answer, since(begun)))
         return answer
 
     def find(name: str, claim: Claim) -> Answer:
@@ -221,5 +229,5 @@ def _settle(job: _Job) -> list[tuple[str, Answer]]:
     return new
 
 
-def _nobody(name: str, answer: Answer) -> None:
+def _nobody(name: str, answer: Answer, seconds: float) -> None:
     """Nobody listens."""

@@ -6,9 +6,8 @@ the archive a file stands under the digest of its claim, of the work that was al
 
 import json
 import lzma
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import suppress
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -17,14 +16,15 @@ from roadproof.analysis.study.known import Origin
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.answer import Answer, answer_data, read_answer
 from roadproof.evidence.claim import Claim
-from roadproof.evidence.strict import LARGEST_EVIDENCE, read_json
-from roadproof.questions.data import QUESTION, question_data
-from roadproof.questions.question import Answers, Question
+from roadproof.evidence.strict import LARGEST_EVIDENCE, LARGEST_INDEX, read_json
+from roadproof.questions.data import QUESTION, basis_data, question_data, read_question
+from roadproof.questions.question import Answers, Growing, Question
+from roadproof.runtime.archives import archived
 from roadproof.runtime.budget import Work
 from roadproof.runtime.cache import keep_bytes, kept_bytes, make_room
 from roadproof.runtime.canonical import digest
-from roadproof.runtime.files import make_folder, write_json, write_whole
-from roadproof.runtime.package_data import program, shipped
+from roadproof.runtime.files import make_folder, write_json
+from roadproof.runtime.package_data import program
 from roadproof.runtime.records import dataclass
 from roadproof.runtime.version import ANSWERS
 
@@ -50,14 +50,32 @@ class Store:
             return
         make_folder(self.folder)
         keep_specifications(self.folder, question.basis.library)
-        head, data = self.folder / QUESTION, question_data(question)
-        if not head.exists():
+        head = self.folder / QUESTION
+        former = read_json(head, LARGEST_INDEX) if head.exists() else None
+        if former is not None and isinstance(question, Growing):
+            question = question.beside(self._former(question))
+        data = json.loads(json.dumps(question_data(question)))
+        if former is None or isinstance(question, Growing):
             write_json(head, data)
-        elif read_json(head) != json.loads(json.dumps(data)):
-            raise UsageError(
-                f"{self.folder} holds answers to another question, or to this one under another library: "
-                "name another folder with --out, or remove it"
-            )
+        elif former != data:
+            raise self._other()
+
+    def _former(self, question: Question[Any]) -> Question[Any]:
+        """Return the question of the folder. Raises ``UsageError`` where it is of another kind or library."""
+        assert self.folder is not None
+        try:
+            former = read_question(self.folder)
+        except InputError:
+            raise self._other() from None
+        if former.kind != question.kind or basis_data(former.basis) != basis_data(question.basis):
+            raise self._other()
+        return former
+
+    def _other(self) -> UsageError:
+        return UsageError(
+            f"{self.folder} holds answers to another question, or to this one under another library: "
+            "name another folder with --out, or remove it"
+        )
 
     def key(self, claim: Claim) -> str:
         """The digest of all that an answer depends on."""
@@ -102,31 +120,6 @@ class Store:
     def make_room(self) -> None:
         """Keep the cache within its bounds."""
         make_room(CACHE)
-
-
-@cache
-def archived(kind: str) -> Mapping[str, object]:
-    """Return the answers to questions of a kind that are shipped, by key; none where they were changed."""
-    path = archive(shipped("proofs") / "known", kind)
-    if not path.is_file():
-        return {}
-    content = json.loads(lzma.decompress(path.read_bytes()))
-    answers: Mapping[str, object] = content["answers"]
-    return answers if content["seal"] == digest(answers) else {}
-
-
-def archive(folder: Path, kind: str) -> Path:
-    """Return the path of the answers that are shipped."""
-    return folder / f"{kind}.json.xz"
-
-
-def ship(folder: Path, kind: str, answers: Mapping[str, object]) -> Path:
-    """Write answers by key as those that are shipped."""
-    content = {"seal": digest(answers), "answers": dict(sorted(answers.items()))}
-    path = archive(folder, kind)
-    write_whole(path, lzma.compress(json.dumps(content).encode(), preset=9 | lzma.PRESET_EXTREME))
-    archived.cache_clear()
-    return path
 
 
 def keep_all(folder: Path, question: Question[Any], answers: Answers) -> None:

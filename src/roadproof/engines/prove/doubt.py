@@ -7,8 +7,8 @@ forms need a kind of reasoning that the prover does not have, so that more work 
 from collections.abc import Mapping, Sequence
 from enum import StrEnum
 
-from roadproof.evidence.answers import proofs as kept
-from roadproof.evidence.answers.proofs import Cause as Cause
+from roadproof.evidence.answers import doubt as kept
+from roadproof.evidence.answers.doubt import Cause as Cause
 from roadproof.library.motion import is_moving
 from roadproof.library.specification import Query
 from roadproof.logic import formula as f

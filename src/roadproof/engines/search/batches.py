@@ -11,11 +11,11 @@ from roadproof.engines.prove.induction import prove_of_scenarios
 from roadproof.engines.search.ask import ask
 from roadproof.engines.search.impossible import explain
 from roadproof.engines.search.known_drive import KnownDrive
-from roadproof.engines.search.outcome import Outcome, Search
-from roadproof.engines.search.question import SearchOptions, Setting
+from roadproof.engines.search.looking import search_of
+from roadproof.engines.search.outcome import Outcome
 from roadproof.engines.search.valid import settle_valid
 from roadproof.evidence.answer import Answer, Refutation, undecided
-from roadproof.evidence.answer_files import Doubt
+from roadproof.evidence.answer_files import OpenVerdict
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.claim import Claim, Exists, On, Valid
 from roadproof.evidence.countermodel import Countermodel
@@ -34,30 +34,6 @@ from roadproof.verdict import Verdict
 MOVED = 5
 """So many drives are tried on other roads for a claim that is about no road sector."""
 FOR_A_PART = 10.0  # times the work of a first proof, for one that parts clash
-
-
-def search_of(claim: Claim, work: Work, explain: bool = False) -> Search:
-    """Return the search that a claim asks for. Raises ``ValueError`` for a claim about no drive."""
-    if not isinstance(claim.mode, Exists):
-        raise ValueError(f"a {type(claim.mode).__name__} claim asks for no drive")
-    mode = claim.mode
-    values = {x.name: x.value for x in claim.parameters}
-    setting = Setting(
-        road=mode.road,
-        lanes=mode.lanes,
-        vehicles=mode.vehicles,
-        limits=mode.limits,
-        values=values,
-        horizon=mode.horizon,
-        dt=mode.dt,
-        reach=mode.reach,
-        collisions=mode.collisions,
-        natural=mode.natural,
-    )
-    options = SearchOptions(
-        mode.objective, mode.engine, mode.solver, work.effort, mode.refinements, explain=explain
-    )
-    return Search(claim.home, claim.query, setting, options, mode.count)
 
 
 @dataclass(frozen=True)
@@ -139,9 +115,9 @@ class Engines:
         proof = None if self._has_trace(claim) else self._clash(claim, 1.0)
         if proof is not None:
             return Answer(claim, proof)
-        found = ask(search_of(claim, self.work))
+        found = ask(search_of(claim, self.work, explain=False))
         if self.work.explain and not found.drives and found.verdict is not Verdict.IMPOSSIBLE:
-            found = ask(search_of(claim, self.work, explain=True))
+            found = ask(search_of(claim, self.work))
         if found.drives:
             return Answer(claim, found.drives[0])
         if found.impossibility is not None:
@@ -175,5 +151,5 @@ def _body(denied: Formula) -> Formula:
 
 def _undecided(claim: Claim, found: Outcome) -> Answer:
     limits = None if found.limits is None else found.limits.as_json()
-    verdict: Doubt = Verdict.NONE_WITHIN if found.verdict is Verdict.NONE_WITHIN else Verdict.UNKNOWN
+    verdict: OpenVerdict = Verdict.NONE_WITHIN if found.verdict is Verdict.NONE_WITHIN else Verdict.UNKNOWN
     return undecided(claim, found.told(("--horizon",)), verdict, limits)

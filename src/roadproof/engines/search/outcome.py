@@ -32,7 +32,7 @@ class Search:
     @property
     def claim(self) -> Claim:
         """The claim that there are such drives, without the effort of looking for them."""
-        mode = exists(self.setting, self.search_options, self.count)
+        mode = exists(self.setting, self.search_options)
         return claim_of(self.specification, self.query, mode, self.setting.values)
 
 

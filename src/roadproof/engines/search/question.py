@@ -234,12 +234,12 @@ class SearchOptions:
     explain: bool = True
 
 
-def exists(setting: Setting, options: SearchOptions, count: int = 1) -> Exists:
+def exists(setting: Setting, options: SearchOptions) -> Exists:
     """Return how drives are asked for: every field of both but the values of parameters and the effort.
 
     A field that ``Exists`` lacks is an error, so none can be left out of the digest of a claim.
     """
-    given = {**vars(setting), **vars(options), "count": count}
+    given = {**vars(setting), **vars(options)}
     return Exists(**{name: value for name, value in given.items() if name not in ("values", "effort")})
 
 

@@ -1,46 +1,74 @@
 """Whether a claim holds on all traces: drives that are known, a proof, a drive or a trace that refutes it."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 
-from roadproof.engines.prove.prover import Result
+from roadproof.engines.prove.doubt import doubt_of
 from roadproof.engines.search.known_drive import KnownDrive, against, first_refuting
-from roadproof.engines.search.settle import Settlement, prove_claim, settle
-from roadproof.evidence.answer import Answer, Refutation, assumed_by, undecided
-from roadproof.evidence.claim import Claim
+from roadproof.engines.search.looking import search_of
+from roadproof.engines.search.remedy import remedy_of
+from roadproof.engines.search.settle import Settlement, settle, settle_bounded
+from roadproof.engines.search.shipped_drives import shipped_drives
+from roadproof.evidence.answer import Answer, Refutation, assumed_by, undecided, vacuities
+from roadproof.evidence.claim import Claim, Valid
+from roadproof.reasons import Why
 from roadproof.runtime.budget import Work
 from roadproof.verdict import Verdict
 
 
 def settle_valid(
-    claim: Claim, work: Work, drives: Iterable[KnownDrive], alike: Iterable[KnownDrive] = ()
+    claim: Claim, work: Work, drives: Iterable[KnownDrive] = (), alike: Iterable[KnownDrive] = ()
 ) -> Answer:
     """Return the answer to a claim.
 
-    ``drives``: they are tried first; those that refute claims which are ``alike`` on other roads, too. Raises
-    ``BudgetExceeded``.
+    ``drives``: they are tried first; those that refute claims which are ``alike`` on other roads, too.
     """
+    assert isinstance(claim.mode, Valid)
+    if claim.mode.within is not None:
+        return _answer(claim, work, settle_bounded(search_of(claim, work), shipped_drives()))
     shown = first_refuting(claim, drives)
     for known in alike if shown is None else ():
         shown = shown or known.elsewhere(against(claim), claim)
     if shown is not None:
         return Answer(claim, shown)
-    if work.seek_drive:
-        found = settle(claim.home, claim.query, work.effort, said=assumed_by(claim))
-    else:
-        effort = work.effort.of(work.proof)
-        found = Settlement(prove_claim(claim.home, claim.query, effort, ("", None), assumed_by(claim)))
+    effort = work.effort if work.seek_drive else work.effort.of(work.proof)
+    found = settle(claim.home, claim.query, effort, seek_drive=work.seek_drive, said=assumed_by(claim))
+    return _answer(claim, work, found)
+
+
+def _answer(claim: Claim, work: Work, found: Settlement) -> Answer:
     if found.drive is not None:
         return Answer(claim, found.drive)
-    return _answer(claim, found.result)
-
-
-def _answer(claim: Claim, result: Result) -> Answer:
-    match result.verdict:
-        case Verdict.PROVED | Verdict.VACUOUS if result.certificate is not None:
+    result = found.result
+    match found.verdict:
+        case Verdict.VACUOUS if result.certificate is not None:
+            return _vacuous(claim, work) or Answer(claim, result.certificate)
+        case Verdict.PROVED if result.certificate is not None:
             return Answer(claim, result.certificate)
         case Verdict.REFUTED if result.countermodel is not None:
             return Answer(claim, Refutation(result.countermodel))
+        case Verdict.PROVED_BOUNDED if found.limits is not None:
+            return undecided(claim, result.reason, Verdict.PROVED_BOUNDED, found.limits.as_json())
         case Verdict.CROSSCHECK_FAILED:
             return undecided(claim, result.reason, Verdict.CROSSCHECK_FAILED)
         case _:
-            return undecided(claim, result.reason)
+            return _in_doubt(claim, work, found)
+
+
+def _vacuous(claim: Claim, work: Work) -> Answer | None:
+    """Return the proof that a claim says nothing, where there is one."""
+    for denied in vacuities(claim):
+        found = settle(claim.home, denied, work.effort, seek_drive=False, said=assumed_by(claim))
+        if found.result.holds and found.result.certificate is not None:
+            return Answer(claim, found.result.certificate)
+    return None
+
+
+def _in_doubt(claim: Claim, work: Work, found: Settlement) -> Answer:
+    """Return that a claim is in doubt; with the cause and what helps where that is to be explained."""
+    result, said = found.result, assumed_by(claim)
+    if not work.explain or result.stop is None:
+        return undecided(claim, result.reason)
+    doubt = doubt_of(claim.query, said, result.stop, work.effort, work.seek_drive, result.reason)
+    doubt = replace(doubt, option=remedy_of(claim.home, claim.query, said, doubt.cause))
+    return undecided(claim, Why.TOLD(doubt), doubt=doubt.kept)

@@ -7,21 +7,21 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Self, Unpack
 
-from roadproof.analysis.claims import ClaimResult, Claims, former_claims, name_of, write_claims
-from roadproof.analysis.study.frame import StudyResult
+from roadproof.analysis.basis import Basis
 from roadproof.analysis.study.pool import Progress
 from roadproof.engines.prove.properties import OWN, Task, choose, template_properties
 from roadproof.errors import UsageError
-from roadproof.evidence.answers.proofs import ANSWER_SCHEMA, Answer, Index, KernelSays, Record
+from roadproof.evidence import answer as answers
 from roadproof.evidence.claim import Engine
+from roadproof.evidence.codec import write
 from roadproof.evidence.heading import heading
-from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
+from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.settings import models_of, setting, work_of
-from roadproof.frontends.api.studied import StudyAnswers, drive_pictures
+from roadproof.frontends.api.studied import drive_pictures
 from roadproof.frontends.report import claims as claims_text
 from roadproof.frontends.report.ci.cases import Case, Location
 from roadproof.frontends.report.ci.questions import claim_cases
@@ -34,6 +34,16 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import MOTION, AssumedClaim, at_values, is_moving, limits_of, split, statement
 from roadproof.library.scenario_references import names_scenarios, read_numbers
 from roadproof.library.specification import Specification
+from roadproof.questions.prove import (
+    SCHEMA,
+    ClaimResult,
+    ClaimsData,
+    ClaimsView,
+    ClaimTask,
+    KernelSays,
+    ProveQuestion,
+    claim_data,
+)
 from roadproof.runtime.executors import Jobs, hands_of
 from roadproof.runtime.files import hold_folder
 from roadproof.runtime.progress import Listener, listening
@@ -52,53 +62,44 @@ _PROPERTY = re.compile(r"[A-Z]\d+")
 
 
 @dataclass(frozen=True, repr=False)
-class Proofs(StudyAnswers[Claims, ClaimResult, Record], BuildResult):
+class Proofs(QuestionAnswers[ClaimsView], BuildResult):
     """Claims, settled. ``kernel``: what Coq says of those that are proved, by claim, where it was asked.
 
     ``places``: where claims are written, by ``task.name``, if in a file.
     """
 
+    question: ProveQuestion
     kernel: "KernelAnswer | None" = None
     places: Mapping[str, Location] = field(default_factory=dict)
     pieces: ClassVar[str] = "claims"
     command: ClassVar[str] = "prove"
 
     @classmethod
-    def asked(
-        cls,
-        study: Claims,
-        given: Run,
-        each: Callable[[str, ClaimResult], None] | None = None,
-        more: Callable[[], Mapping[str, object]] = dict,
-        begun: float | None = None,
+    def of(
+        cls, question: ProveQuestion, given: Run, each: Callable[[str, ClaimResult], None] | None = None
     ) -> Self:
-        """As of all studies; a folder of claims grows, and only one run at a time may write into it."""
-        folder = None if given.out is None else Path(given.out)
-        with hold_folder(folder):
-            if folder is not None:
-                former_claims(folder, study)
-            return super().asked(study, given, each, more, begun)
+        """Settle claims; ``each`` is told of every result. Of several runs one at a time writes a folder."""
+
+        def tell(name: str, answer: answers.Answer, seconds: float) -> None:
+            if each is not None:
+                each(name, replace(question.result(name, answer), seconds=seconds))
+
+        with hold_folder(None if given.out is None else Path(given.out)):
+            return cls.settled(question, given, tell)
 
     @property
     def answers(self) -> tuple[ClaimResult, ...]:
         """In the order in which they were asked."""
-        return tuple(replace(self.found.answers[name_of(x)], task=x) for x in self.study.tasks)
+        seconds = self.found.seconds
+        return tuple(replace(x, seconds=seconds.get(x.name, 0.0)) for x in self.view.claims)
 
     @property
     def verdicts(self) -> dict[str, Verdict]:
         return {x.task.name: x.verdict for x in self.answers}
 
     @property
-    def evidence(self) -> tuple[Evidence, ...]:
-        found = (
-            (x.settled.result.certificate, x.settled.drive, x.settled.result.countermodel)
-            for x in self.answers
-        )
-        return tuple(next(y for y in each if y is not None) for each in found if any(each))
-
-    @property
     def road(self) -> Road | None:
-        return None if self.study.within is None else self.study.within[0].road
+        return self.question.road
 
     @property
     def exit_code(self) -> ExitCode:
@@ -106,13 +107,9 @@ class Proofs(StudyAnswers[Claims, ClaimResult, Record], BuildResult):
         return found if self.kernel is None else max(found, self.kernel.exit_code)
 
     def cases(self) -> Iterator[Case]:
-        kept = {x.task.name: self.found.records.get(name_of(x.task)) for x in self.answers}
-        files = {
-            name: self.folder / record.claim.evidence
-            for name, record in kept.items()
-            if self.folder and record and isinstance(record.claim.evidence, str)
-        }
-        return claim_cases(self.study, self.answers, files, self.places)
+        shown = (x for x in self.answers if x.answer is not None and x.answer.is_final)
+        files = {} if self.folder is None else {x.name: self.folder / f"{x.name}.json" for x in shown}
+        return claim_cases(self.question, self.answers, files, self.places)
 
     def put_to_kernel(
         self, kernel: "KernelName", jobs: Jobs = None, progress: Progress | None = None
@@ -120,12 +117,10 @@ class Proofs(StudyAnswers[Claims, ClaimResult, Record], BuildResult):
         """The same, with what a kernel says of each proof. Raises ``MissingSolverError``."""
         from roadproof.frontends.api import kernel as kernels
 
-        proved = [(x, x.settled.result.certificate) for x in self.answers]
-        library = self.study.library
-        asked = {name_of(x.task): y for x, y in proved if y is not None}
+        asked = {x.name: x.certificate for x in self.answers if x.certificate is not None}
         names = {f"claim_{number}": name for number, name in enumerate(asked, 1)}
         found = kernels.put(
-            [kernels.KernelQuestion(x, asked[y], library) for x, y in names.items()],
+            [kernels.KernelQuestion(x, asked[y], self.library) for x, y in names.items()],
             hands_of(jobs).processes,
             progress,
             kernel,
@@ -139,7 +134,7 @@ class Proofs(StudyAnswers[Claims, ClaimResult, Record], BuildResult):
             return ""
         lines: list[str] = []
         for x in self.answers:
-            ruling = self.kernel.rulings.get(name_of(x.task))
+            ruling = self.kernel.rulings.get(x.name)
             if ruling is not None:
                 claim = statement(x.task.assuming, " ".join(x.task.claim.split()))
                 lines.append(f"kernel: {ruling.told}  {claim}" + f": {ruling.reason}" * bool(ruling.reason))
@@ -150,41 +145,33 @@ class Proofs(StudyAnswers[Claims, ClaimResult, Record], BuildResult):
         return claims_text.sheet_of(self.answers)
 
     def as_data(self) -> JsonObject:
-        files = {name: x.claim.evidence for name, x in self.found.records.items()}
-        named = {name: file for name, file in files.items() if isinstance(file, str)}
         says = {} if self.kernel is None else self.kernel.rulings
-        answer = Answer(
-            **heading(ANSWER_SCHEMA, self.study.library),
-            length_error=Answer.bends(self.road),
-            verdicts=tuple(
-                x.as_settled(named.get(name), _said(says[name]) if name in says else None)
-                for x in self.answers
-                for name in [name_of(x.task)]
-            ),
+        folder = self.folder
+
+        def place(name: str, answer: answers.Answer) -> object:
+            return None if folder is None else f"{name}.json"
+
+        claims = (claim_data(x, place, _said(says[x.name]) if x.name in says else None) for x in self.answers)
+        data = ClaimsData(
+            **heading(SCHEMA, self.library),
+            length_error=ClaimsData.bends(self.road),
+            verdicts=tuple(claims),
             kernel=None if self.kernel is None else self.kernel.kept,
         )
-        return self.found.as_data(answer)
-
-    def _index(self, records: Mapping[str, Record]) -> Index:
-        claims = tuple(x.claim for x in records.values())
-        return Index(**self.study.question.heading, claims=claims)
-
-    def _write_index(self, folder: Path, found: StudyResult[ClaimResult, Record]) -> None:
-        write_claims(folder, self.study, found.records)
+        return write(data)
 
     def _write(self, folder: Path, pictures: bool) -> None:
         with hold_folder(folder):
-            former_claims(folder, self.study)
             super()._write(folder, pictures)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """The drives that refute a claim."""
-        return drive_pictures(((x.task.name, x.settled.drive) for x in self.answers), self.study.library)
+        return drive_pictures(((x.task.name, x.drive) for x in self.answers), self.library)
 
     def __str__(self) -> str:
-        if self.study.are_own:
-            return "\n".join(claims_text.details(x, self.study) for x in self.answers)
-        table = claims_text.table(self.answers, self.study.library.select())
+        if self.question.are_own:
+            return "\n".join(claims_text.details(x, self.question) for x in self.answers)
+        table = claims_text.table(self.answers, self.library.select())
         return f"{table}\n{len(self.answers)} claims in {self.seconds:.1f} s"
 
 
@@ -218,13 +205,13 @@ def prove(
     given = Prove.of(options)
     asked = claims_asked(definitions_of(using), what, using.alone.set_name if using else None, given)
     with listening(stage):
-        found = Proofs.asked(asked, given)
+        found = Proofs.of(asked, given)
     return found if given.kernel is None else found.put_to_kernel(given.kernel, given.jobs, given.progress)
 
 
 def claims_asked(
     home: Definitions, what: Sequence[What | AssumedClaim], set_name: str | None, given: Prove
-) -> Claims:
+) -> ProveQuestion:
     """What ``prove`` settles: claims in dense time, or within limits; ``set_name``: see ``claims_of``.
 
     Raises as ``prove``.
@@ -234,7 +221,8 @@ def claims_asked(
     limits = (models_of(given.vehicles), values) if dense else ()
     said = Assumptions(given.assume is not None, *limits)
     asked = claims_of(home, what, set_name, claim_verdict(given.expect), said)
-    asked = replace(asked, effort=work_of(given), seek_drive=given.drive)
+    basis = replace(asked.basis, effort=work_of(given))
+    asked = replace(asked, basis=basis, seek_drive=given.drive)
     if given.engine != "dense":
         if given.kernel is not None:
             raise UsageError(f"engine={given.engine!r} makes no certificates for Coq: omit kernel")
@@ -288,7 +276,7 @@ def claims_of(
     set_name: str | None,
     expected: ClaimVerdict = Verdict.PROVED,
     said: Assumptions | None = None,
-) -> Claims:
+) -> ProveQuestion:
     """What is claimed: the list's claims in a set, in all where None; or one's own in that of ``home``.
 
     Raises ``TextError``, ``InputError``, ``UsageError``.
@@ -323,10 +311,10 @@ def claims_of(
     if not tasks:
         words = ", ".join(map(str, what))
         raise UsageError(f"no claim of {words} is stated for set={set_name or 'any'}: ask for others")
-    specifications = {x.set_name: home.specification.in_set(x.set_name) for x in tasks}
     if not own:
-        tasks = [assumed.of_list(specifications[x.set_name], x) for x in tasks]
-    return Claims(tuple(tasks), specifications)
+        tasks = [assumed.of_list(home.specification.in_set(x.set_name), x) for x in tasks]
+    read_with = home.library.select(options=home.specification.options)
+    return ProveQuestion(Basis(read_with), tuple(map(ClaimTask, tasks)))
 
 
 def _read(home: Definitions, what: What | AssumedClaim) -> AssumedClaim:
@@ -347,22 +335,24 @@ def _own(home: Definitions, claims: list[AssumedClaim], expected: ClaimVerdict) 
     ]
 
 
-def _within_limits(asked: Claims, home: Definitions, engine: Engine, given: Prove) -> Claims:
+def _within_limits(asked: ProveQuestion, home: Definitions, engine: Engine, given: Prove) -> ProveQuestion:
     """The same claims, about drives on one road up to a horizon, within models of vehicles.
 
     Raises ``InputError``, ``UsageError``.
     """
-    from roadproof.engines.search.question import SearchOptions
+    from roadproof.engines.search.question import SearchOptions, exists
 
     if not asked.are_own:
         raise UsageError(
             f"engine={engine!r} requires claims of your own: template properties are about all time"
         )
-    if any(task.assuming for task in asked.tasks):
+    if any(x.task.assuming for x in asked.tasks):
         raise UsageError(
             f"engine={engine!r} is about drives anyway, at the values of params: assume nothing, or ask "
             "engine='dense'"
         )
     where = SearchPlace(road=given.road, vehicles=given.vehicles, horizon=given.horizon, dt=given.dt)
     place = replace(setting(home, where), values=dict(home.values))
-    return replace(asked, within=(place, SearchOptions("any", engine, effort=asked.effort)))
+    within = exists(place, SearchOptions("any", engine))
+    basis = replace(asked.basis, values=dict(home.values))
+    return replace(asked, basis=basis, tasks=tuple(replace(x, within=within) for x in asked.tasks))

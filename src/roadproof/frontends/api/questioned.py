@@ -41,7 +41,7 @@ class QuestionAnswers(Answer, Generic[View]):
         cls,
         question: Question[View],
         given: Run,
-        each: Callable[[str, answers.Answer], None] | None = None,
+        each: Callable[[str, answers.Answer, float], None] | None = None,
     ) -> Self:
         """Settle the claims of a question. Raises as ``questions.settle``."""
         begun = time.monotonic()

@@ -12,7 +12,6 @@ from roadproof.evidence.answers import classify as kept_classes
 from roadproof.evidence.answers import coverage as kept_gaps
 from roadproof.evidence.answers import order as kept_order
 from roadproof.evidence.answers import plates as kept_plates
-from roadproof.evidence.answers import proofs as kept_claims
 from roadproof.evidence.codec import read
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.folder import INDEX
@@ -27,6 +26,7 @@ from roadproof.frontends.settings.studies import Atlas
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.specification import Library
 from roadproof.questions.overlap import OverlapData
+from roadproof.questions.prove import ClaimsData
 from roadproof.questions.redundancy import RedundancyData
 
 T = TypeVar("T")
@@ -64,7 +64,7 @@ class Answers:
     home: Definitions
     folder: Path
     numbers: tuple[int, ...]
-    proofs: kept_claims.Index | None = None
+    proofs: ClaimsData | None = None
     titles: Mapping[str, str] = field(default_factory=dict)
     drives: dict[str, dict[int, ShownDrive]] = field(default_factory=dict)
     overlap: OverlapData | None = None
@@ -146,7 +146,7 @@ class _Questions:
         what = () if self.among is None else (self.among,)
         found = proving.prove(*what, using=self.using, **self._keywords("proofs"))
         self.answers.titles = {f"{x.task.id}@{x.task.set_name}": x.task.title for x in found.answers}
-        self.answers.proofs = self._index(kept_claims.Index, "proofs")
+        self.answers.proofs = read(ClaimsData, found.as_data(), "proofs")
 
     def drives(self) -> None:
         for objective in OBJECTIVES:

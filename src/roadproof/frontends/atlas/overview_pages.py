@@ -31,7 +31,7 @@ def _counts(answers: Answers) -> dict[str, list[tuple[str, int]]]:
     """How often each verdict occurs, by topic."""
     found: dict[str, list[tuple[str, int]]] = {}
     if answers.proofs is not None:
-        found["proofs"] = counted(x.verdict for x in answers.proofs.claims)
+        found["proofs"] = counted(x.verdict for x in answers.proofs.verdicts)
     if answers.overlap is not None:
         found["overlaps"] = counted(x.verdict for x in answers.overlap.verdicts)
     if answers.order is not None:

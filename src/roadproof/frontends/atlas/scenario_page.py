@@ -117,7 +117,7 @@ def claims(answers: Answers, number: int | None) -> list[Claim]:
     """What is proved or refuted about a scenario, or in general where None."""
     groups: dict[tuple[str, str], dict[str, tuple[str, Source]]] = {}
     titles: dict[tuple[str, str], str] = {}
-    for x in () if answers.proofs is None else answers.proofs.claims:
+    for x in () if answers.proofs is None else answers.proofs.verdicts:
         if x.scenario == number:
             arguments = x.property if number is None else f"{x.property} {number}"
             flag = "" if x.set in answers.home.sets else f" --set {x.set}"

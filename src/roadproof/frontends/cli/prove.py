@@ -13,9 +13,9 @@ from roadproof.frontends.settings.questions import Prove
 from roadproof.runtime.progress import listening
 
 if TYPE_CHECKING:
-    from roadproof.analysis.claims import ClaimResult, Claims
     from roadproof.engines.prove.properties import WrittenClaim
     from roadproof.frontends.report.ci.cases import Location
+    from roadproof.questions.prove import ClaimResult, ProveQuestion
 
 SUMMARY = "prove claims for all time, or refute them"
 
@@ -53,22 +53,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.analysis.claims import name_of
     from roadproof.frontends.api.proofs import Proofs
     from roadproof.frontends.report.claims import details, line
 
     given = Prove.of(study_keywords(args, Prove))
     asked = _asked(args, given)
 
-    def show(name: str, answer: "ClaimResult") -> None:
+    def show(name: str, result: "ClaimResult") -> None:
         clear()
-        print_at_once(details(answer, asked) if asked.are_own else line(answer), args.out is not None)
+        print_at_once(details(result, asked) if asked.are_own else line(result), args.out is not None)
 
     each = None
     if args.json != "-" and (asked.are_own or args.verbose):
-        each = in_order(map(name_of, asked.tasks), show)
+        each = in_order((x.name for x in asked.tasks), show)
     with listening(tell_stage if len(asked.tasks) == 1 else None):
-        found = Proofs.asked(asked, given, each)
+        found = Proofs.of(asked, given, each)
     if args.json != "-" and not asked.are_own:
         print(found)
     if given.kernel is not None:
@@ -82,7 +81,7 @@ def run(args: argparse.Namespace) -> int:
     return found.exit_code
 
 
-def _asked(args: argparse.Namespace, given: Prove) -> "Claims":
+def _asked(args: argparse.Namespace, given: Prove) -> "ProveQuestion":
     from roadproof.frontends.api.proofs import claims_asked
     from roadproof.library.motion import read_under
 
@@ -101,7 +100,7 @@ def _written(args: argparse.Namespace) -> "list[WrittenClaim]":
     return [] if args.file is None else read_claims(args.file)
 
 
-def _places(args: argparse.Namespace, asked: "Claims") -> "dict[str, Location]":
+def _places(args: argparse.Namespace, asked: "ProveQuestion") -> "dict[str, Location]":
     """Where the claims of a file are written, by ``task.name``."""
     from roadproof.frontends.report.ci.cases import Location
 

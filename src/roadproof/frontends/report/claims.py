@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import groupby
 
-from roadproof.analysis.claims import ClaimResult, Claims
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.checking import other_values
 from roadproof.evidence.countermodel import Countermodel
@@ -14,6 +13,7 @@ from roadproof.library.motion import Assumption, is_moving, statement
 from roadproof.library.scenarios import LANE
 from roadproof.library.specification import Library, Specification
 from roadproof.library.words import called_by, legend
+from roadproof.questions.prove import ClaimResult, ProveQuestion
 from roadproof.world.motion import state_at
 from roadproof.world.road import Road
 
@@ -23,7 +23,7 @@ def line(answered: ClaimResult) -> str:
     task = answered.task
     scenario = "" if task.scenario is None else f" {task.scenario}"
     mark = "" if answered.verdict is answered.expected else f", expected {answered.expected}"
-    seconds = answered.settled.result.seconds
+    seconds = answered.seconds
     at = f" at {', '.join(task.assuming)}" if task.assuming else ""
     took = f" ({seconds:.2f} s)" if seconds else ""
     return f"{task.id}{scenario} {task.set_name}{at}: {verdict(answered)}{mark}{took}"
@@ -31,7 +31,7 @@ def line(answered: ClaimResult) -> str:
 
 def verdict(answered: ClaimResult) -> str:
     """The verdict; of a claim that is refuted also by what, since not every trace can be driven."""
-    by = answered.settled.refuted_by
+    by = answered.refuted_by
     return str(answered.verdict) if by is None else f"{answered.verdict} by a {by}"
 
 
@@ -47,12 +47,12 @@ def table(answered: Sequence[ClaimResult], specification: Specification) -> str:
         found = list(group)
         verdicts = sorted({verdict(s) for s in found})
         expected = found[0].expected
-        slowest = max(s.settled.result.seconds for s in found)
+        slowest = max(s.seconds for s in found)
         took = f"{slowest:5.2f} s" if slowest else ""  # none of a recalled answer
         mark = "" if all(s.verdict is expected for s in found) else f"   expected {expected}"
         count = f"{len(found)} claim{'s' if len(found) > 1 else ''}"
         rows.append(f"{name:3} {set_name:5} {count:10} {', '.join(verdicts):8} {took:7}  {title}{mark}")
-        rows += [f"      {line(s)} {s.settled.result.reason}" for s in found if s.verdict is not s.expected]
+        rows += [f"      {line(s)} {s.reason}" for s in found if s.verdict is not s.expected]
     values = sorted({value for s in answered for value in s.task.assuming})
     rows += [f"each at those of {', '.join(values)} that it speaks of"] if values else []
     words = called_by(specification, (s.task.claim for s in answered))
@@ -69,10 +69,10 @@ def sheet_of(answered: Sequence[ClaimResult]) -> Sheet[ClaimResult]:
             Column("premises", _premises),
             Column("set", lambda x: x.task.set_name),
             Column("verdict", lambda x: x.verdict, look="verdict"),
-            Column("refuted_by", lambda x: x.settled.refuted_by),
+            Column("refuted_by", lambda x: x.refuted_by),
             Column("expected", lambda x: x.expected),
-            Column("reason", lambda x: x.settled.result.reason),
-            Column("seconds", lambda x: x.settled.result.seconds, "frame"),
+            Column("reason", lambda x: x.reason),
+            Column("seconds", lambda x: x.seconds, "frame"),
         ),
         answered,
     )
@@ -80,29 +80,28 @@ def sheet_of(answered: Sequence[ClaimResult]) -> Sheet[ClaimResult]:
 
 def _premises(answer: ClaimResult) -> str:
     """The limits and facts about motion that a proof uses; empty where there is no proof or it uses none."""
-    certificate = answer.settled.result.certificate
+    certificate = answer.certificate
     return "" if certificate is None else "; ".join(certificate.assumed.premises)
 
 
-def details(answered: ClaimResult, asked: Claims) -> str:
+def details(answered: ClaimResult, asked: ProveQuestion) -> str:
     """The verdict with its evidence: certificate in numbers, drive or trace.
 
     Also what scenarios are called, and what is supposed of own signals.
     """
-    task, settled = answered.task, answered.settled
-    result = settled.result
+    task = answered.task
     lines = [f"{verdict(answered)}  {statement(task.assuming, ' '.join(task.claim.split()))}"]
     lines += [
         f"  {words}" for words in called_by(asked.specification_of(task), [task.claim]).values() if words.name
     ]
-    within = "drives up to a horizon" if settled.bounded else "dense time, all horizons"
-    took = f", {result.seconds:.2f} s" if result.seconds else ""
+    within = "drives up to a horizon" if answered.is_bounded else "dense time, all horizons"
+    took = f", {answered.seconds:.2f} s" if answered.seconds else ""
     lines.append(f"  set {task.set_name}, {within}{took}")
     lines += [f"  {said}" for said in asked.supposed(task)]
-    if result.reason:
-        lines.append(f"  {result.reason}")
-    if result.certificate is not None:
-        certificate = result.certificate
+    if answered.reason:
+        lines.append(f"  {answered.reason}")
+    if answered.certificate is not None:
+        certificate = answered.certificate
         count = sum(len(texts) for texts in certificate.instances.values())
         lines.append(
             f"  certificate: {count} instance{'s' if count != 1 else ''}, "
@@ -110,11 +109,11 @@ def details(answered: ClaimResult, asked: Claims) -> str:
             + _values_of(certificate)
         )
         lines += _show_premises(certificate.assumed)
-    if settled.drive is not None:
-        lines += _show_drive(settled.drive, asked.specification_of(task).library)
-        lines += [f"  this drive lies outside the {settled.beyond}"] if settled.beyond else []
-    elif result.countermodel is not None:
-        lines += _show_countermodel(result.countermodel)
+    if answered.drive is not None:
+        lines += _show_drive(answered.drive, asked.specification_of(task).library)
+        lines += [f"  this drive lies outside the {answered.beyond}"] if answered.beyond else []
+    elif answered.trace is not None:
+        lines += _show_countermodel(answered.trace)
     return "\n".join(lines)
 
 

@@ -30,14 +30,13 @@ Origin: TypeAlias = Literal["shipped", "cache"]
 
 @dataclass(frozen=True)
 class Cost:
-    """What an answer cost when it was computed: seconds of the clock, and units of effort where counted.
+    """What an answer cost when it was computed: seconds of the clock.
 
     ``known``: where it is from, if it was known before it was asked for.
     """
 
     known: Origin | None
     seconds: float
-    effort: float | None = None
 
 
 @dataclass(frozen=True)
@@ -134,11 +133,11 @@ def prove(ask: Ask) -> Answer:
     claim = home.read(ask.formula)
     answers = rp.prove(claim, using=home, jobs=1, fresh=ask.fresh, **how)
     [found] = answers.answers
-    task, settled, result = found.task, found.settled, found.settled.result
-    cost = Cost(next(iter(answers.found.known), None), result.seconds, result.work or None)
+    task = found.task
+    cost = Cost(next(iter(answers.found.origins.values()), None), found.seconds)
     command = _command("prove", [task.claim], ask, home, Prove.of(how))
-    one = _Settled(found.verdict, result.reason, task.claim, command, result.certificate, settled.drive, cost)
-    return one.shown(ask) | {"assuming": list(task.assuming), "refuted_by": settled.refuted_by}
+    one = _Settled(found.verdict, found.reason, task.claim, command, found.certificate, found.drive, cost)
+    return one.shown(ask) | {"assuming": list(task.assuming), "refuted_by": found.refuted_by}
 
 
 def compare(ask: Ask) -> Answer:

@@ -25,11 +25,11 @@ from roadproof.verdict import Verdict
 
 if TYPE_CHECKING:
     from roadproof.analysis.catalogue.tested import Targets
-    from roadproof.analysis.claims import ClaimResult, Claims
     from roadproof.analysis.coverage.answers import Survey
     from roadproof.analysis.preventable.study import LemmaResult, Plate
     from roadproof.engines.search.outcome import Outcome
     from roadproof.evidence.answers.catalogue_index import Remark
+    from roadproof.questions.prove import ClaimResult, ProveQuestion
 
 
 def written(case: Case, specification: Specification, claim: Claim) -> Case:
@@ -40,15 +40,18 @@ def written(case: Case, specification: Specification, claim: Claim) -> Case:
 
 
 def claim_cases(
-    asked: Claims, answers: Sequence[ClaimResult], files: Mapping[str, Path], places: Mapping[str, Location]
+    asked: ProveQuestion,
+    answers: Sequence[ClaimResult],
+    files: Mapping[str, Path],
+    places: Mapping[str, Location],
 ) -> Iterator[Case]:
-    """A case for each claim. ``files``: evidence, ``places``: where it is written, both by ``task.name``."""
+    """A case for each claim. ``files``: evidence, ``places``: where it is written, both by ``name``."""
     for x in answers:
         task, specification = x.task, asked.specification_of(x.task)
         text = " ".join(task.claim.split())
         expected = "" if x.verdict is x.expected else f", expected {x.expected}"
-        reason = x.settled.result.reason
-        by = x.settled.refuted_by
+        reason = x.reason
+        by = x.refuted_by
         told = f"{x.verdict}{f' by a {by}' if by else ''}{expected}: {text}{reason and f' ({reason})'}"
         case = Case(
             suite=f"claims in {task.set_name}",
@@ -56,9 +59,9 @@ def claim_cases(
             state=state_of(x.verdict, (x.expected,)),
             rule=x.verdict,
             message=told,
-            place=places.get(task.name),
-            evidence=files.get(task.name),
-            seconds=x.settled.result.seconds,
+            place=places.get(x.name),
+            evidence=files.get(x.name),
+            seconds=x.seconds,
         )
         yield written(case, specification, read_claim(specification, task.claim).claim)
 

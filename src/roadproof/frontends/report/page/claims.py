@@ -2,11 +2,8 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
-from roadproof.analysis.study.evidence_store import INDEX
-from roadproof.engines.prove.properties import Task, find_task
-from roadproof.evidence.answers.proofs import ANSWER_SCHEMA, OWN, Answer, Claim, ClaimAnswer, Index
+from roadproof.engines.prove.properties import OWN, find_task
 from roadproof.evidence.codec import read
 from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.evidence.strict import Fields
@@ -15,6 +12,7 @@ from roadproof.frontends.report.page.results import Result, Words
 from roadproof.frontends.report.sheet import Heading, Linked, Matrix
 from roadproof.library.motion import statement
 from roadproof.library.words import spans
+from roadproof.questions.prove import ClaimData, ClaimsData
 from roadproof.verdict import Verdict
 
 LEAST_SCENARIOS = 3
@@ -38,7 +36,7 @@ class ShownClaim:
     set: str
     claim: str
     finding: Finding | None
-    drive: Path | Mapping[str, object] | None
+    drive: Mapping[str, object] | None
     place: str
 
     @property
@@ -58,7 +56,7 @@ class ShownClaim:
 
 
 def claims(result: Result, context: PageContext, words: Words) -> dict[str, object]:
-    """An index of claims, or the answer of ``prove --json``."""
+    """The answer of ``prove``."""
     shown = [*shown_claims(result, context)]
     listed = [x for x in shown if x.id]
     return {
@@ -71,14 +69,12 @@ def claims(result: Result, context: PageContext, words: Words) -> dict[str, obje
 
 def shown_claims(result: Result, context: PageContext) -> Iterator[ShownClaim]:
     """The claims of a result, in its order. Raises ``InputError``."""
-    for k, x in enumerate(_entries_of(result)):
-        finding = context.finding(result.folder, x.evidence if isinstance(x, Claim) else x.certificate)
-        if finding is None and result.folder is not None:
-            finding = context.inside.get(f"{result.folder / INDEX}, claim {k + 1}")
+    for k, x in enumerate(read(ClaimsData, result.data, result.name).verdicts):
+        finding = context.finding(result.folder, x.evidence)
         task = find_task(x.claim, x.set)
         yield ShownClaim(
             verdict=x.verdict,
-            expected=_expected(x, task),
+            expected=x.expected,
             id="" if x.property == OWN else x.property,
             part="" if x.property == OWN else x.part,
             title="" if task is None else task.title,
@@ -86,30 +82,15 @@ def shown_claims(result: Result, context: PageContext) -> Iterator[ShownClaim]:
             set=x.set,
             claim=statement(x.assuming, x.claim),
             finding=finding,
-            drive=_drive_against(x, result),
+            drive=_drive_against(x),
             place=f"claim-{result.id}-{k}",
         )
 
 
-def _entries_of(result: Result) -> Sequence[Claim | ClaimAnswer]:
-    if result.schema == ANSWER_SCHEMA:
-        return read(Answer, result.data, result.name).verdicts
-    return read(Index, result.data, result.name).claims
-
-
-def _expected(claim: Claim | ClaimAnswer, task: Task | None) -> Verdict | None:
-    if isinstance(claim, ClaimAnswer):
-        return claim.expected
-    return None if task is None or claim.assuming else task.expected
-
-
-def _drive_against(claim: Claim | ClaimAnswer, result: Result) -> Path | Mapping[str, object] | None:
-    if claim.verdict is not Verdict.REFUTED:
+def _drive_against(claim: ClaimData) -> Mapping[str, object] | None:
+    if claim.refuted_by != "drive":
         return None
-    if isinstance(claim, ClaimAnswer):
-        is_drive = claim.refuted_by == "drive"
-        return Fields(claim.counterexample, "its counterexample").mapping("drive") if is_drive else None
-    return None if claim.evidence is None or result.folder is None else result.folder / str(claim.evidence)
+    return Fields(claim.counterexample, "its counterexample").mapping("drive")
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,42 @@
+"""The search for drives that a claim asks for."""
+
+from roadproof.engines.search.outcome import Search
+from roadproof.engines.search.question import SearchOptions, Setting
+from roadproof.evidence.claim import Claim, Exists, Valid
+from roadproof.runtime.budget import Work
+
+
+def mode_of(claim: Claim) -> Exists:
+    """Return how drives are looked for. Raises ``ValueError`` for a claim about no drive."""
+    match claim.mode:
+        case Exists():
+            return claim.mode
+        case Valid(within=Exists() as within):
+            return within
+        case other:
+            raise ValueError(f"a {type(other).__name__} claim asks for no drive")
+
+
+def search_of(claim: Claim, work: Work, explain: bool | None = None) -> Search:
+    """Return the search that a claim asks for; ``explain`` None: as the claim says.
+
+    Raises ``ValueError`` for a claim about no drive.
+    """
+    mode = mode_of(claim)
+    setting = Setting(
+        road=mode.road,
+        lanes=mode.lanes,
+        vehicles=mode.vehicles,
+        limits=mode.limits,
+        values={x.name: x.value for x in claim.parameters},
+        horizon=mode.horizon,
+        dt=mode.dt,
+        reach=mode.reach,
+        collisions=mode.collisions,
+        natural=mode.natural,
+    )
+    wants = mode.explain if explain is None else explain
+    options = SearchOptions(
+        mode.objective, mode.engine, mode.solver, work.effort, mode.refinements, explain=wants
+    )
+    return Search(claim.home, claim.query, setting, options)

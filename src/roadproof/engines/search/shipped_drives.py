@@ -1,0 +1,20 @@
+"""The drives of scenarios that are shipped with roadproof, as candidates against a claim."""
+
+from collections.abc import Iterator
+from typing import Any
+
+from roadproof.evidence.drive_file import SCHEMAS_READ, read_drive
+from roadproof.runtime.archives import archived
+from roadproof.world.drive import Drive
+
+
+def shipped_drives() -> Iterator[Drive]:
+    """Yield each drive of a shipped answer of ``witness``, once."""
+    seen: set[Drive] = set()
+    content: Any
+    for key, content in archived("witness").items():
+        if content.get("schema") in SCHEMAS_READ:
+            drive = read_drive(content, key).drive
+            if drive not in seen:
+                seen.add(drive)
+                yield drive
