@@ -90,6 +90,7 @@ class Why(StrEnum):
     NEITHER = "neither a drive nor a refutation was found with the work given for {}"
     FEWER_DRIVES = "{} of {} drives that differ clearly; no further one: {}"
     NO_DRIVE = "no drive was found"
+    NO_TREES = "no trees were found that show it"
     NO_DRIVE_ELSEWHERE = "no drive was found for the same in other places"
     SEARCH_FOUND_NONE = "a search found none"
     NONE_APART = "no drive was found that begins {:g} or more from all others"

@@ -20,6 +20,7 @@ from roadproof.evidence.answer_files import (
     Undecided,
 )
 from roadproof.evidence.answers.doubt import Doubt
+from roadproof.evidence.answers.none_within import Model
 from roadproof.evidence.certificate import Certificate, certificate_data, read_certificate_data
 from roadproof.evidence.claim import Claim, Exists, Valid
 from roadproof.evidence.codec import read, write
@@ -40,6 +41,7 @@ from roadproof.logic.parts import parts_of
 from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
+from roadproof.world.vehicle import Vehicle
 
 
 @dataclass(frozen=True)
@@ -228,6 +230,8 @@ def _drive(claim: Claim, content: object, where: str) -> JudgedDrive:
     shown = read_claim(claim.home, file.formula).formula
     _require(shown == sought_by(claim), where, f"its drive is one of {_short(file.formula)}")
     _require_values(claim, file.values, where)
+    known = isinstance(claim.mode, Exists) and file.drive in claim.mode.unlike
+    _require(not known, where, "it is a drive from which it has to differ")
     return JudgedDrive(file, claim.home.library, natural_of(content, where))
 
 
@@ -258,7 +262,33 @@ def _none_within(claim: Claim, content: object, where: str) -> NoneWithinFile:
         f"it is about {_short(file.formula)}",
     )
     _require_values(claim, file.values, where)
+    _require(_is_within(claim, file), where, "it is about drives within other limits")
     return file
+
+
+def _is_within(claim: Claim, file: NoneWithinFile) -> bool:
+    """Whether trees are about all drives that a claim asks for; they choose what it leaves open."""
+    mode = claim.mode
+    if not isinstance(mode, Exists):
+        return False
+    models = {name: mode.vehicles.get(name, mode.vehicles.get("")) for name in claim.vehicles}
+    return (
+        mode.road in (None, file.road)
+        and mode.dt in (None, file.dt)
+        and mode.horizon <= file.horizon
+        and mode.reach <= file.reach
+        and mode.collisions <= file.overlaps_allowed
+        and (
+            bool(mode.limits)
+            or file.road.line is not None
+            or all(x is None or _moves_as(x, file.vehicles[name]) for name, x in models.items())
+        )
+    )
+
+
+def _moves_as(one: Vehicle, other: Vehicle) -> bool:
+    """Whether two models can do the same, whatever natural drives of them are."""
+    return all(getattr(one, x) == getattr(other, x) for x in Model.__annotations__)
 
 
 def _undecided(claim: Claim, content: object, where: str) -> Undecided:

@@ -18,6 +18,7 @@ from roadproof.logic.rewrite import parameters_of
 from roadproof.logic.terms import Parameter, Term, leaves
 from roadproof.runtime.canonical import digest
 from roadproof.runtime.records import dataclass
+from roadproof.world.drive import Drive
 from roadproof.world.road import Road
 from roadproof.world.units import UNITS
 from roadproof.world.vehicle import Vehicle
@@ -56,7 +57,8 @@ class Exists:
     """A drive is to be found on which the formula holds: where, with whom, for how long, and which one.
 
     ``road`` None: the usual road of the formula; ``vehicles``: models by name, "" for all others; ``limits``:
-    other limits than theirs; ``dt`` None: the coarsest step that fits. The effort is no part of a claim.
+    other limits than theirs; ``dt`` None: the coarsest step that fits. ``unlike``: drives from which it is to
+    differ; ``trees``: whether trees are wanted that show that there is none. Effort is no part of a claim.
     """
 
     road: Road | None = None
@@ -73,6 +75,8 @@ class Exists:
     solver: str = "highs"
     refinements: int = 2
     explain: bool = True
+    unlike: tuple[Drive, ...] = ()
+    trees: bool = False
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,6 @@ from roadproof.evidence.answers import (
     compare,
     coverage,
     drive,
-    drives,
     explore,
     library,
     monitor,
@@ -54,6 +53,7 @@ from roadproof.questions.data import QuestionFile
 from roadproof.questions.overlap import OverlapData
 from roadproof.questions.prove import ClaimsData
 from roadproof.questions.redundancy import RedundancyData
+from roadproof.questions.witness import WitnessData
 
 TITLES: Mapping[type, str] = {
     ClaimsData: "roadproof prove --json: claims, proved or refuted",
@@ -76,7 +76,7 @@ TITLES: Mapping[type, str] = {
     coverage.Index: (
         "roadproof coverage --json, and index.json of its folder: which disturbances a set misses"
     ),
-    drives.Answer: "roadproof witness --json: drives for scenarios and formulas",
+    WitnessData: "roadproof witness --json: drives for scenarios and formulas",
     explore.Index: (
         "roadproof explore --json, and index.json of its folder: for which values there is a drive"
     ),
@@ -107,7 +107,7 @@ WITHOUT_ASSUMPTION: JsonObject = {
 }
 """Only inductions may stand in a certificate that assumes nothing."""
 DRIVES = (drive.Drive, drive.JerkDrive)
-KEEPING = (drives, plates, order, coverage, classify, catalogue_index, explore)
+KEEPING = (plates, order, coverage, classify, catalogue_index, explore)
 """The questions whose answers are kept one by one."""
 RECORDS: Mapping[str, type] = {x.SCHEMA: x.Record for x in KEEPING}
 

@@ -13,9 +13,10 @@ from roadproof.evidence.answer import Answer, assumed_by, read_answer, undecided
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
 from roadproof.evidence.strict import LARGEST_EVIDENCE, Fields, read_json
+from roadproof.evidence.subject import OTHER
 from roadproof.library.motion import statement
 from roadproof.questions.data import QUESTION, SCHEMA, read_question
-from roadproof.questions.question import Question, walk
+from roadproof.questions.question import Linkable, Question, walk
 from roadproof.reasons import Why
 from roadproof.runtime.records import dataclass
 
@@ -55,7 +56,15 @@ class QuestionFolder:
         """Return what was found of a file, in the words of the question."""
         answer = self.answers[name]
         claim = statement(assumed_by(answer.claim), answer.claim.query.text)
-        return replace(found, verdict=str(answer.verdict), label=self.question.label(name), claim=claim)
+        linked = self.question.subject(name) if isinstance(self.question, Linkable) else OTHER
+        return replace(
+            found,
+            verdict=str(answer.verdict),
+            label=self.question.label(name),
+            claim=claim,
+            subject=linked.kind,
+            name=linked.name,
+        )
 
 
 def is_question(folder: Path) -> bool:

@@ -23,6 +23,7 @@ KINDS: Mapping[str, str] = {
     "overlap": "roadproof.questions.overlap:OverlapQuestion",
     "prove": "roadproof.questions.prove:ProveQuestion",
     "redundancy": "roadproof.questions.redundancy:RedundancyQuestion",
+    "witness": "roadproof.questions.witness:WitnessQuestion",
 }
 """The class of each kind of question."""
 

@@ -15,6 +15,9 @@ from roadproof.world.vehicle import Vehicle
 Positive = Annotated[Fraction, Rule(pattern="^[1-9][0-9]{0,39}(/[0-9]{1,40})?$")]
 
 
+_OF_ONE_CLAIM = ("unlike", "trees")
+
+
 @dataclass(frozen=True, kw_only=True)
 class VehicleModel(Model):
     """What a vehicle can do, and what a natural drive of it is, in SI units."""
@@ -47,9 +50,10 @@ class Place:
 
 def place_of(mode: Exists) -> Place:
     """Return how drives are looked for as data."""
+    fields = {name: value for name, value in vars(mode).items() if name not in _OF_ONE_CLAIM}
     return Place(
         **{
-            **vars(mode),
+            **fields,
             "road": None if mode.road is None else road_said(mode.road),
             "vehicles": {name: model_of(x) for name, x in mode.vehicles.items()},
         }

@@ -30,6 +30,7 @@ from roadproof.questions.question import Place as Placing
 from roadproof.reasons import NO_REASON, Reason
 from roadproof.runtime.budget import Work
 from roadproof.runtime.canonical import digest
+from roadproof.runtime.cost import NO_COST, Cost
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ClaimVerdict, Verdict, claim_verdict
 from roadproof.world.road import Road
@@ -77,14 +78,19 @@ class ClaimTask:
 class ClaimResult:
     """A claim of the list or of a user with its answer; None where it is not settled.
 
-    ``name`` of the answer; ``seconds`` that it took in this run.
+    ``name`` of the answer; ``cost`` in this run.
     """
 
     task: Task
     name: str
     claim: Claim
     answer: Answer | None
-    seconds: float = 0.0
+    cost: Cost = NO_COST
+
+    @property
+    def seconds(self) -> float:
+        """The seconds that it took in this run."""
+        return self.cost.seconds
 
     @property
     def verdict(self) -> ClaimVerdict:
@@ -195,6 +201,10 @@ class ProveQuestion:
     def beside(self, former: "ProveQuestion") -> "ProveQuestion":
         """Return the question about former claims, too: a folder of claims grows."""
         return replace(self, tasks=tuple({**former.named, **self.named}.values()))
+
+    def displaced(self, former: "ProveQuestion") -> list[str]:
+        """Return none: the name of an answer says what its claim is."""
+        return []
 
     def specification_of(self, task: Task) -> Specification:
         """Return the definitions that a claim is read with."""

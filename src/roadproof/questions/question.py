@@ -76,6 +76,9 @@ class Growing(Protocol):
     def beside(self, former: Any) -> Any:
         """Return the question about what was asked before, too."""
 
+    def displaced(self, former: Any) -> list[str]:
+        """Return how names of former answers begin in whose place there are others now."""
+
 
 @runtime_checkable
 class Linkable(Protocol):

@@ -18,21 +18,21 @@ from roadproof.questions.question import Batch, Question, walk
 from roadproof.questions.store import Store
 from roadproof.reasons import Reason
 from roadproof.runtime.budget import Work
+from roadproof.runtime.cost import NO_COST, Cost
 from roadproof.runtime.executors import Jobs, hands_of
 from roadproof.runtime.records import dataclass
-from roadproof.runtime.timing import now, since
 
-Timed: TypeAlias = tuple[str, Answer, float]
-"""The name of a claim, its answer, and the seconds that it took."""
+Priced: TypeAlias = tuple[str, Answer, Cost]
+"""The name of a claim, its answer, and what it cost."""
 
 
 @dataclass(frozen=True)
 class Settled:
-    """All answers by name, from where those came that were known, and the seconds that others took."""
+    """All answers by name, from where those came that were known, and what others cost."""
 
     answers: Mapping[str, Answer]
     origins: Mapping[str, Origin]
-    seconds: Mapping[str, float] = field(default_factory=dict)
+    costs: Mapping[str, Cost] = field(default_factory=dict)
 
 
 def settle(
@@ -41,7 +41,7 @@ def settle(
     hands: Jobs = None,
     progress: Progress | None = None,
     what: str = "claims",
-    each: Callable[[str, Answer, float], None] | None = None,
+    each: Callable[[str, Answer, Cost], None] | None = None,
     fresh: bool = False,
     say: Say | None = None,
 ) -> Settled:
@@ -76,7 +76,14 @@ def settle(
         run.ask(ours, hands, progress, what)
         batches = run.open_batches()
     store.make_room()
-    return Settled(run.known, run.origins, run.seconds)
+    return Settled(run.known, run.origins, run.costs)
+
+
+def look_up(question: Question[Any]) -> Mapping[str, Answer]:
+    """Return the answers that are known without engines."""
+    run = _Run(question, Store(None, question.kind, question.work, reads_known=not is_off()), _nobody, None)
+    run.open_batches()
+    return run.known
 
 
 class _Run:
@@ -86,13 +93,13 @@ class _Run:
         self,
         question: Question[Any],
         store: Store,
-        each: Callable[[str, Answer, float], None],
+        each: Callable[[str, Answer, Cost], None],
         say: Say | None,
     ) -> None:
         self.question, self.store, self.each, self.say = question, store, each, say
         self.known: dict[str, Answer] = {}
         self.origins: dict[str, Origin] = {}
-        self.seconds: dict[str, float] = {}
+        self.costs: dict[str, Cost] = {}
 
     def open_batches(self) -> list[Batch]:
         """Look up claims, and return the batches of which some are not known."""
@@ -116,15 +123,15 @@ class _Run:
         self._add(name, answer)
         return answer
 
-    def _add(self, name: str, answer: Answer, seconds: float = 0.0) -> None:
+    def _add(self, name: str, answer: Answer, cost: Cost = NO_COST) -> None:
         self.known[name] = answer
-        self.each(name, answer, seconds)
+        self.each(name, answer, cost)
 
     def ask(self, batches: Sequence[Batch], hands: Jobs, progress: Progress | None, what: str) -> None:
         """Settle batches; of one whose process ends, claims are asked one by one."""
         lost: list[Batch] = []
 
-        def lose(job: "_Job", reason: Reason) -> list[Timed]:
+        def lose(job: "_Job", reason: Reason) -> list[Priced]:
             lost.append(job.batch)
             return []
 
@@ -136,10 +143,10 @@ class _Run:
         for batch in lost:
             self._ask_alone(batch, hands)
 
-    def _keep(self, name: str, answer: Answer, seconds: float) -> None:
-        self.seconds[name] = seconds
+    def _keep(self, name: str, answer: Answer, cost: Cost) -> None:
+        self.costs[name] = cost
         self.store.keep(name, answer)
-        self._add(name, answer, seconds)
+        self._add(name, answer, cost)
 
     def _known_of(self, batch: Batch) -> dict[str, Answer]:
         """Return the known answers to claims of a batch."""
@@ -156,9 +163,9 @@ class _Run:
         while left := [*walk(batch, self._find)]:
             [(name, claim)] = left
 
-            def lose(job: "_Job", reason: Reason, asked: Claim = claim, named: str = name) -> list[Timed]:
+            def lose(job: "_Job", reason: Reason, asked: Claim = claim, named: str = name) -> list[Priced]:
                 doubt = Doubt(Cause.PROCESS, (), job.work.effort.units, reason).kept
-                return [(named, undecided(asked, reason, doubt=doubt), 0.0)]
+                return [(named, undecided(asked, reason, doubt=doubt), NO_COST)]
 
             job = _Job(_One(name, claim), {}, self.store)
             with closing(pool.work(_settle, [job, _NOTHING], hands, lose)) as answered:
@@ -205,19 +212,21 @@ class _Job:
 _NOTHING = _Job(_None())
 
 
-def _settle(job: _Job) -> list[Timed]:
+def _settle(job: _Job) -> list[Priced]:
     """Settle what is left of a batch."""
     from roadproof.engines.search.batches import Engines  # here: known answers need no solver
 
-    engines, new = Engines(job.work), list[Timed]()
+    engines, new = Engines(job.work), list[Priced]()
 
     def answer_to(name: str, claim: Claim) -> Answer:
         if name in job.known:
             return job.known[name]
         found = None if job.store is None else job.store.find(name, claim)
-        begun = now()
-        answer = found[0] if found is not None and found[0].is_final else engines.settle(claim)
-        new.append((name, answer, since(begun)))
+        if found is not None and found[0].is_final:
+            answer, cost = found[0], NO_COST
+        else:
+            answer, cost = engines.settle(claim)
+        new.append((name, answer, cost))
         return answer
 
     def find(name: str, claim: Claim) -> Answer:
@@ -229,5 +238,5 @@ def _settle(job: _Job) -> list[Timed]:
     return new
 
 
-def _nobody(name: str, answer: Answer, seconds: float) -> None:
+def _nobody(name: str, answer: Answer, cost: Cost) -> None:
     """Nobody listens."""

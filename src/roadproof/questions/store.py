@@ -53,12 +53,21 @@ class Store:
         head = self.folder / QUESTION
         former = read_json(head, LARGEST_INDEX) if head.exists() else None
         if former is not None and isinstance(question, Growing):
-            question = question.beside(self._former(question))
+            question = self._grown(question)
         data = json.loads(json.dumps(question_data(question)))
         if former is None or isinstance(question, Growing):
             write_json(head, data)
         elif former != data:
             raise self._other()
+
+    def _grown(self, question: Any) -> Any:
+        """Return the question with former ones of the folder; answers that it displaces are removed."""
+        assert self.folder is not None
+        former = self._former(question)
+        for name in question.displaced(former):
+            for path in self.folder.glob(f"*{name}*.json"):
+                path.unlink()
+        return question.beside(former)
 
     def _former(self, question: Question[Any]) -> Question[Any]:
         """Return the question of the folder. Raises ``UsageError`` where it is of another kind or library."""

@@ -68,13 +68,14 @@ class Work:
     """The work for a claim: ``effort`` for a drive, ``proof`` units for a proof before one is looked for.
 
     ``seek_drive``: whether a drive is looked for that refutes a claim about all traces; ``explain``: whether
-    it is shown that there is no drive, where none is found.
+    it is shown that there is no drive, where none is found. ``alone``: nothing is taken from other claims.
     """
 
     effort: Effort = field(default_factory=Effort)
     proof: float = 3.0
     seek_drive: bool = False
     explain: bool = False
+    alone: bool = False
 
 
 @dataclass

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from roadproof.analysis.explore.answer import (
     Explorable,
@@ -24,7 +24,6 @@ from roadproof.analysis.explore.search import Reply, SearchTask, look, undecided
 from roadproof.analysis.explore.values import explore
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question, readings
 from roadproof.analysis.study.pool import Say, in_order, work
-from roadproof.analysis.witnesses import name_of
 from roadproof.engines.solve.milp import prepare
 from roadproof.errors import InputError
 from roadproof.evidence.answers import explore as kept
@@ -54,7 +53,7 @@ class Exploration:
     @cached_property
     def named(self) -> dict[str, Explorable]:
         """What is asked by the names under which the answers are kept; what is asked twice is there once."""
-        return {name_of(number, asked.search): asked for number, asked in enumerate(self.asked, 1)}
+        return {_name_of(number, asked.search): asked for number, asked in enumerate(self.asked, 1)}
 
     @property
     def road(self) -> Road | None:
@@ -156,3 +155,9 @@ def _content_of(asked: Explorable) -> str:
     units = search.search_options.effort.units
     looked_for = asked.knobs, asked.steps, asked.precision, measures, moments, measured, units
     return digest(search.claim, _asked_of(asked), search.specification.options, looked_for)
+
+
+def _name_of(number: int, search: Any) -> str:
+    scenario = search.scenario
+    what = f"formula-{number:02d}" if scenario is None else f"scenario-{scenario:02d}"
+    return f"{what}-{search.specification.set_name}"

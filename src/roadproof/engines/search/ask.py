@@ -1,6 +1,6 @@
 """A search for drives of values, and its typed outcome."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 
@@ -17,12 +17,11 @@ from roadproof.library.bind import default_values
 from roadproof.library.specification import Library
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import parameters_of
-from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.reasons import NO_REASON, Why
 from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.runtime.progress import about, begin
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import Verdict
-from roadproof.world.drive import Drive
 
 TRIES, AGAIN = 5, 8.0
 """Drives of a restricted search to which a driver model may object, and units of work for each after one."""
@@ -64,11 +63,10 @@ def _ask(search: Search) -> Outcome:
     library = search.specification.library
     question = pose(library, search.query, search.setting)
     objections: list[str] = []
-    answers = list(_answers(question, search, objections))
-    first = answers[0]
-    judged = tuple(judge_found(search, question, a.found) for a in answers if a.found is not None)
+    first = _attempt(question, search, objections)
+    judged = () if first.found is None else (judge_found(search, question, first.found),)
     impossibility = None
-    if first.found is None and not objections:
+    if first.found is None and not objections and not search.unlike:
         effort = search.search_options.effort
         most = effort.of(max(1.0, min(NEVER if is_read(question) else NEVER_UNREAD, effort.units)))
         begin("explain", "is there a proof that there is none")
@@ -81,7 +79,7 @@ def _ask(search: Search) -> Outcome:
         search.query,
         question.road.name,
         Verdict.IMPOSSIBLE if impossibility else first.verdict,
-        NO_REASON if impossibility else _reason(answers, search.count),
+        NO_REASON if impossibility else first.reason,
         judged,
         first.found is not None and first.found.assumptions.natural,
         {**first.seconds, "all": since(begun)},
@@ -92,82 +90,47 @@ def _ask(search: Search) -> Outcome:
     )
 
 
-def _answers(question: SearchProblem, search: Search, objections: list[str]) -> Iterator[Attempt]:
-    """The answers to a search; a scenario takes the drive of its sibling where that answers it too.
+def _attempt(question: SearchProblem, search: Search, objections: list[str]) -> Attempt:
+    """What a search comes to; a scenario takes the drive of its sibling where that answers it too.
 
     ``objections`` of a driver model to drives that were found are added.
     """
     restriction = restriction_of(search.specification.options)
     if restriction is not None and restriction.scenarios:
-        yield from _driven(question, search, Driven(search, question, restriction), objections)
-        return
-    if search.count > 1 or search.scenario is None or search.setting.road is not None:
-        yield from _clearly_different(question, search)
-        return
+        return _driven(question, search, Driven(search, question, restriction), objections)
+    if search.unlike or search.scenario is None or search.setting.road is not None:
+        return find_witness(question, search.search_options, search.unlike)
     begun, options = search.search_options.effort.meter(), search.search_options
     sibling = offered(search.specification, search.scenario, question, search.setting, options)
     if sibling is None and options.effort.timeout is not None:
         options = replace(options, effort=Effort(options.effort.units, begun.seconds_left()))
-    yield sibling or find_once(question, options)
+    return sibling or find_once(question, options)
 
 
-def _clearly_different(question: SearchProblem, search: Search) -> Iterator[Attempt]:
-    """The answers to one search after the other, each for a drive unlike those found before it.
-
-    Where the clock cuts a later one off, the drives that were found still stand.
-    """
-    drives: list[Drive] = []
-    while len(drives) < search.count:
-        try:
-            answer = find_witness(question, search.search_options, tuple(drives))
-        except BudgetExceeded as late:
-            if not drives:
-                raise
-            yield Attempt(Verdict.UNKNOWN, None, late.reason)
-            return
-        yield answer
-        if answer.found is None:
-            return
-        drives.append(answer.found.drive)
-
-
-def _driven(
-    question: SearchProblem, search: Search, driven: Driven, objections: list[str]
-) -> Iterator[Attempt]:
-    """The answers as of ``_clearly_different``, without drives to which a driver model objects."""
-    drives: list[Drive] = []
-    options, shown = search.search_options, 0
-    while shown < search.count and len(objections) < TRIES:
+def _driven(question: SearchProblem, search: Search, driven: Driven, objections: list[str]) -> Attempt:
+    """What a search comes to without drives to which a driver model objects."""
+    drives = list(search.unlike)
+    options = search.search_options
+    while len(objections) < TRIES:
         if objections:
             options = replace(options, effort=options.effort.of(min(AGAIN, options.effort.units)))
         try:
             attempt = find_witness(question, options, tuple(drives))
         except BudgetExceeded:
-            if not drives:
+            if not objections:
                 raise
             break
         if attempt.found is None:
-            if not drives:
-                yield attempt
-                return
+            if not objections:
+                return attempt
             break
         drives.append(attempt.found.drive)
         objection = driven.objection(attempt.found)
-        if objection:
-            objections.append(objection)
-        else:
-            shown += 1
-            yield attempt
-    if shown < search.count:
-        model = driven.restriction.model
-        yield Attempt(Verdict.UNKNOWN, None, Why.NOT_DRIVEN(len(objections), model, "; ".join(objections)))
-
-
-def _reason(answers: list[Attempt], count: int) -> Reason:
-    found = sum(a.found is not None for a in answers)
-    if 0 < found < count:
-        return Why.FEWER_DRIVES(found, count, answers[-1].reason)
-    return answers[0].reason
+        if not objection:
+            return attempt
+        objections.append(objection)
+    model = driven.restriction.model
+    return Attempt(Verdict.UNKNOWN, None, Why.NOT_DRIVEN(len(objections), model, "; ".join(objections)))
 
 
 def judge_found(search: Search, question: SearchProblem, found: FoundDrive) -> JudgedDrive:

@@ -4,7 +4,7 @@ A drive of one claim is put on roads of the next and judged there; parts that cl
 the next and proved to clash there. So each claim has evidence of its own.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import assert_never
 
 from roadproof.engines.prove.induction import prove_of_scenarios
@@ -12,6 +12,7 @@ from roadproof.engines.search.ask import ask
 from roadproof.engines.search.impossible import explain
 from roadproof.engines.search.known_drive import KnownDrive
 from roadproof.engines.search.looking import search_of
+from roadproof.engines.search.none_within import refute
 from roadproof.engines.search.outcome import Outcome
 from roadproof.engines.search.valid import settle_valid
 from roadproof.evidence.answer import Answer, Refutation, undecided
@@ -28,7 +29,11 @@ from roadproof.library.specification import Query
 from roadproof.logic.formula import Application, Formula, Not
 from roadproof.logic.parts import parts_of
 from roadproof.logic.rewrite import without_names
+from roadproof.reasons import Reason, Why
 from roadproof.runtime.budget import BudgetExceeded, Work
+from roadproof.runtime.cost import NO_COST, Cost
+from roadproof.runtime.progress import about
+from roadproof.runtime.timing import now, since
 from roadproof.verdict import Verdict
 
 MOVED = 5
@@ -74,21 +79,31 @@ class Engines:
         self.unrefuted[:] = [x for x in self.unrefuted if x not in refuted]
         return refuted
 
-    def settle(self, claim: Claim) -> Answer:
-        """Return the answer to a claim; in doubt where the clock cuts it off."""
+    def settle(self, claim: Claim) -> tuple[Answer, Cost]:
+        """Return the answer to a claim, and what it cost; in doubt where the clock cuts it off."""
+        begun = now()
+        with about(claim.text):
+            answer, cost = self._settle(claim)
+        return answer, replace(cost, seconds=since(begun))
+
+    def _settle(self, claim: Claim) -> tuple[Answer, Cost]:
         try:
             match claim.mode:
                 case Valid():
                     alike = self.alike.get(without_sectors(claim.formula), ())
                     return settle_valid(claim, self.work, self.drives, alike)
+                case Exists(trees=True):
+                    return _with_trees(claim, self.work), NO_COST
+                case Exists() if self.work.alone:
+                    return _sought(claim, self.work)
                 case Exists():
-                    return self.follow(claim) or self.decide(claim)
+                    return self.follow(claim) or self.decide(claim), NO_COST
                 case On():
                     raise NotImplementedError("a claim about given files is settled by their reader")
                 case _:
                     assert_never(claim.mode)
         except BudgetExceeded as late:
-            return undecided(claim, late.reason)
+            return undecided(claim, late.reason), NO_COST
 
     def follow(self, claim: Claim) -> Answer | None:
         """Return an answer that follows from an earlier one, or None."""
@@ -118,11 +133,7 @@ class Engines:
         found = ask(search_of(claim, self.work, explain=False))
         if self.work.explain and not found.drives and found.verdict is not Verdict.IMPOSSIBLE:
             found = ask(search_of(claim, self.work))
-        if found.drives:
-            return Answer(claim, found.drives[0])
-        if found.impossibility is not None:
-            return Answer(claim, found.impossibility.of_core)
-        return _undecided(claim, found)
+        return _answer(claim, found, found.told(("--horizon",)))
 
     def _has_trace(self, claim: Claim) -> bool:
         never, bounds = negation(claim.query).formula, claim.home.library.bounds
@@ -149,7 +160,24 @@ def _body(denied: Formula) -> Formula:
     return denied.body if isinstance(denied, Not) else denied
 
 
-def _undecided(claim: Claim, found: Outcome) -> Answer:
+def _sought(claim: Claim, work: Work) -> tuple[Answer, Cost]:
+    """Return what a search alone comes to."""
+    found = ask(search_of(claim, work))
+    stages = {name: x for name, x in found.seconds.items() if name != "all"}
+    return _answer(claim, found, found.reason), Cost(stages=stages, sizes=found.sizes)
+
+
+def _with_trees(claim: Claim, work: Work) -> Answer:
+    """Return that there is no drive within limits, with trees that show it, where they are found."""
+    trees = refute(search_of(claim, work))
+    return undecided(claim, Why.NO_TREES()) if trees is None else Answer(claim, trees)
+
+
+def _answer(claim: Claim, found: Outcome, reason: Reason) -> Answer:
+    if found.drives:
+        return Answer(claim, found.drives[0])
+    if found.impossibility is not None:
+        return Answer(claim, found.impossibility.of_core)
     limits = None if found.limits is None else found.limits.as_json()
     verdict: OpenVerdict = Verdict.NONE_WITHIN if found.verdict is Verdict.NONE_WITHIN else Verdict.UNKNOWN
-    return undecided(claim, found.told(("--horizon",)), verdict, limits)
+    return undecided(claim, reason, verdict, limits)

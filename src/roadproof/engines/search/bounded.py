@@ -31,7 +31,7 @@ def check_bounded(search: Search, given: Iterable[Drive] = ()) -> BoundedResult:
     dense time, those of ``given`` among them, and none falsified the claim. Raises as ``ask``.
     """
     setting = replace(search.setting, natural=False)
-    denied = replace(search, query=negation(search.query), setting=setting, count=1)
+    denied = replace(search, query=negation(search.query), setting=setting)
     outcome = ask(denied)
     if outcome.drives:
         return BoundedResult(verdict=Verdict.REFUTED, drive=outcome.drives[0])

@@ -149,7 +149,7 @@ def _imply(question: _Question) -> Direction:
     against = both(question.one, negation(question.other))
     try:
         with about(question.name):
-            return _decide(replace(question.search, query=against, count=1), question.claim)
+            return _decide(replace(question.search, query=against), question.claim)
     except BudgetExceeded as late:
         return question.doubt(late.reason)
 

@@ -1,8 +1,10 @@
 """The search for drives that a claim asks for."""
 
+from roadproof.engines.search.limits import Limits
 from roadproof.engines.search.outcome import Search
-from roadproof.engines.search.question import SearchOptions, Setting
+from roadproof.engines.search.question import SearchOptions, Setting, pose
 from roadproof.evidence.claim import Claim, Exists, Valid
+from roadproof.library.scenarios import Scenario, applied, numbers_of, scenario_number
 from roadproof.runtime.budget import Work
 
 
@@ -39,4 +41,19 @@ def search_of(claim: Claim, work: Work, explain: bool | None = None) -> Search:
     options = SearchOptions(
         mode.objective, mode.engine, mode.solver, work.effort, mode.refinements, explain=wants
     )
-    return Search(claim.home, claim.query, setting, options)
+    return Search(claim.home, claim.query, setting, options, mode.unlike, _number_of(claim))
+
+
+def _number_of(claim: Claim) -> int | None:
+    """Return the number of the scenario that a claim is about, as a whole."""
+    number = scenario_number(claim.query)
+    if number is None or number not in numbers_of(claim.home):
+        return None
+    whole = applied(claim.home, Scenario(number, claim.home.set_name))
+    return number if whole.formula == claim.formula else None
+
+
+def limits_of(claim: Claim) -> Limits:
+    """Return within what a search for a drive looks. Raises as ``pose``."""
+    search = search_of(claim, Work())
+    return pose(claim.home.library, claim.query, search.setting).limits()

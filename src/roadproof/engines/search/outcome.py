@@ -1,18 +1,18 @@
 """A search for drives as values, and its typed outcome, without solvers: a known answer needs none."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 from roadproof.engines.search.limits import Limits
 from roadproof.engines.search.question import SearchOptions, Setting, exists, usual_road
-from roadproof.evidence.answers import drives as kept
 from roadproof.evidence.claim import Claim, claim_of
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.specification import Query, Specification
 from roadproof.reasons import Reason, Why
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import DriveVerdict, Verdict
+from roadproof.world.drive import Drive
 
 if TYPE_CHECKING:
     from roadproof.engines.search.impossible import Impossibility
@@ -20,19 +20,22 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Search:
-    """For ``count`` clearly different drives on which ``query`` holds; ``scenario``: whose number it is."""
+    """For a drive on which ``query`` holds, clearly different from those in ``unlike``.
+
+    ``scenario``: whose number it is.
+    """
 
     specification: Specification
     query: Query
     setting: Setting = field(default_factory=Setting)
     search_options: SearchOptions = field(default_factory=SearchOptions)
-    count: int = 1
+    unlike: tuple[Drive, ...] = ()
     scenario: int | None = None
 
     @property
     def claim(self) -> Claim:
-        """The claim that there are such drives, without the effort of looking for them."""
-        mode = exists(self.setting, self.search_options)
+        """The claim that there is such a drive, without the effort of looking for it."""
+        mode = replace(exists(self.setting, self.search_options), unlike=self.unlike)
         return claim_of(self.specification, self.query, mode, self.setting.values)
 
 
@@ -61,27 +64,6 @@ class Outcome:
     def told(self, options: Sequence[str]) -> Reason:
         """The reason, with those ``options`` that a command has to widen the limits of a NONE-WITHIN."""
         return self.reason if self.limits is None else Why.TOLD(self.limits.text(options))
-
-    @property
-    def kept(self) -> kept.Outcome:
-        """As the answer has it."""
-        shown = self.impossibility
-        return kept.Outcome(
-            scenario=self.scenario,
-            set=self.set_name,
-            formula=self.query.text,
-            road=self.road,
-            verdict=self.verdict,
-            view="dense" if self.limits is None else "grid",
-            reason=self.reason,
-            natural=self.natural,
-            drives=tuple(judged.as_data() for judged in self.drives),
-            limits=None if self.limits is None else self.limits.as_json(),
-            core=() if shown is None else shown.told,
-            certificate=None if shown is None else shown.plain,
-            seconds={stage: round(value, 4) for stage, value in self.seconds.items()},
-            sizes=dict(self.sizes),
-        )
 
 
 def undecided(search: Search, reason: Reason, seconds: float = 0.0) -> Outcome:

@@ -13,27 +13,29 @@ from roadproof.evidence.answer import Answer, Refutation, assumed_by, undecided,
 from roadproof.evidence.claim import Claim, Valid
 from roadproof.reasons import Why
 from roadproof.runtime.budget import Work
+from roadproof.runtime.cost import NO_COST, Cost
 from roadproof.verdict import Verdict
 
 
 def settle_valid(
     claim: Claim, work: Work, drives: Iterable[KnownDrive] = (), alike: Iterable[KnownDrive] = ()
-) -> Answer:
-    """Return the answer to a claim.
+) -> tuple[Answer, Cost]:
+    """Return the answer to a claim, and what it cost.
 
     ``drives``: they are tried first; those that refute claims which are ``alike`` on other roads, too.
     """
     assert isinstance(claim.mode, Valid)
     if claim.mode.within is not None:
-        return _answer(claim, work, settle_bounded(search_of(claim, work), shipped_drives()))
+        bounded = settle_bounded(search_of(claim, work), shipped_drives())
+        return _answer(claim, work, bounded), NO_COST
     shown = first_refuting(claim, drives)
     for known in alike if shown is None else ():
         shown = shown or known.elsewhere(against(claim), claim)
     if shown is not None:
-        return Answer(claim, shown)
+        return Answer(claim, shown), NO_COST
     effort = work.effort if work.seek_drive else work.effort.of(work.proof)
     found = settle(claim.home, claim.query, effort, seek_drive=work.seek_drive, said=assumed_by(claim))
-    return _answer(claim, work, found)
+    return _answer(claim, work, found), Cost(work=found.result.work or None)
 
 
 def _answer(claim: Claim, work: Work, found: Settlement) -> Answer:

@@ -1,21 +1,17 @@
 """Drives for scenarios and formulas."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import field, replace
-from functools import partial
-from itertools import product
+from functools import cached_property
 from pathlib import Path
 from typing import ClassVar, Unpack
 
+from roadproof.analysis.basis import Basis
 from roadproof.analysis.study import pool
-from roadproof.analysis.study.frame import StudyResult, look_up, put_away
-from roadproof.analysis.witnesses import WitnessStudy, evidence_files, none_within_file, stems
-from roadproof.engines.search.outcome import Outcome, Search
-from roadproof.engines.search.question import SearchOptions, pose
+from roadproof.engines.search.question import SearchOptions, Setting, exists, pose
 from roadproof.errors import UsageError
-from roadproof.evidence.answers import drives as kept
-from roadproof.evidence.answers.drives import Answer
+from roadproof.evidence import answer as answers
 from roadproof.evidence.codec import write
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.kinds import Evidence
@@ -23,19 +19,30 @@ from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
+from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import searches_of, setting, work_of
-from roadproof.frontends.api.studied import StudyAnswers, drive_pictures
+from roadproof.frontends.api.studied import drive_pictures
 from roadproof.frontends.report.animation import ENDINGS
 from roadproof.frontends.report.ci.cases import Case
 from roadproof.frontends.report.ci.questions import search_cases
 from roadproof.frontends.report.sheet import Sheet
-from roadproof.frontends.report.witness import EVERY_VIEW, SearchedFor, Views, as_line, sheet_of
+from roadproof.frontends.report.witness import EVERY_VIEW, Views, as_line, sheet_of
 from roadproof.frontends.settings.keywords import WitnessKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Witness
 from roadproof.library.specification import Library
-from roadproof.runtime.files import json_bytes, make_folder, write_whole
+from roadproof.questions.settle import look_up
+from roadproof.questions.witness import (
+    NONE_WITHIN,
+    SearchResult,
+    SearchTask,
+    WitnessQuestion,
+    WitnessView,
+    name_of,
+)
+from roadproof.runtime.cost import NO_COST, Cost, sum_of
+from roadproof.runtime.files import make_folder, write_whole
 from roadproof.runtime.progress import Listener, listening
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict, exit_code
@@ -49,63 +56,52 @@ class DriveFolder:
     folder: Path
     library: Library
     views: Views
-    searches: Mapping[str, Search] = field(default_factory=dict)
 
-    def __call__(self, name: str, outcome: Outcome) -> None:
+    def __call__(self, named: tuple[str, JudgedDrive]) -> None:
+        name, judged = named
         make_folder(self.folder)
-        if name in self.searches:
-            self._show_none(name, outcome)
-        for stem, judged in zip(stems(name, outcome), outcome.drives, strict=True):
-            samples = self.folder / f"{stem}.csv"
-            former = samples.read_bytes() if samples.is_file() else b""
-            for ending, content in self.views.of(judged, self.library):
-                write_whole(self.folder / f"{stem}{ending}", content)
-            if samples.read_bytes() != former:  # the other files are those of a former drive
-                for ending in {*EVERY_VIEW.endings} - {*self.views.endings}:
-                    (self.folder / f"{stem}{ending}").unlink(missing_ok=True)
+        samples = self.folder / f"{name}.csv"
+        former = samples.read_bytes() if samples.is_file() else b""
+        for ending, content in self.views.of(judged, self.library):
+            write_whole(self.folder / f"{name}{ending}", content)
+        if samples.read_bytes() != former:  # the other files are those of a former drive
+            for ending in {*EVERY_VIEW.endings} - {*self.views.endings}:
+                (self.folder / f"{name}{ending}").unlink(missing_ok=True)
 
-    def _show_none(self, name: str, outcome: Outcome) -> None:
-        """Evidence of a NONE-WITHIN, where a tree is found; none of a former answer is left."""
-        path = self.folder / none_within_file(name)
-        path.unlink(missing_ok=True)
-        if outcome.verdict is Verdict.NONE_WITHIN:
-            from roadproof.engines.search.none_within import refute
-            from roadproof.evidence.none_within import none_within_data
-
-            found = refute(self.searches[name])
-            if found is not None:
-                write_whole(path, json_bytes(none_within_data(found)))
-
-    def lacks(self, name: str, outcome: Outcome) -> bool:
+    def lacks(self, name: str) -> bool:
         """Whether any is not there."""
-        every = product(stems(name, outcome), self.views.endings)
-        return any(not (self.folder / f"{stem}{ending}").exists() for stem, ending in every)
+        return any(not (self.folder / f"{name}{ending}").exists() for ending in self.views.endings)
 
 
 @dataclass(frozen=True, repr=False)
-class Witnesses(StudyAnswers[WitnessStudy, Outcome, kept.Record], BuildResult):
+class Witnesses(QuestionAnswers[WitnessView], BuildResult):
     """Searches for drives, and what came out of each."""
 
+    question: WitnessQuestion
     pieces: ClassVar[str] = "questions"
     command: ClassVar[str] = "witness"
 
     def cases(self) -> Iterator[Case]:
-        named = self.study.named
-        searches = ((name, self.found.answers[name]) for name in named)
-        return search_cases((x, named[name].specification, self._file(name, x)) for name, x in searches)
+        return search_cases((x, self._file(name, x)) for name, x in self.named.items())
 
-    def _file(self, name: str, outcome: Outcome) -> Path | None:
-        files = evidence_files(name, outcome)
-        return self.folder / files[0] if self.folder is not None and files else None
+    def _file(self, name: str, result: SearchResult) -> Path | None:
+        first = self.question.claim_names(name)[0]
+        shown = result.drives or result.certificate is not None
+        return self.folder / f"{first}.json" if self.folder is not None and shown else None
+
+    @cached_property
+    def named(self) -> dict[str, SearchResult]:
+        """What came out, by name; what was asked twice is there once."""
+        return {name: self._priced(name) for name in self.question.named}
+
+    def _priced(self, name: str) -> SearchResult:
+        costs = [x for y in self.question.claim_names(name) if (x := self.found.costs.get(y)) is not None]
+        return replace(self.question.result(name, self.found.answers), cost=sum_of(costs))
 
     @property
-    def library(self) -> Library:
-        return self.study.question.library
-
-    @property
-    def outcomes(self) -> tuple[Outcome, ...]:
+    def outcomes(self) -> tuple[SearchResult, ...]:
         """What came out, in the order in which it was asked."""
-        return tuple(self.found.answers[name] for name in self.study.names)
+        return tuple(self.named[name] for name in self.question.names)
 
     @property
     def drives(self) -> tuple[JudgedDrive, ...]:
@@ -118,51 +114,41 @@ class Witnesses(StudyAnswers[WitnessStudy, Outcome, kept.Record], BuildResult):
 
     @property
     def evidence(self) -> tuple[Evidence, ...]:
-        proofs = (x.impossibility.certificate for x in self.outcomes if x.impossibility is not None)
+        proofs = (x.certificate for x in self.outcomes if x.certificate is not None)
         return (*self.drives, *proofs)
 
     @property
     def road(self) -> Road | None:
-        return self.study.searches[0].setting.road
+        return self.question.road
 
     @property
     def exit_code(self) -> ExitCode:
         return exit_code((x.verdict, Verdict.WITNESSED) for x in self.outcomes)
 
     @property
-    def _sheet(self) -> Sheet[SearchedFor]:
-        homes = (search.specification for search in self.study.named.values())
-        return sheet_of([*zip(self.outcomes, homes, strict=True)])
+    def _sheet(self) -> Sheet[SearchResult]:
+        return sheet_of([*self.named.values()])
 
     def as_data(self) -> JsonObject:
-        return write(self._index(self.found.records))
+        data = self.question.data(WitnessView(self.outcomes), lambda *_: None, self.seconds)
+        return write(data)
 
-    def _index(self, records: Mapping[str, kept.Record]) -> Answer:
-        verdicts = tuple(x.kept for x in self.outcomes)
-        length_error = Answer.bends(self.road)
-        return Answer(**self.study.question.beginning, length_error=length_error, verdicts=verdicts)
+    def _add_files(self, folder: Path, pictures: bool) -> None:
+        beside = DriveFolder(folder, self.library, Views(pictures))
+        for named in self.drive_names:
+            beside(named)
 
-    def _write_index(self, folder: Path, found: StudyResult[Outcome, kept.Record]) -> None:
-        """There is none: drive files and proofs stand for themselves."""
-
-    def _write(self, folder: Path, pictures: bool) -> None:
-        make_folder(folder)
-        answers = {name: self.found.answers[name] for name in self.study.named}
-        searches = self.study.named if folder != self.folder else {}
-        if searches and self.evidence:
-            put_away(self.study, answers, folder)
-        beside = DriveFolder(folder, self.library, Views(pictures), searches)
-        for name, outcome in answers.items():
-            beside(name, outcome)
-        if searches and not self.evidence and any(folder.glob(none_within_file("*"))):
-            put_away(self.study, answers, folder)
+    @property
+    def drive_names(self) -> Iterator[tuple[str, JudgedDrive]]:
+        """Each drive with the name of its file."""
+        for name, result in self.named.items():
+            yield from zip(self.question.claim_names(name), result.drives, strict=False)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         return drive_pictures(((f"drive-{k}", x) for k, x in enumerate(self.drives, 1)), self.library)
 
     def __str__(self) -> str:
-        answers, searches = self.found.answers, self.study.named
-        lines = [as_line(answers[name], search.specification) for name, search in searches.items()]
+        lines = [as_line(x) for x in self.named.values()]
         return "\n".join([*lines, *([self.summary] if len(lines) > 1 else [])])
 
     @property
@@ -196,62 +182,91 @@ def witness(
     <Verdict.WITNESSED: 'WITNESSED'>
     """
     given = Witness.of(options)
-    searches = searches_for(what, definitions_of(using), given)
+    question = drives_asked(what, definitions_of(using), given)
     with listening(stage):
-        return witness_all(searches, given)
+        return witness_all(question, given)
 
 
 def known_drives(numbers: Sequence[int], using: Definitions) -> dict[int, JudgedDrive]:
-    """The drives of scenarios, by number, that are known without a search (``study.known``).
+    """The drives of scenarios, by number, that are known without a search.
 
     Raises ``InputError`` for a number that the spec set does not have.
     """
-    study = WitnessStudy(tuple(searches_for(numbers, using, Witness())))
-    found = look_up(study) if study.searches else {}
-    return {x.scenario: x.drives[0] for x in found.values() if x.scenario is not None and x.drives}
+    if not numbers:
+        return {}
+    question = drives_asked(numbers, using, Witness())
+    found = look_up(question)
+    results = (question.result(name, found) for name in question.named)
+    return {x.scenario: x.drives[0] for x in results if x.scenario is not None and x.drives}
 
 
-def searches_for(what: Sequence[What], using: Definitions, given: Witness) -> list[Search]:
-    """The searches that ``witness`` makes. Raises as that does."""
+def drives_asked(what: Sequence[What], using: Definitions, given: Witness) -> WitnessQuestion:
+    """The question that ``witness`` asks. Raises as that does."""
     each = using.each(what)
     home = restricted(using, given, what=each)
-    search_options = SearchOptions(given.objective, given.engine, given.solver, work_of(given))
-    found = list(searches_of(home, each, setting(home, given), search_options, given.count))
-    for search in found if len(found) > 1 else ():
-        _refuse_early(search)
-    return found
+    options = SearchOptions(given.objective, given.engine, given.solver)
+    place = setting(home, given)
+    within, trees = exists(place, options), given.out is not None
+    tasks = tuple(
+        SearchTask(
+            name_of(number, x.scenario, x.specification.set_name),
+            x.specification,
+            x.query,
+            x.scenario,
+            within,
+            given.count,
+            trees,
+        )
+        for number, x in enumerate(searches_of(home, each, place, options), 1)
+    )
+    if not tasks:
+        raise UsageError("the spec set has no scenario: name formulas")
+    for task in tasks if len(tasks) > 1 else ():
+        _refuse_early(task, place)
+    basis = Basis(tasks[0].specification, values=place.values, effort=work_of(given))
+    return WitnessQuestion(basis, tasks)
 
 
-def _refuse_early(search: Search) -> None:
+def _refuse_early(task: SearchTask, place: Setting) -> None:
     """Raises ``UsageError`` for one of several formulas that cannot be asked, before others are searched."""
-    if search.scenario is None:
+    if task.scenario is None:
         try:
-            pose(search.specification.library, search.query, search.setting)
+            pose(task.specification.library, task.query, place)
         except UsageError as error:
-            raise UsageError(f"{search.query.text[:80]}: {error}") from None
+            raise UsageError(f"{task.query.text[:80]}: {error}") from None
 
 
 def witness_all(
-    searches: Sequence[Search], given: Witness, each: Callable[[str, Outcome], None] | None = None
+    question: WitnessQuestion, given: Witness, each: Callable[[str, SearchResult], None] | None = None
 ) -> Witnesses:
-    """As ``witness``, with searches as values; ``each`` is told of every outcome under its name."""
-    if not searches:
-        raise UsageError("the spec set has no scenario: name formulas")
-    library, out, views = searches[0].specification.library, given.out, views_of(given)
-    study = WitnessStudy(tuple(searches))
-    beside = None if out is None else DriveFolder(Path(out), library, views, study.named)
-    study = replace(study, finish=beside)
-    found = Witnesses.asked(study, given, each)
-    if beside is not None:
-        left = [(name, x) for name in study.named if beside.lacks(name, x := found.found.answers[name])]
-        finish = partial(_finish, beside)
-        with closing(pool.work(finish, left, given.jobs, None, given.progress, "drives")) as done:
+    """As ``witness``; ``each`` is told of every result under its name."""
+    views = views_of(given)
+    found = Witnesses.settled(question, given, None if each is None else _Teller(question, each))
+    if found.folder is not None:
+        beside = DriveFolder(found.folder, found.library, views)
+        left = [x for x in found.drive_names if beside.lacks(x[0])]
+        with closing(pool.work(beside, left, given.jobs, None, given.progress, "drives")) as done:
             list(done)
     return found
 
 
-def _finish(beside: DriveFolder, of: tuple[str, Outcome]) -> None:
-    beside(*of)
+@dataclass
+class _Teller:
+    """Tells of a search once all its claims are answered."""
+
+    question: WitnessQuestion
+    each: Callable[[str, SearchResult], None]
+    known: dict[str, answers.Answer] = field(default_factory=dict)
+    cost: dict[str, Cost] = field(default_factory=dict)
+
+    def __call__(self, name: str, answer: answers.Answer, cost: Cost) -> None:
+        search = self.question.search_named(name)
+        if name not in self.question.claim_names(search):
+            return
+        self.known[name] = answer
+        self.cost[search] = sum_of([self.cost.get(search, NO_COST), cost])
+        if answer.drive is None or name == self.question.claim_names(search)[-1]:
+            self.each(search, replace(self.question.result(search, self.known), cost=self.cost[search]))
 
 
 def views_of(given: Witness) -> Views:
@@ -268,9 +283,14 @@ def views_of(given: Witness) -> Views:
     return Views(given.pictures, tuple(wanted))
 
 
-def files_written(name: str, outcome: Outcome, views: Views, folder: Path) -> list[str]:
-    """The names of the files that an outcome has in a folder."""
-    if outcome.verdict is Verdict.NONE_WITHIN:
-        return [x for x in (none_within_file(name),) if (folder / x).is_file()]
-    every = (f"{stem}{ending}" for stem in stems(name, outcome) for ending in (".json", *views.endings))
-    return list(every) if outcome.drives else evidence_files(name, outcome)
+def files_written(
+    question: WitnessQuestion, name: str, result: SearchResult, views: Views, folder: Path
+) -> list[str]:
+    """The names of the files that a result has in a folder."""
+    names = question.claim_names(name)
+    if result.verdict is Verdict.NONE_WITHIN:
+        return [x for x in (f"{NONE_WITHIN}-{name}.json",) if (folder / x).is_file()]
+    if result.drives:
+        shown = names[: len(result.drives)]
+        return [f"{stem}{ending}" for stem in shown for ending in (".json", *views.endings)]
+    return [f"{names[0]}.json"] if result.certificate is not None else []

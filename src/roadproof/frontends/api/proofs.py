@@ -44,6 +44,7 @@ from roadproof.questions.prove import (
     ProveQuestion,
     claim_data,
 )
+from roadproof.runtime.cost import NO_COST, Cost
 from roadproof.runtime.executors import Jobs, hands_of
 from roadproof.runtime.files import hold_folder
 from roadproof.runtime.progress import Listener, listening
@@ -80,9 +81,9 @@ class Proofs(QuestionAnswers[ClaimsView], BuildResult):
     ) -> Self:
         """Settle claims; ``each`` is told of every result. Of several runs one at a time writes a folder."""
 
-        def tell(name: str, answer: answers.Answer, seconds: float) -> None:
+        def tell(name: str, answer: answers.Answer, cost: Cost) -> None:
             if each is not None:
-                each(name, replace(question.result(name, answer), seconds=seconds))
+                each(name, replace(question.result(name, answer), cost=cost))
 
         with hold_folder(None if given.out is None else Path(given.out)):
             return cls.settled(question, given, tell)
@@ -90,8 +91,8 @@ class Proofs(QuestionAnswers[ClaimsView], BuildResult):
     @property
     def answers(self) -> tuple[ClaimResult, ...]:
         """In the order in which they were asked."""
-        seconds = self.found.seconds
-        return tuple(replace(x, seconds=seconds.get(x.name, 0.0)) for x in self.view.claims)
+        costs = self.found.costs
+        return tuple(replace(x, cost=costs.get(x.name, NO_COST)) for x in self.view.claims)
 
     @property
     def verdicts(self) -> dict[str, Verdict]:

@@ -19,6 +19,7 @@ from roadproof.questions.question import Question
 from roadproof.questions.settle import Settled, settle
 from roadproof.questions.store import keep_all
 from roadproof.questions.views import view_data
+from roadproof.runtime.cost import Cost
 from roadproof.runtime.files import write_whole
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
@@ -41,7 +42,7 @@ class QuestionAnswers(Answer, Generic[View]):
         cls,
         question: Question[View],
         given: Run,
-        each: Callable[[str, answers.Answer, float], None] | None = None,
+        each: Callable[[str, answers.Answer, Cost], None] | None = None,
     ) -> Self:
         """Settle the claims of a question. Raises as ``questions.settle``."""
         begun = time.monotonic()

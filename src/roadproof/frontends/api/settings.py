@@ -45,7 +45,7 @@ def models_of(vehicles: Vehicles) -> dict[str, Vehicle]:
 
 
 def searches_of(
-    home: Definitions, what: Sequence[What], place: "Setting", search_options: "SearchOptions", count: int = 1
+    home: Definitions, what: Sequence[What], place: "Setting", search_options: "SearchOptions"
 ) -> "Iterator[Search]":
     """A search for each formula in each spec set; without any, for all scenarios of the set.
 
@@ -57,7 +57,7 @@ def searches_of(
         here = replace(home, specification=home.specification.in_set(name))
         for x in what or numbers_of(here.specification):
             scenario, query = here.numbered(x)
-            yield Search(here.specification, query, place, search_options, count, scenario)
+            yield Search(here.specification, query, place, search_options, scenario=scenario)
 
 
 def as_road(road: RoadLike) -> Road:

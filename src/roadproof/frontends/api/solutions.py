@@ -10,20 +10,19 @@ from roadproof.analysis.assurance.case import Evidence
 from roadproof.analysis.assurance.limits import BOUNDED, DIGEST, Limit, limits_of
 from roadproof.analysis.assurance.states import State
 from roadproof.errors import MissingSolverError, RoadproofError
-from roadproof.evidence.answers import drives
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
 from roadproof.evidence.folder import INDEX
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
 from roadproof.frontends.api.checking import check
 from roadproof.frontends.settings.keywords import CheckKeywords
-from roadproof.questions import prove
+from roadproof.questions import prove, witness
 from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 
 WHOLE = ("COVERED", "GAPS")
 """Verdicts of a whole answer."""
-ANSWERS = (prove.SCHEMA, drives.SCHEMA)
+ANSWERS = (prove.SCHEMA, witness.SCHEMA)
 RESULTS = "results.json"
 """The results of recordings in a folder, which ``check`` does not read."""
 _OPEN = ("UNKNOWN", "NONE-WITHIN")

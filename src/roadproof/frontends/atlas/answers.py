@@ -154,8 +154,7 @@ class _Questions:
             told: Any = {"objective": objective, "pictures": False, **self._keywords(place)}
             found = drives.witness(*self.answers.numbers, using=self.answers.home, **told)
             shown = self.answers.drives.setdefault(objective, {})
-            for name in found.study.named:
-                outcome = found.found.answers[name]
+            for name, outcome in found.named.items():
                 if outcome.drives and outcome.scenario is not None:
                     arguments = f"{outcome.scenario} --objective {objective}"
                     source = self.answers.source("witness", arguments, place, f"{name}.json")

@@ -12,7 +12,7 @@ from roadproof.frontends.settings.questions import Witness
 from roadproof.runtime.progress import listening
 
 if TYPE_CHECKING:
-    from roadproof.engines.search.outcome import Outcome
+    from roadproof.questions.witness import SearchResult
 
 SUMMARY = "find a drive on which a scenario or a formula holds"
 
@@ -36,29 +36,27 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.analysis.witnesses import WitnessStudy
-    from roadproof.frontends.api.drives import files_written, searches_for, views_of, witness_all
+    from roadproof.frontends.api.drives import drives_asked, files_written, views_of, witness_all
     from roadproof.frontends.report.witness import as_line
 
     what = some_or_all(args)
     given = Witness.of(study_keywords(args, Witness))
     views = views_of(given)
-    searches = searches_for(what, read_definitions(args, Witness), given)
-    named = WitnessStudy(tuple(searches)).named
+    question = drives_asked(what, read_definitions(args, Witness), given)
     plain = args.json != "-"
     written: list[str] = []
 
-    def show(name: str, outcome: "Outcome") -> None:
-        files = [] if args.out is None else files_written(name, outcome, views, Path(args.out))
+    def show(name: str, result: "SearchResult") -> None:
+        files = [] if args.out is None else files_written(question, name, result, views, Path(args.out))
         written.extend(files)
         clear()
         told = f"\n  written to {args.out}: {', '.join(files)}" if files else ""
-        line = as_line(outcome, named[name].specification, args.verbose)
+        line = as_line(result, args.verbose)
         print_at_once(line + told, args.out is not None)
 
-    each = in_order(tuple(named), show) if plain else None
-    with listening(tell_stage if len(named) == 1 else None):
-        found = witness_all(searches, given, each)
+    each = in_order(tuple(question.named), show) if plain else None
+    with listening(tell_stage if len(question.named) == 1 else None):
+        found = witness_all(question, given, each)
     if args.out is not None and not written and plain:
         print(f"no drive was found, so nothing was written to {args.out}")
     write_build_results(args, found)

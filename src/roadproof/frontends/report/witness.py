@@ -1,24 +1,20 @@
 """Drives that were found: a line about each search, a sheet of all, and the files of the drives."""
 
 from collections.abc import Iterator, Sequence
-from typing import TypeAlias
 
-from roadproof.engines.search.outcome import Outcome
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.report.animation import ENDINGS, draw_animation
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.scenarios import LANE
-from roadproof.library.specification import Library, Specification
+from roadproof.library.specification import Library
 from roadproof.library.words import words_of
 from roadproof.logic.custom_names import told_freedom
 from roadproof.logic.first_instant import told_first_instants
+from roadproof.questions.witness import SearchResult
 from roadproof.runtime.records import dataclass
 
-SearchedFor: TypeAlias = tuple[Outcome, Specification]
-"""What a search found, and the definitions that it was about."""
 
-
-def as_line(outcome: Outcome, specification: Specification, verbose: bool = False) -> str:
+def as_line(outcome: SearchResult, verbose: bool = False) -> str:
     """What was found, and why not; with ``verbose`` also sizes and seconds by stage."""
     name = f"scenario {outcome.scenario}" if outcome.scenario is not None else outcome.query.text
     shown = f"{name:<12} {outcome.set_name:<5} {outcome.verdict:<11} road {outcome.road:<7}"
@@ -29,46 +25,50 @@ def as_line(outcome: Outcome, specification: Specification, verbose: bool = Fals
         shown += f" horizon {file.horizon} s"
         shown += "" if outcome.natural else " (not natural: within the vehicles' limits only)"
         shown += f" {len(outcome.drives)} drives" if len(outcome.drives) > 1 else ""
-    shown += f" {outcome.seconds['all']:.2f} s" if outcome.seconds else ""  # none of a recalled answer
+    shown += f" {outcome.cost.seconds:.2f} s" if outcome.cost.seconds else ""  # none of a recalled answer
     if outcome.scenario is not None:
-        name = words_of(specification, outcome.scenario).name
+        name = words_of(outcome.task.specification, outcome.scenario).name
         shown += f"\n  {name}" if name else ""
     asked = outcome.query.formula
     shown += "".join(f"\n  {said}" for said in (*told_freedom(asked), *told_first_instants(asked)))
     if outcome.reason:
         shown += f"\n  {outcome.reason}"
-    if outcome.impossibility is not None:
-        kind = "minimal core" if outcome.impossibility.minimal else "core, not minimised with the work given"
-        shown += f"\n  proved for all time, on every road; {kind}:"
-        shown += "".join(f"\n    {part}" for part in outcome.impossibility.told)
+    if outcome.certificate is not None:
+        shown += "\n  proved for all time, on every road; parts that clash:"
+        shown += "".join(f"\n    {part}" for part in outcome.told)
     if verbose:
-        shown += f"\n  sizes {dict(outcome.sizes)}"
-        stages = ", ".join(f"{k} {v:.3f}" for k, v in outcome.seconds.items())
+        shown += f"\n  sizes {dict(outcome.cost.sizes)}"
+        spent = {**outcome.cost.stages, "all": outcome.cost.seconds} if outcome.cost.seconds else {}
+        stages = ", ".join(f"{k} {v:.3f}" for k, v in spent.items())
         shown += f"\n  seconds {stages}" if stages else ""
     return shown
 
 
-def sheet_of(searches: Sequence[SearchedFor]) -> Sheet[SearchedFor]:
+def sheet_of(searches: Sequence[SearchResult]) -> Sheet[SearchResult]:
     """An entry for each search."""
     return Sheet(
         (
-            Column("scenario", lambda x: x[0].scenario),
-            Column("name", lambda x: "" if x[0].scenario is None else words_of(x[1], x[0].scenario).name),
-            Column("set", lambda x: x[0].set_name),
-            Column("formula", lambda x: x[0].query.text, look="code"),
-            Column("verdict", lambda x: x[0].verdict, look="verdict"),
-            Column("road", lambda x: x[0].road),
-            Column("drives", lambda x: len(x[0].drives)),
-            Column("reason", lambda x: x[0].reason or _core_of(x[0])),
-            Column("seconds", lambda x: x[0].seconds.get("all"), "frame"),
+            Column("scenario", lambda x: x.scenario),
+            Column("name", _name),
+            Column("set", lambda x: x.set_name),
+            Column("formula", lambda x: x.query.text, look="code"),
+            Column("verdict", lambda x: x.verdict, look="verdict"),
+            Column("road", lambda x: x.road),
+            Column("drives", lambda x: len(x.drives)),
+            Column("reason", lambda x: x.reason or _core_of(x)),
+            Column("seconds", lambda x: x.cost.seconds or None, "frame"),
         ),
         searches,
     )
 
 
-def _core_of(outcome: Outcome) -> str:
+def _name(result: SearchResult) -> str:
+    return "" if result.scenario is None else words_of(result.task.specification, result.scenario).name
+
+
+def _core_of(result: SearchResult) -> str:
     """The parts that clash where there is no drive at all; empty otherwise."""
-    return "" if outcome.impossibility is None else f"core: {'; '.join(outcome.impossibility.told)}"
+    return f"core: {'; '.join(result.told)}" if result.told else ""
 
 
 @dataclass(frozen=True)

@@ -30,13 +30,14 @@ Origin: TypeAlias = Literal["shipped", "cache"]
 
 @dataclass(frozen=True)
 class Cost:
-    """What an answer cost when it was computed: seconds of the clock.
+    """What an answer cost when it was computed: seconds of the clock, and units of effort where counted.
 
     ``known``: where it is from, if it was known before it was asked for.
     """
 
     known: Origin | None
     seconds: float
+    effort: float | None = None
 
 
 @dataclass(frozen=True)
@@ -80,14 +81,14 @@ def find(ask: Ask) -> Answer:
     if drive is not None:
         begin("judging the drive")
     words = [query.text if what is query else str(what)]
-    proof, command = outcome.impossibility, _command("witness", words, ask, home, Witness.of(how))
-    certificate = None if proof is None else proof.certificate
-    cost = Cost(next(iter(answers.found.known), None), sum(outcome.seconds.values()))
-    found = _Settled(outcome.verdict, outcome.told(()), query.text, command, certificate, drive, cost)
+    command = _command("witness", words, ask, home, Witness.of(how))
+    cost = Cost(next(iter(answers.found.origins.values()), None), outcome.cost.seconds)
+    reason = outcome.told_without_options
+    found = _Settled(outcome.verdict, reason, query.text, command, outcome.certificate, drive, cost)
     return found.shown(ask) | {
         "road": outcome.road,
-        "core": [] if proof is None else list(proof.told),
-        "marks": [] if proof is None else _clash(home, query, proof.core),
+        "core": list(outcome.told),
+        "marks": _clash(home, query, outcome.core),
         "drives": [x.as_data() for x in outcome.drives],
     }
 
@@ -134,7 +135,7 @@ def prove(ask: Ask) -> Answer:
     answers = rp.prove(claim, using=home, jobs=1, fresh=ask.fresh, **how)
     [found] = answers.answers
     task = found.task
-    cost = Cost(next(iter(answers.found.origins.values()), None), found.seconds)
+    cost = Cost(next(iter(answers.found.origins.values()), None), found.seconds, found.cost.work)
     command = _command("prove", [task.claim], ask, home, Prove.of(how))
     one = _Settled(found.verdict, found.reason, task.claim, command, found.certificate, found.drive, cost)
     return one.shown(ask) | {"assuming": list(task.assuming), "refuted_by": found.refuted_by}

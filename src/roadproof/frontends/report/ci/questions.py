@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from roadproof.analysis.catalogue.tested import Targets
     from roadproof.analysis.coverage.answers import Survey
     from roadproof.analysis.preventable.study import LemmaResult, Plate
-    from roadproof.engines.search.outcome import Outcome
     from roadproof.evidence.answers.catalogue_index import Remark
     from roadproof.questions.prove import ClaimResult, ProveQuestion
+    from roadproof.questions.witness import SearchResult
 
 
 def written(case: Case, specification: Specification, claim: Claim) -> Case:
@@ -66,9 +66,9 @@ def claim_cases(
         yield written(case, specification, read_claim(specification, task.claim).claim)
 
 
-def search_cases(searches: Iterable[tuple[Outcome, Specification, Path | None]]) -> Iterator[Case]:
-    """A case for each search for a drive; the third is its evidence, where there is a file."""
-    for x, specification, file in searches:
+def search_cases(searches: Iterable[tuple[SearchResult, Path | None]]) -> Iterator[Case]:
+    """A case for each search for a drive, with its evidence where there is a file."""
+    for x, file in searches:
         name = x.query.text if x.scenario is None else f"scenario {x.scenario}"
         case = Case(
             suite=f"drives in {x.set_name}",
@@ -77,9 +77,9 @@ def search_cases(searches: Iterable[tuple[Outcome, Specification, Path | None]])
             rule=x.verdict,
             message=f"{x.verdict}: {name}{x.reason and f' ({x.reason})'}",
             evidence=file,
-            seconds=x.seconds.get("all"),
+            seconds=x.cost.seconds or None,
         )
-        yield written(case, specification, x.query.claim)
+        yield written(case, x.task.specification, x.query.claim)
 
 
 def coverage_cases(survey: Survey, specification: Specification, files: Mapping[str, Path]) -> Iterator[Case]:

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from roadproof.evidence.answers import classify, drives, monitor
+from roadproof.evidence.answers import classify, monitor
 from roadproof.evidence.answers import coverage as gaps
 from roadproof.evidence.answers import explore as explorations
 from roadproof.evidence.answers import order as implications
@@ -20,6 +20,7 @@ from roadproof.frontends.report.redundancy import sheet_of as sheet_of_changes
 from roadproof.frontends.report.sheet import Heading, Linked, Matrix
 from roadproof.questions.overlap import OverlapData
 from roadproof.questions.redundancy import RedundancyData
+from roadproof.questions.witness import WitnessData
 
 
 def evidence(findings: Sequence[Finding]) -> dict[str, object]:
@@ -42,7 +43,7 @@ def drives_alone(findings: Sequence[Finding], context: PageContext) -> list[Driv
 
 def witnessed(result: Result, context: PageContext, words: Words) -> dict[str, object]:
     """The drives of ``witness --json`` as cards; ``without``: the verdicts that have none."""
-    answer = read(drives.Answer, result.data, result.name)
+    answer = read(WitnessData, result.data, result.name)
     cards = [
         DriveCard(context.drive(drive), x.verdict, x.formula, f"sought-{result.id}-{k}{f'-{n}' * (n > 0)}")
         for k, x in enumerate(answer.verdicts)
