@@ -15,6 +15,10 @@ from typing import Any
 
 from roadproof.analysis.study.frame import known_answer
 from roadproof.analysis.study.known import SWITCH, KnownAnswers
+from roadproof.evidence.answer import answer_data
+from roadproof.frontends.api.questioned import QuestionAnswers
+from roadproof.questions.store import Store
+from roadproof.runtime.archives import archived, ship
 from shipping.questions import QUESTIONS, Asked
 
 FOLDER = Path(__file__).parents[2] / "proofs/known"
@@ -34,6 +38,9 @@ def main() -> int:
             continue
         begun = time.monotonic()
         found = ask(jobs=args.jobs)
+        if isinstance(found, QuestionAnswers):
+            wrong += _put(found, args.check, f"{name}:", begun)
+            continue
         answers = answers_of(found)
         archive = archive_of(found)
         if args.check:
@@ -46,6 +53,29 @@ def main() -> int:
             told = f"{len(answers)} answers, {path.name} has {path.stat().st_size} bytes"
         print(f"{name}: {told}, {time.monotonic() - begun:.0f} s", flush=True)
     return 1 if wrong else 0
+
+
+def _put(found: QuestionAnswers[Any], check: bool, told: str, begun: float) -> int:
+    """Add the answers to a question to those of its kind, or compare them; the number that differ."""
+    question = found.question
+    store = Store(None, question.kind, question.work)
+    final = (x for x in found.found.answers.values() if x.is_final)
+    answers = {store.key(x.claim): json.dumps(answer_data(x)) for x in final}
+    there = archived(question.kind)
+    wrong = [key for key, text in answers.items() if there.get(key) != text] if check else []
+    if check:
+        print(
+            f"{told} {len(wrong)} of {len(answers)} answers differ, {time.monotonic() - begun:.0f} s",
+            flush=True,
+        )
+    else:
+        path = ship(FOLDER, question.kind, {**there, **answers})
+        size = path.stat().st_size
+        print(
+            f"{told} {len(answers)} answers, {path.name} has {size} bytes, {time.monotonic() - begun:.0f} s",
+            flush=True,
+        )
+    return len(wrong)
 
 
 def archive_of(found: Asked) -> KnownAnswers:

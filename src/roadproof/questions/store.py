@@ -113,7 +113,7 @@ class Store:
     def _known(self, claim: Claim) -> tuple[object, Origin] | None:
         key = self.key(claim)
         if key in archived(self.kind):
-            return archived(self.kind)[key], "shipped"
+            return json.loads(archived(self.kind)[key]), "shipped"
         data = kept_bytes(CACHE, digest(key, program()))
         return None if data is None else (json.loads(lzma.decompress(data)), "cache")
 

@@ -1,5 +1,6 @@
 """The drives of scenarios that are shipped with roadproof, as candidates against a claim."""
 
+import json
 from collections.abc import Iterator
 from typing import Any
 
@@ -11,8 +12,8 @@ from roadproof.world.drive import Drive
 def shipped_drives() -> Iterator[Drive]:
     """Yield each drive of a shipped answer of ``witness``, once."""
     seen: set[Drive] = set()
-    content: Any
-    for key, content in archived("witness").items():
+    for key, text in archived("witness").items():
+        content: Any = json.loads(text)
         if content.get("schema") in SCHEMAS_READ:
             drive = read_drive(content, key).drive
             if drive not in seen:
