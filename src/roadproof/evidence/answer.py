@@ -33,7 +33,7 @@ from roadproof.evidence.strict import Fields, JsonObject
 from roadproof.library.bind import values_with
 from roadproof.library.compose import denied_premise, never
 from roadproof.library.elaborate import read_claim
-from roadproof.library.motion import under_limits
+from roadproof.library.motion import under_limits, value_texts
 from roadproof.library.specification import Query
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
@@ -91,6 +91,8 @@ class Answer:
         """Why the claim is undecided, or says nothing; nothing where it is decided."""
         if self._denied is not None:
             return Why.CONTRADICTION() if self._denied == f.FALSE else Why.PREMISE()
+        if isinstance(self.evidence, Certificate) and self.evidence.assumed.said != assumed_by(self.claim):
+            return Why.WITH(", ".join(self.evidence.assumed.said))
         return self.evidence.reason if isinstance(self.evidence, Undecided) else NO_REASON
 
     @cached_property
@@ -126,6 +128,11 @@ def vacuities(claim: Claim) -> Iterator[Query]:
         yield denied
     if assumed_by(claim):
         yield never(claim.query)
+
+
+def values_of(claim: Claim) -> tuple[str, ...]:
+    """Return the values of the parameters of a claim about drives, as words."""
+    return value_texts(claim.home, {x.name: x.value for x in claim.parameters})
 
 
 def undecided(
@@ -204,7 +211,8 @@ def _certificate(claim: Claim, content: object, where: str) -> Certificate:
     file = read_certificate_data(content, where)
     _require_readings(claim, file.set_name, file.options, where)
     _require(
-        file.assumed.said == assumed_by(claim),
+        file.assumed.said == assumed_by(claim)
+        or (isinstance(claim.mode, Exists) and file.assumed.said == values_of(claim)),
         where,
         f"it assumes {', '.join(file.assumed.said) or 'nothing'}",
     )

@@ -15,7 +15,6 @@ from roadproof.evidence.answers import (
     certificate,
     check,
     classify,
-    compare,
     coverage,
     drive,
     explore,
@@ -49,6 +48,7 @@ from roadproof.evidence.json_schema import (
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.motion import INDUCTIONS
 from roadproof.questions import overlap as overlap_question
+from roadproof.questions.compare import ComparisonData
 from roadproof.questions.data import QuestionFile
 from roadproof.questions.overlap import OverlapData
 from roadproof.questions.prove import ClaimsData
@@ -57,7 +57,7 @@ from roadproof.questions.witness import WitnessData
 
 TITLES: Mapping[type, str] = {
     ClaimsData: "roadproof prove --json: claims, proved or refuted",
-    compare.Answer: "roadproof compare --json: which of two formulas implies the other",
+    ComparisonData: "roadproof compare --json: which of two formulas implies the other",
     library.Answer: "roadproof list --json: what the library holds",
     show.Answer: "roadproof show --format json: a scenario, a definition or a formula",
     check.Answer: "roadproof check --json: what evidence shows",

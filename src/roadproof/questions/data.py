@@ -20,6 +20,7 @@ from roadproof.runtime.records import dataclass
 QUESTION: Final = "question.json"
 SCHEMA: Final = "roadproof/question/1"
 KINDS: Mapping[str, str] = {
+    "compare": "roadproof.questions.compare:CompareQuestion",
     "overlap": "roadproof.questions.overlap:OverlapQuestion",
     "prove": "roadproof.questions.prove:ProveQuestion",
     "redundancy": "roadproof.questions.redundancy:RedundancyQuestion",

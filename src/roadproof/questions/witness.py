@@ -186,7 +186,7 @@ class WitnessQuestion:
     @property
     def work(self) -> Work:
         """The work that is allowed for a claim."""
-        return Work(self.basis.effort, alone=True)
+        return Work(self.basis.effort, proof=0.0, alone=True)
 
     @property
     def asked(self) -> SoughtDrives:

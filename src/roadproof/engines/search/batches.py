@@ -8,15 +8,13 @@ from dataclasses import dataclass, field, replace
 from typing import assert_never
 
 from roadproof.engines.prove.induction import prove_of_scenarios
+from roadproof.engines.search.alone import answer_of, seek, with_trees
 from roadproof.engines.search.ask import ask
 from roadproof.engines.search.impossible import explain
 from roadproof.engines.search.known_drive import KnownDrive
 from roadproof.engines.search.looking import search_of
-from roadproof.engines.search.none_within import refute
-from roadproof.engines.search.outcome import Outcome
 from roadproof.engines.search.valid import settle_valid
 from roadproof.evidence.answer import Answer, Refutation, undecided
-from roadproof.evidence.answer_files import OpenVerdict
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.claim import Claim, Exists, On, Valid
 from roadproof.evidence.countermodel import Countermodel
@@ -24,12 +22,11 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.refutation import fault_of
 from roadproof.library.compose import negation, of_parts
 from roadproof.library.elaborate import read_claim
-from roadproof.library.scenarios import is_sector, without_sectors
+from roadproof.library.scenarios import without_sectors
 from roadproof.library.specification import Query
-from roadproof.logic.formula import Application, Formula, Not
+from roadproof.logic.formula import Formula, Not
 from roadproof.logic.parts import parts_of
 from roadproof.logic.rewrite import without_names
-from roadproof.reasons import Reason, Why
 from roadproof.runtime.budget import BudgetExceeded, Work
 from roadproof.runtime.cost import NO_COST, Cost
 from roadproof.runtime.progress import about
@@ -93,9 +90,9 @@ class Engines:
                     alike = self.alike.get(without_sectors(claim.formula), ())
                     return settle_valid(claim, self.work, self.drives, alike)
                 case Exists(trees=True):
-                    return _with_trees(claim, self.work), NO_COST
+                    return with_trees(claim, self.work), NO_COST
                 case Exists() if self.work.alone:
-                    return _sought(claim, self.work)
+                    return seek(claim, self.work)
                 case Exists():
                     return self.follow(claim) or self.decide(claim), NO_COST
                 case On():
@@ -133,7 +130,7 @@ class Engines:
         found = ask(search_of(claim, self.work, explain=False))
         if self.work.explain and not found.drives and found.verdict is not Verdict.IMPOSSIBLE:
             found = ask(search_of(claim, self.work))
-        return _answer(claim, found, found.told(("--horizon",)))
+        return answer_of(claim, found, found.told(("--horizon",)))
 
     def _has_trace(self, claim: Claim) -> bool:
         never, bounds = negation(claim.query).formula, claim.home.library.bounds
@@ -152,32 +149,5 @@ class Engines:
         return prove_of_scenarios(claim.home, negation(core), effort).certificate
 
 
-def _has_sector(formula: Formula) -> bool:
-    return any(isinstance(x, Application) and is_sector(x.name) for x in parts_of(formula))
-
-
 def _body(denied: Formula) -> Formula:
     return denied.body if isinstance(denied, Not) else denied
-
-
-def _sought(claim: Claim, work: Work) -> tuple[Answer, Cost]:
-    """Return what a search alone comes to."""
-    found = ask(search_of(claim, work))
-    stages = {name: x for name, x in found.seconds.items() if name != "all"}
-    return _answer(claim, found, found.reason), Cost(stages=stages, sizes=found.sizes)
-
-
-def _with_trees(claim: Claim, work: Work) -> Answer:
-    """Return that there is no drive within limits, with trees that show it, where they are found."""
-    trees = refute(search_of(claim, work))
-    return undecided(claim, Why.NO_TREES()) if trees is None else Answer(claim, trees)
-
-
-def _answer(claim: Claim, found: Outcome, reason: Reason) -> Answer:
-    if found.drives:
-        return Answer(claim, found.drives[0])
-    if found.impossibility is not None:
-        return Answer(claim, found.impossibility.of_core)
-    limits = None if found.limits is None else found.limits.as_json()
-    verdict: OpenVerdict = Verdict.NONE_WITHIN if found.verdict is Verdict.NONE_WITHIN else Verdict.UNKNOWN
-    return undecided(claim, reason, verdict, limits)

@@ -2,26 +2,15 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from pathlib import Path
-from typing import Unpack
+from typing import ClassVar, Unpack
 
-from roadproof.analysis.study.evidence_store import keep_specifications, specification_names
-from roadproof.analysis.study.pool import count_workers
-from roadproof.engines.search.compare import DIRECTIONS, Comparison, Direction
-from roadproof.engines.search.compare import compare as compare_queries
-from roadproof.engines.search.outcome import Search
-from roadproof.engines.search.question import SearchOptions
-from roadproof.engines.solve.milp import prepare
+from roadproof.analysis.basis import Basis
+from roadproof.engines.search.question import SearchOptions, exists
 from roadproof.errors import UsageError
-from roadproof.evidence.answers import compare as kept
-from roadproof.evidence.answers.compare import SCHEMA
-from roadproof.evidence.certificate import to_json
-from roadproof.evidence.codec import write
-from roadproof.evidence.heading import heading
-from roadproof.evidence.kinds import Evidence
-from roadproof.evidence.strict import JsonObject
-from roadproof.frontends.api.answer import Answer, Picture
+from roadproof.evidence import answer as answers
+from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
+from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.settings import setting, work_of
 from roadproof.frontends.api.studied import drive_pictures
 from roadproof.frontends.report import compare as compare_report
@@ -30,8 +19,8 @@ from roadproof.frontends.settings.keywords import CompareKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Compare
 from roadproof.library.compose import taken_from
-from roadproof.library.specification import Library, Specification
-from roadproof.runtime.files import make_folder, write_json, write_whole
+from roadproof.questions.compare import CompareQuestion, Comparison, Direction, direction_named
+from roadproof.runtime.cost import Cost
 from roadproof.runtime.progress import Listener, listening
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
@@ -39,29 +28,28 @@ from roadproof.world.road import Road
 
 
 @dataclass(frozen=True, repr=False)
-class ComparisonAnswer(Answer):
+class ComparisonAnswer(QuestionAnswers[Comparison]):
     """Two formulas side by side; ``relation``: equivalent, stronger, weaker, incomparable or unknown."""
 
-    specification: Specification
-    comparison: Comparison
-    road: Road | None = None
+    question: CompareQuestion
+    pieces: ClassVar[str] = "directions"
 
     @property
-    def library(self) -> Library:
-        return self.specification.library
+    def comparison(self) -> Comparison:
+        """Both directions."""
+        return self.view
 
     @property
     def relation(self) -> str:
-        return self.comparison.relation
+        return self.view.relation
 
     @property
     def verdicts(self) -> dict[str, Verdict]:
-        return {name: x.verdict for name, x in self.comparison.directions.items()}
+        return {name: x.verdict for name, x in self.view.directions.items()}
 
     @property
-    def evidence(self) -> tuple[Evidence, ...]:
-        found = [x.certificate or x.drive for x in self.comparison.directions.values()]
-        return tuple(x for x in found if x is not None)
+    def road(self) -> Road | None:
+        return self.question.within.road
 
     @property
     def exit_code(self) -> ExitCode:
@@ -69,42 +57,14 @@ class ComparisonAnswer(Answer):
 
     @property
     def _sheet(self) -> Sheet[tuple[str, Direction]]:
-        return compare_report.sheet_of(self.comparison)
-
-    def as_data(self) -> JsonObject:
-        found = self.comparison
-        one, two = found.sets
-        answer = kept.Answer(
-            **heading(SCHEMA, self.library),
-            length_error=kept.Answer.bends(self.road),
-            first=kept.Side(formula=found.first.text, set=one),
-            second=kept.Side(formula=found.second.text, set=two),
-            relation=found.relation,
-            forward=found.forward.kept,
-            backward=found.backward.kept,
-        )
-        return write(answer)
-
-    def _specs(self, folder: Path) -> list[Path]:
-        return [folder / name for name in specification_names(self.library)]
-
-    def _write(self, folder: Path, pictures: bool) -> None:
-        make_folder(folder)
-        if self.evidence:
-            keep_specifications(folder, self.library)
-        for name, direction in self.comparison.directions.items():
-            stem = name.replace(" ", "-")
-            if direction.certificate is not None:
-                write_whole(folder / f"{stem}.json", to_json(direction.certificate).encode())
-            elif direction.drive is not None:
-                write_json(folder / f"not-{stem}.json", direction.drive.as_data())
+        return compare_report.sheet_of(self.view)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
-        drives = ((name, x.drive) for name, x in self.comparison.directions.items())
+        drives = ((name, x.drive) for name, x in self.view.directions.items())
         return drive_pictures(drives, self.library)
 
     def __str__(self) -> str:
-        return compare_report.as_text(self.comparison, self.specification)
+        return compare_report.as_text(self.view, self.question.basis.specification)
 
 
 @takes(Compare)
@@ -131,17 +91,14 @@ def compare(
         raise UsageError(f"{len(home.sets)} spec sets are given: two formulas have at most two")
     other = home.sets[-1]
     query = replace(home, specification=home.specification.in_set(other)).read(second)
-    work = work_of(given)
-    search = Search(
-        home.specification,
-        home.read(first),
-        setting(home, given),
-        SearchOptions(engine=given.engine, solver=given.solver, effort=work),
-    )
-    processes = count_workers(DIRECTIONS, given.jobs)
-    if processes > 1:
-        prepare()
+    within = exists(setting(home, given), SearchOptions(engine=given.engine, solver=given.solver))
+    basis = Basis(home.specification, values=home.all_values(), effort=work_of(given))
     against = taken_from(home.specification, query, other)
+    question = CompareQuestion(basis, home.read(first), against, other, within)
+
+    def tell(name: str, answer: answers.Answer, cost: Cost) -> None:
+        if each is not None:
+            each(direction_named(name), question.direction(name, answer))
+
     with listening(stage):
-        found = compare_queries(search, against, other, processes, each)
-    return ComparisonAnswer(home.specification, found, search.setting.road)
+        return ComparisonAnswer.settled(question, given, tell)

@@ -13,7 +13,7 @@ from roadproof.frontends.settings.questions import Compare
 from roadproof.runtime.progress import listening
 
 if TYPE_CHECKING:
-    from roadproof.engines.search.compare import Direction
+    from roadproof.questions.compare import Direction
 
 SUMMARY = "compare two formulas: equivalent, stronger, weaker, incomparable"
 
@@ -46,8 +46,6 @@ def run(args: argparse.Namespace) -> int:
     with listening(tell_stage):
         found = compare(args.first, args.second, home, each=show, **read_keywords(args, Compare))
     clear()
-    if args.out is not None:
-        found.save(args.out)
     print_answer(found, args.json)
     tell_bends(found.road)
     return found.exit_code

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 
-from roadproof.engines.search.compare import Comparison, Direction
 from roadproof.frontends.report.sheet import Column, Sheet, as_outline
 from roadproof.library.scenarios import scenario_number
 from roadproof.library.specification import Query, Specification
@@ -10,6 +9,7 @@ from roadproof.library.words import words_of
 from roadproof.logic.custom_names import told_freedom
 from roadproof.logic.first_instant import told_first_instants
 from roadproof.logic.formula import conjunction
+from roadproof.questions.compare import Comparison, Direction
 
 _SENTENCES = {
     "equivalent": "the two are equivalent",

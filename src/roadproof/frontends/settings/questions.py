@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Compare(groups.SeveralSets, groups.SearchPlace, groups.Method, groups.Budget, groups.Workers):
+class Compare(groups.SeveralSets, groups.SearchPlace, groups.Method, groups.Budget, groups.Run):
     """Options of ``compare``."""
 
-    out: str | Path | None = groups.folder_for("certificates and drive files", command_line_only=True)
+    out: str | Path | None = groups.folder_for("certificates and drive files")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple, TypeAlias
 
 from roadproof.errors import InputError
-from roadproof.evidence.answers import compare, trace
+from roadproof.evidence.answers import trace
 from roadproof.evidence.codec import read
 from roadproof.evidence.finding import Finding, checkers
 from roadproof.frontends.report.page import catalogues, claims, values
@@ -16,6 +16,7 @@ from roadproof.frontends.report.page.templates import render
 from roadproof.frontends.report.preventable import page_plates
 from roadproof.frontends.report.trace import counted
 from roadproof.library.words import spans
+from roadproof.questions.compare import ComparisonData
 
 Values: TypeAlias = Mapping[str, object]
 _HEADING = ("schema", "roadproof", "library", "seconds", "options", "parameters", "specs", "view")
@@ -128,7 +129,7 @@ _KINDS: Mapping[str, _Kind] = {
     "index": _CLAIMS,
     "verdicts": _CLAIMS,
     "witness": _Kind("Drives", "Does a drive show each formula?", "witness", values.witnessed),
-    "compare": _Kind("Two formulas", "Does one imply the other?", "compare", _read_as(compare.Answer)),
+    "compare": _Kind("Two formulas", "Does one imply the other?", "compare", _read_as(ComparisonData)),
     "overlap": _Kind("Compatible scenarios", "Which pairs can one drive show?", "overlap", values.overlap),
     "coverage": _Kind("Gaps", "Which dangers does the set of scenarios miss?", "coverage", values.coverage),
     "classify": _Kind("Classes", "Which classes partition the scenarios?", "classify", values.classes),
