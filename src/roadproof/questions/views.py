@@ -1,11 +1,13 @@
 """The view of a question as plain data: what ``--json`` prints, and what a page and a report are made of."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from roadproof.evidence.answer import Answer, answer_data
 from roadproof.evidence.codec import write
 from roadproof.evidence.strict import JsonObject
+from roadproof.questions.checking import read_folder
 from roadproof.questions.question import Answers, Question
 
 
@@ -18,6 +20,12 @@ def view_data(
         return inside(answer) if folder is None else str(folder / f"{name}.json")
 
     return write(question.data(question.view(known), place, seconds))
+
+
+def folder_data(folder: Path, given: Sequence[Path] = ()) -> JsonObject:
+    """Return the view of a folder of answers as plain data. Raises ``InputError``."""
+    found = read_folder(folder, given)
+    return view_data(found.question, found.answers, Path())
 
 
 def inside(answer: Answer) -> JsonObject:

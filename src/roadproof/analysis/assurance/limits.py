@@ -32,11 +32,13 @@ class Limit:
     told: tuple[str, ...]
 
 
-def limits_of(files: Sequence[Path], findings: Iterable[Finding]) -> tuple[Limit, ...]:
-    """The limits that files of evidence state, and what their check did not look at."""
+def limits_of(
+    files: Sequence[Path], findings: Iterable[Finding], views: Sequence[Mapping[str, Json]] = ()
+) -> tuple[Limit, ...]:
+    """The limits that files of evidence and ``views`` of answers state, and what was not checked."""
     found: dict[str, dict[str, None]] = {}
-    for path in files:
-        for name, told in _of_file(path):
+    for stated in (*map(_of_file, files), *map(_of_answer, views)):
+        for name, told in stated:
             found.setdefault(name, {})[told] = None
     for name, told in _of_findings(findings):
         found.setdefault(name, {})[told] = None

@@ -16,6 +16,8 @@ from roadproof.evidence.folder import INDEX
 from roadproof.evidence.journal import HEAD
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
 from roadproof.library.scenarios import EVERY_SCENARIO
+from roadproof.questions.checking import is_question
+from roadproof.questions.views import folder_data
 from roadproof.world.units import UNITS
 
 TEMPLATES = ("catalogue-coverage",)
@@ -41,7 +43,7 @@ _SCENARIOS: Mapping[str, _Use] = {
         "Coverage of set {set}, proved for all time",
         ("COVERED",),
     ),
-    "index": _Use(
+    "verdicts": _Use(
         "{claims} of template {properties} hold in the formal scenarios",
         "Proofs of the template properties",
         ("PROVED",),
@@ -106,7 +108,7 @@ def fill_template(name: str, evidence: Sequence[Path], home: Path) -> str:
     uses = {kind for _, _, uses in _BRANCHES for kind in uses}
     for x in found:
         if x.kind not in uses:
-            told = ", ".join("prove" if kind == "index" else kind for kind in sorted(uses))
+            told = ", ".join("prove" if kind == "verdicts" else kind for kind in sorted(uses))
             raise InputError(f"{x.path} has answers of {x.kind}; template {name} takes those of {told}")
     return _as_toml("Test catalogue and careful driver", dict(_tables(found)))
 
@@ -127,18 +129,21 @@ class _Given:
     @staticmethod
     def read(folder: Path, home: Path) -> "_Given":
         """What a folder has. Raises ``InputError`` where it has no answers."""
-        for name, key in ((INDEX, "schema"), (HEAD, "of")):
-            if (folder / name).is_file():
-                data = Fields(read_json(folder / name, LARGEST_INDEX), str(folder / name))
-                kind = [*data.text(key).split("/"), ""][1]
-                path = Path(os.path.relpath(folder, home)).as_posix()
-                if kind == "witness":
-                    return _of_drives(path, folder)
-                if name != INDEX:
-                    raise InputError(f"{folder} has no {INDEX}: its run has not ended; run it again")
-                if kind == "preventable":
-                    return _of_plates(path, read(Index, data.content, str(folder / name)))
-                return _of_answer(path, kind, data)
+        path = Path(os.path.relpath(folder, home)).as_posix()
+        if is_question(folder):
+            content = folder_data(folder)
+        elif (folder / INDEX).is_file():
+            content = Fields(read_json(folder / INDEX, LARGEST_INDEX), str(folder / INDEX)).content
+        elif (folder / HEAD).is_file():
+            raise InputError(f"{folder} has no {INDEX}: its run has not ended; run it again")
+        else:
+            content = {}
+        if content:
+            data = Fields(content, str(folder))
+            kind = [*data.text("schema").split("/"), ""][1]
+            if kind == "preventable":
+                return _of_plates(path, read(Index, data.content, str(folder)))
+            return _of_answer(path, kind, data)
         raise InputError(f"{folder} has no answers: name a folder that a command has written with --out")
 
 
@@ -147,8 +152,8 @@ def _of_answer(path: str, kind: str, data: Fields) -> _Given:
     match kind:
         case "coverage":
             return _Given(path, kind, {"set": data.text("set")}, entries=len(data.items("claims")))
-        case "index":
-            names = [str(x["property"]) for x in data.items("claims") if isinstance(x, dict)]
+        case "verdicts":
+            names = [str(x["property"]) for x in data.items("verdicts") if isinstance(x, dict)]
             own = [x for x in names if fnmatchcase(x, _PROPERTIES)]
             if not own:
                 raise InputError(
@@ -158,6 +163,10 @@ def _of_answer(path: str, kind: str, data: Fields) -> _Given:
             properties = f"propert{'y' if len({*own}) == 1 else 'ies'} {told}"
             words = {"properties": properties, "claims": _number(len(own), "claim")}
             return _Given(path, kind, words, entries=len(own))
+        case "witness":
+            numbers = [x.get("scenario") for x in data.items("verdicts") if isinstance(x, dict)]
+            word = "scenario" if all(x is not None for x in numbers) else "formula"
+            return _Given(path, kind, {"drives": _number(len(numbers), word)}, entries=len(numbers))
         case "overlap":
             pairs = len(data.items("verdicts"))
             return _Given(
@@ -173,13 +182,6 @@ def _of_answer(path: str, kind: str, data: Fields) -> _Given:
                 entries=len(data.items("tests")) + 1,
             )
     return _Given(path, kind, {})
-
-
-def _of_drives(path: str, folder: Path) -> _Given:
-    """The drives of a folder of ``witness``."""
-    names = [x.stem for x in folder.glob("answers/*.json")]
-    word = "scenario" if all(x.startswith("scenario-") for x in names) else "formula"
-    return _Given(path, "witness", {"drives": _number(len(names), word)}, entries=len(names))
 
 
 def _of_plates(path: str, index: Index) -> _Given:

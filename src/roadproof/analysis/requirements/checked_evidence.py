@@ -182,7 +182,8 @@ def _said(folder: Path) -> Fields | None:
     if (folder / INDEX).is_file():
         return Fields(read_json(folder / INDEX, LARGEST_INDEX), str(folder / INDEX))
     head = Fields(read_json(folder / HEAD), str(folder / HEAD))
-    return Fields(head.mapping("said"), str(folder / HEAD)) if head.has("said") else None
+    said = next((head.mapping(x) for x in ("basis", "said") if head.has(x)), None)
+    return None if said is None else Fields(said, str(folder / HEAD))
 
 
 def _parameters(index: Path) -> Mapping[str, Fraction]:

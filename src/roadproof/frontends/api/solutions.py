@@ -12,10 +12,12 @@ from roadproof.analysis.assurance.states import State
 from roadproof.errors import MissingSolverError, RoadproofError
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
 from roadproof.evidence.folder import INDEX
-from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
+from roadproof.evidence.strict import LARGEST_INDEX, Fields, Json, read_json
 from roadproof.frontends.api.checking import check
 from roadproof.frontends.settings.keywords import CheckKeywords
 from roadproof.questions import prove, witness
+from roadproof.questions.checking import is_question
+from roadproof.questions.views import folder_data
 from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
@@ -98,7 +100,8 @@ def judge_solution(
         accepted = [x for x in counted if x.outcome is Acceptance.ACCEPTED]
         faults += _faults(path, evidence, counted, strict)
         verdicts = Counter(str(x.verdict) for x in accepted)
-        limits = limits_of(_files(path, accepted, evidence), accepted)
+        views = [folder_data(path)] if path.is_dir() and is_question(path) else []
+        limits = limits_of(_files(path, accepted, evidence), accepted, views)
     state = max((x.state for x in faults), key=[*State].index, default=State.HOLDS)
     codes = (x.code for x in faults if x.state is state)
     reasons = tuple(dict.fromkeys(x.reason for x in faults))
@@ -163,7 +166,7 @@ def whole_verdict(path: Path, select: Sequence[str] = ()) -> tuple[str, str]:
     names none), and are what they claim.
     """
     try:
-        data = Fields(read_json(path / INDEX if path.is_dir() else path, LARGEST_INDEX), str(path))
+        data = Fields(_answer_in(path), str(path))
     except RoadproofError:
         return "", ""
     if "not_tested" in data.content:
@@ -174,6 +177,13 @@ def whole_verdict(path: Path, select: Sequence[str] = ()) -> tuple[str, str]:
         return "GAPS" if told else "COVERED", "; ".join(told)
     word = data.content.get("verdict")
     return (word if isinstance(word, str) else ""), ""
+
+
+def _answer_in(path: Path) -> Json:
+    """An answer: a file, the index of a folder, or what the answers of a folder show together."""
+    if path.is_dir() and is_question(path):
+        return folder_data(path)
+    return read_json(path / INDEX if path.is_dir() else path, LARGEST_INDEX)
 
 
 def _is_selected(names: Sequence[str], select: Sequence[str]) -> bool:
