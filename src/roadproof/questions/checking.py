@@ -12,7 +12,7 @@ from roadproof.errors import InputError
 from roadproof.evidence.answer import Answer, assumed_by, read_answer, undecided
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
-from roadproof.evidence.strict import LARGEST_EVIDENCE, Fields, read_json
+from roadproof.evidence.strict import LARGEST_EVIDENCE, LARGEST_INDEX, Fields, read_json
 from roadproof.evidence.subject import OTHER
 from roadproof.library.motion import statement
 from roadproof.questions.data import QUESTION, SCHEMA, read_question
@@ -72,7 +72,10 @@ def is_question(folder: Path) -> bool:
     path = folder / QUESTION
     if not path.is_file() or path.is_symlink():
         return False
-    content = read_json(path)
+    try:
+        content = read_json(path, LARGEST_INDEX)
+    except InputError:
+        return True  # it is damaged, which reading it says
     return isinstance(content, dict) and content.get("schema") == SCHEMA
 
 

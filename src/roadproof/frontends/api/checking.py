@@ -11,7 +11,7 @@ from roadproof.analysis.study import pool
 from roadproof.engines.prove.properties import find_label
 from roadproof.engines.solve.smt import Satisfiability as SolverAnswer
 from roadproof.engines.solve.smt import ask
-from roadproof.errors import UsageError
+from roadproof.errors import RoadproofError, UsageError
 from roadproof.evidence.answers import check as kept
 from roadproof.evidence.answers.catalogue_index import SCHEMA as CATALOGUE
 from roadproof.evidence.checking import Checker
@@ -33,8 +33,9 @@ from roadproof.frontends.settings.value_types import KernelName
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library
 from roadproof.library.words import called_by, legend
-from roadproof.questions.checking import folders_in, read_folder
-from roadproof.reasons import Reason
+from roadproof.questions.checking import QuestionFolder, folders_in, read_folder
+from roadproof.questions.data import QUESTION
+from roadproof.reasons import Reason, Why
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.executors import Jobs
 from roadproof.runtime.records import dataclass
@@ -148,8 +149,9 @@ def check(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
     named = tuple(Path(x) for x in asked.specs)
     library = load_library(named)
     given_paths = [Path(x) for x in paths]
-    answered_in = [read_folder(x, named) for x in folders_in(given_paths)]
-    surveyed = survey(given_paths, named, find_label, [x.folder for x in answered_in])
+    folders = folders_in(given_paths)
+    answered_in, damaged = _read_folders(folders, named)
+    surveyed = survey(given_paths, named, find_label, folders)
     given = [*surveyed.files.items(), *((file, (*named, *x.specs)) for x in answered_in for file in x.files)]
     traces = () if asked.kernel is None else _traces(surveyed, named)
     answered, ruled = (
@@ -162,7 +164,7 @@ def check(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
     beside = tuple(path for told in surveyed.told for path in told.specs)
     beside += tuple(path for x in answered_in for path in x.specs)
     alone = {path: finding for path, finding in found.items() if path in surveyed.files}
-    findings = [*conclude(surveyed, alone, ruled)]
+    findings = [*damaged, *conclude(surveyed, alone, ruled)]
     left: dict[str, tuple[str, ...]] = {}
     for x in answered_in:
         findings += [*(x.finding(name, found[file]) for file, name in x.files.items()), *x.undecided]
@@ -177,6 +179,21 @@ def check(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
             left[str(told.folder)] = unchecked
     solver = asked.kernel or asked.solver
     return CheckReport(tuple(findings), solver, library, beside, answered, left, asked.strict)
+
+
+def _read_folders(
+    folders: Sequence[Path], specs: tuple[Path, ...]
+) -> tuple[list[QuestionFolder], list[Finding]]:
+    """The answers of folders; a finding for each whose question cannot be read."""
+    found: list[QuestionFolder] = []
+    damaged: list[Finding] = []
+    for folder in folders:
+        try:
+            found.append(read_folder(folder, specs))
+        except RoadproofError as error:
+            where = str(folder / QUESTION)
+            damaged.append(Finding(where, "", Acceptance.REJECTED, Why.TOLD(error)))
+    return found, damaged
 
 
 def _put_to_kernel(

@@ -11,8 +11,10 @@ from roadproof.analysis.study import pool
 from roadproof.analysis.study.pool import Progress
 from roadproof.errors import RoadproofError
 from roadproof.evidence import drive_file
+from roadproof.evidence.answer_files import REFUTATION, RefutationFile
 from roadproof.evidence.answers.shared import Kernel
 from roadproof.evidence.certificate import SCHEMA, Certificate, read_certificate_data
+from roadproof.evidence.codec import read
 from roadproof.evidence.derivations.prepare import prepare as prepare_drive
 from roadproof.evidence.derivations.prepare import prepare_trace
 from roadproof.evidence.drive_file import DriveFile, read_drive
@@ -242,7 +244,7 @@ def _none_within(kernel: KernelName, name: str, file: NoneWithinFile, home: Libr
     return written(name, [file.formula, derived.limits], pairs)
 
 
-def _read(path: Path) -> Certificate | DriveFile | NoneWithinFile | None:
+def _read(path: Path) -> Certificate | DriveFile | NoneWithinFile | Refutation | None:
     """Raises ``InputError`` for a file that is damaged."""
     content = read_json(path)
     schema = content.get("schema") if isinstance(content, dict) else None
@@ -250,6 +252,9 @@ def _read(path: Path) -> Certificate | DriveFile | NoneWithinFile | None:
         return read_drive(content, str(path))
     if schema == NONE_WITHIN:
         return read_none_within(content, str(path))
+    if schema == REFUTATION:
+        file = read(RefutationFile, content, str(path))
+        return Refutation(file.claim, file.set, file.options, file.assuming, file.trace, str(path))
     return read_certificate_data(content, str(path)) if schema == SCHEMA else None
 
 
