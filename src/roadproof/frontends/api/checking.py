@@ -1,9 +1,11 @@
 """Evidence checked again, without the programs that made it."""
 
+import pickle
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from functools import partial
+from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias, Unpack
 
@@ -37,7 +39,9 @@ from roadproof.questions.checking import QuestionFolder, folders_in, read_folder
 from roadproof.questions.data import QUESTION
 from roadproof.reasons import Reason, Why
 from roadproof.runtime.budget import Effort
+from roadproof.runtime.cache import keep_bytes, kept_bytes, make_room
 from roadproof.runtime.executors import Jobs
+from roadproof.runtime.package_data import program
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 
@@ -48,6 +52,10 @@ if TYPE_CHECKING:
 Solver: TypeAlias = Literal["z3", "cvc5"]
 Kernel: TypeAlias = KernelName
 _Given: TypeAlias = Sequence[tuple[Path, tuple[Path, ...]]]
+
+
+CHECKED = "checked"
+"""The folder of the cache with findings on files that were accepted."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -136,7 +144,15 @@ def check(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
     code is 20 where an answer has no evidence, such as UNKNOWN or NONE-WITHIN. Raises
     ``InputError`` for a path that holds nothing, ``MissingSolverError``.
     """
-    asked = Check.of(options)
+    return _check(paths, Check.of(options), takes_over=False)
+
+
+def take_over(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
+    """As ``check``, but files are taken over that this version has accepted with these bytes before."""
+    return _check(paths, Check.of(options), takes_over=True)
+
+
+def _check(paths: Sequence[str | Path], asked: Check, takes_over: bool) -> CheckReport:
     if not paths:
         raise UsageError("check() needs at least one file or folder of evidence")
     if asked.kernel is None:
@@ -157,7 +173,7 @@ def check(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
     answered, ruled = (
         (None, {}) if asked.kernel is None else _put_to_kernel(asked.kernel, given, traces, asked)
     )
-    work = [_Job(path, beside, ruled.get(str(path))) for path, beside in given]
+    work = [_Job(path, beside, ruled.get(str(path)), takes_over) for path, beside in given]
     judge = partial(_examine, asked.solver, work_of(asked))
     answers = pool.in_order(pool.work(judge, work, asked.jobs, _doubt, asked.progress, "files"))
     found = {path: finding for (path, _), finding in zip(given, answers, strict=True)}
@@ -177,6 +193,7 @@ def check(*paths: str | Path, **options: Unpack[CheckKeywords]) -> CheckReport:
         compared = () if again is None else again.compared
         if unchecked := tuple(x for x in told.not_checked if x not in compared):
             left[str(told.folder)] = unchecked
+    make_room(CHECKED)
     solver = asked.kernel or asked.solver
     return CheckReport(tuple(findings), solver, library, beside, answered, left, asked.strict)
 
@@ -281,6 +298,12 @@ class _Job:
     path: Path
     specs: tuple[Path, ...]
     ruled: OtherVerdict | None
+    takes_over: bool = False
+
+    def key(self, solver: str) -> bytes:
+        """What the finding depends on: the bytes of the files, the solver and the program."""
+        files = (x.read_bytes() for x in (self.path, *self.specs))
+        return "|".join((solver, program(), *(sha256(x).hexdigest() for x in files))).encode()
 
 
 def _doubt(job: _Job, reason: Reason) -> Finding:
@@ -299,4 +322,18 @@ def _examine(solver: str, effort: Effort, job: _Job) -> Finding:
     def answer(script: str) -> SolverAnswer:
         return ask(script, solver, effort.meter())
 
-    return Checker(load_library(job.specs), answer, find_label, job.ruled, derive).check(job.path)
+    def examine() -> Finding:
+        return Checker(load_library(job.specs), answer, find_label, job.ruled, derive).check(job.path)
+
+    if job.ruled is not None or not job.path.is_file():
+        return examine()
+    key = job.key(solver)
+    name = f"checked-{sha256(key).hexdigest()[:32]}"
+    known = kept_bytes(CHECKED, name, key) if job.takes_over else None
+    if known is not None:
+        found: Finding = pickle.loads(known)
+        return replace(found, where=str(job.path))
+    found = examine()
+    if found.outcome is Acceptance.ACCEPTED:
+        keep_bytes(CHECKED, name, pickle.dumps(found), key)
+    return found

@@ -7,7 +7,7 @@ from typing import Unpack
 from roadproof.errors import RoadproofError, UsageError
 from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.evidence.folder import INDEX
-from roadproof.frontends.api.checking import CheckReport, check
+from roadproof.frontends.api.checking import CheckReport, take_over
 from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.results import Result, read_results
 from roadproof.frontends.report.page.sections import drive_section, evidence_section, section
@@ -82,7 +82,7 @@ def page(*results: str | Path, out: str | Path, **options: Unpack[PageKeywords])
     checked = None
     if given.checkable:
         told = CheckKeywords(solver=asked.solver, specs=named, jobs=asked.jobs, progress=asked.progress)
-        checked = check(*given.checkable, **told)
+        checked = take_over(*given.checkable, **told)
     library = load_library((*named, *(checked.specs if checked else ())))
     findings = () if checked is None else checked.findings
     inside = {x.where: x for x in findings if x.kind == "index"}

@@ -13,7 +13,7 @@ from roadproof.errors import MissingSolverError, RoadproofError
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
 from roadproof.evidence.folder import INDEX
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, Json, read_json
-from roadproof.frontends.api.checking import check
+from roadproof.frontends.api.checking import take_over
 from roadproof.frontends.settings.keywords import CheckKeywords
 from roadproof.questions import prove, witness
 from roadproof.questions.checking import is_question
@@ -50,7 +50,7 @@ def check_evidence(path: Path, told: CheckKeywords) -> tuple[Finding, ...] | Roa
     """
     try:
         stated = _stated(path) if path.is_file() else None
-        return check(path, **told).findings if stated is None else stated
+        return take_over(path, **told).findings if stated is None else stated
     except MissingSolverError:
         raise
     except RoadproofError as error:

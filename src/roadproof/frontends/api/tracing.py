@@ -21,7 +21,7 @@ from roadproof.evidence.codec import read, write
 from roadproof.evidence.finding import Finding
 from roadproof.evidence.heading import heading
 from roadproof.evidence.strict import LARGEST_INDEX, JsonObject, read_json
-from roadproof.frontends.api.checking import check
+from roadproof.frontends.api.checking import take_over
 from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.definitions import values_of
 from roadproof.frontends.api.table import Row, Table
@@ -161,7 +161,7 @@ def _findings(given: Requirements, targets: Targets, asked: Settings) -> tuple[F
     keywords = CheckKeywords(
         solver=asked.solver, specs=given.settings.evidence_specs, jobs=asked.jobs, progress=asked.progress
     )
-    return check(*there, **keywords).findings
+    return take_over(*there, **keywords).findings
 
 
 def _has_evidence(folder: Path) -> bool:

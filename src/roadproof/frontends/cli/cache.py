@@ -18,7 +18,12 @@ An answer counts again for the same question, version, options and limits, as lo
 parameters that it uses have not changed. The oldest are removed beyond 200 MB, and after 60 days without use.
 `roadproof check` never reads them.
 """
-_FOLDERS = {"answers": "answers", "judged": "judged answers", "made": "texts that were read"}
+_FOLDERS = {
+    "answers": "answers",
+    "judged": "judged answers",
+    "checked": "accepted files",
+    "made": "texts that were read",
+}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
