@@ -12,9 +12,11 @@ from typing import TypeAlias
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence import certificate, drive_file, none_within
 from roadproof.evidence.answer_files import (
+    JUDGED,
     REFUTATION,
     UNDECIDED,
     AboutClaim,
+    JudgedFile,
     OpenVerdict,
     RefutationFile,
     Undecided,
@@ -22,7 +24,7 @@ from roadproof.evidence.answer_files import (
 from roadproof.evidence.answers.doubt import Doubt
 from roadproof.evidence.answers.none_within import Model
 from roadproof.evidence.certificate import Certificate, certificate_data, read_certificate_data
-from roadproof.evidence.claim import Claim, Exists, Valid
+from roadproof.evidence.claim import Claim, Exists, Judgement, On, Valid
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.countermodel import Countermodel, read_trace, trace_data
 from roadproof.evidence.drive_file import natural_of, read_drive
@@ -51,7 +53,14 @@ class Refutation:
     trace: Countermodel
 
 
-Evidence: TypeAlias = Certificate | JudgedDrive | Refutation | NoneWithinFile | Undecided
+@dataclass(frozen=True)
+class Judged:
+    """What a given trace shows."""
+
+    shows: Judgement
+
+
+Evidence: TypeAlias = Certificate | JudgedDrive | Refutation | NoneWithinFile | Judged | Undecided
 
 
 @dataclass(frozen=True)
@@ -83,6 +92,8 @@ class Answer:
                 return Verdict.IMPOSSIBLE
             case Exists(), NoneWithinFile():
                 return Verdict.NONE_WITHIN
+            case On(), Judged(shows):
+                return shows.verdict
             case mode, evidence:
                 raise ValueError(f"{type(evidence).__name__} decides no {type(mode).__name__} claim")
 
@@ -176,6 +187,10 @@ def answer_data(answer: Answer) -> JsonObject:
             return none_within_data(trees)
         case Undecided() as why:
             return write(why)
+        case Judged(shows):
+            mode = answer.claim.mode
+            assert isinstance(mode, On)
+            return write(JudgedFile(files=mode.files, asked=mode.asked, shows=write(shows)))
         case Refutation(trace):
             home, claim = answer.claim.home, answer.claim
             file = RefutationFile(
@@ -305,12 +320,23 @@ def _undecided(claim: Claim, content: object, where: str) -> Undecided:
     return file
 
 
+def _judged(claim: Claim, content: object, where: str) -> Judged:
+    file = read(JudgedFile, content, where)
+    mode = claim.mode
+    if not isinstance(mode, On):
+        raise InputError(f"{where} is no answer to its claim: it is about a given trace")
+    _require(file.files == mode.files, where, "it is about a trace with other bytes")
+    _require(file.asked == mode.asked, where, "it was asked something else")
+    return Judged(read(mode.judge.kind, file.shows, where))
+
+
 _READERS: Mapping[str, Callable[[Claim, object, str], Evidence]] = {
     certificate.SCHEMA: _certificate,
     **dict.fromkeys(drive_file.SCHEMAS_READ, _drive),
     none_within.SCHEMA: _none_within,
     REFUTATION: _refutation,
     UNDECIDED: _undecided,
+    JUDGED: _judged,
 }
 SCHEMAS = tuple(_READERS)
 """The schemas of files that are answers."""

@@ -10,6 +10,7 @@ from roadproof.verdict import Verdict
 
 UNDECIDED: Final = "roadproof/undecided/1"
 REFUTATION: Final = "roadproof/refutation/1"
+JUDGED: Final = "roadproof/judged/1"
 OpenVerdict: TypeAlias = Literal[
     Verdict.UNKNOWN, Verdict.NONE_WITHIN, Verdict.PROVED_BOUNDED, Verdict.CROSSCHECK_FAILED
 ]
@@ -34,6 +35,16 @@ class Undecided(AboutClaim):
     reason: shared.Reason
     limits: Annotated[shared.KeptLimits | None, LEFT_OUT] = None
     doubt: Annotated[Doubt | None, LEFT_OUT] = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class JudgedFile:
+    """What a given trace shows."""
+
+    schema: Literal["roadproof/judged/1"] = JUDGED
+    files: Annotated[tuple[str, ...], Doc("SHA-256 of every file that the trace is read from.")]
+    asked: Annotated[str, Doc("A digest of all else that it depends on.")]
+    shows: Annotated[object, Doc("What it shows.")]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from roadproof.errors import InputError, MissingSolverError, RoadproofError
 from roadproof.evidence import certificate, drive_file, none_within
-from roadproof.evidence.answer_files import REFUTATION, RefutationFile
+from roadproof.evidence.answer_files import JUDGED, REFUTATION, RefutationFile
 from roadproof.evidence.answers.proofs import misnamed, shown
 from roadproof.evidence.answers.reader import FindLabel
 from roadproof.evidence.certificate import Certificate
@@ -61,6 +61,9 @@ class Checker:
                 return self._certificate(path, certificate.read_certificate_data(content, str(path)))
             if schema in drive_file.SCHEMAS_READ:
                 return self._drive(path, content)
+            if schema == JUDGED:
+                why = Why.TOLD("it is checked with the question of its folder")
+                return Finding(str(path), "test", Acceptance.UNREADABLE, why)
             if schema == REFUTATION:
                 return self._refutation(path, read(RefutationFile, content, str(path)))
             if schema == none_within.SCHEMA and self.derive is not None:

@@ -9,7 +9,7 @@ answers that are kept. ``text`` is for people: no answer depends on it.
 from collections.abc import Iterable, Mapping
 from dataclasses import field
 from fractions import Fraction
-from typing import Literal, TypeAlias
+from typing import Literal, Protocol, TypeAlias
 
 from roadproof.library.motion import is_moving, under_limits, values_said
 from roadproof.library.specification import Library, Query, Specification
@@ -18,6 +18,7 @@ from roadproof.logic.rewrite import parameters_of
 from roadproof.logic.terms import Parameter, Term, leaves
 from roadproof.runtime.canonical import digest
 from roadproof.runtime.records import dataclass
+from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
 from roadproof.world.road import Road
 from roadproof.world.units import UNITS
@@ -79,11 +80,36 @@ class Exists:
     trees: bool = False
 
 
+class Judgement(Protocol):
+    """What a trace shows, as a definition for ``evidence.codec``."""
+
+    @property
+    def verdict(self) -> Verdict:
+        """COVERED where it shows something that is asked for, else GAPS."""
+
+
+class Judge(Protocol):
+    """What a given trace shows: it can be sent to another process, and says the same each time."""
+
+    @property
+    def kind(self) -> type:
+        """The definition for ``evidence.codec`` of what it says."""
+
+    def __call__(self) -> Judgement:
+        """Return what the trace shows."""
+
+
 @dataclass(frozen=True)
 class On:
-    """The formula is to hold on a given trace. ``files``: SHA-256 of every file that it is read from."""
+    """It is asked what a given trace shows.
+
+    ``files``: SHA-256 of every file that it is read from; ``asked``: a digest of all else that the answer
+    depends on: formulas with their definitions, values, roles, driver models. ``judge`` answers.
+    """
 
     files: tuple[str, ...]
+    asked: str
+    judge: Judge = field(compare=False, repr=False)
 
 
 Mode: TypeAlias = Valid | Exists | On

@@ -9,15 +9,16 @@ from pathlib import Path
 from typing import Any
 
 from roadproof.errors import InputError
-from roadproof.evidence.answer import Answer, assumed_by, read_answer, undecided
-from roadproof.evidence.claim import Claim
+from roadproof.evidence.answer import Answer, Judged, assumed_by, read_answer, undecided
+from roadproof.evidence.claim import Claim, On
+from roadproof.evidence.codec import write
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
 from roadproof.evidence.strict import LARGEST_EVIDENCE, LARGEST_INDEX, Fields, read_json
 from roadproof.evidence.subject import OTHER
 from roadproof.library.motion import statement
 from roadproof.questions.data import QUESTION, SCHEMA, read_question
 from roadproof.questions.question import Linkable, Question, walk
-from roadproof.reasons import Why
+from roadproof.reasons import NO_REASON, Why
 from roadproof.runtime.records import dataclass
 
 
@@ -53,8 +54,13 @@ class QuestionFolder:
                 yield replace(said, verdict=str(answer.verdict), unchecked=without)
 
     def finding(self, name: str, found: Finding) -> Finding:
-        """Return what was found of a file, in the words of the question."""
+        """Return what was found of a file, in the words of the question; a trace is judged again."""
         answer = self.answers[name]
+        if isinstance(answer.claim.mode, On) and isinstance(answer.evidence, Judged):
+            same = write(answer.claim.mode.judge()) == write(answer.evidence.shows)
+            outcome = Acceptance.ACCEPTED if same else Acceptance.REJECTED
+            reason = NO_REASON if same else Why.TOLD("the trace shows something else")
+            found = replace(found, kind="test", outcome=outcome, reason=reason)
         claim = statement(assumed_by(answer.claim), answer.claim.query.text)
         linked = self.question.subject(name) if isinstance(self.question, Linkable) else OTHER
         return replace(

@@ -14,7 +14,7 @@ from roadproof.engines.search.impossible import explain
 from roadproof.engines.search.known_drive import KnownDrive
 from roadproof.engines.search.looking import search_of
 from roadproof.engines.search.valid import settle_valid
-from roadproof.evidence.answer import Answer, Refutation, undecided
+from roadproof.evidence.answer import Answer, Judged, Refutation, undecided
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.claim import Claim, Exists, On, Valid
 from roadproof.evidence.countermodel import Countermodel
@@ -95,8 +95,8 @@ class Engines:
                     return seek(claim, self.work)
                 case Exists():
                     return self.follow(claim) or self.decide(claim), NO_COST
-                case On():
-                    raise NotImplementedError("a claim about given files is settled by their reader")
+                case On(judge=judge):
+                    return Answer(claim, Judged(judge())), NO_COST
                 case _:
                     assert_never(claim.mode)
         except BudgetExceeded as late:

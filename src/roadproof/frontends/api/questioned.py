@@ -62,7 +62,8 @@ class QuestionAnswers(Answer, Generic[View]):
 
     @property
     def evidence(self) -> tuple[Evidence, ...]:
-        return tuple(evidence_of(x) for x in self.found.answers.values() if x.is_final)
+        final = (x for x in self.found.answers.values() if x.is_final)
+        return tuple(evidence_of(x) for x in final if not isinstance(x.evidence, answers.Judged))
 
     @property
     def supposed(self) -> tuple[str, ...]:
@@ -102,7 +103,7 @@ def evidence_of(answer: answers.Answer) -> Evidence:
     match answer.evidence:
         case answers.Refutation(trace):
             return trace
-        case Undecided():
+        case Undecided() | answers.Judged():
             raise ValueError(f"{answer.verdict} has no evidence")
         case found:
             return found
