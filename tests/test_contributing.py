@@ -124,16 +124,14 @@ def test_an_option_of_other_questions_touches_two_files_too(copy, command):
 
 
 FIELD = {
-    "evidence/answers/overlap.py": (
+    "questions/overlap.py": (
         (
-            "    seconds: shared.Seconds = 0.0\n\n    @property\n    def scenarios",
-            '    one_set: Annotated[bool, UNCHECKED, Doc("Whether both are of one spec set.")] = True\n',
+            "    reason: shared.Reason = NO_REASON\n",
+            '    one_set: Annotated[bool, Doc("Whether both are of one spec set.")]\n',
         ),
-    ),
-    "analysis/overlap.py": (
         (
-            "            reason=answer.reason,\n            seconds=answer.seconds,\n",
-            "            one_set=answer.a.set_name == answer.b.set_name,\n",
+            "        reason=pair.reason,\n",
+            "        one_set=pair.a.set_name == pair.b.set_name,\n",
         ),
     ),
     "frontends/report/overlap.py": (
@@ -153,9 +151,9 @@ FIELD = {
 """A field of the answer of overlap, by file: the lines before which it is put in."""
 
 
-def test_a_field_of_an_answer_touches_four_files(copy):
+def test_a_field_of_an_answer_touches_three_files(copy):
     """It is in the terminal, in JSON and its schema, in CSV and on the page."""
-    assert len(FIELD) == 4
+    assert len(FIELD) == 3
     for name, edits in FIELD.items():
         forge(copy / "src/roadproof" / name, *((old, new + old) for old, new in edits))
     told = roadproof(copy, 0, "overlap --among 1,4 --out X --json answer.json --no-pictures --jobs 1")
@@ -332,7 +330,7 @@ SLOW = """set mine extends base "scenario 4 is 6 for the slow" {
 ASK = "alone --among 4,6 --set mine --spec mine.spec --effort 3 --jobs 1 --out X"
 FROM_PYTHON = """
 import roadproof as rp
-from roadproof.analysis.alone import Alone
+from roadproof.questions.alone import Alone
 found = rp.ask(Alone, "4,6", rp.load("mine", specs=["mine.spec"]), out="X", jobs=1, say=print)
 print({name: str(x) for name, x in found.verdicts.items()}, len(found.evidence), int(found.exit_code))
 """
@@ -347,8 +345,8 @@ def forge(path, *changes):
     return text
 
 
-def test_a_survey_is_three_new_files_that_need_no_line_elsewhere(copy):
-    folders = ("analysis", "evidence/answers", "frontends/cli")
+def test_a_survey_is_two_new_files_that_need_no_line_elsewhere(copy):
+    folders = ("questions", "frontends/cli")
     assert list(SURVEY) == [f"src/roadproof/{folder}/alone.py" for folder in folders]
     add_survey(copy)
     for words in (["check"], ["format", "--check"]):
@@ -363,22 +361,28 @@ def test_a_survey_is_asked_kept_taken_up_again_and_checked(copy):
     add_survey(copy)
     (copy / "mine.spec").write_text(SLOW)
     told = json.loads(roadproof(copy, 0, f"{ASK} --json -"))
-    assert told["schema"] == "roadproof/alone/1"
-    assert [(x["scenario"], x["verdict"]) for x in told["verdicts"]] == [
+    assert told["schema"] == "roadproof/survey/1"
+    assert told["survey"] == "alone"
+    assert [(x["name"], x["verdict"]) for x in told["verdicts"]] == [
         ("scenario_4", "IMPOSSIBLE"),
         ("scenario_6", "WITNESSED"),
     ]
     assert "2 of 2 accepted" in roadproof(copy, 0, "check X --jobs 1")
-    times = {x: x.stat().st_mtime_ns for x in (copy / "X/answers").iterdir()}
+    times = {x: x.stat().st_mtime_ns for x in (copy / "X").glob("scenario_*.json")}
+    assert len(times) == 2
     assert run(copy, FROM_PYTHON) == ["{'scenario_4': 'IMPOSSIBLE', 'scenario_6': 'WITNESSED'} 2 0"]
     assert {x: x.stat().st_mtime_ns for x in times} == times
 
-    whole = forge(copy / "X/index.json", ("scenario_6(SV, POV, L) and not", "scenario_6(SV, POV, L) or not"))
-    assert "is not about scenario_6 alone" in roadproof(copy, 10, "check X --jobs 1")
-    forge(copy / "X/index.json", ('"verdicts"', '"more": 1, "verdicts"'))
-    assert "unknown field 'more'" in roadproof(copy, 3, "check X --jobs 1")
-    (copy / "X/index.json").write_text(whole)
-    forge(copy / "X/answers/scenario_6.json", ("SV, POV, L) and not", "SV, POV, L) or not"))
-    assert "not what its seal was made for" in roadproof(copy, 10, "check X --jobs 1")
+    whole = forge(
+        copy / "X/scenario_6.json", ("scenario_6(SV, POV, L) and not", "scenario_6(SV, POV, L) or not")
+    )
+    assert "is no answer to its claim" in roadproof(copy, 10, "check X --jobs 1")
+    (copy / "X/scenario_6.json").write_text(whole)
+    question = forge(copy / "X/question.json", ('"asked"', '"more": 1, "asked"'))
+    assert "unknown field 'more'" in roadproof(copy, 10, "check X --jobs 1")
+    (copy / "X/question.json").write_text(question.replace('"alone"', '"unheard_of"'))
+    assert "is none of" in roadproof(copy, 10, "check X --jobs 1")
+    (copy / "X/question.json").write_text(question)
+    (copy / "X/scenario_6.json").write_text(whole[:60])
     assert roadproof(copy, 0, ASK).startswith("IMPOSSIBLE  scenario_4\nWITNESSED   scenario_6\n2 answers")
     assert "2 of 2 accepted" in roadproof(copy, 0, "check X --jobs 1")

@@ -67,10 +67,10 @@ if TYPE_CHECKING:
     from roadproof.frontends.api.recordings import roads as roads
     from roadproof.frontends.api.reporting import page as page
     from roadproof.frontends.api.simulating import simulate as simulate
-    from roadproof.frontends.api.studied import ask as ask
     from roadproof.frontends.api.studies import order as order
     from roadproof.frontends.api.studies import overlap as overlap
     from roadproof.frontends.api.studies import redundancy as redundancy
+    from roadproof.frontends.api.surveying import ask as ask
     from roadproof.frontends.api.traces import monitor as monitor
     from roadproof.frontends.api.traces import trace as trace
     from roadproof.frontends.api.tracing import requirement_changes as requirement_changes
@@ -112,7 +112,7 @@ _HOMES = {
     "catalogue": "frontends.api.cataloguing",
     "explore": "frontends.api.exploring",
     "preventable": "frontends.api.preventing",
-    "ask": "frontends.api.studied",
+    "ask": "frontends.api.surveying",
     "monitor": "frontends.api.traces",
     "trace": "frontends.api.traces",
     "compile": "frontends.api.compiling",

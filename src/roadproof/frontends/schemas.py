@@ -53,6 +53,7 @@ from roadproof.questions.data import QuestionFile
 from roadproof.questions.overlap import OverlapData
 from roadproof.questions.prove import ClaimsData
 from roadproof.questions.redundancy import RedundancyData
+from roadproof.questions.survey import SurveyData
 from roadproof.questions.witness import WitnessData
 
 TITLES: Mapping[type, str] = {
@@ -76,6 +77,7 @@ TITLES: Mapping[type, str] = {
     coverage.Index: (
         "roadproof coverage --json, and index.json of its folder: which disturbances a set misses"
     ),
+    SurveyData: "the surveys of contributors, --json: which of some formulas can hold on a drive",
     WitnessData: "roadproof witness --json: drives for scenarios and formulas",
     explore.Index: (
         "roadproof explore --json, and index.json of its folder: for which values there is a drive"

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
 
@@ -84,7 +85,7 @@ def read_question(folder: Path, given: Sequence[Path] = ()) -> Question[Any]:
     path = folder / QUESTION
     content = read_json(path, LARGEST_INDEX)
     file = read(QuestionFile, content, str(path))
-    if file.question not in KINDS:
+    if file.question not in KINDS and not _is_survey(file.question):
         raise InputError(f"{path}: question='{file.question[:40]}' is none of {', '.join(KINDS)}")
     said = file.basis
     library, _ = read_beside(Fields(_mapping(content)["basis"], str(path)), folder, given)
@@ -98,9 +99,22 @@ def read_question(folder: Path, given: Sequence[Path] = ()) -> Question[Any]:
         objective=said.objective,  # type: ignore[arg-type]
         vehicles=vehicles_of(said.vehicles),
     )
-    module, _, name = KINDS[file.question].partition(":")
-    made: Callable[[Basis, object, str], Question[Any]] = getattr(import_module(module), name).of
+    made: Callable[[Basis, object, str], Question[Any]] = _type_of(file.question).of
     return made(basis, file.asked, f"{path}, asked")
+
+
+def _is_survey(kind: str) -> bool:
+    """Whether a file of this folder has a survey of that name."""
+    return kind.isidentifier() and find_spec(f"roadproof.questions.{kind}") is not None
+
+
+def _type_of(kind: str) -> Any:
+    """Return the class of a kind of question; a survey is the ``SURVEY`` of its file."""
+    module, _, name = KINDS.get(kind, f"roadproof.questions.{kind}:SURVEY").partition(":")
+    found = import_module(module)
+    if not hasattr(found, name):
+        raise InputError(f"question='{kind[:40]}' is none of {', '.join(KINDS)}")
+    return getattr(found, name)
 
 
 def _mapping(content: object) -> JsonObject:
