@@ -32,6 +32,7 @@ from roadproof.semantics.exact.exact import DriveJudge, LazyJudge
 from roadproof.semantics.exact.signals import DriveSignals
 from roadproof.semantics.exact.truth import START, Cut
 from roadproof.semantics.sampled.compiled import compile
+from roadproof.verdict import Verdict
 from roadproof.world.length_error import told_bends
 from roadproof.world.signals import SignalName
 
@@ -74,6 +75,11 @@ class ConcreteAnswer:
     def names(self) -> frozenset[str]:
         """All that it shows."""
         return frozenset(x.what for x in self.shown)
+
+    @property
+    def verdict(self) -> Verdict:
+        """COVERED where it shows something, else GAPS."""
+        return Verdict.COVERED if self.shown else Verdict.GAPS
 
 
 def show(

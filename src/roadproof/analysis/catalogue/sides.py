@@ -57,10 +57,10 @@ def read_side_name(name: str) -> tuple[str, str, str] | None:
 
 def has_sides(drivers: Drivers, scenario: str) -> bool:
     """Whether a model with a formula speaks of a scenario."""
-    return any(True for _ in _models(drivers, scenario))
+    return any(True for _ in models_of(drivers, scenario))
 
 
-def _models(drivers: Drivers, scenario: str) -> Iterator[str]:
+def models_of(drivers: Drivers, scenario: str) -> Iterator[str]:
     manoeuvre = course_of(scenario)
     if manoeuvre is not None:
         yield from (x for x in drivers.of(manoeuvre) if not MODELS[x].is_stepped)
@@ -83,7 +83,7 @@ def facts_on_sides(basis: Basis, asked: Questions, drivers: Drivers, piece: Side
     scenario = piece.scenario
     found = decisions_of(piece.drives, [scenario], asked, drivers)
     facts: list[Fact] = []
-    for model in _models(drivers, scenario):
+    for model in models_of(drivers, scenario):
         for side in get_args(Side):
             if any(x.driver == model and x.side == side for x in found):
                 continue
@@ -98,7 +98,7 @@ def unanswered_sides(drivers: Drivers, piece: Sides, reason: Reason) -> tuple[Fa
     """The facts of a piece that nothing is known of."""
     return tuple(
         Fact(piece.entry.id, side_name(piece.scenario, side, model), "open", piece.entry.query, reason=reason)
-        for model in _models(drivers, piece.scenario)
+        for model in models_of(drivers, piece.scenario)
         for side in get_args(Side)
     )
 

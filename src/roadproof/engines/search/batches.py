@@ -124,7 +124,8 @@ class Engines:
 
         Where a known trace has the formula, there is no proof that it never holds.
         """
-        proof = None if self._has_trace(claim) else self._clash(claim, 1.0)
+        wants_proof = not isinstance(claim.mode, Exists) or claim.mode.explain
+        proof = self._clash(claim, 1.0) if wants_proof and not self._has_trace(claim) else None
         if proof is not None:
             return Answer(claim, proof)
         found = ask(search_of(claim, self.work, explain=False))

@@ -1,0 +1,138 @@
+"""Claims about drives of a test with a formula on both sides of a driver model: preventable ones, and others.
+
+A search among the drives of a restricted scenario (``drivers.restriction``) only proposes a drive. It counts
+where the judge accepts it for the test and the scenario, and where the model, put into it, ends so.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache, cached_property
+from typing import get_args
+
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.catalogue.asked import Questions
+from roadproof.analysis.catalogue.decisions import Decision, Drivers
+from roadproof.analysis.catalogue.entries import Abstract
+from roadproof.analysis.catalogue.fact import Fact
+from roadproof.analysis.catalogue.showing import names_shown
+from roadproof.analysis.catalogue.sides import decisions_of, models_of, side_name
+from roadproof.drivers.restriction import Restriction, Side, check_library, files_for, said_in
+from roadproof.engines.search.placing import judged_as
+from roadproof.errors import InputError
+from roadproof.evidence.answer import Answer
+from roadproof.evidence.claim import Claim, Exists, claim_of
+from roadproof.evidence.judged import JudgedDrive
+from roadproof.library.compose import both
+from roadproof.library.loading import load_library
+from roadproof.library.scenarios import Scenario, applied, number_in
+from roadproof.library.specification import Library, Query, Source
+from roadproof.questions.catalogue.abstract import stem_of
+from roadproof.questions.question import Answers, Steps
+from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.runtime.records import dataclass
+
+
+@dataclass(frozen=True)
+class SidesBatch:
+    """The claims that a test, which implies a scenario or shows it, has a drive on each side of each model.
+
+    ``drives`` are those of the test that are known.
+    """
+
+    basis: Basis
+    asked: Questions
+    drivers: Drivers
+    entry: Abstract
+    scenario: str
+    drives: tuple[JudgedDrive, ...]
+
+    @property
+    def name(self) -> str:
+        """How the names of its claims begin."""
+        return f"{stem_of(self.entry.id)}-{self.scenario}"
+
+    def steps(self) -> Steps:
+        """Yield a claim for each side that no known drive is on."""
+        found = self._decisions(self.drives)
+        for wanted in self._wanted():
+            claim = self._claim(wanted)
+            if not _is_on(found, wanted) and isinstance(claim, Claim):
+                drive = self._drive((yield self._named(wanted), claim), wanted)
+                found += [] if drive is None else self._decisions([drive])
+
+    def facts(self, known: Answers) -> tuple[Fact, ...]:
+        """Return a drive for each side that the known drives are not on, or that none was found."""
+        found, facts = self._decisions(self.drives), list[Fact]()
+        for wanted in self._wanted():
+            if not _is_on(found, wanted):
+                fact = self._fact(wanted, known.get(self._named(wanted)))
+                found += [] if fact.drive is None else self._decisions([fact.drive])
+                facts.append(fact)
+        return tuple(facts)
+
+    def _wanted(self) -> Iterator[Restriction]:
+        for model in models_of(self.drivers, self.scenario):
+            yield from (Restriction(side, model) for side in get_args(Side))
+
+    def _named(self, wanted: Restriction) -> str:
+        return f"{self.name}-{wanted.side}-{wanted.model}"
+
+    def _decisions(self, drives: "tuple[JudgedDrive, ...] | list[JudgedDrive]") -> list[Decision]:
+        return decisions_of(drives, [self.scenario], self.asked, self.drivers)
+
+    @cached_property
+    def _plain(self) -> Query:
+        """The scenario, however it begins."""
+        number, home = number_in(self.scenario), self.basis.specification
+        assert number is not None
+        return applied(home, Scenario(number, home.set_name))
+
+    def _claim(self, wanted: Restriction) -> Claim | Reason:
+        """Return the claim that there is a drive that begins so, or why the test cannot be asked for it."""
+        home, known, number = self.basis.specification, self.drivers.specification, number_in(self.scenario)
+        assert number is not None
+        try:
+            options = {**known.options, **wanted.options}
+            there = _library(tuple(known.library.files)).select(known.set_name, options)
+            test = said_in(both(self.entry.query, self._plain), home, there)
+        except InputError as error:
+            return Why.TOLD(error)
+        query = both(test, applied(there, Scenario(number, home.set_name)))
+        vehicles = {x: y for x, y in self.entry.vehicles.items() if not x or x in query.vehicles}
+        mode = Exists(road=self.entry.road, vehicles=vehicles, horizon=self.basis.horizon, explain=False)
+        return claim_of(there, query, mode, self.drivers.values)
+
+    def _drive(self, answer: Answer, wanted: Restriction) -> JudgedDrive | None:
+        """Return the drive of an answer as one of the test, where the model ends so in it."""
+        if answer.drive is None:
+            return None
+        home = self.basis.specification
+        file = replace(answer.drive.file, options=dict(home.options), values=self.basis.all_values())
+        judged = judged_as(file, both(self.entry.query, self._plain), self.basis.library)
+        if judged is None or not _is_on(self._decisions([judged]), wanted):
+            return None
+        return judged
+
+    def _fact(self, wanted: Restriction, answer: Answer | None) -> Fact:
+        other = side_name(self.scenario, wanted.side, wanted.model)
+        fact = Fact(self.entry.id, other, "open", self.entry.query, self._plain)
+        claim = self._claim(wanted)
+        if not isinstance(claim, Claim):
+            return replace(fact, reason=claim)
+        drive = None if answer is None else self._drive(answer, wanted)
+        if drive is not None:
+            return replace(fact, relation="shows", drive=drive, also=names_shown(drive, self.asked))
+        reason = NO_REASON if answer is None else answer.reason
+        return replace(fact, reason=reason or Why.SEARCH_FOUND_NONE())
+
+
+def _is_on(decisions: list[Decision], wanted: Restriction) -> bool:
+    return any((x.driver, x.side) == (wanted.model, wanted.side) for x in decisions)
+
+
+@cache
+def _library(files: tuple[Source, ...]) -> Library:
+    """The definitions with ``prevention.spec``. Raises ``InputError``."""
+    library = load_library(files_for(files))
+    check_library(library)
+    return library
