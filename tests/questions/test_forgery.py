@@ -11,25 +11,52 @@ from typing import Any
 import pytest
 
 import roadproof as rp
+from api.doors import IMPOSSIBLE, MINE, SLOW
 from roadproof.frontends.api.checking import check
 from roadproof.questions.checking import read_folder
 from roadproof.questions.data import QUESTION
 from roadproof.verdict import ExitCode
+from sharing import made_once
+
+
+def prove(out: Path) -> None:
+    """A property of the list; own claims with a proof, a trace, a drive, an empty premise; one on drives."""
+    rp.prove("P2", using=rp.load("base"), out=out, jobs=1)
+    rp.prove("danger(SV,POV) -> danger(POV,SV)", "G v_lon(SV) > 3 m/s -> false", out=out, jobs=1)
+    rp.prove(f"{IMPOSSIBLE} -> danger(SV,POV)", "v_lon(SV) < 99 m/s", assume="motion", out=out, jobs=1)
+    rp.prove(SLOW, engine="milp", horizon=3, dt="3/5", out=out, jobs=1)
+
+
+def witness(out: Path) -> None:
+    """A drive of a scenario, two drives of a formula, a proof that there is none, and trees."""
+    rp.witness(4, IMPOSSIBLE, out=out, pictures=False, jobs=1)
+    rp.witness("G[0, 3] a_lon(SV) > 1 m/s^2", count=2, out=out, pictures=False, jobs=1)
+
+
+def trees(out: Path) -> None:
+    rp.witness("v_lon(SV) = 60 m/s and v_lon(POV) < 20 m/s", "v_lon(SV) > 70 m/s", out=out, jobs=1)
+
 
 FOLDERS: dict[str, Callable[[Path], object]] = {
     "overlap": lambda out: rp.overlap("4,5,8", out=out, jobs=1),
+    "prove": prove,
+    "redundancy": lambda out: rp.redundancy(90, rp.load(specs=[MINE]), effort=1, out=out, jobs=1),
+    "trees": trees,
+    "witness": witness,
 }
 MOST = 60
 """Fields of a file that are changed; of more there is a sample."""
 
 
 @pytest.fixture(scope="module", params=FOLDERS)
-def folder(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    place = tmp_path_factory.mktemp(request.param) / "answers"
-    FOLDERS[request.param](place)
-    for path in place.iterdir():
-        if path.suffix != ".json":
-            path.unlink()
+def folder(request: pytest.FixtureRequest) -> Path:
+    def make(home: Path) -> None:
+        FOLDERS[request.param](home / "answers")
+        for path in (home / "answers").iterdir():
+            if path.suffix not in (".json", ".spec"):
+                path.unlink()
+
+    place = made_once(f"forged-{request.param}", make) / "answers"
     assert check(place, jobs=1).exit_code is ExitCode.AS_EXPECTED
     return place
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from roadproof.errors import InputError
 from roadproof.evidence.answer import Answer, Judged, assumed_by, read_answer, undecided
-from roadproof.evidence.claim import Claim, On
+from roadproof.evidence.claim import Claim, Exists, On
 from roadproof.evidence.codec import write
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
 from roadproof.evidence.strict import LARGEST_EVIDENCE, LARGEST_INDEX, Fields, read_json
@@ -44,9 +44,17 @@ class QuestionFolder:
 
     @property
     def undecided(self) -> Iterator[Finding]:
-        """A finding for each claim without evidence."""
+        """A finding for each claim without evidence.
+
+        Trees that are not there, or show a claim that is here without them, are no findings of their own.
+        """
+        trees = [x.claim for x in self.answers.values() if x.is_final and _wants_trees(x.claim)]
         for name, answer in self.answers.items():
-            if not answer.is_final:
+            mode = answer.claim.mode
+            is_shown = isinstance(mode, Exists) and (
+                mode.trees or replace(answer.claim, mode=replace(mode, trees=True)) in trees
+            )
+            if not answer.is_final and not is_shown:
                 label, text = self.question.label(name), answer.claim.query.text
                 where = str(self.folder / f"{name}.json")
                 without = () if answer.verdict == "UNKNOWN" else ("there is no evidence for it",)
@@ -71,6 +79,10 @@ class QuestionFolder:
             subject=linked.kind,
             name=linked.name,
         )
+
+
+def _wants_trees(claim: Claim) -> bool:
+    return isinstance(claim.mode, Exists) and claim.mode.trees
 
 
 def is_question(folder: Path) -> bool:

@@ -12,6 +12,7 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 
 from roadproof.analysis.basis import Basis
 from roadproof.engines.search.question import usual_road
+from roadproof.errors import InputError
 from roadproof.evidence.answer import Answer
 from roadproof.evidence.answers import shared
 from roadproof.evidence.claim import Claim, Exists, claim_of, valid_under
@@ -219,7 +220,11 @@ class RedundancyQuestion:
     @classmethod
     def of(cls, basis: Basis, asked: object, where: str) -> "RedundancyQuestion":
         """Return the question that plain data ask. Raises ``InputError``."""
-        return cls(basis, read(Changes, asked, where))
+        data = read(Changes, asked, where)
+        unknown = [x for x in data.among if x not in s.numbers_of(basis.specification)]
+        if unknown:
+            raise InputError(f"{where}: set {basis.specification.set_name} has no scenario {unknown[0]}")
+        return cls(basis, data)
 
     def batches(self, known: Answers) -> list["ChangeBatch"]:
         """A batch for scenarios that differ in their road sector only: a drive of each, then its changes."""

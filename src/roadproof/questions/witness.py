@@ -228,6 +228,19 @@ class WitnessQuestion:
         plain = claim.removeprefix(f"{NONE_WITHIN}-")
         return plain if plain in self.named else plain.rpartition("-")[0]
 
+    def is_last(self, claim: str, answer: Answer) -> bool:
+        """Return whether nothing more is asked of a search once a claim of it has this answer."""
+        name = self.search_named(claim)
+        if claim not in self.claim_names(name):
+            return True
+        if claim == self.claim_names(name)[0] and self.wants_trees(name, answer):
+            return False
+        return answer.drive is None or claim == self.claim_names(name)[-1]
+
+    def wants_trees(self, name: str, first: Answer) -> bool:
+        """Return whether trees are looked for where the first search came to this answer."""
+        return self.named[name].trees and first.verdict is Verdict.NONE_WITHIN
+
     def claim(self, name: str, before: Sequence[Answer] = ()) -> Claim:
         """Return the claim that there is a drive, which is unlike those ``before``."""
         task = self.named[name]
@@ -294,10 +307,10 @@ class SearchBatch:
                 found.append((yield claim_name, self.question.claim(name, found)))
                 if found[-1].drive is None:
                     break
-            task = self.question.named[name]
-            if task.trees and found[0].verdict is Verdict.NONE_WITHIN:
+            if self.question.wants_trees(name, found[0]):
+                within = self.question.named[name].within
                 claim = self.question.claim(name)
-                yield f"{NONE_WITHIN}-{name}", replace(claim, mode=replace(task.within, trees=True))
+                yield f"{NONE_WITHIN}-{name}", replace(claim, mode=replace(within, trees=True))
 
 
 def _task(home: Specification, sought: Sought, where: str) -> SearchTask:

@@ -11,7 +11,8 @@ from roadproof.engines.search.settle import Settlement, settle, settle_bounded
 from roadproof.engines.search.shipped_drives import shipped_drives
 from roadproof.evidence.answer import Answer, Refutation, assumed_by, undecided, vacuities
 from roadproof.evidence.claim import Claim, Valid
-from roadproof.reasons import Why
+from roadproof.logic.formula import FALSE
+from roadproof.reasons import Reason, Why
 from roadproof.runtime.budget import Work
 from roadproof.runtime.cost import NO_COST, Cost
 from roadproof.verdict import Verdict
@@ -44,7 +45,7 @@ def _answer(claim: Claim, work: Work, found: Settlement) -> Answer:
     result = found.result
     match found.verdict:
         case Verdict.VACUOUS if result.certificate is not None:
-            return _vacuous(claim, work) or Answer(claim, result.certificate)
+            return _vacuous(claim, work, result.reason) or Answer(claim, result.certificate)
         case Verdict.PROVED if result.certificate is not None:
             return Answer(claim, result.certificate)
         case Verdict.REFUTED if result.countermodel is not None:
@@ -57,12 +58,14 @@ def _answer(claim: Claim, work: Work, found: Settlement) -> Answer:
             return _in_doubt(claim, work, found)
 
 
-def _vacuous(claim: Claim, work: Work) -> Answer | None:
-    """Return the proof that a claim says nothing, where there is one."""
+def _vacuous(claim: Claim, work: Work, reason: Reason) -> Answer | None:
+    """Return the proof that a claim says nothing for this reason, where there is one."""
+    is_contradiction = reason == Why.CONTRADICTION()
     for denied in vacuities(claim):
-        found = settle(claim.home, denied, work.effort, seek_drive=False, said=assumed_by(claim))
-        if found.result.holds and found.result.certificate is not None:
-            return Answer(claim, found.result.certificate)
+        if (denied.formula == FALSE) is is_contradiction:
+            found = settle(claim.home, denied, work.effort, seek_drive=False, said=assumed_by(claim))
+            if found.result.holds and found.result.certificate is not None:
+                return Answer(claim, found.result.certificate)
     return None
 
 

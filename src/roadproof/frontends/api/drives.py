@@ -261,11 +261,9 @@ class _Teller:
 
     def __call__(self, name: str, answer: answers.Answer, cost: Cost) -> None:
         search = self.question.search_named(name)
-        if name not in self.question.claim_names(search):
-            return
         self.known[name] = answer
         self.cost[search] = sum_of([self.cost.get(search, NO_COST), cost])
-        if answer.drive is None or name == self.question.claim_names(search)[-1]:
+        if self.question.is_last(name, answer):
             self.each(search, replace(self.question.result(search, self.known), cost=self.cost[search]))
 
 
