@@ -29,6 +29,11 @@ class Reason(str):
     def __reduce__(self) -> "tuple[type[Reason], tuple[object, ...]]":
         return Reason, (self.kind, *self.values)
 
+    @property
+    def is_late(self) -> bool:
+        """Whether the clock or the end of a process left no answer, which says nothing of the question."""
+        return self.kind in (Why.CLOCK, Why.PROCESS, Why.WORKERS)
+
 
 @unique
 class Why(StrEnum):

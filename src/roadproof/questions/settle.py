@@ -75,6 +75,7 @@ def settle(
             )
         run.ask(ours, hands, progress, what)
         batches = run.open_batches()
+    store.leave_only(run.known, say)
     store.make_room()
     return Settled(run.known, run.origins, run.costs)
 

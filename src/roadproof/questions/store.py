@@ -14,7 +14,7 @@ from typing import Any
 from roadproof.analysis.study.evidence_store import keep_specifications
 from roadproof.analysis.study.known import Origin
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence.answer import Answer, answer_data, read_answer
+from roadproof.evidence.answer import SCHEMAS, Answer, answer_data, read_answer
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.strict import LARGEST_EVIDENCE, LARGEST_INDEX, read_json
 from roadproof.questions.data import QUESTION, basis_data, question_data, read_question
@@ -125,6 +125,17 @@ class Store:
         if is_new and self.reads_known and answer.is_final:
             key = digest(self.key(answer.claim), program())
             keep_bytes(CACHE, key, lzma.compress(json.dumps(data).encode(), preset=0))
+
+    def leave_only(self, answers: Answers, say: Callable[[str], None] | None = None) -> None:
+        """Remove answers to claims that are asked no more, since others were answered; ``say`` is told."""
+        every = [] if self.folder is None else sorted(self.folder.glob("*.json"))
+        for path in every:
+            if path.stem not in answers and path.name != QUESTION and not path.is_symlink():
+                content = read_json(path, LARGEST_EVIDENCE)
+                if isinstance(content, dict) and content.get("schema") in SCHEMAS:
+                    path.unlink()
+                    if say is not None:
+                        say(f"a stored answer is asked for no more and is removed: {path}")
 
     def make_room(self) -> None:
         """Keep the cache within its bounds."""

@@ -68,7 +68,11 @@ class Work:
     """The work for a claim: ``effort`` for a drive, ``proof`` units for a proof before one is looked for.
 
     ``seek_drive``: whether a drive is looked for that refutes a claim about all traces; ``explain``: whether
-    it is shown that there is no drive, where none is found. ``alone``: nothing is taken from other claims.
+    it is shown that there is no drive, where none is found. ``alone``: nothing is taken from other claims;
+    ``recast``: whether known drives are tried with
+    their vehicles in other roles; ``once``: whether no drive is looked for that was looked for in vain,
+    also on other roads; ``disprove``: whether a proof that there is no drive is tried before one is looked
+    for.
     """
 
     effort: Effort = field(default_factory=Effort)
@@ -76,6 +80,9 @@ class Work:
     seek_drive: bool = False
     explain: bool = False
     alone: bool = False
+    recast: bool = False
+    once: bool = False
+    disprove: bool = True
 
 
 @dataclass

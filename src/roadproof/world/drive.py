@@ -4,8 +4,8 @@ Along the road the jerk is constant on each piece, across it the acceleration is
 jerk are those of the piece which begins there, so an acceleration may jump; the last piece lasts for ever.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import field, replace
 from fractions import Fraction
 from itertools import accumulate
 from typing import TypeAlias
@@ -19,6 +19,9 @@ Course: TypeAlias = tuple[tuple[Fraction, Fraction], ...]
 Along: TypeAlias = tuple[Fraction, Fraction, Fraction]
 # Duration (s), acceleration (m/s²).
 Across: TypeAlias = tuple[Fraction, Fraction]
+
+FAR = Fraction(2000)
+"""So many metres behind all others is a vehicle that nothing is said of."""
 
 
 def value_at(course: Course, time: Fraction) -> Fraction:
@@ -100,6 +103,15 @@ class Drive:
         for new, old in roles.items():
             own |= {(name, new): course for (name, vehicle), course in self.own.items() if vehicle == old}
         return Drive({new: self.vehicles[old] for new, old in roles.items()}, own)
+
+    def followed_by(self, names: Iterable[str]) -> "Drive":
+        """The drive with further vehicles, each of which moves as the last one does, far behind it."""
+        vehicles, roles = dict(self.vehicles), {name: name for name in self.vehicles}
+        for name in names:
+            last = min(vehicles, key=lambda known: vehicles[known].s)
+            vehicles[name] = replace(vehicles[last], s=vehicles[last].s - FAR)
+            roles[name] = roles[last]
+        return Drive(vehicles, self.cast(roles).own)
 
 
 def pieces_of(along: Sequence[Along], across: Sequence[Across] = ()) -> tuple[Piece, ...]:

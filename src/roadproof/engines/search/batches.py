@@ -27,6 +27,7 @@ from roadproof.library.specification import Query
 from roadproof.logic.formula import Formula, Not
 from roadproof.logic.parts import parts_of
 from roadproof.logic.rewrite import without_names
+from roadproof.reasons import Why
 from roadproof.runtime.budget import BudgetExceeded, Work
 from roadproof.runtime.cost import NO_COST, Cost
 from roadproof.runtime.progress import about
@@ -48,6 +49,7 @@ class Engines:
     traces: list[Countermodel] = field(default_factory=list)
     unrefuted: list[Claim] = field(default_factory=list)
     clashes: list[Formula] = field(default_factory=list)
+    vain: set[Formula] = field(default_factory=set)
 
     def learn(self, answer: Answer) -> None:
         """Remember what an answer shows, for later claims."""
@@ -57,6 +59,8 @@ class Engines:
                 self.alike.setdefault(without_sectors(claim.formula), []).append(known)
         elif isinstance(answer.claim.mode, Valid) and answer.certificate is None:
             self.unrefuted.append(answer.claim)
+        elif not answer.is_final and not answer.reason.is_late:
+            self.vain.add(without_sectors(answer.claim.formula))
         if isinstance(answer.evidence, Refutation):
             self.traces.append(answer.evidence.trace)
         if isinstance(answer.claim.mode, Exists) and answer.certificate is not None:
@@ -94,7 +98,8 @@ class Engines:
                 case Exists() if self.work.alone:
                     return seek(claim, self.work)
                 case Exists():
-                    return self.follow(claim) or self.decide(claim), NO_COST
+                    further = self.again if self._is_vain(claim) else self.decide
+                    return self.follow(claim) or further(claim), NO_COST
                 case On(judge=judge):
                     return Answer(claim, Judged(judge())), NO_COST
                 case _:
@@ -112,19 +117,41 @@ class Engines:
                 proof = self._proof(claim, core, FOR_A_PART)
                 if proof is not None:
                     return Answer(claim, proof)
-        elsewhere = self.drives[-MOVED:]
+        recast = self._recast(claim, moved=False) if self.work.recast else None
+        if recast is not None:
+            return recast
+        elsewhere = [x for x in self.drives if x.has_vehicles_of(claim)][-MOVED:]
         for earlier in (*self.alike.get(without_sectors(claim.formula), ()), *elsewhere):
             found = earlier.elsewhere(claim.query, claim)
             if found is not None:
                 return Answer(claim, found)
         return None
 
+    def _recast(self, claim: Claim, moved: bool) -> Answer | None:
+        """Return the answer that a known drive gives with its vehicles in other roles, the latest first.
+
+        ``moved``: also on other roads, where those that differ in the road only are one.
+        """
+        latest = self.drives[::-1]
+        if moved:
+            latest = [*{repr(x.judged.file.drive): x for x in latest}.values()]
+        found = (x.recast(claim, moved) for x in latest)
+        return next((Answer(claim, x) for x in found if x is not None), None)
+
+    def _is_vain(self, claim: Claim) -> bool:
+        return self.work.once and without_sectors(claim.formula) in self.vain
+
+    def again(self, claim: Claim) -> Answer:
+        """Return an answer to a claim, where a drive of it or of one on other roads was sought in vain."""
+        found = self._recast(claim, moved=True) if self.work.recast else None
+        return found or undecided(claim, Why.NO_DRIVE_ELSEWHERE())
+
     def decide(self, claim: Claim) -> Answer:
         """Return an answer: a proof first, which is quick where there is one, then a drive.
 
         Where a known trace has the formula, there is no proof that it never holds.
         """
-        wants_proof = not isinstance(claim.mode, Exists) or claim.mode.explain
+        wants_proof = self.work.disprove and (not isinstance(claim.mode, Exists) or claim.mode.explain)
         proof = self._clash(claim, 1.0) if wants_proof and not self._has_trace(claim) else None
         if proof is not None:
             return Answer(claim, proof)

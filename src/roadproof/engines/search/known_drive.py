@@ -1,12 +1,14 @@
 """A drive that is known, judged for many formulas: parts that they share are judged once."""
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import permutations
 
-from roadproof.engines.search.placing import judged_as, placed
+from roadproof.engines.search.placing import judged_as, placed, placed_on
 from roadproof.evidence.answer import assumed_by, sought_by
 from roadproof.evidence.claim import Claim
+from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.bind import bind, values_with
 from roadproof.library.compose import negation
@@ -25,6 +27,15 @@ class KnownDrive:
     @cached_property
     def _judge(self) -> LazyJudge:
         return LazyJudge.on(self.judged.file.drive)
+
+    @cached_property
+    def _others(self) -> dict[tuple[tuple[str, str], ...], tuple[DriveFile, LazyJudge]]:
+        """The drive with its vehicles in other roles, each with its judge."""
+        return {}
+
+    def has_vehicles_of(self, claim: Claim) -> bool:
+        """Return whether the drive has all vehicles that a claim names."""
+        return {*claim.vehicles} <= {*self.judged.file.drive.vehicles}
 
     def moves_as(self, other: JudgedDrive) -> bool:
         """Return whether another drive has these motions on this road, with these lanes and values."""
@@ -55,6 +66,47 @@ class KnownDrive:
     def elsewhere(self, query: Query, claim: Claim) -> JudgedDrive | None:
         """Return the drive on a road on which it shows ``query``; None where none is found."""
         return placed(self.judged.file, query, claim.home.library, judge=self._judge)
+
+    def recast(self, claim: Claim, moved: bool) -> JudgedDrive | None:
+        """Return the drive with its vehicles in other roles, in which it shows a claim; None if in none.
+
+        ``moved``: also on other roads.
+        """
+        library = claim.home.library
+        for file, judge in self._casts(claim.vehicles):
+            if moved:
+                shown = placed(file, claim.query, library, judge=judge)
+            else:
+                shown = placed_on(file, claim.query, library, (file.road,), judge)
+            if shown is not None:
+                return shown
+        return None
+
+    def _casts(self, vehicles: tuple[str, ...]) -> Iterator[tuple[DriveFile, LazyJudge]]:
+        """Yield the drive with each choice of its vehicles for others; those that it lacks are far behind."""
+        mine, wanted = tuple(self.judged.file.drive.vehicles), tuple(vehicles)
+        if len(mine) < len(wanted):
+            choices = (dict(zip(x, mine, strict=True)) for x in permutations(wanted, len(mine)))
+        else:
+            choices = (dict(zip(wanted, x, strict=True)) for x in permutations(mine, len(wanted)))
+        for roles in choices:
+            yield self._cast(roles, wanted)
+
+    def _cast(self, roles: Mapping[str, str], wanted: tuple[str, ...]) -> tuple[DriveFile, LazyJudge]:
+        key = (*roles.items(), *((x, "") for x in wanted if x not in roles))
+        if key not in self._others:
+            file = recast(self.judged.file, roles, wanted)
+            self._others[key] = file, LazyJudge.on(file.drive)
+        return self._others[key]
+
+
+def recast(file: DriveFile, roles: Mapping[str, str], wanted: Iterable[str]) -> DriveFile:
+    """Return a drive in which each of ``roles`` is played by one of its vehicles.
+
+    Those of ``wanted`` that none plays are far behind all others.
+    """
+    missing = sorted({*wanted} - {*roles})
+    return replace(file, drive=file.drive.cast(roles).followed_by(missing))
 
 
 def against(claim: Claim) -> Query:

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import field
 from fractions import Fraction
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import product
 from math import ceil, prod
 
@@ -308,7 +308,10 @@ def assignments(query: Query, road: Road, chosen: Mapping[str, str]) -> tuple[di
 def usual_road(formula: Formula) -> Road:
     """The reference road that has the zones which ``formula`` speaks of: merge, depart, else main-2."""
     zones = zones_of(formula)
-    return load_road("merge" if "merge" in zones else "depart" if "depart" in zones else "main-2")
+    return _reference("merge" if "merge" in zones else "depart" if "depart" in zones else "main-2")
+
+
+_reference = cache(load_road)
 
 
 def zones_of(formula: Formula) -> frozenset[str]:
