@@ -63,7 +63,7 @@ def test_names_stay_when_modules_are_imported() -> None:
     for module in (
         "engines.prove.prover",
         "semantics.sampled.batch",
-        "analysis.order.study",
+        "questions.order.question",
         "evidence.checking",
         "recordings.export.registry",
         "verdict",

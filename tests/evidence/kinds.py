@@ -44,7 +44,6 @@ def _catalogue(out: Path) -> None:
 MAKE: dict[str, Callable[[Path], Any]] = {
     "proofs": _proofs,
     "witness": _witness,
-    "order": lambda out: rp.order(among=[3, 4], using=rp.load("base", "extA"), out=out, jobs=1),
     "coverage": lambda out: rp.coverage(rp.load("complete"), roads=["main-2"], effort=1, out=out, jobs=1),
     "gaps": _gaps,
     "overlap": lambda out: rp.overlap(among=[1, 3, 4], out=out, jobs=1),

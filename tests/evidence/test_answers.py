@@ -4,7 +4,6 @@ The files that they name are not looked at here.
 """
 
 from dataclasses import replace
-from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -15,8 +14,7 @@ from roadproof.analysis.coverage.classes import claims_of
 from roadproof.engines.prove.properties import find_label
 from roadproof.errors import InputError
 from roadproof.evidence.answers.coverage import Entries, KeptClass
-from roadproof.evidence.answers.entry import Common, Conjunctions, Entry, is_same, mismatch
-from roadproof.evidence.answers.order import Refutation
+from roadproof.evidence.answers.entry import Entry, mismatch
 from roadproof.evidence.answers.read import (
     faults_of,
     index_fields,
@@ -28,11 +26,9 @@ from roadproof.evidence.answers.reader import Background, first_set
 from roadproof.evidence.codec import read as read_as
 from roadproof.evidence.journal import head_of
 from roadproof.evidence.strict import Fields
-from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library, load_library
 from roadproof.library.scenarios import Scenario
 from roadproof.library.specification import Library
-from roadproof.logic import formula as f
 from roadproof.runtime.version import VERSION
 
 LIBRARY = bundled_library()
@@ -164,70 +160,6 @@ def test_a_part_that_could_be_left_out() -> None:
 def test_a_part_of_which_an_entry_says_what_is_not_shown(changed: dict[str, Any], fault: str) -> None:
     (entry,) = entries(with_one(REDUNDANCY, "verdicts", **changed))
     assert fault in entry.fault
-
-
-# --- order ---------------------------------------------------------------------------------------
-
-IMPLIES = {
-    "from": "4@base",
-    "to": "4@extA",
-    "claim": "scenario_4(SV,POV,L) -> scenario_4@extA(SV,POV,L)",
-    "certificate": "c.json",
-}
-ORDER = {
-    "schema": "roadproof/order/1",
-    "sets": ["base", "extA"],
-    **SAID,
-    "kinds": [["4@base"], ["4@extA"]],
-    "proved": [IMPLIES],
-    "edges": [IMPLIES],
-    "missing": [{"from": "4@extA", "to": "4@base", "drives": [7]}],
-    "drives": [{"number": 7, "holds": "4@extA", "fails": ["4@base"], "drive": "d.json"}],
-    "doubts": [],
-}
-DRIVEN = {"d.json": "scenario_4@extA(SV,POV,L) and not scenario_4(SV,POV,L)"}
-
-
-def test_an_order_that_its_evidence_shows() -> None:
-    proof, drive = entries(ORDER)
-    assert (proof.fault, proof.shows, proof.file) == ("", "proof", "c.json")
-    assert (drive.shows, drive.file) == ("drive", "d.json")
-    assert drive.fault_of is not None
-    assert drive.fault_of(DRIVEN["d.json"]) == ""
-    assert faults(ORDER, DRIVEN) == []
-    assert first_set(index_fields(HEADED | ORDER, "index.json")) == "base"
-
-
-@pytest.mark.parametrize(
-    "changed",
-    [
-        {"to": "12@extA"},
-        {"from": "4@extA", "to": "4@base"},
-        {"claim": "scenario_4@extA(SV,POV,L) -> scenario_4(SV,POV,L)"},
-        {"claim": "scenario_4(SV,POV,L) -> scenario_4@extA(POV,SV,L)"},
-        {"claim": "true"},
-    ],
-)
-def test_an_implication_that_its_claim_is_not(changed: dict[str, str]) -> None:
-    assert "but its claim is not that" in entries(with_one(ORDER, "proved", **changed))[0].fault
-
-
-@pytest.mark.parametrize(
-    ("data", "formulas", "fault"),
-    [
-        (ORDER, {}, "4@extA does not imply 4@base is not shown"),
-        (ORDER, {"d.json": DRIVEN["d.json"].replace("not ", "")}, "is not shown by its drives"),
-        (with_one(ORDER, "missing", drives=[8]), DRIVEN, "are not those that it names"),
-        (with_one(ORDER, "drives", number=8), DRIVEN, "are not those that it names"),
-        ({**ORDER, "missing": []}, DRIVEN, "nothing is said of 4@extA -> 4@base"),
-        ({**ORDER, "proved": []}, DRIVEN, "an edge is not among what is proved"),
-        ({**ORDER, "kinds": [["4@base", "4@extA"]]}, DRIVEN, "are not one formula"),
-    ],
-)
-def test_an_order_that_its_evidence_does_not_show(
-    data: dict[str, Any], formulas: dict[str, str], fault: str
-) -> None:
-    assert any(fault in x for x in faults(data, formulas))
 
 
 # --- coverage ------------------------------------------------------------------------------------
@@ -541,51 +473,3 @@ def test_fields_that_no_index_has() -> None:
         index_fields({"schema": "roadproof/index/9"}, "index.json")
     with pytest.raises(InputError, match="names no set"):
         first_set(Fields({"sets": []}, "index.json"))
-
-
-def test_a_drive_of_order_may_name_scenarios_in_any_order():
-    common = Common("here", bundled_library(), "base", {}, None)
-    drive = Refutation(holds="1@base", fails=("4@base", "4@ext"), drive="drive.json")
-    one, other, third = "scenario_1(SV,POV,L)", "scenario_4(SV,POV,L)", "scenario_4@ext(SV,POV,L)"
-    [wanted] = drive.expected(common)
-    assert is_same(common.formula(f"{one} and not {third} and not {other}"), wanted)
-    assert not is_same(common.formula(f"{one} and not {third}"), wanted)
-    assert not is_same(common.formula(f"{other} and not {third} and not {one}"), wanted)
-
-
-BOTH_WAYS = "scenario_2(SV,POV1,POV2,L) and not scenario_1(SV,POV1,L) and not scenario_1(SV,POV2,L)"
-
-
-@pytest.mark.parametrize(
-    ("formula", "is_shown"),
-    [
-        (f"{BOTH_WAYS} and not scenario_3(SV,POV2,L)", True),
-        (f"{BOTH_WAYS} and not scenario_3(SV,POV1,L) and not scenario_3(SV,POV2,L)", True),
-        (BOTH_WAYS, False),  # nothing about 3
-        (f"{BOTH_WAYS} and scenario_3(SV,POV2,L)", False),
-        (f"{BOTH_WAYS} and not scenario_3(SV,POV2,L) and not scenario_4(SV,POV2,L)", False),
-        (f"not {BOTH_WAYS} and not scenario_3(SV,POV2,L)", False),
-    ],
-)
-def test_a_drive_of_order_shows_one_way_or_more_in_which_vehicles_are_shared(formula: str, is_shown: bool):
-    common = Common("here", bundled_library(), "base", {}, None)
-    drive = Refutation(holds="2@base", fails=("1@base", "3@base"), drive="drive.json")
-    assert any(is_same(common.formula(formula), x) for x in drive.expected(common)) == is_shown
-
-
-def test_a_drive_of_order_may_refute_many_scenarios():
-    """Their ways of sharing vehicles make 2 ** 18 formulas, which are not written out."""
-    common = Common("here", bundled_library(), "base", {}, None)
-    fails = [n for n in range(1, 25) if n not in (2, 10, 18)]
-    drive = Refutation(holds="2@base", fails=tuple(f"{n}@base" for n in fails), drive="drive.json")
-    said = " and not ".join(["scenario_2(SV,POV1,POV2,L)", *(f"scenario_{n}(SV,POV1,L)" for n in fails)])
-    assert any(is_same(common.formula(said), x) for x in drive.expected(common))
-
-
-def test_conjunctions_are_those_of_one_formula_or_more_from_each_choice():
-    a, b, c, d = (read_claim(LIBRARY.select("base"), f"v_lon(SV) > {n} m/s").formula for n in range(4))
-    every = Conjunctions(((a,), (b, c)))
-    found = [x for n in (2, 3, 4) for x in combinations((a, b, c, d), n) if f.conjunction(*x) in every]
-    assert found == [(a, b), (a, c), (a, b, c)]
-    assert a in Conjunctions(((a, b),))
-    assert a not in every

@@ -206,26 +206,23 @@ def test_a_digest_changes_with_all_that_an_answer_depends_on(other: Any) -> None
 
 def studies(basis: Basis) -> dict[str, Any]:
     from roadproof.analysis.overlap import Overlap, pairs_of
+    from roadproof.analysis.redundancy import Redundancy
 
     from roadproof.analysis.classify.classes import plan_of
     from roadproof.analysis.classify.divide import Dividing
     from roadproof.analysis.coverage.classes import GapSurvey
     from roadproof.analysis.coverage.study import Coverage
-    from roadproof.analysis.order.deciding import kinds_of
-    from roadproof.analysis.order.study import Ordering
-    from roadproof.analysis.redundancy import Redundancy
 
     home = basis.specification
     return {
         "overlap": Overlap(basis, pairs_of(basis, (3, 4))),
-        "order": Ordering(basis, kinds_of(home, ("base",), (3, 4))),
         "redundancy": Redundancy(basis, (3,)),
         "coverage": Coverage(GapSurvey(basis)),
         "division": Dividing(basis, plan_of(home, (3, 4))),
     }
 
 
-@pytest.mark.parametrize("name", ["overlap", "order", "redundancy", "coverage", "division"])
+@pytest.mark.parametrize("name", ["overlap", "redundancy", "coverage", "division"])
 def test_answers_for_one_model_are_none_for_another(name: str) -> None:
     truck = Basis(LIBRARY.select(), vehicles={"POV": load_vehicle("truck")})
     car = Basis(LIBRARY.select(), vehicles={"POV": CAR})

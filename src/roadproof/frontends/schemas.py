@@ -21,7 +21,6 @@ from roadproof.evidence.answers import (
     library,
     monitor,
     none_within,
-    order,
     plates,
     road_map,
     shared,
@@ -50,6 +49,7 @@ from roadproof.library.motion import INDUCTIONS
 from roadproof.questions import overlap as overlap_question
 from roadproof.questions.compare import ComparisonData
 from roadproof.questions.data import QuestionFile
+from roadproof.questions.order.data import OrderData
 from roadproof.questions.overlap import OverlapData
 from roadproof.questions.prove import ClaimsData
 from roadproof.questions.redundancy import RedundancyData
@@ -82,7 +82,7 @@ TITLES: Mapping[type, str] = {
     explore.Index: (
         "roadproof explore --json, and index.json of its folder: for which values there is a drive"
     ),
-    order.Index: "roadproof order --json, and index.json of its folder: which scenarios imply which",
+    OrderData: "roadproof order --json: which scenarios imply which",
     OverlapData: "roadproof overlap --json: which scenarios hold together",
     QuestionFile: "question.json: a question, from which its claims are listed",
     Undecided: "NAME.json in a folder of answers: why a claim is undecided",
@@ -109,7 +109,7 @@ WITHOUT_ASSUMPTION: JsonObject = {
 }
 """Only inductions may stand in a certificate that assumes nothing."""
 DRIVES = (drive.Drive, drive.JerkDrive)
-KEEPING = (plates, order, coverage, classify, catalogue_index, explore)
+KEEPING = (plates, coverage, classify, catalogue_index, explore)
 """The questions whose answers are kept one by one."""
 RECORDS: Mapping[str, type] = {x.SCHEMA: x.Record for x in KEEPING}
 

@@ -22,6 +22,7 @@ QUESTION: Final = "question.json"
 SCHEMA: Final = "roadproof/question/1"
 KINDS: Mapping[str, str] = {
     "compare": "roadproof.questions.compare:CompareQuestion",
+    "order": "roadproof.questions.order.question:OrderQuestion",
     "overlap": "roadproof.questions.overlap:OverlapQuestion",
     "prove": "roadproof.questions.prove:ProveQuestion",
     "redundancy": "roadproof.questions.redundancy:RedundancyQuestion",

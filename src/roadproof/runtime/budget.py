@@ -69,10 +69,9 @@ class Work:
 
     ``seek_drive``: whether a drive is looked for that refutes a claim about all traces; ``explain``: whether
     it is shown that there is no drive, where none is found. ``alone``: nothing is taken from other claims;
-    ``recast``: whether known drives are tried with
-    their vehicles in other roles; ``once``: whether no drive is looked for that was looked for in vain,
-    also on other roads; ``disprove``: whether a proof that there is no drive is tried before one is looked
-    for.
+    ``recast``: whether known drives are tried with their vehicles in other roles; ``once``: whether no drive
+    is looked for that was looked for in vain, also on other roads; ``disprove``: whether a proof that there
+    is no drive is tried before one is looked for.
     """
 
     effort: Effort = field(default_factory=Effort)

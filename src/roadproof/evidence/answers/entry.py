@@ -55,18 +55,6 @@ class Common:
 
 
 @dataclass(frozen=True)
-class Conjunctions:
-    """All conjunctions of one or more formulas from each of ``choices``, which are too many to list."""
-
-    choices: tuple[tuple[Formula, ...], ...]
-
-    def __contains__(self, formula: object) -> bool:
-        parts = set(formula.parts) if isinstance(formula, f.And) else {formula}
-        chosen = [parts & set(choice) for choice in self.choices]
-        return all(chosen) and set().union(*chosen) == parts
-
-
-@dataclass(frozen=True)
 class Entry:
     """``key`` is what only one entry of an index may have; ``file`` is a name inside the index's folder.
 
@@ -93,7 +81,7 @@ class Entry:
     fault_of_drive: Callable[[DriveFile], str] | None = None
     assuming: tuple[str, ...] = ()
     subject: Subject = Subject()
-    expected: Callable[[], Sequence[Formula | Conjunctions] | None] = field(kw_only=True)
+    expected: Callable[[], Sequence[Formula] | None] = field(kw_only=True)
 
 
 def common_of(data: Fields, library: Library, set_name: str, where: str = "") -> Common:
@@ -190,17 +178,13 @@ def _unexpected(entry: Entry, said: Certificate | DriveFile) -> str:
     written = said.claim if isinstance(said, Certificate) else said.formula
     wanted = entry.expected()
     shown = entry.common.formula(written)
-    if wanted is None or any(
-        shown in x if isinstance(x, Conjunctions) else is_same(shown, x) for x in wanted
-    ):
+    if wanted is None or any(is_same(shown, x) for x in wanted):
         return ""
     return f"{entry.where} is about {entry.label}, but its file is not: {' '.join(written.split())[:120]}"
 
 
-def is_same(one: Formula, other: Formula | Conjunctions) -> bool:
-    """Whether two formulas are equal, the order in a conjunction aside, or one is among ``Conjunctions``."""
-    if isinstance(other, Conjunctions):
-        return one in other
+def is_same(one: Formula, other: Formula) -> bool:
+    """Whether two formulas are equal, the order in a conjunction aside."""
     if isinstance(one, f.And) and isinstance(other, f.And):
         return set(one.parts) == set(other.parts)
     return one == other

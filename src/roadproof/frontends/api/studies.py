@@ -5,17 +5,14 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Unpack
 
-from roadproof.analysis.order.deciding import Decisions, kinds_of
-from roadproof.analysis.order.study import Order, Ordering
 from roadproof.errors import UsageError
-from roadproof.evidence.answers import order as order_answers
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Among, Definitions, definitions_of, load
-from roadproof.frontends.api.questioned import QuestionAnswers
+from roadproof.frontends.api.questioned import QuestionAnswers, evidence_of
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import basis_of, positive
-from roadproof.frontends.api.studied import StudyAnswers, drawn
+from roadproof.frontends.api.studied import drawn
 from roadproof.frontends.report import order as order_report
 from roadproof.frontends.report import overlap as overlap_report
 from roadproof.frontends.report import redundancy as redundancy_report
@@ -25,6 +22,7 @@ from roadproof.frontends.settings.keywords import OrderKeywords, OverlapKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.words import Called, called, called_in
+from roadproof.questions.order.question import Compared, OrderQuestion, OrderView
 from roadproof.questions.overlap import Meeting, OverlapQuestion, OverlapView, PairVerdict
 from roadproof.questions.redundancy import (
     ChangeFinding,
@@ -113,27 +111,23 @@ def overlap(
     return Overlaps.settled(question, given)
 
 
-class Orders(StudyAnswers[Ordering, Decisions, order_answers.Record]):
+class Orders(QuestionAnswers[OrderView]):
     """Which scenarios imply which: every implication proved, every other one refuted by a drive."""
 
     pieces = "families of scenarios"
 
-    @cached_property
-    def order(self) -> Order:
-        """The edges, and for the other pairs what refutes them."""
-        return self.study.order(self.found.answers)
-
     @property
     def verdicts(self) -> dict[str, Verdict]:
         """Of every implication between two of the formulas that was asked by itself."""
-        order = self.order
+        order = self.view
         found = {f"{x.above} -> {x.below}": Verdict.PROVED for x in order.proved}
         found |= {f"{above} -> {below}": Verdict.REFUTED for above, below, _ in order.missing}
         return found | {f"{x.above} -> {x.below}": Verdict.UNKNOWN for x in order.doubts}
 
     @property
     def evidence(self) -> tuple[Evidence, ...]:
-        return (*(x.certificate for x in self.order.proved), *(x.drive for x in self.order.drives))
+        answers = [x.answer for x in self.view.proved] + [x.answer for x in self.view.drives]
+        return tuple(map(evidence_of, answers))
 
     @property
     def _sheet(self) -> Sheet[tuple[str, Verdict]]:
@@ -142,23 +136,21 @@ class Orders(StudyAnswers[Ordering, Decisions, order_answers.Record]):
     @cached_property
     def words(self) -> Called:
         """What the scenarios are called."""
-        numbers = {node.number for kind in self.order.kinds for node in kind.nodes}
-        return called_in(self.study.basis.specification, self.study.basis.set_names, numbers)
-
-    def _index(self, records: Mapping[str, order_answers.Record]) -> order_answers.Index:
-        return self.study.index(self.order, records, self.seconds)
+        numbers = {node.number for kind in self.view.kinds for node in kind.nodes}
+        return called_in(self.question.basis.specification, self.question.basis.set_names, numbers)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """The Hasse diagram."""
-        title = f"implications in {', '.join(self.study.basis.set_names)}; an arrow leads to what is implied"
-        yield "order", picture(order_report.draw_order(self.order, title, self.words))
+        sets = ", ".join(self.question.basis.set_names)
+        title = f"implications in {sets}; an arrow leads to what is implied"
+        yield "order", picture(order_report.draw_order(self.view, title, self.words))
 
     def files(self, pictures: bool) -> dict[str, bytes]:
-        graph = {"order.dot": order_report.as_dot(self.order, self.words).encode()}
+        graph = {"order.dot": order_report.as_dot(self.view, self.words).encode()}
         return graph | drawn(self.pictures() if pictures else {})
 
     def __str__(self) -> str:
-        return order_report.as_text(self.order, round(self.seconds, 1), self.words)
+        return order_report.as_text(self.view, round(self.seconds, 1), self.words)
 
 
 @takes(settings.Order)
@@ -167,8 +159,7 @@ def order(among: Among = None, using: Definitions | None = None, **options: Unpa
     given = settings.Order.of(options)
     home = using or load("base", "extA", "ext")
     basis = basis_of(home, given, given.vehicles)
-    kinds = kinds_of(basis.specification, basis.set_names, home.among(among))
-    return Orders.asked(Ordering(basis, kinds), given)
+    return Orders.settled(OrderQuestion(basis, Compared(among=home.among(among))), given)
 
 
 class Redundancies(QuestionAnswers[RedundancyView]):

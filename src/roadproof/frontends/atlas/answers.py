@@ -10,7 +10,6 @@ from roadproof.drivers.manoeuvres import MANOEUVRES
 from roadproof.errors import UsageError
 from roadproof.evidence.answers import classify as kept_classes
 from roadproof.evidence.answers import coverage as kept_gaps
-from roadproof.evidence.answers import order as kept_order
 from roadproof.evidence.answers import plates as kept_plates
 from roadproof.evidence.codec import read
 from roadproof.evidence.drive_file import DriveFile
@@ -25,6 +24,7 @@ from roadproof.frontends.settings.groups import Readings
 from roadproof.frontends.settings.studies import Atlas
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.specification import Library
+from roadproof.questions.order.data import OrderData
 from roadproof.questions.overlap import OverlapData
 from roadproof.questions.prove import ClaimsData
 from roadproof.questions.redundancy import RedundancyData
@@ -68,7 +68,7 @@ class Answers:
     titles: Mapping[str, str] = field(default_factory=dict)
     drives: dict[str, dict[int, ShownDrive]] = field(default_factory=dict)
     overlap: OverlapData | None = None
-    order: kept_order.Index | None = None
+    order: OrderData | None = None
     diagram: Picture | None = None
     redundancy: RedundancyData | None = None
     coverage: kept_gaps.Index | None = None
@@ -168,7 +168,7 @@ class _Questions:
     def implications(self) -> None:
         found = studies.order(self.among, self.using, **self._keywords("order"))
         self.answers.diagram = found.plot()
-        self.answers.order = self._index(kept_order.Index, "order")
+        self.answers.order = read(OrderData, found.as_data(), "order")
 
     def redundancy(self) -> None:
         found = studies.redundancy(self.among, self.answers.home, **self._keywords("redundancy"))

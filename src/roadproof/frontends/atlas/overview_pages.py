@@ -62,7 +62,7 @@ def implication_values(answers: Answers) -> dict[str, object]:
         Statement(
             "PROVED",
             shown(x.claim),
-            answers.source("order", "", "order", x.certificate),
+            answers.source("order", "", "order", name_in([x.certificate])),
             f"{x.above} implies {x.below}",
         )
         for x in sorted(index.edges, key=lambda x: (int(x.above.partition("@")[0]), x.pair))
@@ -71,7 +71,7 @@ def implication_values(answers: Answers) -> dict[str, object]:
         Statement(
             "REFUTED",
             f"{x.holds} holds; {', '.join(x.fails)} fail",
-            answers.source("order", "", "order", x.drive),
+            answers.source("order", "", "order", name_in([x.drive])),
         )
         for x in index.drives
     ]

@@ -151,9 +151,8 @@ def _implications(answers: Answers, number: int) -> list[Statement]:
     for x in () if answers.order is None else answers.order.proved:
         ends = [end.partition("@") for end in x.pair]
         if str(number) in [end[0] for end in ends]:
-            source = answers.source(
-                "order", f"--among {','.join({y[0]: 0 for y in ends})}", "order", x.certificate
-            )
+            among = f"--among {','.join({y[0]: 0 for y in ends})}"
+            source = answers.source("order", among, "order", name_in([x.certificate]))
             made.append(
                 Statement(
                     "PROVED",

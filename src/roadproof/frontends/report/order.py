@@ -3,16 +3,17 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from roadproof.analysis.order.deciding import Edge, Kind
-from roadproof.analysis.order.study import Order
 from roadproof.frontends.report.figures import make_figure
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.scenarios import Scenario
 from roadproof.library.words import Called, legend
+from roadproof.questions.order.deciding import Edge
+from roadproof.questions.order.kinds import Kind
+from roadproof.questions.order.question import OrderView
 from roadproof.verdict import Verdict
 
 
-def as_text(order: Order, seconds: float, words: Called) -> str:
+def as_text(order: OrderView, seconds: float, words: Called) -> str:
     """The edges, the scenarios with one formula, the doubts; what they are called; the rest in numbers."""
     lines = [f"{edge.above} -> {edge.below}" for edge in order.edges]
     shared = [kind for kind in order.kinds if len(kind.nodes) > 1]
@@ -36,7 +37,7 @@ def sheet_of(verdicts: Mapping[str, Verdict]) -> Sheet[tuple[str, Verdict]]:
     )
 
 
-def as_dot(order: Order, words: Called) -> str:
+def as_dot(order: OrderView, words: Called) -> str:
     """A graph in which an arrow leads from what implies to what is implied; one box a formula."""
     number = {kind.node: k for k, kind in enumerate(order.kinds)}
     lines = ["digraph order {", "  rankdir=BT;", "  node [shape=box, fontsize=10];"]
@@ -48,7 +49,7 @@ def as_dot(order: Order, words: Called) -> str:
     return "\n".join([*lines, "}"]) + "\n"
 
 
-def draw_order(order: Order, title: str, words: Called) -> Any:
+def draw_order(order: OrderView, title: str, words: Called) -> Any:
     """The diagram: a column for each scenario's number, which is named below, weaker ones higher."""
     kinds, edges = order.kinds, order.edges
     height = _heights(kinds, edges)

@@ -7,7 +7,6 @@ from dataclasses import replace
 from roadproof.evidence.answers import classify, monitor
 from roadproof.evidence.answers import coverage as gaps
 from roadproof.evidence.answers import explore as explorations
-from roadproof.evidence.answers import order as implications
 from roadproof.evidence.answers import traffic as evaluations
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.finding import Acceptance, Finding
@@ -18,6 +17,7 @@ from roadproof.frontends.report.page.results import Result, Words
 from roadproof.frontends.report.page.templates import in_unit, notes
 from roadproof.frontends.report.redundancy import sheet_of as sheet_of_changes
 from roadproof.frontends.report.sheet import Heading, Linked, Matrix
+from roadproof.questions.order.data import OrderData
 from roadproof.questions.overlap import OverlapData
 from roadproof.questions.redundancy import RedundancyData
 from roadproof.questions.witness import WitnessData
@@ -98,7 +98,7 @@ def coverage(result: Result, context: PageContext, words: Words) -> dict[str, ob
 
 def order(result: Result, context: PageContext, words: Words) -> dict[str, object]:
     """Implications, and a matrix of them."""
-    index = read(implications.Index, result.data, result.name)
+    index = read(OrderData, result.data, result.name)
     numbers = {kind[0]: int(kind[0].partition("@")[0]) for kind in index.kinds}
     cells: dict[tuple[object, object], Linked] = {
         (a, b): Linked("UNKNOWN", f"{a} may imply {b}", None) for a in numbers for b in numbers

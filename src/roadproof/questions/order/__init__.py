@@ -1,0 +1,1 @@
+"""Which scenarios imply which: every implication proved, every other one refuted by a drive."""
