@@ -66,6 +66,7 @@ class Why(StrEnum):
     LEFT_OPEN = "not proved where it is left open what a driver prevents, and no other proof was looked for"
     NO_REFUTATION = "no drive was found that refutes it"
     NO_REFUTATION_SOUGHT = "no drive that refutes it was looked for"
+    NO_PROOF = "no proof that there is none was found"
     NO_STATE = "neither a proof nor a state against it was found"
     WITH = "with {}"
     PROOF_LOST = "a proof was lost"

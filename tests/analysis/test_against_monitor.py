@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 from roadproof.analysis.overlap import Meeting, conjunctions
+from roadproof.analysis.redundancy import changes_of
 
 import roadproof as rp
 from asking import prove
@@ -19,7 +20,6 @@ from monitoring.cases import random_traffic
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.coverage.classes import GapClasses, in_either_role, sectors_of
 from roadproof.analysis.coverage.traffic import disturbances_in, recordings_in
-from roadproof.analysis.redundancy import changes_of
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import load_drive
 from roadproof.frontends.api.settings import basis_of

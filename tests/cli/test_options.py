@@ -16,10 +16,10 @@ from pathlib import Path
 from typing import get_args
 
 import pytest
+from roadproof.analysis.claims import Claims
 
 import roadproof
 import roadproof as rp
-from roadproof.analysis.claims import Claims
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.answers.monitor import View
 from roadproof.evidence.claim import Engine, Objective
@@ -311,7 +311,7 @@ READERS = {
     "roadproof.analysis.study.frame": {"--out", "--shard"},
     "roadproof.analysis.study.pool": {"--jobs"},
     "roadproof.runtime.process_pool": {"--jobs"},
-    "roadproof.analysis.explore.asking": {"--vary", "--steps", "--precision"},
+    "roadproof.questions.explore.asking": {"--vary", "--steps", "--precision"},
     # Raised for a catalogue that is asked for, and never for one that is judged again.
     "roadproof.analysis.catalogue.examination": {"--no-classes"},
     "roadproof.analysis.classify.classes": {"--among"},

@@ -14,7 +14,7 @@ from roadproof.analysis.coverage.classes import claims_of
 from roadproof.engines.prove.properties import find_label
 from roadproof.errors import InputError
 from roadproof.evidence.answers.coverage import Entries, KeptClass
-from roadproof.evidence.answers.entry import Entry, mismatch
+from roadproof.evidence.answers.entry import Entry
 from roadproof.evidence.answers.read import (
     faults_of,
     index_fields,
@@ -360,112 +360,6 @@ def test_a_kept_answer_about_classes_and_doubts_about_all_of_them(tmp_path: Path
     assert entries(with_one(CLASSIFY, "claims", **COVERS), library)[2].fault == ""
     *_, doubt = entries({**CLASSIFY, "doubts": doubts}, library)
     assert (doubt.verdict, doubt.shows, doubt.label) == ("UNKNOWN", "nothing", doubts[0]["about"])
-
-
-# --- explore -------------------------------------------------------------------------------------
-
-
-def finding(*at: str, verdict: str = "WITNESSED", file: str = "drive") -> dict[str, Any]:
-    return {"at": list(at), "verdict": verdict, "formula": FILE.formula, file: f"{file}.json"}
-
-
-EXPLORE = {
-    "schema": "roadproof/explore/1",
-    **SAID,
-    "explored": [
-        {
-            "scenario": None,
-            "set": "base",
-            "formula": FILE.formula,
-            "vary": [{"name": "minSafe", "unit": "s", "low": "3/5", "high": "1"}],
-            "values": [finding("3/5"), finding("1", verdict="IMPOSSIBLE", file="certificate")],
-            "boundaries": [
-                {"held": finding("3/5"), "missed": finding("1", verdict="UNKNOWN", file="reason")}
-            ],
-            "extremes": [
-                {"sense": "greatest", "measure": "v_lon(SV)", "when": "", "point": ["1/2"]}
-                | {"unit": "m/s"}
-                | {"best": {**finding("20"), "formula": f"{FILE.formula} and v_lon(SV) >= 20 m/s"}}
-                | {"missed": None, "surely": None}
-            ],
-        }
-    ],
-}
-
-
-def test_values_with_and_without_a_drive() -> None:
-    found = entries(EXPLORE)
-    assert [x.fault for x in found] == [""] * 5
-    assert [x.shows for x in found] == ["drive", "impossibility", "drive", "nothing", "drive"]
-    assert [x.values and str(x.values["minSafe"]) for x in found] == ["3/5", "1", "3/5", "1", "1/2"]
-    assert found[0].where == "index.json, exploration 1, value 1"
-    (one,) = EXPLORE["explored"]
-    short = {**EXPLORE, "explored": [{**one, "values": [finding()]}]}
-    with pytest.raises(InputError, match="0 values of 1"):
-        entries(short)
-    with pytest.raises(InputError, match="'x' is no rational"):
-        entries({**EXPLORE, "explored": [{**one, "values": [finding("x")]}]})
-
-
-@pytest.mark.parametrize(
-    ("change", "told"),
-    [
-        ({"formula": "scenario_1(SV, POV, L)"}, "its formula is not that of its values"),
-        ({"scenario": 1}, "is called scenario 1, but its formula is another"),
-    ],
-)
-def test_an_exploration_of_another_formula(change: dict[str, Any], told: str) -> None:
-    (one,) = EXPLORE["explored"]
-    assert all(told in x.fault for x in entries({**EXPLORE, "explored": [{**one, **change}]}))
-
-
-def test_an_extreme_at_another_value_sense_or_measure() -> None:
-    (one,) = EXPLORE["explored"]
-    (extreme,) = one["extremes"]
-    best = extreme["best"]
-    for change in ({"best": {**best, "at": ["21"]}}, {"sense": "least"}, {"measure": "v_lon(POV)"}):
-        changed = {**EXPLORE, "explored": [{**one, "extremes": [{**extreme, **change}]}]}
-        assert "its formula is not that of its values" in entries(changed)[4].fault
-
-
-def test_limits_of_vehicles_are_in_the_formula_of_each_value() -> None:
-    """Two values exchanged: each drive is of the other's limit."""
-    (one,) = EXPLORE["explored"]
-    limited = {
-        value: {**finding(value), "formula": f"{FILE.formula} and G a_lon(POV) >= {value} m/s^2"}
-        for value in ("-6", "-1")
-    }
-    vary = [{"name": "POV.a_lon.min", "unit": "m/s^2", "low": "-6", "high": "-1"}]
-    right = {**one, "vary": vary, "values": [*limited.values()], "boundaries": [], "extremes": []}
-    assert [x.fault for x in entries({**EXPLORE, "explored": [right]})] == ["", ""]
-    swapped = [{**limited["-6"], "at": ["-1"]}, {**limited["-1"], "at": ["-6"]}]
-    wrong = entries({**EXPLORE, "explored": [{**right, "values": swapped}]})
-    assert all("its formula is not that of its values" in x.fault for x in wrong)
-
-
-def test_a_kept_exploration_says_what_the_index_says() -> None:
-    """So that ``check`` does not count it twice, and tells where the two differ."""
-    head = Fields({"of": EXPLORE["schema"], "said": SAID}, "question.json")
-    record = Fields({"exploration": EXPLORE["explored"][0]}, "answers/one.json")
-    kept = read_record(head, record, LIBRARY)
-    assert [x.where.partition(", ")[2] for x in kept] == [
-        x.where.partition("exploration 1, ")[2] for x in entries(EXPLORE)
-    ]
-    assert [(x.key, x.verdict, x.claim, x.file) for x in kept] == [
-        (x.key, x.verdict, x.claim, x.file) for x in entries(EXPLORE)
-    ]
-    assert len({x.key for x in kept}) == len(kept)
-
-
-def test_a_drive_is_judged_with_the_values_of_its_entry() -> None:
-    """With those that are varied where there are some, and with those of the index where there are none."""
-    shown = str(FILE.values["minSafe"])
-    right, wrong = (
-        {**EXPLORE, "explored": [{**EXPLORE["explored"][0], "values": [finding(x)]}]} for x in (shown, "1/7")
-    )
-    assert mismatch(entries(right)[0], FILE) == ""
-    assert "has minSafe=1/7, but its file" in mismatch(entries(wrong)[0], FILE)
-    assert "has minSafe=1/2, but its file" in mismatch(entries(EXPLORE)[4], FILE)
 
 
 def test_fields_that_no_index_has() -> None:

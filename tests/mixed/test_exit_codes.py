@@ -8,12 +8,13 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from roadproof.analysis.redundancy import ChangeFinding, Redundancy
 
 from roadproof.analysis.coverage.answers import ClassAnswer, is_covered, verdict_on, with_counts
-from roadproof.analysis.explore.answer import Boundary, ExplorationResult, Extreme, PointFinding
 from roadproof.analysis.preventable.study import Plate, Shown
-from roadproof.analysis.redundancy import ChangeFinding, Redundancy
 from roadproof.drivers.lines import Line, end_of
+from roadproof.engines.search.extreme import Extreme
+from roadproof.engines.search.points import PointFinding
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.kernel.accept import Word
 from roadproof.frontends.api.assuring import AssuranceReport
@@ -29,6 +30,7 @@ from roadproof.frontends.api.reporting import Page
 from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.api.studies import Orders, Overlaps
 from roadproof.frontends.api.traces import MonitorAnswer
+from roadproof.questions.explore.values import Boundary, ExplorationResult
 from roadproof.reasons import Why
 from roadproof.verdict import ExitCode, Verdict
 

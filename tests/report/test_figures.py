@@ -18,16 +18,10 @@ from roadproof.analysis.classify.classes import Class
 from roadproof.analysis.classify.drives import Example
 from roadproof.analysis.classify.shares import Shares
 from roadproof.analysis.classify.study import ClassificationResult
-from roadproof.analysis.explore.answer import (
-    Boundary,
-    Explorable,
-    ExplorationResult,
-    Extreme,
-    PointFinding,
-    Variable,
-    read_measure,
-)
+from roadproof.engines.search.extreme import Extreme
+from roadproof.engines.search.measure import read_measure
 from roadproof.engines.search.outcome import Search
+from roadproof.engines.search.points import PointFinding
 from roadproof.errors import InputError
 from roadproof.evidence.answers.classify import Doubt
 from roadproof.frontends.report.answers import answer_questions
@@ -59,6 +53,8 @@ from roadproof.library.loading import bundled_library
 from roadproof.library.scenario_references import read_query
 from roadproof.library.scenarios import COMPARISON as DETECTORS
 from roadproof.library.words import Words
+from roadproof.questions.explore.asking import Explorable, Variable
+from roadproof.questions.explore.values import Boundary, ExplorationResult
 from roadproof.recordings.evaluate.questions import Settings, default_settings
 from roadproof.recordings.evaluate.totals import Totals, begin_totals
 from roadproof.verdict import Verdict
@@ -189,11 +185,11 @@ def exploration(**changed: Any) -> ExplorationResult:
         finding("3", Verdict.NONE_WITHIN, "no drive on main-2"),
     )
     bracket = Boundary(finding("3/2", Verdict.WITNESSED), values[2], values[3])
-    return replace(ExplorationResult(values, (bracket,), (), 5, 1, 1.5), **changed)
+    return replace(ExplorationResult(values, (bracket,), (), 5, 1), **changed)
 
 
 def test_a_strip_and_both_sides_of_its_boundary() -> None:
-    assert as_text(ASKED, exploration()).splitlines() == [
+    assert as_text(ASKED, exploration(), 1.5).splitlines() == [
         "scenario 4: deceleration ahead, lane keep, main road, set base",
         "  minSafe  0 ##?- 3 s",
         "  # WITNESSED: a drive, judged at this value, at 2 of 4 values",

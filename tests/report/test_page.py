@@ -296,7 +296,7 @@ def hostile_plates(drive: dict) -> dict:
     ends = [{"near": 1, "exact": HOSTILE}, {"near": 2.5, "exact": CLOSED}]
     lines = [{"at": "0", "unpreventable": []}, {"at": "1/2", "unpreventable": [ends]}]
     shown = {"side": "preventable", "at": {HOSTILE: "1"}, "verdict": "WITNESSED", "formula": HOSTILE}
-    shown |= {"scenario": CLOSED, "reason": CLOSED, "drive": drive}
+    shown |= {"scenario": CLOSED, "reason": CLOSED, "evidence": drive}
     plate = {"name": HOSTILE, "model": "careful", "fixed": {HOSTILE: "1"}, "verdict": "UNKNOWN"}
     plate |= {"stepped": HOSTILE, "motion": CLOSED, "reason": HOSTILE}
     lemma = {"name": HOSTILE, "title": CLOSED, "claim": HOSTILE, "verdict": "PROVED", "assuming": [CLOSED]}
@@ -311,8 +311,14 @@ def hostile_plates(drive: dict) -> dict:
 
 def explored(drive: dict) -> dict:
     """A map of two parameters, a boundary and an extreme."""
-    found = {"at": ["0", "1/3"], "verdict": "WITNESSED", "formula": HOSTILE, "reason": CLOSED, "drive": drive}
-    none = {**found, "verdict": "IMPOSSIBLE", "at": ["1", "1/3"], "drive": None, "certificate": HOSTILE}
+    found = {
+        "at": ["0", "1/3"],
+        "verdict": "WITNESSED",
+        "formula": HOSTILE,
+        "reason": CLOSED,
+        "evidence": drive,
+    }
+    none = {**found, "verdict": "IMPOSSIBLE", "at": ["1", "1/3"], "evidence": HOSTILE}
     limits = {
         "best": {**found, "at": ["3"]},
         "missed": None,
@@ -321,7 +327,7 @@ def explored(drive: dict) -> dict:
         "endless": True,
     }
     return {
-        **{"scenario": 1, "set": HOSTILE, "formula": HOSTILE, "searches": 1, "drives": 1, "seconds": 1},
+        **{"scenario": 1, "set": HOSTILE, "formula": HOSTILE, "searches": 1, "drives": 1},
         "vary": [
             {"name": HOSTILE, "unit": "s", "low": "0", "high": "1"},
             {"name": CLOSED, "unit": "unitless", "low": "0", "high": "1"},
@@ -332,7 +338,7 @@ def explored(drive: dict) -> dict:
     }
 
 
-VERSIONS = {"compare": 2, "monitor": 2, "traffic-results": 5}
+VERSIONS = {"compare": 2, "explore": 2, "monitor": 2, "traffic-results": 5}
 """Of the schemas of answers that are not the first."""
 
 

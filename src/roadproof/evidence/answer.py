@@ -27,7 +27,7 @@ from roadproof.evidence.certificate import Certificate, certificate_data, read_c
 from roadproof.evidence.claim import Claim, Exists, Judgement, On, Valid
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.countermodel import Countermodel, read_trace, trace_data
-from roadproof.evidence.drive_file import natural_of, read_drive
+from roadproof.evidence.drive_file import DriveFile, natural_of, read_drive
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.none_within import NoneWithinFile, none_within_data, read_none_within
 from roadproof.evidence.refutation import fault_of
@@ -253,9 +253,23 @@ def _drive(claim: Claim, content: object, where: str) -> JudgedDrive:
     shown = read_claim(claim.home, file.formula).formula
     _require(shown == sought_by(claim), where, f"its drive is one of {_short(file.formula)}")
     _require_values(claim, file.values, where)
-    known = isinstance(claim.mode, Exists) and file.drive in claim.mode.unlike
-    _require(not known, where, "it is a drive from which it has to differ")
+    if isinstance(claim.mode, Exists):
+        mode, overlaps = claim.mode, file.overlaps_allowed
+        _require(file.drive not in mode.unlike, where, "it is a drive from which it has to differ")
+        _require(
+            mode.apart is None or mode.collisions or not overlaps, where, "boxes may overlap on its drive"
+        )
+        ends = f"its horizon={file.horizon} s ends before {mode.apart} s"
+        _require(mode.apart is None or file.horizon >= mode.apart, where, ends)
     return JudgedDrive(file, claim.home.library, natural_of(content, where))
+
+
+def _require_apart(mode: Exists, file: DriveFile, where: str) -> None:
+    """Boxes stay apart for as long as a claim wants, where it says so."""
+    if mode.apart is not None:
+        _require(mode.collisions or not file.overlaps_allowed, where, "boxes may overlap on its drive")
+        ends = f"its horizon={file.horizon} s ends before {mode.apart} s"
+        _require(file.horizon >= mode.apart, where, ends)
 
 
 def sought_by(claim: Claim) -> Formula:

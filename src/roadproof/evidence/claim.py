@@ -9,7 +9,7 @@ answers that are kept. ``text`` is for people: no answer depends on it.
 from collections.abc import Iterable, Mapping
 from dataclasses import field
 from fractions import Fraction
-from typing import Literal, Protocol, TypeAlias
+from typing import Final, Literal, Protocol, TypeAlias
 
 from roadproof.library.motion import is_moving, under_limits, values_said
 from roadproof.library.specification import Library, Query, Specification
@@ -26,6 +26,10 @@ from roadproof.world.vehicle import Vehicle
 
 Objective: TypeAlias = Literal["any", "smooth", "margin", "mild", "severe", "short"]
 Engine: TypeAlias = Literal["milp", "smt"]
+HELP: Final = "help-"
+"""How names of claims begin that only help with others: a doubt about one is none about the question."""
+Means: TypeAlias = Literal["search", "proof", "known"]
+"""How drives are asked for: a search, a proof that there is none, or drives that are known."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +63,8 @@ class Exists:
 
     ``road`` None: the usual road of the formula; ``vehicles``: models by name, "" for all others; ``limits``:
     other limits than theirs; ``dt`` None: the coarsest step that fits. ``unlike``: drives from which it is to
-    differ; ``trees``: whether trees are wanted that show that there is none. Effort is no part of a claim.
+    differ; ``trees``: whether trees are wanted that show that there is none. ``apart``: until when boxes stay
+    apart (s), where that is longer than the horizon. Effort is no part of a claim.
     """
 
     road: Road | None = None
@@ -78,6 +83,8 @@ class Exists:
     explain: bool = True
     unlike: tuple[Drive, ...] = ()
     trees: bool = False
+    apart: Fraction | None = None
+    by: Means = "search"
 
 
 class Judgement(Protocol):

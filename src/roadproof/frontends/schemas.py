@@ -17,7 +17,6 @@ from roadproof.evidence.answers import (
     classify,
     coverage,
     drive,
-    explore,
     library,
     monitor,
     none_within,
@@ -49,6 +48,7 @@ from roadproof.library.motion import INDUCTIONS
 from roadproof.questions import overlap as overlap_question
 from roadproof.questions.compare import ComparisonData
 from roadproof.questions.data import QuestionFile
+from roadproof.questions.explore.data import ExploreData
 from roadproof.questions.order.data import OrderData
 from roadproof.questions.overlap import OverlapData
 from roadproof.questions.prove import ClaimsData
@@ -79,9 +79,7 @@ TITLES: Mapping[type, str] = {
     ),
     SurveyData: "the surveys of contributors, --json: which of some formulas can hold on a drive",
     WitnessData: "roadproof witness --json: drives for scenarios and formulas",
-    explore.Index: (
-        "roadproof explore --json, and index.json of its folder: for which values there is a drive"
-    ),
+    ExploreData: "roadproof explore --json: for which values there is a drive",
     OrderData: "roadproof order --json: which scenarios imply which",
     OverlapData: "roadproof overlap --json: which scenarios hold together",
     QuestionFile: "question.json: a question, from which its claims are listed",
@@ -109,7 +107,7 @@ WITHOUT_ASSUMPTION: JsonObject = {
 }
 """Only inductions may stand in a certificate that assumes nothing."""
 DRIVES = (drive.Drive, drive.JerkDrive)
-KEEPING = (plates, coverage, classify, catalogue_index, explore)
+KEEPING = (plates, coverage, classify, catalogue_index)
 """The questions whose answers are kept one by one."""
 RECORDS: Mapping[str, type] = {x.SCHEMA: x.Record for x in KEEPING}
 

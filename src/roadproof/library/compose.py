@@ -27,6 +27,11 @@ def both(*queries: Query) -> Query:
     return _chained("and", queries, f.conjunction)
 
 
+def with_parts(query: Query, parts: Sequence[Query]) -> Query:
+    """``query`` and all of ``parts``; as it was written where there are none."""
+    return both(query, *parts) if parts else query
+
+
 def either(*queries: Query) -> Query:
     """One of ``queries`` holds, or more."""
     return _chained("or", queries, f.disjunction)

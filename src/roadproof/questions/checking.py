@@ -10,7 +10,7 @@ from typing import Any
 
 from roadproof.errors import InputError
 from roadproof.evidence.answer import Answer, Judged, assumed_by, read_answer, undecided
-from roadproof.evidence.claim import Claim, Exists, On
+from roadproof.evidence.claim import HELP, Claim, Exists, On
 from roadproof.evidence.codec import write
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
 from roadproof.evidence.strict import LARGEST_EVIDENCE, LARGEST_INDEX, Fields, read_json
@@ -27,7 +27,8 @@ class QuestionFolder:
     """A question with the answers of a folder, by name.
 
     ``problems``: files that answer no claim, or not their own. ``others``: files that are no answers, such as
-    tables and pictures. ``specs``: the specification files beside the answers.
+    tables and pictures. ``specs``: the specification files beside the answers. ``missing``: the names of
+    claims without a file.
     """
 
     folder: Path
@@ -36,6 +37,7 @@ class QuestionFolder:
     answers: Mapping[str, Answer]
     problems: tuple[Finding, ...]
     others: tuple[str, ...]
+    missing: frozenset[str] = frozenset()
 
     @property
     def files(self) -> dict[Path, str]:
@@ -54,7 +56,8 @@ class QuestionFolder:
             is_shown = isinstance(mode, Exists) and (
                 mode.trees or replace(answer.claim, mode=replace(mode, trees=True)) in trees
             )
-            if not answer.is_final and not is_shown:
+            helps = name.startswith(HELP) and name not in self.missing
+            if not answer.is_final and not is_shown and not helps:
                 label, text = self.question.label(name), answer.claim.query.text
                 where = str(self.folder / f"{name}.json")
                 without = () if answer.verdict == "UNKNOWN" else ("there is no evidence for it",)
@@ -109,9 +112,11 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
     there = {x.stem: x for x in folder.iterdir() if x.suffix == ".json" and x.name != QUESTION}
     answers: dict[str, Answer] = {}
     problems: list[Finding] = []
+    missing: set[str] = set()
 
     def find(name: str, claim: Claim) -> Answer:
         if name not in answers:
+            missing.update(() if name in there else (name,))
             try:
                 answers[name] = _read(claim, there.pop(name, None))
             except InputError as error:
@@ -132,7 +137,7 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
     strays = [x for x in folder.rglob("*.json") if x.parent != folder]
     problems += [Finding(str(path), "", Acceptance.REJECTED, Why.UNNAMED()) for path in sorted(strays)]
     others = tuple(sorted(x.relative_to(folder).as_posix() for x in beside))
-    return QuestionFolder(folder, question, specs, answers, tuple(problems), others)
+    return QuestionFolder(folder, question, specs, answers, tuple(problems), others, frozenset(missing))
 
 
 def _read(claim: Claim, path: Path | None) -> Answer:

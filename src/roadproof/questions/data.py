@@ -23,6 +23,7 @@ SCHEMA: Final = "roadproof/question/1"
 KINDS: Mapping[str, str] = {
     "compare": "roadproof.questions.compare:CompareQuestion",
     "order": "roadproof.questions.order.question:OrderQuestion",
+    "explore": "roadproof.questions.explore.question:ExploreQuestion",
     "overlap": "roadproof.questions.overlap:OverlapQuestion",
     "prove": "roadproof.questions.prove:ProveQuestion",
     "redundancy": "roadproof.questions.redundancy:RedundancyQuestion",

@@ -168,22 +168,11 @@ class _Run:
                 doubt = Doubt(Cause.PROCESS, (), job.work.effort.units, reason).kept
                 return [(named, undecided(asked, reason, doubt=doubt), NO_COST)]
 
-            job = _Job(_One(name, claim), {}, self.store)
+            job = _Job(batch, self._known_of(batch), self.store, alone=True)
             with closing(pool.work(_settle, [job, _NOTHING], hands, lose)) as answered:
                 for _, answers in answered:
                     for found in answers:
                         self._keep(*found)
-
-
-@dataclass(frozen=True)
-class _One:
-    """A claim alone."""
-
-    name: str
-    claim: Claim
-
-    def steps(self) -> Any:
-        yield self.name, self.claim
 
 
 @dataclass(frozen=True)
@@ -198,11 +187,15 @@ class _None:
 
 @dataclass(frozen=True)
 class _Job:
-    """A batch, the answers to its claims that are known, and where further ones may be."""
+    """A batch, the answers to its claims that are known, and where further ones may be.
+
+    ``alone``: whether one more claim is settled, and no other.
+    """
 
     batch: Any
     known: Mapping[str, Answer] = field(default_factory=dict)
     store: Store | None = None
+    alone: bool = False
 
     @property
     def work(self) -> Work:
@@ -230,7 +223,9 @@ def _settle(job: _Job) -> list[Priced]:
         new.append((name, answer, cost))
         return answer
 
-    def find(name: str, claim: Claim) -> Answer:
+    def find(name: str, claim: Claim) -> Answer | None:
+        if job.alone and new:
+            return None
         answer = answer_to(name, claim)
         engines.learn(answer)
         return answer

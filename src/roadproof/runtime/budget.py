@@ -71,7 +71,9 @@ class Work:
     it is shown that there is no drive, where none is found. ``alone``: nothing is taken from other claims;
     ``recast``: whether known drives are tried with their vehicles in other roles; ``once``: whether no drive
     is looked for that was looked for in vain, also on other roads; ``disprove``: whether a proof that there
-    is no drive is tried before one is looked for.
+    is no drive is tried before one is looked for. ``staged``: whether natural drives, others, and that there
+    is none are looked for one after the other, with the effort for each. ``moves``: whether drives that are
+    known are put on other roads.
     """
 
     effort: Effort = field(default_factory=Effort)
@@ -82,6 +84,8 @@ class Work:
     recast: bool = False
     once: bool = False
     disprove: bool = True
+    staged: bool = False
+    moves: bool = True
 
 
 @dataclass

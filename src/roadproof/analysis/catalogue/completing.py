@@ -15,7 +15,6 @@ from roadproof.analysis.classify.classes import Class
 from roadproof.analysis.classify.drives import Example, find_examples
 from roadproof.analysis.classify.text import with_classes, write_classes
 from roadproof.analysis.coverage.answers import ClassAnswer
-from roadproof.analysis.explore.answer import with_parts
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.pool import Progress
 from roadproof.engines.search.ask import answer
@@ -25,7 +24,7 @@ from roadproof.errors import UsageError
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.library.compose import both
+from roadproof.library.compose import both, with_parts
 from roadproof.library.elaborate import read_claim, read_term
 from roadproof.library.scenarios import Scenario, applied, name_of, number_in
 from roadproof.library.specification import Query, Specification

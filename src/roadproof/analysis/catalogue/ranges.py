@@ -14,8 +14,8 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.showing import ConcreteAnswer, signal_of
-from roadproof.analysis.explore.answer import Sense, read_measure
-from roadproof.analysis.explore.extreme import ExtremeQuestion, find_extreme
+from roadproof.engines.search.extreme import ExtremeQuestion, find_extreme
+from roadproof.engines.search.measure import Sense, read_measure
 from roadproof.engines.search.placing import judged_as
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import JudgedDrive
@@ -82,17 +82,16 @@ def _end(basis: Basis, reach: Reach, sense: Sense) -> Fact:
     search = basis.search(reach.query, effort=effort)
     measure = read_measure(basis.specification, sense, reach.term, given=reach.query.claim.given)
     still_open = Fact("", reach.target, "open", reach.query, term=reach.term, sense=sense)
+    asked = ExtremeQuestion(sense, search, measure, _PRECISION[signal_of(reach.term)])
     try:
-        found = find_extreme(
-            ExtremeQuestion(search, measure, _PRECISION[signal_of(reach.term)], seeds=reach.known)
-        )
+        found = find_extreme(asked, reach.known)
     except BudgetExceeded as late:
         return replace(still_open, reason=Why.EXTREME(sense, reach.term, late.reason))
     beyond = NO_REASON if found.missed is None else found.missed.reason
     if found.best is None:
         return replace(still_open, reason=Why.EXTREME(sense, reach.term, beyond))
     [value] = found.best.at
-    bound = both(*measure.bound(search, value))
+    bound = both(*measure.bound(value))
     made = replace(still_open, relation="reaches", conclusion=bound, reason=beyond, at=value)
     return replace(made, drive=found.best.drive)
 

@@ -8,14 +8,13 @@ from typing import get_args
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.classify.classes import Class
-from roadproof.analysis.explore.answer import with_parts
 from roadproof.engines.search.ask import ask
 from roadproof.engines.search.placing import placed, placed_on
 from roadproof.engines.search.question import usual_road, zones_of
 from roadproof.evidence.answers.classify import Word
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.settled import Settled
-from roadproof.library.compose import both
+from roadproof.library.compose import both, with_parts
 from roadproof.library.scenarios import sector
 from roadproof.library.specification import Query
 from roadproof.reasons import Why, joined

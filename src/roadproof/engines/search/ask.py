@@ -1,8 +1,6 @@
 """A search for drives of values, and its typed outcome."""
 
-from collections.abc import Mapping
 from dataclasses import replace
-from fractions import Fraction
 
 from roadproof.drivers.restriction import restriction_of
 from roadproof.engines.search.driven import Driven
@@ -13,10 +11,7 @@ from roadproof.engines.search.search import Attempt, find_witness
 from roadproof.engines.search.siblings import find_once, offered
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.library.bind import default_values
-from roadproof.library.specification import Library
-from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import parameters_of
+from roadproof.library.bind import telling_values
 from roadproof.reasons import NO_REASON, Why
 from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.runtime.progress import about, begin
@@ -149,10 +144,3 @@ def judge_found(search: Search, question: SearchProblem, found: FoundDrive) -> J
         found.assumptions.collisions,
     )
     return JudgedDrive(file, library, found.assumptions.natural)
-
-
-def telling_values(library: Library, formula: Formula, values: Mapping[str, Fraction]) -> dict[str, Fraction]:
-    """Values of the parameters that ``formula`` speaks of, and of those that the user has changed."""
-    declared = default_values(library)
-    spoken = parameters_of(formula)
-    return {n: v for n, v in values.items() if n in spoken or v != declared.get(n)}

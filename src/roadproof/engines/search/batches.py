@@ -11,12 +11,13 @@ from roadproof.engines.prove.induction import prove_of_scenarios
 from roadproof.engines.search.alone import answer_of, seek, with_trees
 from roadproof.engines.search.ask import ask
 from roadproof.engines.search.impossible import explain
-from roadproof.engines.search.known_drive import KnownDrive
+from roadproof.engines.search.known_drive import KnownDrive, is_same_motion
 from roadproof.engines.search.looking import search_of
+from roadproof.engines.search.stages import look
 from roadproof.engines.search.valid import settle_valid
 from roadproof.evidence.answer import Answer, Judged, Refutation, undecided
 from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.claim import Claim, Exists, On, Valid
+from roadproof.evidence.claim import Claim, Exists, Means, On, Valid
 from roadproof.evidence.countermodel import Countermodel
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.refutation import fault_of
@@ -48,12 +49,14 @@ class Engines:
     alike: dict[Formula, list[KnownDrive]] = field(default_factory=dict)
     traces: list[Countermodel] = field(default_factory=list)
     unrefuted: list[Claim] = field(default_factory=list)
-    clashes: list[Formula] = field(default_factory=list)
+    clashes: list[tuple[Formula, Certificate]] = field(default_factory=list)
     vain: set[Formula] = field(default_factory=set)
 
     def learn(self, answer: Answer) -> None:
         """Remember what an answer shows, for later claims."""
-        if answer.drive is not None:
+        if answer.drive is not None and not self.work.moves:
+            self.offer(answer.drive)
+        elif answer.drive is not None:
             known = self._known(answer.drive)
             for claim in (answer.claim, *self._refuted_by(known)):
                 self.alike.setdefault(without_sectors(claim.formula), []).append(known)
@@ -64,7 +67,13 @@ class Engines:
         if isinstance(answer.evidence, Refutation):
             self.traces.append(answer.evidence.trace)
         if isinstance(answer.claim.mode, Exists) and answer.certificate is not None:
-            self.clashes.append(read_claim(answer.claim.home, answer.certificate.claim).formula)
+            denied = read_claim(answer.claim.home, answer.certificate.claim).formula
+            self.clashes.append((denied, answer.certificate))
+
+    def offer(self, drive: JudgedDrive) -> None:
+        """Remember a drive, to be tried first where it is; motions that are known move to the front."""
+        known = [x for x in self.drives if is_same_motion(x.judged.file, drive.file)]
+        self.drives[:] = [x for x in self.drives if x not in known] + (known or [KnownDrive(drive)])
 
     def _known(self, drive: JudgedDrive) -> KnownDrive:
         """Return the drive with its judge; one that shows several formulas is remembered once."""
@@ -98,8 +107,7 @@ class Engines:
                 case Exists() if self.work.alone:
                     return seek(claim, self.work)
                 case Exists():
-                    further = self.again if self._is_vain(claim) else self.decide
-                    return self.follow(claim) or further(claim), NO_COST
+                    return self._drive(claim, claim.mode.by), NO_COST
                 case On(judge=judge):
                     return Answer(claim, Judged(judge())), NO_COST
                 case _:
@@ -107,10 +115,27 @@ class Engines:
         except BudgetExceeded as late:
             return undecided(claim, late.reason), NO_COST
 
+    def _drive(self, claim: Claim, by: Means) -> Answer:
+        match by:
+            case "search":
+                further = self.again if self._is_vain(claim) else self.decide
+                return self.follow(claim) or further(claim)
+            case "known":
+                return self.follow(claim) or undecided(claim, Why.NO_DRIVE())
+            case "proof":
+                proof = self._repeated(claim) or self._clash(claim, 1.0)
+                return undecided(claim, Why.NO_PROOF()) if proof is None else Answer(claim, proof)
+            case _:
+                assert_never(by)
+
     def follow(self, claim: Claim) -> Answer | None:
         """Return an answer that follows from an earlier one, or None."""
+        if not self.work.moves:
+            shown = (x.here(claim) for x in reversed(self.drives))
+            drive = next((x for x in shown if x is not None), None)
+            return None if drive is None else Answer(claim, drive)
         mine = {without_names(part): part for part in parts_of(claim.formula)}
-        for denied in self.clashes:
+        for denied, _ in self.clashes:
             wanted = [without_names(part) for part in parts_of(_body(denied))]
             if all(part in mine for part in wanted):
                 core = of_parts(claim.query, [mine[part] for part in wanted])
@@ -151,6 +176,8 @@ class Engines:
 
         Where a known trace has the formula, there is no proof that it never holds.
         """
+        if self.work.staged:
+            return look(claim, search_of(claim, self.work))
         wants_proof = self.work.disprove and (not isinstance(claim.mode, Exists) or claim.mode.explain)
         proof = self._clash(claim, 1.0) if wants_proof and not self._has_trace(claim) else None
         if proof is not None:
@@ -159,6 +186,15 @@ class Engines:
         if self.work.explain and not found.drives and found.verdict is not Verdict.IMPOSSIBLE:
             found = ask(search_of(claim, self.work))
         return answer_of(claim, found, found.told(("--horizon",)))
+
+    def _repeated(self, claim: Claim) -> Certificate | None:
+        """Return a known proof that parts of a claim clash, where these are parts of this one, too."""
+        mine = {*parts_of(claim.formula)}
+        read_alike = claim.home.set_name, dict(claim.home.options)
+        for denied, proof in self.clashes:
+            if (proof.set_name, dict(proof.options)) == read_alike and {*parts_of(_body(denied))} <= mine:
+                return proof
+        return None
 
     def _has_trace(self, claim: Claim) -> bool:
         never, bounds = negation(claim.query).formula, claim.home.library.bounds

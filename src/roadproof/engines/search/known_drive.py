@@ -7,10 +7,10 @@ from itertools import permutations
 
 from roadproof.engines.search.placing import judged_as, placed, placed_on
 from roadproof.evidence.answer import assumed_by, sought_by
-from roadproof.evidence.claim import Claim
+from roadproof.evidence.claim import Claim, Exists
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.library.bind import bind, values_with
+from roadproof.library.bind import bind, telling_values, values_with, without_empty_windows
 from roadproof.library.compose import negation
 from roadproof.library.motion import under_limits
 from roadproof.library.specification import Query
@@ -39,13 +39,7 @@ class KnownDrive:
 
     def moves_as(self, other: JudgedDrive) -> bool:
         """Return whether another drive has these motions on this road, with these lanes and values."""
-        mine, theirs = self.judged.file, other.file
-        return (mine.drive, mine.road, mine.lanes, mine.values) == (
-            theirs.drive,
-            theirs.road,
-            theirs.lanes,
-            theirs.values,
-        )
+        return is_same_motion(self.judged.file, other.file) and self.judged.file.values == other.file.values
 
     def refutes(self, claim: Claim) -> bool:
         """Return whether a claim about all traces is false on the drive where it is."""
@@ -62,6 +56,17 @@ class KnownDrive:
     def refutation(self, claim: Claim) -> JudgedDrive | None:
         """Return the drive as one on which a claim is false; None where the judge rejects that."""
         return judged_as(self.judged.file, against(claim), claim.home.library)
+
+    def here(self, claim: Claim) -> JudgedDrive | None:
+        """Return the drive where it is, with the values of a claim, as one that answers it, or None."""
+        file = offered(self.judged.file, claim)
+        if not ({*claim.vehicles} <= {*file.drive.vehicles} and {*claim.lanes} <= {*file.lanes}):
+            return None
+        values = values_with(claim.home.library, file.values)
+        formula = without_empty_windows(bind(claim.formula, file.road, file.lanes, values))
+        if not self._judge.holds(formula):
+            return None
+        return judged_as(file, claim.query, claim.home.library)
 
     def elsewhere(self, query: Query, claim: Claim) -> JudgedDrive | None:
         """Return the drive on a road on which it shows ``query``; None where none is found."""
@@ -107,6 +112,25 @@ def recast(file: DriveFile, roles: Mapping[str, str], wanted: Iterable[str]) -> 
     """
     missing = sorted({*wanted} - {*roles})
     return replace(file, drive=file.drive.cast(roles).followed_by(missing))
+
+
+def is_same_motion(one: DriveFile, other: DriveFile) -> bool:
+    """Return whether two files have the same motions on the same road, with the same lanes."""
+    return (one.drive, one.road, one.lanes) == (other.drive, other.road, other.lanes)
+
+
+def offered(file: DriveFile, claim: Claim) -> DriveFile:
+    """Return the same motions as a file that makes a claim: with its values, and boxes apart for as long."""
+    library = claim.home.library
+    values = values_with(library, {x.name: x.value for x in claim.parameters})
+    apart = claim.mode.apart if isinstance(claim.mode, Exists) else None
+    return replace(
+        file,
+        scenario=None,
+        formula=claim.query.text,
+        values=telling_values(library, claim.formula, values),
+        horizon=file.horizon if apart is None else max(file.horizon, apart),
+    )
 
 
 def against(claim: Claim) -> Query:

@@ -92,8 +92,8 @@ def drive(
     Limits of vehicles are not asked for (``judge.replay.first_breach`` is). Raises ``InputError`` with the
     judge's reason where it does not hold, ``UsageError``, ``TextError``.
     """
-    from roadproof.engines.search.ask import telling_values
     from roadproof.engines.search.question import assignments, usual_road
+    from roadproof.library.bind import telling_values
 
     home = definitions_of(using)
     for name, moved in vehicles.items():

@@ -1,48 +1,50 @@
 """For which values there is a drive, where that changes, and how far a measure can go."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Unpack
 
-from roadproof.analysis.explore.answer import Explorable, ExplorationResult, Sense, say_nothing
-from roadproof.analysis.explore.asking import ask_for
-from roadproof.analysis.explore.study import Exploration
-from roadproof.analysis.study.pool import Say
+from roadproof.engines.search.measure import Sense
+from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.question import SearchOptions
 from roadproof.errors import UsageError
-from roadproof.evidence.answers import explore as kept
+from roadproof.evidence.drive_file import road_said
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
 from roadproof.frontends.api.phrases import Term
+from roadproof.frontends.api.questioned import QuestionAnswers, drawn
 from roadproof.frontends.api.restricting import restricted
-from roadproof.frontends.api.settings import searches_of, setting, work_of
-from roadproof.frontends.api.studied import StudyAnswers, drawn
+from roadproof.frontends.api.settings import basis_of, searches_of, setting
 from roadproof.frontends.report import explore as report
 from roadproof.frontends.report.sheet import Sheet
-from roadproof.frontends.settings.groups import Run
 from roadproof.frontends.settings.keywords import ExploreKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Explore
 from roadproof.library.bind import Number
 from roadproof.library.scenario_references import names_scenarios
+from roadproof.questions.explore.asking import ask_for
+from roadproof.questions.explore.data import AskedFormula, AskedVariation, Exploring, SearchedPlace
+from roadproof.questions.explore.question import ExploreQuestion, ExploreView
+from roadproof.questions.explore.values import ExplorationResult
 from roadproof.verdict import ExitCode, Verdict, exit_code
 from roadproof.world.road import Road
 
 
-class Explorations(StudyAnswers[Exploration, ExplorationResult, kept.Record]):
+class Explorations(QuestionAnswers[ExploreView]):
     """What was explored, a formula after the other."""
 
+    question: ExploreQuestion
     pieces = "formulas"
 
     @property
-    def explored(self) -> dict[str, ExplorationResult]:
+    def explored(self) -> Mapping[str, ExplorationResult]:
         """What was found, by the name of the formula."""
-        return {name: self.found.answers[name] for name in self.study.named}
+        return self.view.explored
 
     @property
     def _entries(self) -> list[report.Entry]:
-        return [*report.entries_of(self.study.named, self.explored)]
+        return [*report.entries_of(self.question.named, self.explored)]
 
     @property
     def verdicts(self) -> dict[str, Verdict]:
@@ -55,7 +57,7 @@ class Explorations(StudyAnswers[Exploration, ExplorationResult, kept.Record]):
 
     @property
     def road(self) -> Road | None:
-        return self.study.road
+        return self.question.road
 
     @property
     def exit_code(self) -> ExitCode:
@@ -65,25 +67,27 @@ class Explorations(StudyAnswers[Exploration, ExplorationResult, kept.Record]):
     def _sheet(self) -> Sheet[report.Entry]:
         return report.sheet_of(self._entries)
 
-    def _index(self, records: Mapping[str, kept.Record]) -> kept.Index:
-        return self.study.index(records, self.seconds)
-
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """A strip or a map of each formula that was varied."""
-        for name, asked in self.study.named.items():
+        for name, asked in self.question.named.items():
             if self.explored[name].findings:
                 yield name, picture(report.draw_exploration(asked, self.explored[name]))
 
     def files(self, pictures: bool) -> dict[str, bytes]:
         """Pictures of all, and of the drives at boundaries and extremes."""
-        named = self.study.named.items() if pictures else ()
+        named = self.question.named.items() if pictures else ()
         every = (x for name, asked in named for x in report.draw_all(name, asked, self.explored[name]))
         return drawn({file: picture(figure) for file, figure in every})
 
     def __str__(self) -> str:
+        named = self.question.named.items()
         return "\n".join(
-            report.as_text(asked, self.explored[name]) for name, asked in self.study.named.items()
+            report.as_text(asked, self.explored[name], self._seconds_of(name)) for name, asked in named
         )
+
+    def _seconds_of(self, name: str) -> float:
+        """How long the claims of a formula took."""
+        return sum(cost.seconds for claim, cost in self.found.costs.items() if name in claim)
 
 
 @takes(Explore)
@@ -103,29 +107,52 @@ def explore(
     vary = given.vary or {}
     for name in {*vary} & {*home.values}:
         raise UsageError(f"{name} is given a value and varied: leave one out")
-    asked = explorables(home, each, given, [(name, *ends) for name, ends in vary.items()])
-    return explore_all(asked, given)
+    question = explore_question(home, each, given, [(name, *ends) for name, ends in vary.items()])
+    return Explorations.settled(question, given)
 
 
-def explorables(
+def explore_question(
     home: Definitions, what: Sequence[What], given: Explore, ranges: Sequence[tuple[str, Number, Number]]
-) -> Iterator[Explorable]:
+) -> ExploreQuestion:
     """What is asked of each formula in each spec set, varied over ``ranges``. Raises as ``explore``."""
-    work = work_of(given)
-    search_options = SearchOptions(engine=given.engine, solver=given.solver, effort=work)
+    place = setting(home, given)
+    basis = replace(basis_of(home, given), vehicles=place.vehicles, horizon=place.horizon)
+    searches = [*searches_of(home, what, place, SearchOptions(engine=given.engine, solver=given.solver))]
+    formulas = tuple(_asked_formula(home, x, given.when) for x in searches)
     measures: dict[Sense, Term | None] = {"least": given.least, "greatest": given.greatest}
     wanted = [(sense, str(x)) for sense, x in measures.items() if x is not None]
-    when = given.when
-    for search in searches_of(home, what, setting(home, given), search_options):
-        here = replace(home, specification=search.specification)
-        if when is None or (isinstance(when, str) and not names_scenarios(here.specification, when)):
-            moment = when or ""
-        else:
-            moment = here.read(when).text
-        yield ask_for(search, ranges, given.steps, given.precision, wanted, moment)
+    first = ask_for(searches[0], ranges, given.steps, given.precision, wanted, formulas[0].when)
+    asked = Exploring(
+        formulas=formulas,
+        vary=tuple(AskedVariation(name=x.name, low=x.low, high=x.high) for x in first.knobs),
+        steps=given.steps,
+        precision=first.precision,
+        **dict(wanted),
+        place=SearchedPlace(
+            road=None if place.road is None else road_said(place.road),
+            lanes=place.lanes,
+            dt=place.dt,
+            reach=place.reach,
+            collisions=place.collisions,
+            engine=given.engine,
+            solver=given.solver,
+        ),
+    )
+    question = ExploreQuestion(basis, asked)
+    _ = question.named
+    return question
 
 
-def explore_all(asked: Iterable[Explorable], given: Run, tell: Say | None = None) -> Explorations:
-    """As ``explore``, with what is asked as values; ``tell`` is told how far a formula is."""
-    study = Exploration(tuple(asked), given.jobs, tell or say_nothing)
-    return Explorations.asked(study, given)
+def _asked_formula(home: Definitions, search: Search, when: What | None) -> AskedFormula:
+    """A formula, and the moment at which is measured, in the words of its spec set."""
+    here = replace(home, specification=search.specification)
+    if when is None or (isinstance(when, str) and not names_scenarios(here.specification, when)):
+        moment = when or ""
+    else:
+        moment = here.read(when).text
+    return AskedFormula(
+        scenario=search.scenario,
+        set=search.specification.set_name,
+        formula=search.query.text,
+        when=moment,
+    )

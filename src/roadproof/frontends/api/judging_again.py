@@ -14,9 +14,9 @@ from roadproof.analysis.catalogue.result import DerivedResult
 from roadproof.analysis.catalogue.showing import names_shown
 from roadproof.analysis.catalogue.sides import decisions_of, read_side_name
 from roadproof.analysis.coverage.answers import ClassAnswer, name_of, names_of
-from roadproof.analysis.explore.answer import Sense
 from roadproof.analysis.study.evidence_store import EvidenceStore, inside
 from roadproof.analysis.study.pool import Progress
+from roadproof.engines.search.measure import Sense
 from roadproof.errors import InputError, RoadproofError
 from roadproof.evidence.answers import coverage
 from roadproof.evidence.answers.catalogue_index import SCHEMA, AbstractTest, ConcreteTest, Index, KeptFact

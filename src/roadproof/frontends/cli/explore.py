@@ -5,7 +5,6 @@ import argparse
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
 from roadproof.frontends.cli.options import add_what_arguments, some_or_all
-from roadproof.frontends.cli.progress import tell
 from roadproof.frontends.settings.questions import Explore
 
 SUMMARY = "find the parameter values for which a scenario has a drive"
@@ -41,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.frontends.api.exploring import explorables, explore_all
+    from roadproof.frontends.api.exploring import Explorations, explore_question
     from roadproof.frontends.api.restricting import restricted
 
     named, ranges = some_or_all(args), [_varied(text) for text in args.vary or ()]
@@ -52,8 +51,8 @@ def run(args: argparse.Namespace) -> int:
     for name, _, _ in ranges:
         if name in home.values:
             raise UsageError(f"{name} is given by --param and varied by --vary: leave one out")
-    asked = explorables(home, what, given, ranges)
-    return hand_over(args, explore_all(asked, given, tell), args.pictures)
+    question = explore_question(home, what, given, ranges)
+    return hand_over(args, Explorations.settled(question, given), args.pictures)
 
 
 def _varied(text: str) -> tuple[str, str, str]:

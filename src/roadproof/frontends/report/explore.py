@@ -7,20 +7,15 @@ from itertools import pairwise
 from textwrap import wrap
 from typing import Any, TypeAlias
 
-from roadproof.analysis.explore.answer import (
-    Boundary,
-    Explorable,
-    ExplorationResult,
-    Extreme,
-    PointFinding,
-    Variable,
-)
-from roadproof.analysis.explore.record import ends_of
+from roadproof.engines.search.extreme import Extreme
+from roadproof.engines.search.points import PointFinding
 from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.figures import draw_cell, legend_beside, make_figure, name_cells
 from roadproof.frontends.report.overlap import COLOURS, SIGNS
 from roadproof.frontends.report.sheet import Cell, Column, Sheet
 from roadproof.library.words import words_of
+from roadproof.questions.explore.asking import Explorable, Variable
+from roadproof.questions.explore.values import Boundary, ExplorationResult
 from roadproof.verdict import Verdict
 from roadproof.world.units import unit_text
 
@@ -42,8 +37,11 @@ def _meaning(verdict: Verdict, findings: Sequence[PointFinding]) -> str:
     return _THERE if there else _MEANING[verdict]
 
 
-def as_text(asked: Explorable, explored: ExplorationResult) -> str:
-    """One explored formula for the terminal: its map, the ends, the extremes; reasons as notes below."""
+def as_text(asked: Explorable, explored: ExplorationResult, seconds: float = 0.0) -> str:
+    """One explored formula for the terminal: its map, the ends, the extremes; reasons as notes below.
+
+    ``seconds``: how long it took.
+    """
     notes: Notes = {}
     lines = [_title(asked)]
     if asked.knobs:
@@ -58,7 +56,7 @@ def as_text(asked: Explorable, explored: ExplorationResult) -> str:
     counts = [f"{explored.searches} searches"]
     if explored.findings:
         counts = [f"{len(explored.findings)} values", *counts, f"{explored.drives} drives"]
-    return "\n".join([*lines, f"  {', '.join(counts)} in {round(explored.seconds, 1)} s"])
+    return "\n".join([*lines, f"  {', '.join(counts)} in {round(seconds, 1)} s"])
 
 
 def _title(asked: Explorable) -> str:
@@ -203,9 +201,18 @@ def draw_all(name: str, asked: Explorable, explored: ExplorationResult) -> Itera
     """Pictures of an exploration, and of the drives at its boundaries and extremes, with names of files."""
     if explored.findings:
         yield name, draw_exploration(asked, explored)
-    for file, finding in ends_of(name, explored):
+    for file, finding in _ends_of(name, explored):
         if finding.drive is not None:
             yield file, draw_drive(finding.drive.file, asked.search.specification.library)
+
+
+def _ends_of(name: str, explored: ExplorationResult) -> Iterator[tuple[str, PointFinding]]:
+    """What was found at boundaries and as extremes, each with the name of its picture."""
+    for k, boundary in enumerate(explored.boundaries, 1):
+        yield f"{name}-boundary-{k}-held", boundary.held
+    for k, x in enumerate(explored.extremes, 1):
+        if x.best is not None:
+            yield f"{name}-{x.measure.sense}-{k}-best", x.best
 
 
 def draw_exploration(asked: Explorable, explored: ExplorationResult) -> Any:

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 from roadproof.evidence.answers import classify, monitor
 from roadproof.evidence.answers import coverage as gaps
-from roadproof.evidence.answers import explore as explorations
 from roadproof.evidence.answers import traffic as evaluations
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.finding import Acceptance, Finding
@@ -17,6 +16,7 @@ from roadproof.frontends.report.page.results import Result, Words
 from roadproof.frontends.report.page.templates import in_unit, notes
 from roadproof.frontends.report.redundancy import sheet_of as sheet_of_changes
 from roadproof.frontends.report.sheet import Heading, Linked, Matrix
+from roadproof.questions.explore.data import ExplorationData, ExploreData
 from roadproof.questions.order.data import OrderData
 from roadproof.questions.overlap import OverlapData
 from roadproof.questions.redundancy import RedundancyData
@@ -135,11 +135,11 @@ def redundancy(result: Result, context: PageContext, words: Words) -> dict[str, 
 
 def explored(result: Result, context: PageContext, words: Words) -> dict[str, object]:
     """Explorations, each with its map: a row for one parameter, a matrix for two."""
-    index = read(explorations.Index, result.data, result.name)
+    index = read(ExploreData, result.data, result.name)
     return {"explored": [(x, _map(x, f"{result.id}-{k}")) for k, x in enumerate(index.explored)]}
 
 
-def _map(x: explorations.Exploration, place: str) -> Matrix:
+def _map(x: ExplorationData, place: str) -> Matrix:
     cells: dict[tuple[object, object], Linked] = {}
     rows, columns = dict[str, Heading](), dict[str, Heading]()
     for k, one in enumerate(x.values if x.vary else ()):

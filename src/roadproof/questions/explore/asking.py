@@ -5,17 +5,22 @@ Messages name the options of the command line, which asks in the same words.
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from itertools import product
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
-from roadproof.analysis.explore.answer import Explorable, Sense, Variable, read_measure
+from roadproof.engines.search.measure import Measure, Sense, read_measure
 from roadproof.engines.search.outcome import Search
+from roadproof.engines.search.points import Point
 from roadproof.engines.search.question import Setting
 from roadproof.errors import UsageError
 from roadproof.library.bind import Number, exact
+from roadproof.library.compose import always, comparison, with_parts
 from roadproof.library.specification import Library, Query, unknown
+from roadproof.logic import syntax
 from roadproof.logic.rewrite import parameters_of
+from roadproof.runtime.records import dataclass
 from roadproof.world.models import load_vehicle
 from roadproof.world.units import UNITS, unit_text
 from roadproof.world.vehicle import LIMITS, with_limits
@@ -24,6 +29,75 @@ _LIMIT = re.compile(r"(\w+)\.(\w+)\.(min|max)")
 EVERY_VEHICLE = "vehicle"
 # A name, and the least and the greatest value: ``("minDanger", 0, 3)``, ``("POV.a_lon.min", -6, -1)``.
 Varied: TypeAlias = tuple[str, Number, Number]
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A parameter, or the ``limit`` (such as ``a_lon.min``) of ``vehicles``, from ``low`` to ``high``.
+
+    ``name`` is how the user names it; values are in SI units and printed in ``unit``.
+    """
+
+    name: str
+    unit: str
+    low: Fraction
+    high: Fraction
+    vehicles: tuple[str, ...] = ()
+    limit: str = ""
+
+    def values(self, steps: int) -> tuple[Fraction, ...]:
+        """``steps`` (2 or more) values, evenly spaced, both ends included."""
+        return tuple(self.low + (self.high - self.low) * k / (steps - 1) for k in range(steps))
+
+
+@dataclass(frozen=True)
+class Explorable:
+    """For which values of ``knobs`` the query of ``search`` has a drive, and how far ``measures`` can go.
+
+    ``steps``: values of each knob; ``precision``: how far boundaries are narrowed, in SI units of the
+    knob (None: a sixtieth of its range), or brackets of measures where there is no knob.
+    """
+
+    search: Search
+    knobs: tuple[Variable, ...]
+    steps: int
+    precision: Fraction | None = None
+    measures: tuple[Measure, ...] = ()
+
+    @property
+    def points(self) -> list[Point]:
+        """The grid: the product of the values of the knobs; no point where there are none."""
+        return list(product(*(knob.values(self.steps) for knob in self.knobs))) if self.knobs else []
+
+    def at(self, point: Point) -> Search:
+        """The search with every knob at its value, limits stated in its query."""
+        there = self.placed(point)
+        return replace(there, query=with_parts(there.query, self.stated(point)))
+
+    def placed(self, point: Point) -> Search:
+        """The search with every knob at its value."""
+        setting = self.search.setting
+        values = dict(setting.values)
+        limits = {vehicle: dict(ends) for vehicle, ends in setting.limits.items()}
+        for knob, value in zip(self.knobs, point, strict=True):
+            if not knob.limit:
+                values[knob.name] = value
+            for vehicle in knob.vehicles:
+                limits.setdefault(vehicle, {})[knob.limit] = value
+        return replace(self.search, setting=replace(setting, values=values, limits=limits))
+
+    def stated(self, point: Point) -> tuple[Query, ...]:
+        """The limits at a point as formulas, so that a drive says them and whoever judges it checks them."""
+        parts: list[Query] = []
+        specification, given = self.search.specification, self.search.query.claim.given
+        for knob, value in zip(self.knobs, point, strict=True):
+            signal, _, end = knob.limit.partition(".")
+            for vehicle in knob.vehicles:
+                left = syntax.Call(signal, (syntax.Name(vehicle),))
+                op: Literal[">=", "<="] = ">=" if end == "min" else "<="
+                dimension = UNITS[knob.unit][1]
+                parts.append(always(comparison(specification, given, left, op, value, dimension)))
+        return tuple(parts)
 
 
 def ask_for(

@@ -5,8 +5,9 @@ from fractions import Fraction
 from itertools import product
 from typing import TypeAlias, assert_never
 
-from roadproof.analysis.explore.answer import PointFinding, between
 from roadproof.engines.encode.place import span
+from roadproof.engines.search.measure import between
+from roadproof.engines.search.points import PointFinding
 from roadproof.engines.search.question import SearchProblem
 from roadproof.logic import terms as t
 from roadproof.logic.terms import Term
@@ -23,7 +24,7 @@ class Bracket:
     is taken for the end.
     """
 
-    def __init__(self, sign: int, precision: Fraction, best: PointFinding, end: Fraction | None) -> None:
+    def __init__(self, sign: int, precision: Fraction, best: Fraction, end: Fraction | None) -> None:
         self.sign = sign
         self.precision = precision
         self.best = best
@@ -45,12 +46,13 @@ class Bracket:
 
     def distance(self, value: Fraction) -> Fraction:
         """How far ``value`` is beyond the best one."""
-        return (self.best.at[0] - value) * self.sign
+        return (self.best - value) * self.sign
 
-    def reached(self, found: PointFinding, value: Fraction) -> bool:
-        return (found.at[0] - value) * self.sign <= 0
+    def reached(self, found: Fraction, value: Fraction) -> bool:
+        """Return whether a value that was found is as good as the one that was asked for."""
+        return (found - value) * self.sign <= 0
 
-    def hold(self, found: PointFinding) -> None:
+    def hold(self, found: Fraction) -> None:
         self.best = found
         self.leap *= 2
         self.patience = PATIENCE
@@ -72,15 +74,15 @@ class Bracket:
         ahead = self.sign * self.precision
         if self.end is not None and self.sure is None:
             end, self.end = self.end, None
-            return end if self.distance(end) > 0 else self.best.at[0] - ahead
-        farthest = max([self.best, *self.doubts], key=lambda finding: self.distance(finding.at[0]))
-        room = None if self.sure is None else abs(self.sure.at[0] - farthest.at[0])
+            return end if self.distance(end) > 0 else self.best - ahead
+        farthest = max([self.best, *(x.at[0] for x in self.doubts)], key=self.distance)
+        room = None if self.sure is None else abs(self.sure.at[0] - farthest)
         if self.doubts and (self.patience <= 0 or (room is not None and room <= self.precision)):
             assert self.missed is not None
-            return between(self.best.at[0], self.missed.at[0])
+            return between(self.best, self.missed.at[0])
         if self.sure is not None:
-            return between(farthest.at[0], self.sure.at[0])
-        leap = farthest.at[0] - self.sign * self.leap
+            return between(farthest, self.sure.at[0])
+        leap = farthest - self.sign * self.leap
         return between(leap, leap - ahead)
 
 
