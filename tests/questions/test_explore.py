@@ -431,10 +431,37 @@ def test_what_is_kept_is_not_explored_again(tmp_path: Path, monkeypatch: pytest.
 
     monkeypatch.setattr(batches, "look", counted)
     settle(question_of(*TWO, least="v_lon(SV)"), tmp_path, 1)
-    in_doubt = [x.claim.digest() for x in first.answers.values() if not x.is_final]
-    lost = first.answers["formula-02-base-value-001"].claim.digest()
-    assert {x.digest() for x in again} <= {lost, *in_doubt}
+    assert {x.digest() for x in again} <= {first.answers["formula-02-base-value-001"].claim.digest()}
     assert {x.name: x.read_bytes() for x in tmp_path.iterdir()} == before
+
+
+def test_doubts_are_asked_again_with_more_work_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    question = question_of(FASTER, low=0)
+    first = settle(question, tmp_path, 1).answers
+    again: list[str] = []
+    decide = Engines.settle
+
+    def counted(self: Engines, claim: Claim) -> object:
+        again.append(claim.digest())
+        return decide(self, claim)
+
+    monkeypatch.setattr(Engines, "settle", counted)
+    settle(question, tmp_path, 1)
+    assert again == []
+    settle(replace(question, basis=replace(question.basis, effort=Effort(7))), tmp_path, 1)
+    assert again == [x.claim.digest() for x in first.values() if not x.is_final] != []
+
+
+def test_answers_to_claims_that_are_asked_no_more_are_removed(tmp_path: Path) -> None:
+    settle(question_of(FASTER), tmp_path, 1)
+    before = {x.name for x in tmp_path.iterdir()}
+    content = (tmp_path / "formula-01-base-value-001.json").read_bytes()
+    (tmp_path / "formula-01-base-at-4.json").write_bytes(content)
+    (tmp_path / "mine.json").write_text("{}")
+    settle(question_of(FASTER), tmp_path, 1)
+    assert {x.name for x in tmp_path.iterdir()} == before | {"mine.json"}
 
 
 def test_a_kept_answer_at_another_value_does_not_count(tmp_path: Path) -> None:

@@ -35,6 +35,9 @@ class Undecided(AboutClaim):
     reason: shared.Reason
     limits: Annotated[shared.KeptLimits | None, LEFT_OUT] = None
     doubt: Annotated[Doubt | None, LEFT_OUT] = None
+    work: Annotated[
+        str | None, LEFT_OUT, Doc("Digest of the work after which it is undecided; as much finds no more.")
+    ] = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,7 +14,7 @@ from roadproof.engines.prove.doubt import Cause, Doubt
 from roadproof.errors import SharedError, UsageError
 from roadproof.evidence.answer import Answer, undecided
 from roadproof.evidence.claim import Claim
-from roadproof.questions.question import Batch, Question, walk
+from roadproof.questions.question import Batch, Growing, Question, walk
 from roadproof.questions.store import Store
 from roadproof.reasons import Reason
 from roadproof.runtime.budget import Work
@@ -77,6 +77,8 @@ def settle(
         batches = run.open_batches()
     store.leave_only(run.known, say)
     store.make_room()
+    if not isinstance(question, Growing):
+        store.tidy(run.known)
     return Settled(run.known, run.origins, run.costs)
 
 
@@ -115,7 +117,7 @@ class _Run:
         if name in self.known:
             return self.known[name]
         found = self.store.find(name, claim, self.say)
-        if found is None or not found[0].is_final:
+        if found is None or not self.store.stands(found[0]):
             return None
         answer, origin = found
         if origin is not None:
@@ -216,10 +218,11 @@ def _settle(job: _Job) -> list[Priced]:
         if name in job.known:
             return job.known[name]
         found = None if job.store is None else job.store.find(name, claim)
-        if found is not None and found[0].is_final:
+        if found is not None and job.store is not None and job.store.stands(found[0]):
             answer, cost = found[0], NO_COST
         else:
             answer, cost = engines.settle(claim)
+            answer = answer if job.store is None else job.store.exhausted(answer)
         new.append((name, answer, cost))
         return answer
 

@@ -6,8 +6,10 @@ the archive a file stands under the digest of its claim, of the work that was al
 
 import json
 import lzma
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from contextlib import suppress
+from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -15,10 +17,12 @@ from roadproof.analysis.study.evidence_store import keep_specifications
 from roadproof.analysis.study.known import Origin
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.answer import SCHEMAS, Answer, answer_data, read_answer
+from roadproof.evidence.answer_files import Undecided
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.strict import LARGEST_EVIDENCE, LARGEST_INDEX, read_json
 from roadproof.questions.data import QUESTION, basis_data, question_data, read_question
 from roadproof.questions.question import Answers, Growing, Question
+from roadproof.reasons import Why
 from roadproof.runtime.archives import archived
 from roadproof.runtime.budget import Work
 from roadproof.runtime.cache import keep_bytes, kept_bytes, make_room
@@ -86,6 +90,31 @@ class Store:
             "name another folder with --out, or remove it"
         )
 
+    @cached_property
+    def _same_work(self) -> str:
+        return digest(self.work, ANSWERS, program())
+
+    def stands(self, answer: Answer) -> bool:
+        """Return whether an answer need not be asked again: for ever, or with as much work."""
+        evidence = answer.evidence
+        return answer.is_final or (isinstance(evidence, Undecided) and evidence.work == self._same_work)
+
+    def exhausted(self, answer: Answer) -> Answer:
+        """Return an answer to which as much work adds nothing, with a mark that says so.
+
+        Only searches in stages count all of their work; what the clock cut off has none.
+        """
+        evidence = answer.evidence
+        if not self.work.staged or not isinstance(evidence, Undecided) or evidence.reason.kind is Why.CLOCK:
+            return answer
+        return replace(answer, evidence=replace(evidence, work=self._same_work))
+
+    def tidy(self, names: Collection[str]) -> None:
+        """Remove answers to claims that are asked no more, after another answer to an earlier one."""
+        for path in () if self.folder is None else self.folder.glob("*.json"):
+            if path.stem not in names and path.name != QUESTION and _is_answer(path):
+                path.unlink()
+
     def key(self, claim: Claim) -> str:
         """The digest of all that an answer depends on."""
         return digest(claim.digest(), self.work, ANSWERS)
@@ -122,7 +151,7 @@ class Store:
         data = answer_data(answer)
         if self.folder is not None:
             write_json(self.folder / f"{name}.json", data)
-        if is_new and self.reads_known and answer.is_final:
+        if is_new and self.reads_known and self.stands(answer):
             key = digest(self.key(answer.claim), program())
             keep_bytes(CACHE, key, lzma.compress(json.dumps(data).encode(), preset=0))
 
@@ -140,6 +169,14 @@ class Store:
     def make_room(self) -> None:
         """Keep the cache within its bounds."""
         make_room(CACHE)
+
+
+def _is_answer(path: Path) -> bool:
+    try:
+        content = read_json(path, LARGEST_EVIDENCE)
+    except InputError:
+        return False
+    return isinstance(content, dict) and content.get("schema") in SCHEMAS
 
 
 def keep_all(folder: Path, question: Question[Any], answers: Answers) -> None:
