@@ -259,7 +259,8 @@ def told(answers: Answers) -> Any:
     A computed drive also lists what the user has changed and no formula mentions. Of the traces that refute
     a claim for all values, a solver that has answered other questions before may find another one.
     """
-    return without_seconds(with_mentioned(answers.as_data(), answers.study.question.library))
+    home = answers.study.question.library if hasattr(answers, "study") else answers.library
+    return without_seconds(with_mentioned(answers.as_data(), home))
 
 
 def with_mentioned(data: Any, library: Library) -> Any:
@@ -326,7 +327,7 @@ def test_the_question_asked_at_first_is_known_and_its_answer_the_same(
     if name not in first:
         first[name] = told(EVERY[name](Asking(), False))
     again = EVERY[name](Asking(), False)
-    assert again.found.known
+    assert again.found.known if hasattr(again, "study") else again.found.origins
     assert told(again) == first[name]
 
 
