@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from roadproof.analysis.basis import Basis
 from roadproof.engines.encode.unroll import common_step
-from roadproof.engines.search import batches, known_drive, placing
+from roadproof.engines.search import batches, known_drive, placing, stages
 from roadproof.engines.search.batches import Engines
 from roadproof.engines.search.bracket import Bracket, range_of, starting_ranges
 from roadproof.engines.search.extreme import (
@@ -28,7 +28,8 @@ from roadproof.engines.search.extreme import (
 from roadproof.engines.search.measure import Sense, between, read_measure
 from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.points import PointFinding, Points, Remembered
-from roadproof.engines.search.question import SearchOptions, Setting, durations, pose
+from roadproof.engines.search.question import SearchOptions, SearchProblem, Setting, durations, pose
+from roadproof.engines.search.search import Attempt
 from roadproof.engines.search.stages import MOST_STEPS, dt_of, fit_grid, look, stand_ins, values_of
 from roadproof.evidence.answer import Answer, undecided
 from roadproof.evidence.claim import HELP, Claim
@@ -165,6 +166,27 @@ def test_values_off_every_grid_are_served_by_drives_of_coarser_ones() -> None:
     assert complaints(explored, "minSafe") == []
     tight = replace(asked, knobs=(Variable("minSafe", "s", F("1.911"), F("1.913")),), precision=F(1))
     assert {x.verdict for x in explore(tight).findings} == {Verdict.UNKNOWN}
+
+
+def test_a_drive_that_is_not_natural_is_found_after_those_that_are() -> None:
+    """Natural drives begin with 22 m/s or more."""
+    what = "v_lon(SV) <= 16 m/s and F[0, minSafe] v_lon(SV) >= 18 m/s"
+    explored = explore(Explorable(search_for(what), (Variable("minSafe", "s", F(3), F(6)),), 2))
+    assert [x.verdict for x in explored.findings] == [Verdict.WITNESSED] * 2
+
+
+@pytest.mark.parametrize("verdict", [Verdict.UNKNOWN, Verdict.NONE_WITHIN])
+def test_none_within_is_said_where_that_is_shown(verdict: Verdict, monkeypatch: pytest.MonkeyPatch) -> None:
+    shown: list[SearchProblem] = []
+
+    def show_none(problem: SearchProblem, options: SearchOptions) -> Attempt:
+        shown.append(problem)
+        return Attempt(verdict, None, Why.NONE_FOUND())  # type: ignore[arg-type]
+
+    monkeypatch.setattr(stages, "show_none", show_none)
+    explored = explore(Explorable(search_for(FASTER), (Variable("minSafe", "s", F(0), F(1)),), 2))
+    assert [x.verdict for x in explored.findings] == [verdict] * 2
+    assert len(shown) == 2
 
 
 def test_what_is_proved_impossible_takes_no_search() -> None:

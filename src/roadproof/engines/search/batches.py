@@ -177,7 +177,7 @@ class Engines:
         Where a known trace has the formula, there is no proof that it never holds.
         """
         if self.work.staged:
-            return look(claim, search_of(claim, self.work))
+            return look(claim, search_of(claim, self.work, explain=False))
         wants_proof = self.work.disprove and (not isinstance(claim.mode, Exists) or claim.mode.explain)
         proof = self._clash(claim, 1.0) if wants_proof and not self._has_trace(claim) else None
         if proof is not None:
