@@ -15,6 +15,7 @@ class Verdict(StrEnum):
     WITNESSED = "WITNESSED"  # judged drive
     IMPOSSIBLE = "IMPOSSIBLE"  # a proof for all time that there is none
     NONE_WITHIN = "NONE-WITHIN"  # none within horizon, grid and limits
+    DERIVED = "DERIVED"  # worked out exactly from a definition or a model; checked by working it out again
     UNKNOWN = "UNKNOWN"  # says why
     COVERED = "COVERED"  # of a set that misses no disturbance; certificates
     GAPS = "GAPS"  # of a set that misses some; judged drives

@@ -12,13 +12,13 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from roadproof.analysis.claims import Claims, name_of
+from roadproof.analysis.witnesses import WitnessStudy
 
 import roadproof as rp
 from analysis.heard import Asked
 from api.doors import without_seconds
 from evidence.folders import check
-from roadproof.analysis.claims import Claims, name_of
-from roadproof.analysis.witnesses import WitnessStudy
 from roadproof.errors import UsageError
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.journal import ANSWERS, HEAD, seal_of

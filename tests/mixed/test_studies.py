@@ -7,12 +7,12 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from roadproof.analysis.redundancy import ChangeFinding, Redundancy, learn
 
 from roadproof.analysis import placing, redundancy
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.classify.classes import plan_of
 from roadproof.analysis.classify.divide import CellAnswer, CellTask, Dividing, Undivided, _division, divide
-from roadproof.analysis.redundancy import ChangeFinding, Redundancy, learn
 from roadproof.engines.prove.prover import Result
 from roadproof.errors import InputError
 from roadproof.evidence.certificate import read_certificate_data
@@ -150,6 +150,7 @@ def test_another_question_about_changes_is_another_folder() -> None:
 
 def test_searches_are_told_apart_and_lost_ones_are_doubts_of_themselves() -> None:
     from roadproof.analysis.witnesses import WitnessStudy
+
     from roadproof.engines.search.outcome import Search
     from roadproof.engines.search.question import SearchOptions, Setting
     from roadproof.library.elaborate import read_claim
@@ -184,8 +185,9 @@ def test_searches_are_told_apart_and_lost_ones_are_doubts_of_themselves() -> Non
 
 
 def test_a_definition_below_a_search_is_a_part_of_its_key() -> None:
-    import roadproof as rp
     from roadproof.analysis.witnesses import WitnessStudy
+
+    import roadproof as rp
     from roadproof.engines.search.outcome import Search
     from roadproof.engines.search.question import SearchOptions, Setting
 

@@ -14,7 +14,6 @@ from preventing.labels import labels
 from preventing.read import boundary, specification, values
 from preventing.test_stepping import RATE as STEP_RATE
 from preventing.test_stepping import random_cut_ins
-from roadproof.analysis.preventable.sides import judged_drive
 from roadproof.drivers import driving
 from roadproof.drivers.braking import AssistedBraking, Ramp
 from roadproof.drivers.driving import DriverSettings, drive_of
@@ -22,6 +21,7 @@ from roadproof.drivers.lemmas import lemmas_for
 from roadproof.drivers.lines import Side
 from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, along_line, start_of
 from roadproof.drivers.models import models_for
+from roadproof.engines.search.beside import judged_drive
 from roadproof.errors import InputError
 from roadproof.evidence.judged import judge_file
 from roadproof.frontends.cli.main import main

@@ -14,7 +14,6 @@ import roadproof as rp
 from preventing import stepping
 from preventing.read import boundary, specification, values
 from preventing.test_preventable import copy
-from roadproof.analysis.preventable.sides import beside_boundary, far_apart, first_drive, judged_drive
 from roadproof.drivers import gradual
 from roadproof.drivers.braking import AssistedBraking, Ramp
 from roadproof.drivers.driving import DriverSettings, _along, drive_of, motion_in_deceleration
@@ -24,6 +23,7 @@ from roadproof.drivers.manoeuvres import DECELERATION, KMH, MANOEUVRES, Plane, l
 from roadproof.drivers.models import MODELS, unpreventable
 from roadproof.drivers.restriction import Restriction, check_drives
 from roadproof.drivers.words import _PARTS, legend, words_of_parts
+from roadproof.engines.search.beside import beside_boundary, far_apart, first_drive, judged_drive
 from roadproof.errors import UsageError
 from roadproof.evidence.judged import judge_file
 from roadproof.frontends.api.definitions import Definitions
@@ -371,14 +371,14 @@ def test_symbols_and_strips_of_a_plate() -> None:
     found = rp.preventable(
         "cut-in", models=["careful"], at={"Ve0": "60km/h", "Vy": "1"}, lines=3, lemmas=False, jobs=1
     )
-    told = as_text(found.study, found.plates, ()).splitlines()[-1]
+    told = as_text(found.question, found.plates, ()).splitlines()[-1]
     for symbol in (
         "Ve0: the speed of SV (km/h)",
         "dV0: how much faster SV is",
         "dx0: the gap along the road (m)",
     ):
         assert symbol in told
-    assert {x.name for x in shown_symbols(found.study)} == {"Ve0", "dV0", "Vy", "dx0"}
+    assert {x.name for x in shown_symbols(found.question)} == {"Ve0", "dV0", "Vy", "dx0"}
     drives = [x.drive for plate in found.plates for x in plate.shown if x.drive is not None]
     assert len(drives) == 2
     for drive in drives:

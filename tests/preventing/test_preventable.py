@@ -11,13 +11,13 @@ import pytest
 
 import roadproof as rp
 from preventing.read import boundary, specification, values
-from roadproof.analysis.preventable.sides import beside_boundary, first_drive, judged_drive
 from roadproof.analysis.study.evidence_store import EvidenceStore
 from roadproof.drivers.driving import DriverSettings
 from roadproof.drivers.lemmas import lemmas_for
 from roadproof.drivers.lines import SIDES
 from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES, Plane, line
 from roadproof.drivers.models import MODELS, manoeuvre_of, models_for
+from roadproof.engines.search.beside import beside_boundary, first_drive, judged_drive
 from roadproof.evidence.certificate import read_certificate
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.report import preventable as report
@@ -419,8 +419,8 @@ def test_no_two_plates_of_a_model_are_drawn_over_each_other(monkeypatch):
     monkeypatch.setattr(report, "_draw_plate", lambda axes, study, here: drawn.append([x.name for x in here]))
     at = {"Ve0": ["60 km/h", "90 km/h"], "Vy": [1, 2], "dy0": [1, 2]}
     found = rp.preventable("cut-in", ["r157", "eu1426"], at=at, lines=2, lemmas=False, jobs=1)
-    report.draw_sheet(found.study, found.plates)
-    assert sorted(name for names in drawn for name in names) == sorted(found.study.plates)
+    report.draw_sheet(found.question, found.plates)
+    assert sorted(name for names in drawn for name in names) == sorted(found.question.plates)
     assert [len(names) for names in drawn] == [2] * 8
 
 

@@ -14,7 +14,6 @@ from preventing import stepping
 from preventing.fuzzy_again import first_difference, motion
 from preventing.labels import labels
 from preventing.read import bound, boundary, specification, values
-from roadproof.analysis.preventable.sides import judged_drive
 from roadproof.drivers import stepped
 from roadproof.drivers.driving import DriverSettings, drive_of
 from roadproof.drivers.fuzzy import Controller, Scale, scale_of
@@ -22,6 +21,7 @@ from roadproof.drivers.lines import SIDES
 from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES, Plane
 from roadproof.drivers.models import models_for
 from roadproof.drivers.stepped import course_of, labels_of, places_of, spans_of
+from roadproof.engines.search.beside import judged_drive
 from roadproof.evidence.judged import judge_file
 from roadproof.frontends.cli.main import main
 

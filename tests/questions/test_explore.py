@@ -457,9 +457,7 @@ def test_what_is_kept_is_not_explored_again(tmp_path: Path, monkeypatch: pytest.
     assert {x.name: x.read_bytes() for x in tmp_path.iterdir()} == before
 
 
-def test_doubts_are_asked_again_with_more_work_alone(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_doubts_are_asked_again_with_more_work_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     question = question_of(FASTER, low=0)
     first = settle(question, tmp_path, 1).answers
     again: list[str] = []

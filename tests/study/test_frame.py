@@ -12,13 +12,13 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 import pytest
+from roadproof.analysis.claims import ClaimResult, Claims
 from roadproof.analysis.overlap import Overlap, PairVerdict
 from roadproof.analysis.overlap import name_of as pair_name
 from roadproof.evidence.answers.overlap import Record
 
 from evidence.folders import changes, check, places
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.claims import ClaimResult, Claims
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.analysis.study.frame import Unprepared, conduct
 from roadproof.errors import InputError, SharedError, UsageError

@@ -16,11 +16,11 @@ import roadproof as rp
 from planting import plant
 from preventing.read import bound, boundary, library, specification, values
 from preventing.recorded import BEFORE, recorded
-from roadproof.analysis.preventable.sides import beside_boundary
 from roadproof.drivers.driving import DriverSettings
 from roadproof.drivers.lines import SIDES, Side
 from roadproof.drivers.manoeuvres import KMH, MANOEUVRES, Manoeuvre, Plane, line
 from roadproof.drivers.models import MODELS, SCENARIOS, course_in, foreseen
+from roadproof.engines.search.beside import beside_boundary
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.main import main
 from roadproof.recordings.evaluate import foretelling

@@ -66,6 +66,12 @@ class _Options:
     cc_aeb: Joined
 
 
+PARAMETERS: tuple[str, ...] = tuple(x.name for x in fields(_Parameters))
+"""The parameters with which models move."""
+OPTIONS: tuple[str, ...] = tuple(x.name for x in fields(_Options))
+"""The options of driver models."""
+
+
 @dataclass(frozen=True)
 class DriverSettings:
     """Values of parameters (SI) and options, as the specification at hand has them."""
@@ -76,12 +82,12 @@ class DriverSettings:
     @cached_property
     def parameters(self) -> _Parameters:
         """Those of driver models."""
-        return _Parameters(**{x.name: self.values[x.name] for x in fields(_Parameters)})
+        return _Parameters(**{x: self.values[x] for x in PARAMETERS})
 
     @cached_property
     def choices(self) -> _Options:
         """The options of driver models."""
-        return _Options(**{x.name: self.options[x.name] for x in fields(_Options)})  # type: ignore[arg-type]
+        return _Options(**{x: self.options[x] for x in OPTIONS})  # type: ignore[arg-type]
 
     def has_aeb(self, model: ModelName) -> bool:
         """Whether there is AEB in a cut-in of the model."""

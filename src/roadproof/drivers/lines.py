@@ -30,10 +30,47 @@ def claim_of(
     Of a controller that is stepped: only how the drive begins, and what comes of it. Where POV's braking
     grows at a finite rate: that SV follows its model, and what comes of it.
     """
-    vehicles, start = manoeuvre.vehicles, m.start_of(manoeuvre, values)
-    met = models.touched(vehicles) if side == "unpreventable" else models.untouched(vehicles)
+    start = m.start_of(manoeuvre, values)
     numbers = _numbers(start, reading, reading.has_aeb(model))
-    if isinstance(start, m.Deceleration) and start.dGdt is not None:
+    return _shown(manoeuvre, model, side, _is_gradual(start), numbers)
+
+
+def open_claim(
+    specification: Specification, manoeuvre: m.Manoeuvre, model: models.ModelName, fixed: m.Values, side: Side
+) -> str:
+    """Return what a drive of a side shows for some initial values: ``claim_of`` with names for numbers."""
+    is_gradual = gradual.RATE in fixed
+    if models.MODELS[model].is_stepped:
+        return _shown(manoeuvre, model, side, is_gradual, ())
+    course = models.GRADUAL if is_gradual else manoeuvre.name
+    declared = specification.definitions[models.follows_name(course, model)].parameters
+    numbers = declared[len(manoeuvre.vehicles) :]
+    given = "; ".join(f"{x.name}: {x.sort}" for x in numbers)
+    names = tuple(x.name for x in numbers)
+    return f"given {given}: {_shown(manoeuvre, model, side, is_gradual, names)}"
+
+
+def boundary_text(manoeuvre: m.Manoeuvre, model: models.ModelName, fixed: m.Values) -> str:
+    """Return what is true where a collision is unpreventable: of the state there, or of the drive."""
+    if gradual.RATE in fixed:
+        return models.touched(manoeuvre.vehicles)
+    return models.boundary_of(manoeuvre.name, model, manoeuvre.vehicles)
+
+
+def _is_gradual(start: m.Start) -> bool:
+    return isinstance(start, m.Deceleration) and start.dGdt is not None
+
+
+def _shown(
+    manoeuvre: m.Manoeuvre,
+    model: models.ModelName,
+    side: Side,
+    is_gradual: bool,
+    numbers: tuple[str, ...],
+) -> str:
+    vehicles = manoeuvre.vehicles
+    met = models.touched(vehicles) if side == "unpreventable" else models.untouched(vehicles)
+    if is_gradual:
         driven = models.follows(models.GRADUAL, model, vehicles, numbers)
         return f"{models.foreseen(models.GRADUAL, vehicles)} and {driven} and {met}"
     begins = models.foreseen(manoeuvre.name, vehicles)

@@ -204,4 +204,9 @@ def foreseen(manoeuvre: Course, vehicles: tuple[str, ...]) -> str:
 
 def follows(manoeuvre: Course, model: str, vehicles: tuple[str, ...], numbers: tuple[str, ...]) -> str:
     """The formula: SV drives as the model does; ``numbers`` are of the start, with units."""
-    return f"follows_{_word(manoeuvre)}_{model}({', '.join((*vehicles, *numbers))})"
+    return f"{follows_name(manoeuvre, model)}({', '.join((*vehicles, *numbers))})"
+
+
+def follows_name(manoeuvre: Course, model: str) -> str:
+    """Return the name of the definition that ``follows`` applies."""
+    return f"follows_{_word(manoeuvre)}_{model}"

@@ -24,12 +24,13 @@ from roadproof.evidence.answer_files import (
 from roadproof.evidence.answers.doubt import Doubt
 from roadproof.evidence.answers.none_within import Model
 from roadproof.evidence.certificate import Certificate, certificate_data, read_certificate_data
-from roadproof.evidence.claim import Claim, Exists, Judgement, On, Valid
+from roadproof.evidence.claim import Beside, Claim, Exists, Judgement, Lines, On, Valid
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.countermodel import Countermodel, read_trace, trace_data
 from roadproof.evidence.drive_file import DriveFile, natural_of, read_drive
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.none_within import NoneWithinFile, none_within_data, read_none_within
+from roadproof.evidence.plate import BOUNDARY, BoundaryFile
 from roadproof.evidence.refutation import fault_of
 from roadproof.evidence.strict import Fields, JsonObject
 from roadproof.library.bind import values_with
@@ -60,7 +61,9 @@ class Judged:
     shows: Judgement
 
 
-Evidence: TypeAlias = Certificate | JudgedDrive | Refutation | NoneWithinFile | Judged | Undecided
+Evidence: TypeAlias = (
+    Certificate | JudgedDrive | Refutation | NoneWithinFile | BoundaryFile | Judged | Undecided
+)
 
 
 @dataclass(frozen=True)
@@ -86,8 +89,10 @@ class Answer:
                 return Verdict.VACUOUS if self._denied is not None else Verdict.PROVED
             case Valid(), JudgedDrive() | Refutation():
                 return Verdict.REFUTED
-            case Exists(), JudgedDrive():
+            case Exists() | Beside(), JudgedDrive():
                 return Verdict.WITNESSED
+            case Lines(), BoundaryFile():
+                return Verdict.DERIVED
             case Exists(), Certificate():
                 return Verdict.IMPOSSIBLE
             case Exists(), NoneWithinFile():
@@ -185,8 +190,8 @@ def answer_data(answer: Answer) -> JsonObject:
             return drive.as_data()
         case NoneWithinFile() as trees:
             return none_within_data(trees)
-        case Undecided() as why:
-            return write(why)
+        case Undecided() | BoundaryFile() as own:
+            return write(own)
         case Judged(shows):
             mode = answer.claim.mode
             assert isinstance(mode, On)
@@ -250,8 +255,7 @@ def _is_part_denied(claim: Claim, shown: Formula) -> bool:
 def _drive(claim: Claim, content: object, where: str) -> JudgedDrive:
     file = read_drive(content, where)
     _require_readings(claim, file.set_name, file.options, where)
-    shown = read_claim(claim.home, file.formula).formula
-    _require(shown == sought_by(claim), where, f"its drive is one of {_short(file.formula)}")
+    _require(_shows(claim, file), where, f"its drive is one of {_short(file.formula)}")
     _require_values(claim, file.values, where)
     if isinstance(claim.mode, Exists):
         mode, overlaps = claim.mode, file.overlaps_allowed
@@ -264,12 +268,13 @@ def _drive(claim: Claim, content: object, where: str) -> JudgedDrive:
     return JudgedDrive(file, claim.home.library, natural_of(content, where))
 
 
-def _require_apart(mode: Exists, file: DriveFile, where: str) -> None:
-    """Boxes stay apart for as long as a claim wants, where it says so."""
-    if mode.apart is not None:
-        _require(mode.collisions or not file.overlaps_allowed, where, "boxes may overlap on its drive")
-        ends = f"its horizon={file.horizon} s ends before {mode.apart} s"
-        _require(file.horizon >= mode.apart, where, ends)
+def _shows(claim: Claim, file: DriveFile) -> bool:
+    """Return whether a drive is about a claim: its formula, or the place of a plate that it begins at."""
+    if isinstance(claim.mode, Beside):
+        from roadproof.evidence.boundary import start_of  # here: other answers need no driver model
+
+        return start_of(claim, file) is not None
+    return read_claim(claim.home, file.formula).formula == sought_by(claim)
 
 
 def sought_by(claim: Claim) -> Formula:
@@ -328,6 +333,16 @@ def _moves_as(one: Vehicle, other: Vehicle) -> bool:
     return all(getattr(one, x) == getattr(other, x) for x in Model.__annotations__)
 
 
+def _boundary(claim: Claim, content: object, where: str) -> BoundaryFile:
+    file = read(BoundaryFile, content, where)
+    _require_about(claim, file, where)
+    known = {x.name: x.value for x in claim.parameters}
+    _require(file.parameters == known, where, "its parameters have other values")
+    about = claim.mode.plate if isinstance(claim.mode, Lines) else None
+    _require(file.plate == about, where, "it is about another plate")
+    return file
+
+
 def _undecided(claim: Claim, content: object, where: str) -> Undecided:
     file = read(Undecided, content, where)
     _require_about(claim, file, where)
@@ -349,6 +364,7 @@ _READERS: Mapping[str, Callable[[Claim, object, str], Evidence]] = {
     **dict.fromkeys(drive_file.SCHEMAS_READ, _drive),
     none_within.SCHEMA: _none_within,
     REFUTATION: _refutation,
+    BOUNDARY: _boundary,
     UNDECIDED: _undecided,
     JUDGED: _judged,
 }

@@ -16,6 +16,7 @@ from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.finding import Acceptance, Finding, OtherVerdict
 from roadproof.evidence.judged import judge_file, times_data
 from roadproof.evidence.none_within import Derive, Derived, NoneWithinFile
+from roadproof.evidence.plate import BOUNDARY, BoundaryFile
 from roadproof.evidence.refutation import judge_trace
 from roadproof.evidence.strict import Fields, read_json
 from roadproof.evidence.subject import SubjectKind
@@ -32,6 +33,7 @@ from roadproof.runtime.budget import BudgetExceeded
 from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.exact import Judgement
 from roadproof.semantics.exact.replay import first_overlap
+from roadproof.verdict import Verdict
 
 SCHEMAS = (certificate.SCHEMA, *drive_file.SCHEMAS_READ, none_within.SCHEMA)
 """The files of evidence that are checked alone."""
@@ -66,6 +68,8 @@ class Checker:
                 return Finding(str(path), "test", Acceptance.UNREADABLE, why)
             if schema == REFUTATION:
                 return self._refutation(path, read(RefutationFile, content, str(path)))
+            if schema == BOUNDARY:
+                return self._boundary(path, read(BoundaryFile, content, str(path)))
             if schema == none_within.SCHEMA and self.derive is not None:
                 file = none_within.read_none_within(content, str(path))
                 return self._none_within(path, file, self.derive(file, self.library))
@@ -125,6 +129,18 @@ class Checker:
         word = "" if self.ruled is None else self.ruled.word
         said = Finding(str(path), "trace", outcome, reason, "REFUTED", "", claim, checked)
         return replace(said, kernel=word)
+
+    def _boundary(self, path: Path, file: BoundaryFile) -> Finding:
+        """Lines are worked out again from the formula or the motion of their model."""
+        from roadproof.evidence.boundary import fault_of  # here: other evidence needs no driver model
+
+        reason = Why.TOLD(fault) if (fault := fault_of(file, self.library)) else NO_REASON
+        outcome = Acceptance.REJECTED if reason else Acceptance.ACCEPTED
+        declared = default_values(self.library)
+        other = [f"{name}={x}" for name, x in sorted(file.parameters.items()) if declared.get(name) != x]
+        told = f"with {', '.join(other)}" if other else "declared parameters"
+        checked = () if reason else ("worked out again", told, *self._readings(file.options))
+        return Finding(str(path), "boundary", outcome, reason, Verdict.DERIVED, "", file.claim, checked)
 
     def _none_within(self, path: Path, file: NoneWithinFile, derived: Derived) -> Finding:
         """Trees are checked against programs that the encoder derives again from the question."""

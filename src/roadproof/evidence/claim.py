@@ -1,9 +1,9 @@
 """Claims: all that an engine is asked, as one closed value with a digest.
 
 A ``Claim`` holds the elaborated formula, in which every definition is written out, the bounds and values of
-exactly the parameters that occur in it, and how it is asked: of all traces, of drives to be found, or of a
-given trace. Two claims are equal where an engine cannot tell them apart, so a digest is a sound key for
-answers that are kept. ``text`` is for people: no answer depends on it.
+exactly the parameters that occur in it, and how it is asked: of all traces, of drives to be found, of a given
+trace, or of initial values of a driver model. Two claims are equal where an engine cannot tell them apart, so
+a digest is a sound key for answers that are kept. ``text`` is for people: no answer depends on it.
 """
 
 from collections.abc import Iterable, Mapping
@@ -11,6 +11,7 @@ from dataclasses import field
 from fractions import Fraction
 from typing import Final, Literal, Protocol, TypeAlias
 
+from roadproof.evidence.plate import Plate
 from roadproof.library.motion import is_moving, under_limits, values_said
 from roadproof.library.specification import Library, Query, Specification
 from roadproof.logic.formula import Application, Formula, children, intervals
@@ -119,7 +120,33 @@ class On:
     judge: Judge = field(compare=False, repr=False)
 
 
-Mode: TypeAlias = Valid | Exists | On
+@dataclass(frozen=True)
+class Lines:
+    """On each line of a plate it is to be worked out where the formula holds.
+
+    ``readings``: options on which the motion of the model depends, where no formula describes it.
+    """
+
+    plate: Plate
+    readings: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Beside:
+    """A drive of the model of a plate is to be found that begins there, and shows the formula.
+
+    The formula leaves open which numbers the initial values are. ``readings``: options on which the motion of
+    the model depends. ``of``: what the drive should be of besides, the first before the others.
+    """
+
+    plate: Plate
+    side: Literal["unpreventable", "preventable"]
+    readings: Mapping[str, str] = field(default_factory=dict)
+    of: tuple[Formula, ...] = ()
+    of_texts: tuple[str, ...] = field(default=(), compare=False)
+
+
+Mode: TypeAlias = Valid | Exists | On | Lines | Beside
 
 
 @dataclass(frozen=True)
@@ -179,9 +206,10 @@ def parameters_in(
     formulas: Iterable[Formula],
     values: Mapping[str, Fraction],
     terms: Iterable[Term] = (),
+    more: Iterable[str] = (),
 ) -> tuple[OccurringParameter, ...]:
-    """The parameters that occur in formulas and terms, by name, with their values (SI)."""
-    names = {name for formula in formulas for name in _names_in(formula)}
+    """The parameters that occur in formulas and terms, and ``more``, by name, with their values (SI)."""
+    names = {name for formula in formulas for name in _names_in(formula)} | {*more}
     names |= {leaf.name for term in terms for leaf in leaves(term) if isinstance(leaf, Parameter)}
     return tuple(_occurring(library, name, values) for name in sorted(names))
 

@@ -36,7 +36,7 @@ _EXIT = {
 }
 
 
-Kind: TypeAlias = Literal["certificate", "drive", "trace", "index", "journal", "test", "none", ""]
+Kind: TypeAlias = Literal["certificate", "drive", "trace", "boundary", "index", "journal", "test", "none", ""]
 STALE: Final = (Why.TEST_GONE, Why.TEST_UNKNOWN, Why.FILE_GONE, Why.FILE_CHANGED)
 """Why an answer is about tests that are others now."""
 NO_EVIDENCE: Final = "none"  # the kind of an answer that promises nothing, or nothing that is for all time

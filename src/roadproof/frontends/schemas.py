@@ -20,7 +20,6 @@ from roadproof.evidence.answers import (
     library,
     monitor,
     none_within,
-    plates,
     road_map,
     shared,
     show,
@@ -43,6 +42,7 @@ from roadproof.evidence.json_schema import (
     shared_schemas,
     tagged_schema,
 )
+from roadproof.evidence.plate import BoundaryFile
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.motion import INDUCTIONS
 from roadproof.questions import overlap as overlap_question
@@ -51,6 +51,7 @@ from roadproof.questions.data import QuestionFile
 from roadproof.questions.explore.data import ExploreData
 from roadproof.questions.order.data import OrderData
 from roadproof.questions.overlap import OverlapData
+from roadproof.questions.preventable.data import PreventableData
 from roadproof.questions.prove import ClaimsData
 from roadproof.questions.redundancy import RedundancyData
 from roadproof.questions.survey import SurveyData
@@ -85,10 +86,10 @@ TITLES: Mapping[type, str] = {
     QuestionFile: "question.json: a question, from which its claims are listed",
     Undecided: "NAME.json in a folder of answers: why a claim is undecided",
     RefutationFile: "NAME.json in a folder of answers: a trace on which a claim is false",
-    plates.Index: (
-        "roadproof preventable --json, and index.json of its folder: from which initial values a driver "
-        "prevents a collision"
+    PreventableData: (
+        "roadproof preventable --json: from which initial values a driver prevents a collision"
     ),
+    BoundaryFile: "NAME.json in a folder of answers: where on the lines of a plate a formula holds",
     bundle.Manifest: "manifest.json of roadproof bundle: what is in it, and what checks it",
     road_map.Answer: "roadproof road --json: the roads of a map",
     trace.Answer: "roadproof trace --json: which requirements are shown",
@@ -107,7 +108,7 @@ WITHOUT_ASSUMPTION: JsonObject = {
 }
 """Only inductions may stand in a certificate that assumes nothing."""
 DRIVES = (drive.Drive, drive.JerkDrive)
-KEEPING = (plates, coverage, classify, catalogue_index)
+KEEPING = (coverage, classify, catalogue_index)
 """The questions whose answers are kept one by one."""
 RECORDS: Mapping[str, type] = {x.SCHEMA: x.Record for x in KEEPING}
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from roadproof.errors import InputError
 from roadproof.evidence.answer import Answer, Judged, assumed_by, read_answer, undecided
-from roadproof.evidence.claim import HELP, Claim, Exists, On
+from roadproof.evidence.claim import HELP, Beside, Claim, Exists, On
 from roadproof.evidence.codec import write
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
 from roadproof.evidence.strict import LARGEST_EVIDENCE, LARGEST_INDEX, Fields, read_json
@@ -73,6 +73,8 @@ class QuestionFolder:
             reason = NO_REASON if same else Why.TOLD("the trace shows something else")
             found = replace(found, kind="test", outcome=outcome, reason=reason)
         claim = statement(assumed_by(answer.claim), answer.claim.query.text)
+        if isinstance(answer.claim.mode, Beside):
+            claim = found.claim  # which says the numbers that the claim leaves open
         linked = self.question.subject(name) if isinstance(self.question, Linkable) else OTHER
         return replace(
             found,

@@ -25,6 +25,7 @@ KINDS: Mapping[str, str] = {
     "order": "roadproof.questions.order.question:OrderQuestion",
     "explore": "roadproof.questions.explore.question:ExploreQuestion",
     "overlap": "roadproof.questions.overlap:OverlapQuestion",
+    "preventable": "roadproof.questions.preventable.question:PreventableQuestion",
     "prove": "roadproof.questions.prove:ProveQuestion",
     "redundancy": "roadproof.questions.redundancy:RedundancyQuestion",
     "witness": "roadproof.questions.witness:WitnessQuestion",

@@ -75,10 +75,9 @@ def settle(
             )
         run.ask(ours, hands, progress, what)
         batches = run.open_batches()
-    store.leave_only(run.known, say)
-    store.make_room()
     if not isinstance(question, Growing):
-        store.tidy(run.known)
+        store.leave_only(run.known, say)
+    store.make_room()
     return Settled(run.known, run.origins, run.costs)
 
 

@@ -6,7 +6,7 @@ the archive a file stands under the digest of its claim, of the work that was al
 
 import json
 import lzma
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
@@ -109,12 +109,6 @@ class Store:
             return answer
         return replace(answer, evidence=replace(evidence, work=self._same_work))
 
-    def tidy(self, names: Collection[str]) -> None:
-        """Remove answers to claims that are asked no more, after another answer to an earlier one."""
-        for path in () if self.folder is None else self.folder.glob("*.json"):
-            if path.stem not in names and path.name != QUESTION and _is_answer(path):
-                path.unlink()
-
     def key(self, claim: Claim) -> str:
         """The digest of all that an answer depends on."""
         return digest(claim.digest(), self.work, ANSWERS)
@@ -169,14 +163,6 @@ class Store:
     def make_room(self) -> None:
         """Keep the cache within its bounds."""
         make_room(CACHE)
-
-
-def _is_answer(path: Path) -> bool:
-    try:
-        content = read_json(path, LARGEST_EVIDENCE)
-    except InputError:
-        return False
-    return isinstance(content, dict) and content.get("schema") in SCHEMAS
 
 
 def keep_all(folder: Path, question: Question[Any], answers: Answers) -> None:

@@ -10,13 +10,13 @@ from pathlib import Path
 
 from roadproof.drivers.manoeuvres import MANOEUVRES
 from roadproof.errors import InputError
-from roadproof.evidence.answers.plates import Index
 from roadproof.evidence.codec import read
 from roadproof.evidence.folder import INDEX
 from roadproof.evidence.journal import HEAD
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
 from roadproof.library.scenarios import EVERY_SCENARIO
 from roadproof.questions.checking import is_question
+from roadproof.questions.preventable.data import PreventableData
 from roadproof.questions.views import folder_data
 from roadproof.world.units import UNITS
 
@@ -68,7 +68,7 @@ _DRIVER: Mapping[str, _Use] = {
     "preventable": _Use(
         "The boundary of preventable collisions {boundary} in {manoeuvre}, {plates}",
         "{drives} on both sides of the boundary in {manoeuvre}{lemmas}",
-        ("WITNESSED",),
+        ("WITNESSED", "DERIVED"),
         (f"{_MODEL}*",),
     )
 }
@@ -142,7 +142,7 @@ class _Given:
             data = Fields(content, str(folder))
             kind = [*data.text("schema").split("/"), ""][1]
             if kind == "preventable":
-                return _of_plates(path, read(Index, data.content, str(folder)))
+                return _of_plates(path, read(PreventableData, data.content, str(folder)))
             return _of_answer(path, kind, data)
         raise InputError(f"{folder} has no answers: name a folder that a command has written with --out")
 
@@ -184,7 +184,7 @@ def _of_answer(path: str, kind: str, data: Fields) -> _Given:
     return _Given(path, kind, {})
 
 
-def _of_plates(path: str, index: Index) -> _Given:
+def _of_plates(path: str, index: PreventableData) -> _Given:
     """The plates and lemmas of a folder. Raises ``InputError`` where none is of the model."""
     plates = [x for x in index.plates if x.model == _MODEL]
     if not plates:
@@ -202,7 +202,7 @@ def _of_plates(path: str, index: Index) -> _Given:
     values = "; ".join(
         f"{name} = {', '.join(x[:_MOST])}{', …' * (len(x) > _MOST)}" for name, x in fixed.items()
     )
-    drives, count = sum(len(x.shown) for x in plates), len(index.lemmas)
+    drives, count = sum(y.drive is not None for x in plates for y in x.shown), len(index.lemmas)
     words = {
         "manoeuvre": index.manoeuvre,
         "plates": f"{_number(len(plates), 'plate')}{f' at {values}' if values else ''}",
@@ -210,7 +210,7 @@ def _of_plates(path: str, index: Index) -> _Given:
         "boundary": "follows from the motion" if count else "is shown by drives, without a lemma,",
         "lemmas": f", and {_number(count, 'lemma')} about its formula" if count else "",
     }
-    return _Given(path, "preventable", words, count > 0, drives + count)
+    return _Given(path, "preventable", words, count > 0, len(plates) + drives + count)
 
 
 def _number(count: int, what: str) -> str:

@@ -1,74 +1,66 @@
 """Which initial values of a manoeuvre a driver can prevent a collision from."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from fractions import Fraction
-from functools import cached_property
-from typing import Unpack
+from typing import ClassVar, Unpack
 
-from roadproof.analysis.preventable.study import Answer as Found
-from roadproof.analysis.preventable.study import LemmaResult, Plate, Preventable
 from roadproof.drivers.driving import require
-from roadproof.drivers.gradual import RATE, check_gradual
 from roadproof.drivers.manoeuvres import MANOEUVRES, Course, Manoeuvre
 from roadproof.drivers.models import DRIVERS, GRADUAL, manoeuvre_of, models_for, unpreventable
 from roadproof.errors import UsageError
-from roadproof.evidence.answers import plates as kept
 from roadproof.evidence.kernel.accept import Word
 from roadproof.evidence.kernel.boundary import Boundary, BoundaryRuling, settle
 from roadproof.evidence.kernel.coq import ready
-from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.definitions import Definitions, load
+from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.settings import basis_of
-from roadproof.frontends.api.studied import StudyAnswers, drawn
+from roadproof.frontends.api.studied import drawn, drive_pictures
 from roadproof.frontends.report import preventable as report
 from roadproof.frontends.report.ci.cases import Case
 from roadproof.frontends.report.ci.questions import plate_cases
-from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.sheet import Sheet, as_csv
 from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import PreventableKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.library.bind import Number, exact
 from roadproof.library.specification import unknown
+from roadproof.questions.preventable.question import PreventableQuestion
+from roadproof.questions.preventable.view import LemmaResult, Plate, PreventableView, evidence_names
+from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
-
-_MOST_LINES = 2000
-_MOST_PLATES = 200
 
 
 @dataclass(frozen=True, repr=False)
-class Plates(StudyAnswers[Preventable, Found, kept.Record], BuildResult):
+class Plates(QuestionAnswers[PreventableView], BuildResult):
     """Where a collision is unpreventable, exactly, with judged drives on both sides and proved lemmas.
 
     ``boundaries``: what Coq says of each formula and the motion of its model, where it was asked.
     """
 
-    pieces = "plates and lemmas"
-    command = "preventable"
+    question: PreventableQuestion
+    pieces: ClassVar[str] = "plates and lemmas"
+    command: ClassVar[str] = "preventable"
     boundaries: Sequence[BoundaryRuling] = ()
 
     def cases(self) -> Iterator[Case]:
-        index = self._index(self.found.records)
-        shown = {x.name: [y.drive for y in x.shown if y.drive] for x in index.plates}
-        files = {name: drives[0] for name, drives in shown.items() if drives}
-        files |= {f"lemma-{x.name}": x.certificate for x in index.lemmas if x.certificate}
-        places = {name: self.folder / str(file) for name, file in files.items() if self.folder}
-        return plate_cases(self.plates, self.lemmas, self.study.basis.specification, places)
+        named = evidence_names(self.plates)
+        lemmas = zip(self.question.lemmas, self.lemmas, strict=True)
+        named |= {name: name for name, x in lemmas if x.certificate is not None}
+        files = {x: self.folder / f"{name}.json" for x, name in named.items() if self.folder}
+        return plate_cases(self.plates, self.lemmas, self.question.basis.specification, files)
 
-    @cached_property
-    def plates(self) -> list[Plate]:
+    @property
+    def plates(self) -> Sequence[Plate]:
         """The plates, in order."""
-        found = [self.found.answers[name] for name in self.study.plates]
-        return [x for x in found if isinstance(x, Plate)]
+        return self.view.plates
 
-    @cached_property
-    def lemmas(self) -> list[LemmaResult]:
+    @property
+    def lemmas(self) -> Sequence[LemmaResult]:
         """The lemmas that the formulas are the boundary, in order."""
-        found = [self.found.answers[name] for name in self.study.lemmas]
-        return [x for x in found if isinstance(x, LemmaResult)]
+        return self.view.lemmas
 
     @property
     def verdicts(self) -> dict[str, Verdict]:
@@ -86,39 +78,28 @@ class Plates(StudyAnswers[Preventable, Found, kept.Record], BuildResult):
         return max(super().exit_code, *said, ExitCode.AS_EXPECTED)
 
     @property
-    def evidence(self) -> tuple[Evidence, ...]:
-        drives = [y.drive for x in self.plates for y in x.shown if y.drive is not None]
-        return (*drives, *(x.certificate for x in self.lemmas if x.certificate is not None))
-
-    @property
     def _sheet(self) -> Sheet[report.Entry]:
         """An entry for each span in which a collision is unpreventable, in SI units."""
-        return report.sheet_of(self.study, self.plates)
-
-    def _index(self, records: Mapping[str, kept.Record]) -> kept.Index:
-        return self.study.index(records, self.seconds)
+        return report.sheet_of(self.question, self.plates)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """The sheet, then the drives."""
-        yield "plates", picture(report.draw_sheet(self.study, self.plates))
+        yield "plates", picture(report.draw_sheet(self.question, self.plates))
         for plate in self.plates:
-            for x in plate.shown:
-                if x.drive is not None:
-                    yield (
-                        f"{plate.name}-{x.side}",
-                        picture(draw_drive(x.drive.file, self.study.basis.library)),
-                    )
+            yield from drive_pictures(
+                ((f"{plate.name}-{x.side}", x.drive) for x in plate.shown), self.library
+            )
 
     def files(self, pictures: bool) -> dict[str, bytes]:
         table = {"plates.csv": as_csv(self._sheet).encode()}
         table |= {f"boundary-{x.model}.v": x.source.encode() for x in self.boundaries if x.source}
-        sheet = {"plates": picture(report.draw_sheet(self.study, self.plates))} if pictures else {}
+        sheet = {"plates": picture(report.draw_sheet(self.question, self.plates))} if pictures else {}
         return table | drawn(sheet)
 
     def __str__(self) -> str:
         count = f"{len(self.plates)} plates, {len(self.lemmas)} lemmas in {self.seconds:.1f} s"
         proved = "".join(f"{x}\n" for x in self.boundaries)
-        return f"{report.as_text(self.study, self.plates, self.lemmas)}\n{proved}{count}"
+        return f"{report.as_text(self.question, self.plates, self.lemmas)}\n{proved}{count}"
 
 
 @takes(settings.Preventable)
@@ -143,13 +124,11 @@ def preventable(
     require(home.specification, basis.all_values())
     name, scenario = manoeuvre_of(str(manoeuvre))
     kind = MANOEUVRES[name]
-    if not 2 <= given.lines <= _MOST_LINES:
-        raise UsageError(f"lines={given.lines}: a plate has between 2 and {_MOST_LINES}")
     at = {name: _values(kind, name, x) for name, x in (given.at or {}).items()}
     sheet = {name: at.pop(name, values) for name, values in kind.sheet.items()}
     sheet |= {name: values for name, values in at.items() if len(values) > 1}
     fixed = {name: values[0] for name, values in at.items() if len(values) == 1}
-    study = Preventable(
+    question = PreventableQuestion(
         basis,
         kind,
         models_for(kind.name, tuple(dict.fromkeys(models))),
@@ -161,26 +140,20 @@ def preventable(
         given.lemmas,
         scenario,
     )
-    count = len(study.plates)
-    if count > _MOST_PLATES:
-        raise UsageError(f"{count} plates: ask for {_MOST_PLATES} at most, with fewer values or models")
-    for piece in study.plates.values():
-        values = kind.values(piece.fixed)
-        if RATE in values:
-            check_gradual(piece.model.name, values, study.reading)
-    more = {} if given.kernel is None else {"boundaries": _boundaries(study)}
-    return Plates.asked(study, given, more=lambda: more)
+    question.check()
+    boundaries = () if given.kernel is None else _boundaries(question)
+    return replace(Plates.settled(question, given), boundaries=boundaries)
 
 
-def _boundaries(study: Preventable) -> tuple[BoundaryRuling, ...]:
+def _boundaries(question: PreventableQuestion) -> tuple[BoundaryRuling, ...]:
     """What Coq says of the boundary of each model. Raises ``MissingSolverError``."""
-    course: Course = GRADUAL if study.is_gradual else study.manoeuvre.name
-    vehicles = study.manoeuvre.vehicles
+    course: Course = GRADUAL if question.is_gradual else question.manoeuvre.name
+    vehicles = question.manoeuvre.vehicles
     asked = [
-        Boundary(course, x.name, unpreventable(course, x.name, vehicles), vehicles) for x in study.models
+        Boundary(course, x.name, unpreventable(course, x.name, vehicles), vehicles) for x in question.models
     ]
     with ready() as coq:
-        return tuple(settle(coq, study.basis.specification, x) for x in asked)
+        return tuple(settle(coq, question.basis.specification, x) for x in asked)
 
 
 def _values(kind: Manoeuvre, name: str, given: Number | Sequence[Number]) -> tuple[Fraction, ...]:

@@ -10,7 +10,6 @@ from roadproof.drivers.manoeuvres import MANOEUVRES
 from roadproof.errors import UsageError
 from roadproof.evidence.answers import classify as kept_classes
 from roadproof.evidence.answers import coverage as kept_gaps
-from roadproof.evidence.answers import plates as kept_plates
 from roadproof.evidence.codec import read
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.folder import INDEX
@@ -26,6 +25,7 @@ from roadproof.library.scenarios import numbers_of
 from roadproof.library.specification import Library
 from roadproof.questions.order.data import OrderData
 from roadproof.questions.overlap import OverlapData
+from roadproof.questions.preventable.data import PreventableData
 from roadproof.questions.prove import ClaimsData
 from roadproof.questions.redundancy import RedundancyData
 
@@ -74,7 +74,7 @@ class Answers:
     coverage: kept_gaps.Index | None = None
     classes: kept_classes.Index | None = None
     library: Library | None = None
-    plates: dict[str, kept_plates.Index] = field(default_factory=dict)
+    plates: dict[str, PreventableData] = field(default_factory=dict)
 
     def source(self, command: str, arguments: str, place: str = "", file: object = None) -> Source:
         """The source of a statement; ``file``: its evidence in the folder ``place``, or else in its index."""
@@ -187,5 +187,5 @@ class _Questions:
     def plates(self) -> None:
         for manoeuvre in MANOEUVRES:
             place = f"plates-{manoeuvre}"
-            preventing.preventable(manoeuvre, **self._keywords(place))
-            self.answers.plates[manoeuvre] = self._index(kept_plates.Index, place)
+            found = preventing.preventable(manoeuvre, **self._keywords(place))
+            self.answers.plates[manoeuvre] = read(PreventableData, found.as_data(), place)

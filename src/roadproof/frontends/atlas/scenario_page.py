@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from roadproof.drivers.models import course_in
-from roadproof.evidence.answers import coverage, plates
+from roadproof.evidence.answers import coverage
 from roadproof.frontends.atlas.answers import OBJECTIVES, Answers, Source, name_in
 from roadproof.frontends.atlas.notation import as_html, head_as_html, shown
 from roadproof.frontends.atlas.pictures import DrivePicture
@@ -17,6 +17,7 @@ from roadproof.library.uses import Used, used_in
 from roadproof.library.words import Words
 from roadproof.logic.show import decimal
 from roadproof.questions.overlap import PairData
+from roadproof.questions.preventable.data import PlateData
 from roadproof.verdict import Verdict
 
 CAREFUL = "careful"
@@ -195,7 +196,9 @@ def _plates(answers: Answers, number: int) -> dict[str, object] | None:
             Statement(
                 x.verdict,
                 shown(x.claim),
-                answers.source("preventable", str(manoeuvre), f"plates-{manoeuvre}", x.certificate),
+                answers.source(
+                    "preventable", str(manoeuvre), f"plates-{manoeuvre}", name_in([x.certificate])
+                ),
                 x.title,
             )
             for x in index.lemmas
@@ -204,11 +207,15 @@ def _plates(answers: Answers, number: int) -> dict[str, object] | None:
     }
 
 
-def _sides(answers: Answers, manoeuvre: str, plate: plates.Plate) -> list[tuple[str, Source]]:
+def _sides(answers: Answers, manoeuvre: str, plate: PlateData) -> list[tuple[str, Source]]:
     """The drives on both sides of a plate."""
-    place = f"plates-{manoeuvre}"
     shown_by = [x for x in plate.shown if isinstance(x.drive, str)]
-    return [(x.side, answers.source("preventable", manoeuvre, place, x.drive)) for x in shown_by]
+    return [(x.side, _source_of_plates(answers, manoeuvre, x.drive)) for x in shown_by]
+
+
+def _source_of_plates(answers: Answers, manoeuvre: str, file: object) -> Source:
+    found = name_in([] if file is None else [file])
+    return answers.source("preventable", manoeuvre, f"plates-{manoeuvre}", found)
 
 
 @dataclass(frozen=True)

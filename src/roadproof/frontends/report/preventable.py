@@ -8,17 +8,18 @@ from math import ceil
 from textwrap import wrap
 from typing import Any, NamedTuple, TypeAlias
 
-from roadproof.analysis.preventable.study import LemmaResult, Plate, Preventable, Shown
 from roadproof.drivers.lines import End, Line
 from roadproof.drivers.manoeuvres import MANOEUVRES, Quantity
 from roadproof.drivers.models import MODELS, parts_of
 from roadproof.drivers.words import legend
-from roadproof.evidence.answers import plates as kept
 from roadproof.evidence.codec import read
 from roadproof.frontends.report.figures import make_page
 from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.results import Result, Words
 from roadproof.frontends.report.sheet import Column, Sheet
+from roadproof.questions.preventable.data import PlateData, PreventableData
+from roadproof.questions.preventable.question import PreventableQuestion
+from roadproof.questions.preventable.view import LemmaResult, Plate, Shown
 from roadproof.runtime.records import dataclass
 from roadproof.world.units import UNITS
 
@@ -42,38 +43,38 @@ def measured(quantity: Quantity, value: Fraction) -> str:
     return f"{float(value / UNITS[quantity.unit][0]):g} {quantity.unit}"
 
 
-def fixed_text(study: Preventable, plate: Plate) -> str:
+def fixed_text(question: PreventableQuestion, plate: Plate) -> str:
     """What is fixed on a plate."""
-    known = study.manoeuvre.quantities
+    known = question.manoeuvre.quantities
     return ", ".join(f"{name} = {measured(known[name], value)}" for name, value in plate.fixed.items())
 
 
-def shown_symbols(study: Preventable) -> tuple[Quantity, ...]:
+def shown_symbols(question: PreventableQuestion) -> tuple[Quantity, ...]:
     """The initial values that plates are about, in the order of the manoeuvre."""
-    names = {study.manoeuvre.line, study.manoeuvre.across, *study.sheet, *study.fixed}
-    return tuple(x for name, x in study.manoeuvre.quantities.items() if name in names)
+    names = {question.manoeuvre.line, question.manoeuvre.across, *question.sheet, *question.fixed}
+    return tuple(x for name, x in question.manoeuvre.quantities.items() if name in names)
 
 
-def share_of(study: Preventable, plate: Plate) -> float:
+def share_of(question: PreventableQuestion, plate: Plate) -> float:
     """Which part of the plane is unpreventable: the mean over its lines."""
-    low, high = study.along
+    low, high = question.along
     total = sum(b.near - a.near for x in plate.lines for a, b in x.spans)
     return total / (float(high - low) * len(plate.lines)) if plate.lines else 0.0
 
 
-def as_text(study: Preventable, plates: Sequence[Plate], lemmas: Sequence[LemmaResult]) -> str:
+def as_text(question: PreventableQuestion, plates: Sequence[Plate], lemmas: Sequence[LemmaResult]) -> str:
     """For the terminal: each plate with some of its lines and its drives, and the lemmas."""
-    known = study.manoeuvre.quantities
-    along, across = known[study.manoeuvre.line], known[study.manoeuvre.across]
+    known = question.manoeuvre.quantities
+    along, across = known[question.manoeuvre.line], known[question.manoeuvre.across]
     lines: list[str] = []
     for plate in plates:
-        fixed = fixed_text(study, plate)
+        fixed = fixed_text(question, plate)
         title = MODELS[plate.model].title
-        lines.append(f"{plate.verdict:<11} {study.manoeuvre.name}, {title}{fixed and f'; {fixed}'}")
+        lines.append(f"{plate.verdict:<11} {question.manoeuvre.name}, {title}{fixed and f'; {fixed}'}")
         if plate.reason:
             lines.append(f"  {plate.reason}")
         if plate.lines:
-            percent = 100 * share_of(study, plate)
+            percent = 100 * share_of(question, plate)
             what = f"{percent:.1f} % of the plane"
             if plate.stepped:
                 what = "what follows"
@@ -93,29 +94,29 @@ def as_text(study: Preventable, plates: Sequence[Plate], lemmas: Sequence[LemmaR
                 values = ", ".join(
                     f"{name} = {measured(known[name], x.values[name])}" for name in (across.name, along.name)
                 )
-                told = f"a drive at {values}{_scenario_text(study, x)}"
+                told = f"a drive at {values}{_scenario_text(question, x)}"
             lines.append(f"  {x.side}: {told}")
-    lines += [legend(shown_symbols(study))] if plates else []
+    lines += [legend(shown_symbols(question))] if plates else []
     for proved in lemmas:
         lines.append(f"{proved.verdict:<11} {proved.lemma.name}: {proved.lemma.title}")
         if proved.reason:
             lines.append(f"  {proved.reason}")
-    if study.readings:
-        lines.append(f"with {', '.join(study.readings)}")
-    lines += [f"{said}: no boundary that is asked for depends on it" for said in study.idle]
+    if question.readings:
+        lines.append(f"with {', '.join(question.readings)}")
+    lines += [f"{said}: no boundary that is asked for depends on it" for said in question.idle]
     return "\n".join(lines)
 
 
-def _scenario_text(study: Preventable, shown: Shown) -> str:
+def _scenario_text(question: PreventableQuestion, shown: Shown) -> str:
     """What the drive is of, where the scenario was asked for."""
-    if study.scenario is None:
+    if question.scenario is None:
         return ""
-    whole, happening = parts_of(study.scenario, study.manoeuvre.vehicles)
+    whole, happening = parts_of(question.scenario, question.manoeuvre.vehicles)
     if shown.scenario == whole:
-        return f", of scenario {study.scenario}"
+        return f", of scenario {question.scenario}"
     if shown.scenario == happening:
-        return f"; what happens in scenario {study.scenario}, but no start that was tried is safe"
-    return f"; no drive that was tried is of scenario {study.scenario}"
+        return f"; what happens in scenario {question.scenario}, but no start that was tried is safe"
+    return f"; no drive that was tried is of scenario {question.scenario}"
 
 
 def _some(lines: Sequence[Line]) -> Sequence[Line]:
@@ -129,10 +130,10 @@ Entry: TypeAlias = tuple[Plate, Line, tuple[End, End]]
 """A span of a line of a plate."""
 
 
-def sheet_of(study: Preventable, plates: Sequence[Plate]) -> Sheet[Entry]:
+def sheet_of(question: PreventableQuestion, plates: Sequence[Plate]) -> Sheet[Entry]:
     """An entry for each span of each line: SI units, ends as numbers and in CSV also exactly."""
     fixed = dict.fromkeys(name for plate in plates for name in plate.fixed)
-    along, across = study.manoeuvre.line, study.manoeuvre.across
+    along, across = question.manoeuvre.line, question.manoeuvre.across
     columns: tuple[Column[Entry], ...] = (
         Column("model", lambda x: x[0].model),
         *(Column(name, partial(_fixed, name)) for name in fixed),
@@ -151,15 +152,15 @@ def _fixed(name: str, entry: Entry) -> Fraction:
     return entry[0].fixed[name]
 
 
-def draw_sheet(study: Preventable, plates: Sequence[Plate]) -> Any:
+def draw_sheet(question: PreventableQuestion, plates: Sequence[Plate]) -> Any:
     """All plates of a sheet: rows are the second of what is fixed, columns all else; colours are models."""
-    names = list(study.sheet)
+    names = list(question.sheet)
     beside = [name for name in names if name not in names[1:2]]
-    columns = list(product(*(study.sheet[name] for name in beside)))
-    rows = list(product(*(study.sheet[name] for name in names[1:2])))
+    columns = list(product(*(question.sheet[name] for name in beside)))
+    rows = list(product(*(question.sheet[name] for name in names[1:2])))
     width = 1.1 + 2.5 * len(columns)
-    top = 0.55 + _LEGEND[1] * ceil(len(study.models) / _models_a_row(width))
-    height = top + 0.3 + 0.12 * len(_below(study, width)) + 2.2 * len(rows)
+    top = 0.55 + _LEGEND[1] * ceil(len(question.models) / _models_a_row(width))
+    height = top + 0.3 + 0.12 * len(_below(question, width)) + 2.2 * len(rows)
     figure = make_page(width, height)
     for i, row in enumerate(rows):
         for j, column in enumerate(columns):
@@ -172,35 +173,35 @@ def draw_sheet(study: Preventable, plates: Sequence[Plate]) -> Any:
             axes = figure.add_axes(box)
             chosen = dict(zip((*beside, *names[1:2]), (*column, *row), strict=True))
             here = [p for p in plates if all(p.fixed.get(name) == value for name, value in chosen.items())]
-            _draw_plate(axes, study, here)
-            told = [f"{n} {measured(study.manoeuvre.quantities[n], v)}" for n, v in chosen.items()]
+            _draw_plate(axes, question, here)
+            told = [f"{n} {measured(question.manoeuvre.quantities[n], v)}" for n, v in chosen.items()]
             axes.set_title(", ".join(told), fontsize=7, loc="left", pad=3)
             if j == 0:
-                axes.set_ylabel(_label(study, study.manoeuvre.across), fontsize=7)
+                axes.set_ylabel(_label(question, question.manoeuvre.across), fontsize=7)
             if i == len(rows) - 1:
-                axes.set_xlabel(_label(study, study.manoeuvre.line), fontsize=7)
-    _head(figure, study, width, height)
+                axes.set_xlabel(_label(question, question.manoeuvre.line), fontsize=7)
+    _head(figure, question, width, height)
     return figure
 
 
-def _below(study: Preventable, width: float) -> list[str]:
+def _below(question: PreventableQuestion, width: float) -> list[str]:
     """Lines below the plates, the lowest first: symbols, readings, and what single lines are."""
-    lines = [_STEPPED] if any(model.is_stepped for model in study.models) else []
-    lines += wrap(legend(shown_symbols(study)), int(width * _LETTERS))[::-1]
-    return lines + ([f"With {', '.join(study.readings)}"] if study.readings else [])
+    lines = [_STEPPED] if any(model.is_stepped for model in question.models) else []
+    lines += wrap(legend(shown_symbols(question)), int(width * _LETTERS))[::-1]
+    return lines + ([f"With {', '.join(question.readings)}"] if question.readings else [])
 
 
-def _head(figure: Any, study: Preventable, width: float, height: float) -> None:
+def _head(figure: Any, question: PreventableQuestion, width: float, height: float) -> None:
     what = "in what is shaded"
-    if all(model.is_stepped for model in study.models):
+    if all(model.is_stepped for model in question.models):
         what = "at places on lines"
-    known = study.manoeuvre.quantities
-    fixed = "".join(f", {name} {measured(known[name], value)}" for name, value in study.fixed.items())
-    title = f"{study.manoeuvre.name}{fixed}: a collision is unpreventable {what}"
+    known = question.manoeuvre.quantities
+    fixed = "".join(f", {name} {measured(known[name], value)}" for name, value in question.fixed.items())
+    title = f"{question.manoeuvre.name}{fixed}: a collision is unpreventable {what}"
     figure.text(0.2 / width, 1 - 0.22 / height, title, fontsize=9, va="center")
-    for k, said in enumerate(_below(study, width)):
+    for k, said in enumerate(_below(question, width)):
         figure.text(0.2 / width, (0.1 + 0.12 * k) / height, said, fontsize=5.5, va="center")
-    for k, model in enumerate(study.models):
+    for k, model in enumerate(question.models):
         row, column = divmod(k, _models_a_row(width))
         x, y = (0.2 + _LEGEND[0] * column) / width, 1 - (0.45 + _LEGEND[1] * row) / height
         told = f"─ {model.title}, stepped" if model.is_stepped else f"━ {model.title}"
@@ -212,27 +213,27 @@ def _models_a_row(width: float) -> int:
     return max(1, int((width - 0.2) / _LEGEND[0]))
 
 
-def _label(study: Preventable, name: str) -> str:
-    return f"{name} [{study.manoeuvre.quantities[name].unit}]"
+def _label(question: PreventableQuestion, name: str) -> str:
+    return f"{name} [{question.manoeuvre.quantities[name].unit}]"
 
 
-def _draw_plate(axes: Any, study: Preventable, plates: Sequence[Plate]) -> None:
-    known = study.manoeuvre.quantities
-    unit = float(UNITS[known[study.manoeuvre.across].unit][0])
-    scale = float(UNITS[known[study.manoeuvre.line].unit][0])
+def _draw_plate(axes: Any, question: PreventableQuestion, plates: Sequence[Plate]) -> None:
+    known = question.manoeuvre.quantities
+    unit = float(UNITS[known[question.manoeuvre.across].unit][0])
+    scale = float(UNITS[known[question.manoeuvre.line].unit][0])
     for plate in plates:
         colour = COLOURS[plate.model]
         if plate.stepped:
             _draw_places(axes, plate, colour, scale, unit)
         else:
-            _draw_area(axes, plate, colour, scale, unit, [float(x) / scale for x in study.along])
+            _draw_area(axes, plate, colour, scale, unit, [float(x) / scale for x in question.along])
         for x in plate.shown:
             if x.drive is not None:
-                place = float(x.values[study.manoeuvre.line]) / scale
-                row = float(x.values[study.manoeuvre.across]) / unit
+                place = float(x.values[question.manoeuvre.line]) / scale
+                row = float(x.values[question.manoeuvre.across]) / unit
                 filled = colour if x.side == "unpreventable" else "white"
                 axes.plot(place, row, "o", markersize=2.6, color=colour, markerfacecolor=filled, zorder=4)
-    axes.set_xlim(*(float(x) / scale for x in study.along))
+    axes.set_xlim(*(float(x) / scale for x in question.along))
     rows = [float(line.at) / unit for plate in plates for line in plate.lines]
     axes.set_ylim(min(rows, default=0), max(rows, default=1))
     axes.tick_params(labelsize=6)
@@ -265,9 +266,9 @@ _WIDE, _HIGH, _LEFT, _BELOW = 300.0, 190.0, 34.0, 28.0  # of a plate in px, and 
 
 def page_plates(result: Result, context: PageContext, words: Words) -> dict[str, object]:
     """Plates, in ``groups`` of the same fixed values."""
-    index = read(kept.Index, result.data, result.name)
+    index = read(PreventableData, result.data, result.name)
     quantities = MANOEUVRES[index.manoeuvre].quantities
-    groups: dict[tuple[tuple[str, str], ...], list[kept.Plate]] = {}
+    groups: dict[tuple[tuple[str, str], ...], list[PlateData]] = {}
     for x in index.plates:
         groups.setdefault(tuple(sorted(x.fixed.items())), []).append(x)
     shown = {index.along[0], index.across[0], *(name for x in index.plates for name in x.fixed)}
@@ -282,7 +283,7 @@ def page_plates(result: Result, context: PageContext, words: Words) -> dict[str,
     }
 
 
-def plane_of(index: kept.Index) -> "_Plane":
+def plane_of(index: PreventableData) -> "_Plane":
     """The two initial values that vary on the plates of an answer."""
     return _Plane(MANOEUVRES[index.manoeuvre].quantities, index.along, index.across)
 
@@ -338,7 +339,7 @@ class _Plane:
         """The name of an axis, with its unit."""
         return f"{name} [{self._unit(name)}]"
 
-    def drawn(self, plates: Sequence[kept.Plate]) -> _Drawing:
+    def drawn(self, plates: Sequence[PlateData]) -> _Drawing:
         """Plates over each other."""
         low, high = (float(Fraction(x)) for x in self.along[1:])
         rows = [float(Fraction(line.at)) for x in plates for line in x.lines] or [0.0, 1.0]
@@ -370,7 +371,7 @@ class _Frame:
         low, high = self.across
         return round((_HIGH - _BELOW) * (1 - (value - low) / (high - low or 1)), 2)
 
-    def spans(self, plate: kept.Plate) -> Iterator[_Span]:
+    def spans(self, plate: PlateData) -> Iterator[_Span]:
         """What is unpreventable on each line: thin lines where nothing is said of what is between them."""
         thick = 1.2 if plate.stepped else (_HIGH - _BELOW) / max(1, len(plate.lines) - 1)
         for line in plate.lines:
@@ -381,7 +382,7 @@ class _Frame:
                 width = max(0.4, self.x(float(end.near)) - left)
                 yield _Span(left, round(top, 2), round(width, 2), round(bottom - top, 2))
 
-    def edge(self, plate: kept.Plate, which: int) -> list[str]:
+    def edge(self, plate: PlateData, which: int) -> list[str]:
         """The first (0) or last (-1) ends of all lines, where these are not ends of the range."""
         points = []
         for line in plate.lines:
@@ -392,6 +393,6 @@ class _Frame:
         return points
 
 
-def _area(plate: kept.Plate, frame: _Frame) -> _Area:
+def _area(plate: PlateData, frame: _Frame) -> _Area:
     edges = [] if plate.stepped else [frame.edge(plate, which) for which in (0, -1)]
     return _Area(_colour(plate.model), [*frame.spans(plate)], edges)

@@ -26,8 +26,8 @@ from roadproof.verdict import Verdict
 if TYPE_CHECKING:
     from roadproof.analysis.catalogue.tested import Targets
     from roadproof.analysis.coverage.answers import Survey
-    from roadproof.analysis.preventable.study import LemmaResult, Plate
     from roadproof.evidence.answers.catalogue_index import Remark
+    from roadproof.questions.preventable.view import LemmaResult, Plate
     from roadproof.questions.prove import ClaimResult, ProveQuestion
     from roadproof.questions.witness import SearchResult
 

@@ -1,66 +1,50 @@
-"""The answer of ``roadproof preventable``: plates with drives on both sides, and lemmas."""
+"""What is asked of driver models, and the answer of ``roadproof preventable``, as plain data."""
 
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import Annotated, ClassVar, Final, Literal, TypeAlias
+from typing import Annotated, Final, Literal, TypeAlias
 
-from roadproof.drivers import lines as drawn
 from roadproof.drivers.lines import Side
 from roadproof.drivers.manoeuvres import ManoeuvreName
 from roadproof.drivers.models import ModelName
 from roadproof.evidence.answers import shared
 from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
+from roadproof.evidence.plate import Line, Range
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ClaimVerdict, Verdict
 
 SCHEMA: Final = "roadproof/preventable/1"
+MOST_LINES: Final = 2000
 Name: TypeAlias = Annotated[str, Rule(least=1)]
+Number: TypeAlias = Literal[1, 2, 4, 5, 6, 8]
 Values: TypeAlias = Annotated[Mapping[str, shared.Rational], Doc("Initial values by name, in SI units.")]
 SideVerdict: TypeAlias = Literal[Verdict.WITNESSED, Verdict.UNKNOWN]
 
 
 @dataclass(frozen=True, kw_only=True)
-class End:
-    """An end of a span."""
+class Choice:
+    """An initial value that differs from plate to plate."""
 
-    near: Annotated[float, Doc("Rounded to a millionth.")]
-    exact: Annotated[
-        str, Rule(least=1), Doc("The number, or the polynomial of which it is the root that is near.")
-    ]
+    name: Name
+    values: Annotated[tuple[Fraction, ...], Rule(least=1), Doc("In SI units.")]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Line:
-    """Where along a line a collision is unpreventable."""
+class AskedPlates:
+    """Driver models over planes of initial values of a manoeuvre."""
 
-    at: shared.Rational
-    unpreventable: Annotated[
-        tuple[tuple[End, End], ...],
-        Doc(
-            "Spans of the line in which the formula is true, from and to; on a stepped plate, first and last "
-            "of neighbouring places at which it is."
-        ),
-    ]
-
-    @staticmethod
-    def of(line: drawn.Line) -> "Line":
-        """A line as it is kept."""
-        spans = tuple((_kept_end(begin), _kept_end(end)) for begin, end in line.spans)
-        return Line(at=str(line.at), unpreventable=spans)
-
-    @property
-    def drawn(self) -> drawn.Line:
-        """The inverse of ``of``."""
-        spans = tuple((_end(begin), _end(end)) for begin, end in self.unpreventable)
-        return drawn.Line(Fraction(self.at), spans)
-
-
-def _kept_end(end: drawn.End) -> End:
-    return End(near=end.near, exact=end.exact)
-
-
-def _end(end: End) -> drawn.End:
-    return drawn.End(float(end.near), end.exact)
+    manoeuvre: ManoeuvreName
+    scenario: Annotated[
+        Number | None,
+        Doc("The scenario that drives should be of, where the manoeuvre was asked for by its number."),
+    ] = None
+    models: Annotated[tuple[ModelName, ...], Rule(least=1, unique=True)]
+    fixed: Annotated[Mapping[str, Fraction], Doc("Initial values of all plates by name, in SI units.")]
+    sheet: Annotated[tuple[Choice, ...], Doc("There is a plate for each choice of these.")]
+    along: Annotated[Range, Doc("The range of the initial value that each line runs along.")]
+    across: Annotated[Range, Doc("The range of the initial value that differs from line to line.")]
+    lines: Annotated[int, Rule(minimum=2), Doc("How many lines a plate has.")]
+    lemmas: Annotated[bool, Doc("Whether lemmas are proved that the formulas are the boundary.")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,7 +67,7 @@ class SideDrive:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Plate:
+class PlateData:
     """One model over the plane of two initial values."""
 
     name: Name
@@ -113,12 +97,15 @@ class Plate:
         ),
     ]
     lines: tuple[Line, ...]
+    boundary: Annotated[
+        str | None, LEFT_OUT, Doc("The file that says where the lines are; left out without --out.")
+    ] = None
     shown: tuple[SideDrive, ...]
     reason: shared.Reason
 
 
 @dataclass(frozen=True, kw_only=True)
-class Lemma:
+class LemmaData:
     """A lemma that the formula of a model is its boundary."""
 
     name: Name
@@ -131,13 +118,14 @@ class Lemma:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Preamble:
-    """What an index says once for all plates."""
+class PreventableData(shared.Heading):
+    """From which initial values a driver prevents a collision."""
 
+    schema: Literal["roadproof/preventable/1"] = SCHEMA
     set: shared.SetName
     manoeuvre: ManoeuvreName
     scenario: Annotated[
-        Literal[1, 2, 4, 5, 6, 8] | None,
+        Number | None,
         Doc("The scenario that drives should be of, where the manoeuvre was asked for by its number."),
     ]
     along: Annotated[
@@ -159,27 +147,11 @@ class Preamble:
     options: shared.Options
     parameters: shared.Parameters
     specs: shared.Specifications
-
-
-@dataclass(frozen=True, kw_only=True)
-class Index(Preamble, shared.Heading):
-    """From which initial values a driver prevents a collision."""
-
-    schema: Literal["roadproof/preventable/1"] = SCHEMA
     view: shared.Dense = "dense"
     seconds: shared.Seconds = 0.0
     idle: Annotated[
         tuple[Name, ...],
         Doc("Options and parameters that were chosen, and on which no boundary here depends."),
     ] = ()
-    plates: tuple[Plate, ...]
-    lemmas: Annotated[tuple[Lemma, ...], Doc("That the formulas are the boundary.")]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Record:
-    """A kept answer: a plate or a lemma."""
-
-    ALTERNATIVES: ClassVar = (("plate",), ("lemma",))
-    plate: Annotated[Plate | None, LEFT_OUT] = None
-    lemma: Annotated[Lemma | None, LEFT_OUT] = None
+    plates: tuple[PlateData, ...]
+    lemmas: Annotated[tuple[LemmaData, ...], Doc("That the formulas are the boundary.")]

@@ -1,4 +1,4 @@
-"""Judged drives on both sides of a boundary: SV follows its model, and touches POV, or never does."""
+"""The boundary of a plate, and judged drives on both sides: SV follows its model, and touches POV or not."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -7,24 +7,102 @@ from functools import partial
 from itertools import islice, pairwise
 from math import ceil
 
-from roadproof.drivers.driving import OWN_LANE, DriverSettings, drive_of, rest_of, road_of
-from roadproof.drivers.lines import Side, claim_of, with_also
-from roadproof.drivers.manoeuvres import OTHER, CutIn, Manoeuvre, Plane, Values, start_of
-from roadproof.drivers.models import ModelName
+from roadproof.drivers.driving import PARAMETERS, DriverSettings, drive_of
+from roadproof.drivers.gradual import RATE
+from roadproof.drivers.lines import Side, boundary_text
+from roadproof.drivers.manoeuvres import MANOEUVRES, OTHER, CutIn, Manoeuvre, Plane, Values, start_of
+from roadproof.drivers.models import MODELS, ModelName
+from roadproof.drivers.stepped import beside_change, labels_of
 from roadproof.errors import InputError
-from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.answer import Answer, undecided
+from roadproof.evidence.boundary import (
+    Labels,
+    Truths,
+    exact_truths,
+    lines_of_labels,
+    lines_of_truths,
+    reading_of,
+    side_file,
+)
+from roadproof.evidence.claim import Beside, Claim, Lines, parameters_in
 from roadproof.evidence.judged import JudgedDrive, RejectedError
-from roadproof.library.scenarios import LANE, SUBJECT
+from roadproof.evidence.plate import BoundaryFile, Plate
+from roadproof.library.elaborate import read_claim
+from roadproof.library.scenarios import SUBJECT
 from roadproof.library.specification import Specification
 from roadproof.reasons import Reason, Why
+from roadproof.runtime.canonical import digest
 from roadproof.semantics.exact.algebraic import Point, bounds
 from roadproof.semantics.exact.truth import TruthSet
 from roadproof.world.motion import state_at
 
+_ROWS = 10  # in which a drive of a scenario is looked for
 _FINE = 10**9  # of a line, for spans that have no place with few digits
 _LOOKED_AT = 400  # candidates for a drive
 _NEAR = Fraction(1, 10)  # m from the boundary
 _PARTS = (Fraction(1, 2), Fraction(3, 8), Fraction(1, 4), Fraction(1, 8))  # of a span, from its lower end
+
+
+def settle_lines(claim: Claim) -> Answer:
+    """Return where on the lines of a plate the formula of a claim holds."""
+    assert isinstance(claim.mode, Lines)
+    home, plate = claim.home, claim.mode.plate
+    if MODELS[plate.model].is_stepped:
+        lines = lines_of_labels(plate, _labels(claim, plate))
+    else:
+        lines = lines_of_truths(plate, _truths(claim, plate))
+    file = BoundaryFile(
+        set=home.set_name,
+        options=dict(home.options),
+        claim=claim.query.text,
+        parameters={x.name: x.value for x in claim.parameters},
+        plate=plate,
+        lines=lines,
+    )
+    return Answer(claim, file)
+
+
+def settle_beside(claim: Claim) -> Answer:
+    """Return a drive on one side of the boundary of a plate, of what is preferred where there is one."""
+    mode, home, reading = claim.mode, claim.home, reading_of(claim)
+    assert isinstance(mode, Beside)
+    plane, model, side = mode.plate.plane, mode.plate.model, mode.side
+    places: Iterable[dict[str, Fraction]]
+    if MODELS[model].is_stepped:
+        places = beside_change(plane, _labels(claim, mode.plate), side == "unpreventable")
+    else:
+        places = beside_boundary(plane, _truths(claim, mode.plate), side)
+    if mode.of:
+        places = [*places]
+        rows = far_apart(plane, places, _ROWS)
+        for also in mode.of_texts:
+            shown = first_drive(plane, model, rows, side, home, reading, also, most=len(rows))
+            if not isinstance(shown, Reason):
+                return Answer(claim, shown[1])
+    found = first_drive(plane, model, places, side, home, reading)
+    return undecided(claim, found) if isinstance(found, Reason) else Answer(claim, found[1])
+
+
+def _truths(claim: Claim, plate: Plate) -> Truths:
+    """Return where on each line a collision is unpreventable; worked out once."""
+    home, values = claim.home, reading_of(claim).values
+    boundary = read_claim(home, boundary_text(MANOEUVRES[plate.manoeuvre], plate.model, plate.fixed))
+    of_motion = PARAMETERS if RATE in plate.fixed else ()
+    key = _truths, digest(plate, parameters_in(home.library, [boundary.formula], values, more=of_motion))
+    known = home.worked_out
+    if key not in known:
+        known[key] = exact_truths(home, plate, values)
+    found: Truths = known[key]
+    return found
+
+
+def _labels(claim: Claim, plate: Plate) -> Labels:
+    """Return at which places of each line the boxes touch; worked out once."""
+    known, key = claim.home.worked_out, (_labels, digest(plate))
+    if key not in known:
+        known[key] = labels_of(plate.plane)
+    found: Labels = known[key]
+    return found
 
 
 def judged_drive(
@@ -40,19 +118,7 @@ def judged_drive(
 
     Raises ``RejectedError``, and ``InputError`` as ``drive_of``.
     """
-    drive = drive_of(manoeuvre, model, values, reading)
-    file = DriveFile(
-        None,
-        specification.set_name,
-        with_also(claim_of(manoeuvre, model, values, side, reading), also),
-        rest_of(drive),
-        {LANE: OWN_LANE} if also else {},
-        reading.values,
-        reading.options,
-        road_of(manoeuvre, values),
-        drive,
-        overlaps_allowed=True,
-    )
+    file = side_file(manoeuvre, model, values, side, specification, reading, also)
     if also:  # what is about the scenario alone is quickly seen to be false
         JudgedDrive(replace(file, formula=also), specification.library)
     return JudgedDrive(file, specification.library)
