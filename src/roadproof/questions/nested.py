@@ -5,6 +5,7 @@ from typing import Any
 
 from roadproof.evidence.answer import Answer
 from roadproof.questions.question import Answers, Batch, Question, Steps
+from roadproof.runtime.budget import Work
 from roadproof.runtime.records import dataclass
 
 
@@ -17,7 +18,9 @@ class Nested:
 
     def batches(self, known: Answers) -> Sequence[Batch]:
         """Return its batches, given what is known of the whole question."""
-        return [NestedBatch(self.prefix, x) for x in self.question.batches(self.own(known))]
+        return [
+            NestedBatch(self.prefix, x, self.question.work) for x in self.question.batches(self.own(known))
+        ]
 
     def own(self, known: Answers) -> dict[str, Answer]:
         """Return the answers to its own claims, by their own names."""
@@ -34,11 +37,17 @@ class NestedBatch:
 
     prefix: str
     batch: Batch
+    allowed: Work
 
     @property
     def name(self) -> str:
         """The name of the batch with the prefix."""
         return f"{self.prefix}{self.batch.name}"
+
+    @property
+    def work(self) -> Work:
+        """The work that the nested question allows for a claim."""
+        return self.allowed
 
     def steps(self) -> Steps:
         """Yield each claim, and be sent its answer."""

@@ -5,13 +5,16 @@ from typing import Any, ClassVar, Protocol, Self, TypeAlias, TypeVar, runtime_ch
 
 from roadproof.analysis.basis import Basis
 from roadproof.drivers import restriction
-from roadproof.evidence.answer import Answer
+from roadproof.evidence.answer import Answer, undecided
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.heading import heading
+from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.subject import Subject
+from roadproof.reasons import NO_REASON
 from roadproof.runtime.budget import Work
 
 View = TypeVar("View", covariant=True)
+T = TypeVar("T")
 Place: TypeAlias = Callable[[str, Answer], object]
 """Where an answer is: the path of its file, or the evidence itself."""
 Answers: TypeAlias = Mapping[str, Answer]
@@ -70,6 +73,24 @@ class Question(Protocol[View]):
 
 
 @runtime_checkable
+class OwnWork(Protocol):
+    """A batch with other work for a claim than its question allows."""
+
+    @property
+    def work(self) -> Work:
+        """The work that is allowed for a claim."""
+
+
+@runtime_checkable
+class Seeded(Protocol):
+    """A batch with drives that may serve its claims."""
+
+    @property
+    def seeds(self) -> tuple[JudgedDrive, ...]:
+        """The drives."""
+
+
+@runtime_checkable
 class Growing(Protocol):
     """A question whose folder holds the answers to former ones, too."""
 
@@ -99,6 +120,17 @@ def walk(batch: Batch, find: Callable[[str, Claim], Answer | None]) -> Iterator[
         return
     steps.close()
     yield name, claim
+
+
+def seen(asking: Generator[tuple[str, Claim], Answer, T], known: Answers) -> T:
+    """Return what answers show; claims without one are in doubt."""
+    try:
+        name, claim = next(asking)
+        while True:
+            name, claim = asking.send(known.get(name) or undecided(claim, NO_REASON))
+    except StopIteration as end:
+        found: T = end.value
+        return found
 
 
 def heading_of(schema: str, basis: Basis) -> dict[str, Any]:

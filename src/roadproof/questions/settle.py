@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
-from dataclasses import field
+from dataclasses import field, replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -14,12 +14,12 @@ from roadproof.engines.prove.doubt import Cause, Doubt
 from roadproof.errors import SharedError, UsageError
 from roadproof.evidence.answer import Answer, undecided
 from roadproof.evidence.claim import Claim
-from roadproof.questions.question import Batch, Growing, Question, walk
+from roadproof.questions.question import Batch, Growing, OwnWork, Question, Seeded, walk
 from roadproof.questions.store import Store
 from roadproof.reasons import Reason
 from roadproof.runtime.budget import Work
 from roadproof.runtime.cost import NO_COST, Cost
-from roadproof.runtime.executors import Jobs, hands_of
+from roadproof.runtime.executors import Jobs, hands_of, is_fork_unsafe
 from roadproof.runtime.records import dataclass
 
 Priced: TypeAlias = tuple[str, Answer, Cost]
@@ -109,19 +109,28 @@ class _Run:
         left: list[Batch] = []
         while new := [x for x in self.question.batches(self.known) if x.name not in seen]:
             seen |= {x.name for x in new}
-            left += [x for x in new if [*walk(x, self._find)]]
+            left += [x for x in new if self._left_of(x)]
         return left
 
-    def _find(self, name: str, claim: Claim) -> Answer | None:
+    def _left_of(self, batch: Batch) -> list[tuple[str, Claim]]:
+        """Look up the claims of a batch, and return the first that is not known."""
+        store = _store_of(batch, self.store)
+
+        def find(name: str, claim: Claim) -> Answer | None:
+            return self._find(store, name, claim)
+
+        return [*walk(batch, find)]
+
+    def _find(self, store: Store, name: str, claim: Claim) -> Answer | None:
         if name in self.known:
             return self.known[name]
-        found = self.store.find(name, claim, self.say)
-        if found is None or not self.store.stands(found[0]):
+        found = store.find(name, claim, self.say)
+        if found is None or not store.stands(found[0]):
             return None
         answer, origin = found
         if origin is not None:
             self.origins[name] = origin
-            self.store.keep(name, answer, is_new=False)
+            store.keep(name, answer, is_new=False)
         self._add(name, answer)
         return answer
 
@@ -137,17 +146,18 @@ class _Run:
             lost.append(job.batch)
             return []
 
-        jobs = [_Job(batch, self._known_of(batch), self.store) for batch in batches]
-        with closing(pool.work(_settle, jobs, hands, lose, progress, what)) as answered:
-            for _, answers in answered:
+        jobs = [_Job(x, self._known_of(x), _store_of(x, self.store)) for x in batches]
+        fresh = is_fork_unsafe()  # given traces can be tables
+        with closing(pool.work(_settle, jobs, hands, lose, progress, what, fresh=fresh)) as answered:
+            for place, answers in answered:
                 for found in answers:
-                    self._keep(*found)
+                    self._keep(jobs[place], *found)
         for batch in lost:
             self._ask_alone(batch, hands)
 
-    def _keep(self, name: str, answer: Answer, cost: Cost) -> None:
+    def _keep(self, job: "_Job", name: str, answer: Answer, cost: Cost) -> None:
         self.costs[name] = cost
-        self.store.keep(name, answer)
+        (job.store or self.store).keep(name, answer)
         self._add(name, answer, cost)
 
     def _known_of(self, batch: Batch) -> dict[str, Answer]:
@@ -162,18 +172,23 @@ class _Run:
 
     def _ask_alone(self, batch: Batch, hands: Jobs) -> None:
         """Settle each claim of a batch in a process of its own; one whose process ends is in doubt."""
-        while left := [*walk(batch, self._find)]:
+        while left := self._left_of(batch):
             [(name, claim)] = left
 
             def lose(job: "_Job", reason: Reason, asked: Claim = claim, named: str = name) -> list[Priced]:
                 doubt = Doubt(Cause.PROCESS, (), job.work.effort.units, reason).kept
                 return [(named, undecided(asked, reason, doubt=doubt), NO_COST)]
 
-            job = _Job(batch, self._known_of(batch), self.store, alone=True)
+            job = _Job(batch, self._known_of(batch), _store_of(batch, self.store), alone=True)
             with closing(pool.work(_settle, [job, _NOTHING], hands, lose)) as answered:
                 for _, answers in answered:
                     for found in answers:
-                        self._keep(*found)
+                        self._keep(job, *found)
+
+
+def _store_of(batch: Batch, store: Store) -> Store:
+    """Return the store with the work that a batch has, where that is another than its question's."""
+    return replace(store, work=batch.work) if isinstance(batch, OwnWork) else store
 
 
 @dataclass(frozen=True)
@@ -212,6 +227,8 @@ def _settle(job: _Job) -> list[Priced]:
     from roadproof.engines.search.batches import Engines  # here: known answers need no solver
 
     engines, new = Engines(job.work), list[Priced]()
+    for drive in job.batch.seeds if isinstance(job.batch, Seeded) else ():
+        engines.offer(drive)
 
     def answer_to(name: str, claim: Claim) -> Answer:
         if name in job.known:

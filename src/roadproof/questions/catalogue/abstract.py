@@ -5,7 +5,7 @@ the test shows it, which a proof that the two clash answers, too. Only what all 
 implied.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -15,6 +15,7 @@ from roadproof.analysis.catalogue.entries import Abstract, Freedom
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.showing import names_shown, shown_by
 from roadproof.engines.search.impossible import at_start
+from roadproof.engines.search.points import Asking
 from roadproof.evidence.answer import Answer
 from roadproof.evidence.claim import Claim, Exists, claim_of, valid_under
 from roadproof.evidence.judged import JudgedDrive
@@ -22,8 +23,8 @@ from roadproof.library.bind import bind
 from roadproof.library.compose import both, implication
 from roadproof.library.scenarios import Scenario, applied, name_of
 from roadproof.library.specification import Query
-from roadproof.questions.question import Answers, Steps
-from roadproof.reasons import NO_REASON, Why
+from roadproof.questions.question import Steps
+from roadproof.reasons import Why
 from roadproof.runtime.canonical import digest
 from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.exact import DriveJudge, LazyJudge
@@ -51,20 +52,67 @@ class TestBatch:
         return stem_of(self.entry.id)
 
     def steps(self) -> Steps:
-        """Yield the claim that it can be run, then what it shows, then what it implies."""
-        first = yield f"{self.name}-runs", self.exists(self.entry.query)
+        """Yield each claim, and be sent its answer."""
+        yield from self.facts()
+
+    def facts(self) -> Asking[tuple[Fact, ...]]:
+        """Ask all of the test, and return what is known of it, in the order of the scenarios."""
+        entry = self.entry
+        first = yield f"{self.name}-runs", self.exists(entry.query)
         if first.drive is None:
-            return
+            return (_alone(entry, first),)
         shown = names_shown(first.drive, self.asked)
-        every = [shown]
+        drives, others = [shown], dict[str, Fact]()
         for name, query in self.scenarios.items():
             if name not in shown:
-                found = yield self.named("shows", name), self.exists(both(self.entry.query, query))
-                every += [] if found.drive is None else [names_shown(found.drive, self.asked)]
-        for name, query in self.implied(shown, every, first.drive):
-            found = yield self.named("implies", name), self.implies(query)
-            if found.verdict is not Verdict.PROVED and name in self.scenarios:
-                yield self.named("shows", name), self.exists(both(self.entry.query, query))
+                others[name] = yield from self._shown(name, query)
+                drives += [others[name].also] if others[name].drive is not None else []
+        facts = [Fact(entry.id, "", "runs", entry.query, drive=first.drive, also=shown)]
+        for name, query in self.scenarios.items():
+            fact = others.get(name)
+            if fact is None:
+                fact = (yield from self._implied(name, query, drives)) or (
+                    yield from self._shown(name, query)
+                )
+            facts.append(fact)
+        for asked in self.beside:
+            facts += yield from self._in_set(asked, first.drive)
+        for name in (x for x in shown if x in {*self.asked.named.values()}):
+            implied = yield from self._implied(name, self.asked.class_query(name), drives)
+            facts += [] if implied is None else [implied]
+        return tuple(facts)
+
+    def _shown(self, name: str, query: Query) -> Asking[Fact]:
+        """Ask for a drive of the test that shows a scenario, or a proof that the two clash."""
+        fact = Fact(self.entry.id, name, "open", self.entry.query, query)
+        answer = yield self.named("shows", name), self.exists(both(self.entry.query, query))
+        if answer.drive is not None:
+            also = names_shown(answer.drive, self.asked)
+            return replace(fact, relation="shows", drive=answer.drive, also=also)
+        if answer.certificate is not None:
+            return replace(fact, relation="excludes", certificate=answer.certificate)
+        return replace(fact, reason=answer.reason or Why.NO_DRIVE())
+
+    def _implied(self, name: str, query: Query, drives: Sequence[Sequence[str]]) -> Asking[Fact | None]:
+        """Ask whether the test implies what all its drives show."""
+        if not all(name in x for x in drives):
+            return None
+        answer = yield self.named("implies", name), self.implies(query)
+        if answer.verdict is not Verdict.PROVED:
+            return None
+        fact = Fact(self.entry.id, name, "implies", self.entry.query, query)
+        return replace(fact, certificate=answer.certificate)
+
+    def _in_set(self, asked: Questions, drive: JudgedDrive) -> Asking[list[Fact]]:
+        """Ask which scenarios of another set the test implies, among those that its drive shows."""
+        there = {x.what for x in shown_by(drive.file, asked, Freedom())}
+        facts, set_name = list[Fact](), asked.specification.set_name
+        for number in asked.numbers:
+            if name_of(number) in there:
+                query = applied(self.basis.specification, Scenario(number, set_name))
+                fact = yield from self._implied(f"{name_of(number)}@{set_name}", query, ())
+                facts += [] if fact is None else [fact]
+        return facts
 
     @cached_property
     def scenarios(self) -> Mapping[str, Query]:
@@ -74,22 +122,6 @@ class TestBatch:
     def named(self, relation: str, other: str) -> str:
         """Return the name of a claim about another name."""
         return f"{self.name}-{relation}-{other.replace('@', '-in-')}"
-
-    def implied(
-        self, shown: Sequence[str], every: Sequence[Sequence[str]], drive: JudgedDrive
-    ) -> Iterator[tuple[str, Query]]:
-        """Yield what the test may imply: what all its drives show, in further sets what the first shows."""
-        home = self.basis.specification
-        common = [x for x in shown if all(x in names for names in every)]
-        yield from ((x, self.scenarios[x]) for x in common if x in self.scenarios)
-        for asked in self.beside:
-            set_name = asked.specification.set_name
-            there = {x.what for x in shown_by(drive.file, asked, Freedom())}
-            for number in asked.numbers:
-                if name_of(number) in there:
-                    yield f"{name_of(number)}@{set_name}", applied(home, Scenario(number, set_name))
-        classes = {*self.asked.named.values()}
-        yield from ((x, self.asked.class_query(x)) for x in common if x in classes)
 
     def exists(self, query: Query) -> Claim:
         """Return the claim that there is a drive of the test, on its road and with its vehicles."""
@@ -101,56 +133,12 @@ class TestBatch:
         """Return the claim that every drive of the test shows another formula."""
         return valid_under(self.basis.specification, implication(self.entry.query, query))
 
-    # --- what the answers say -------------------------------------------------------------------------
 
-    def facts(self, known: Answers) -> tuple[Fact, ...]:
-        """Return what is known of the test, in the order of the scenarios."""
-        entry, alone = self.entry, known.get(f"{self.name}-runs")
-        if alone is None or alone.drive is None:
-            return (_alone(entry, alone),)
-        shown = names_shown(alone.drive, self.asked)
-        facts = [Fact(entry.id, "", "runs", entry.query, drive=alone.drive, also=shown)]
-        facts += [self._fact(name, query, known) for name, query in self.scenarios.items()]
-        implied = self.implied(shown, self._drives(known), alone.drive)
-        others = ((name, query) for name, query in implied if name not in self.scenarios)
-        facts += [x for name, query in others if (x := self._proved(name, query, known)) is not None]
-        return tuple(facts)
-
-    def _drives(self, known: Answers) -> list[Sequence[str]]:
-        """What each drive of the test shows."""
-        names = [f"{self.name}-runs", *(self.named("shows", x) for x in self.scenarios)]
-        drives = (known[x].drive for x in names if x in known)
-        return [names_shown(x, self.asked) for x in drives if x is not None]
-
-    def _proved(self, name: str, query: Query, known: Answers) -> Fact | None:
-        answer = known.get(self.named("implies", name))
-        if answer is None or answer.verdict is not Verdict.PROVED:
-            return None
-        return Fact(self.entry.id, name, "implies", self.entry.query, query, certificate=answer.certificate)
-
-    def _fact(self, name: str, query: Query, known: Answers) -> Fact:
-        """Return what the test is to a scenario."""
-        implied = self._proved(name, query, known)
-        if implied is not None:
-            return implied
-        answer = known.get(self.named("shows", name))
-        fact = Fact(self.entry.id, name, "open", self.entry.query, query)
-        if answer is None:
-            return fact
-        if answer.drive is not None:
-            also = names_shown(answer.drive, self.asked)
-            return replace(fact, relation="shows", drive=answer.drive, also=also)
-        if answer.certificate is not None:
-            return replace(fact, relation="excludes", certificate=answer.certificate)
-        return replace(fact, reason=answer.reason or Why.NO_DRIVE())
-
-
-def _alone(entry: Abstract, answer: Answer | None) -> Fact:
+def _alone(entry: Abstract, answer: Answer) -> Fact:
     """Return what is known of a test of which there is no drive."""
-    if answer is not None and answer.certificate is not None:
+    if answer.certificate is not None:
         return Fact(entry.id, "", "empty", entry.query, certificate=answer.certificate)
-    reason = NO_REASON if answer is None else answer.reason or Why.NO_DRIVE()
-    return Fact(entry.id, "", "open", entry.query, reason=reason)
+    return Fact(entry.id, "", "open", entry.query, reason=answer.reason or Why.NO_DRIVE())
 
 
 @dataclass(frozen=True)
@@ -170,27 +158,18 @@ class PairBatch:
 
     def steps(self) -> Steps:
         """Yield the claim, where the drive of the first is one of the second."""
+        yield from self.facts()
+
+    def facts(self) -> Asking[tuple[Fact, ...]]:
+        """Ask, and return that the first implies the second, where that is proved."""
         file = self.drive.file
         formula = bind(self.other.query.formula, file.road, file.lanes, self.asked.values)
         judge = (LazyJudge if self.asked.is_always_judged else DriveJudge).on(file.drive)
-        if judge.holds(at_start(formula)) and judge.holds(formula):
-            yield (
-                self.name,
-                valid_under(self.basis.specification, implication(self.one.query, self.other.query)),
-            )
-
-    def facts(self, known: Answers) -> tuple[Fact, ...]:
-        """Return that the first implies the second, where that is proved."""
-        answer = known.get(self.name)
-        if answer is None or answer.verdict is not Verdict.PROVED:
+        if not (judge.holds(at_start(formula)) and judge.holds(formula)):
             return ()
-        return (
-            Fact(
-                self.one.id,
-                self.other.id,
-                "implies",
-                self.one.query,
-                self.other.query,
-                certificate=answer.certificate,
-            ),
-        )
+        claim = valid_under(self.basis.specification, implication(self.one.query, self.other.query))
+        answer = yield self.name, claim
+        if answer.verdict is not Verdict.PROVED:
+            return ()
+        fact = Fact(self.one.id, self.other.id, "implies", self.one.query, self.other.query)
+        return (replace(fact, certificate=answer.certificate),)

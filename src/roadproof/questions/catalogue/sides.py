@@ -18,6 +18,7 @@ from roadproof.analysis.catalogue.showing import names_shown
 from roadproof.analysis.catalogue.sides import decisions_of, models_of, side_name
 from roadproof.drivers.restriction import Restriction, Side, check_library, files_for, said_in
 from roadproof.engines.search.placing import judged_as
+from roadproof.engines.search.points import Asking
 from roadproof.errors import InputError
 from roadproof.evidence.answer import Answer
 from roadproof.evidence.claim import Claim, Exists, claim_of
@@ -27,8 +28,8 @@ from roadproof.library.loading import load_library
 from roadproof.library.scenarios import Scenario, applied, number_in
 from roadproof.library.specification import Library, Query, Source
 from roadproof.questions.catalogue.abstract import stem_of
-from roadproof.questions.question import Answers, Steps
-from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.questions.question import Steps
+from roadproof.reasons import Reason, Why
 from roadproof.runtime.records import dataclass
 
 
@@ -53,20 +54,15 @@ class SidesBatch:
 
     def steps(self) -> Steps:
         """Yield a claim for each side that no known drive is on."""
-        found = self._decisions(self.drives)
-        for wanted in self._wanted():
-            claim = self._claim(wanted)
-            if not _is_on(found, wanted) and isinstance(claim, Claim):
-                drive = self._drive((yield self._named(wanted), claim), wanted)
-                found += [] if drive is None else self._decisions([drive])
+        yield from self.facts()
 
-    def facts(self, known: Answers) -> tuple[Fact, ...]:
-        """Return a drive for each side that the known drives are not on, or that none was found."""
+    def facts(self) -> Asking[tuple[Fact, ...]]:
+        """Ask, and return a drive for each side that no known drive is on, or that none was found."""
         found, facts = self._decisions(self.drives), list[Fact]()
         for wanted in self._wanted():
             if not _is_on(found, wanted):
-                fact = self._fact(wanted, known.get(self._named(wanted)))
-                found += [] if fact.drive is None else self._decisions([fact.drive])
+                fact = yield from self._side(wanted)
+                found += [] if fact.drive is None else self._decisions((fact.drive,))
                 facts.append(fact)
         return tuple(facts)
 
@@ -74,10 +70,7 @@ class SidesBatch:
         for model in models_of(self.drivers, self.scenario):
             yield from (Restriction(side, model) for side in get_args(Side))
 
-    def _named(self, wanted: Restriction) -> str:
-        return f"{self.name}-{wanted.side}-{wanted.model}"
-
-    def _decisions(self, drives: "tuple[JudgedDrive, ...] | list[JudgedDrive]") -> list[Decision]:
+    def _decisions(self, drives: tuple[JudgedDrive, ...]) -> list[Decision]:
         return decisions_of(drives, [self.scenario], self.asked, self.drivers)
 
     @cached_property
@@ -109,21 +102,22 @@ class SidesBatch:
         home = self.basis.specification
         file = replace(answer.drive.file, options=dict(home.options), values=self.basis.all_values())
         judged = judged_as(file, both(self.entry.query, self._plain), self.basis.library)
-        if judged is None or not _is_on(self._decisions([judged]), wanted):
+        if judged is None or not _is_on(self._decisions((judged,)), wanted):
             return None
         return judged
 
-    def _fact(self, wanted: Restriction, answer: Answer | None) -> Fact:
+    def _side(self, wanted: Restriction) -> Asking[Fact]:
+        """Ask for a drive on one side."""
         other = side_name(self.scenario, wanted.side, wanted.model)
         fact = Fact(self.entry.id, other, "open", self.entry.query, self._plain)
         claim = self._claim(wanted)
         if not isinstance(claim, Claim):
             return replace(fact, reason=claim)
-        drive = None if answer is None else self._drive(answer, wanted)
-        if drive is not None:
-            return replace(fact, relation="shows", drive=drive, also=names_shown(drive, self.asked))
-        reason = NO_REASON if answer is None else answer.reason
-        return replace(fact, reason=reason or Why.SEARCH_FOUND_NONE())
+        answer = yield f"{self.name}-{wanted.side}-{wanted.model}", claim
+        drive = self._drive(answer, wanted)
+        if drive is None:
+            return replace(fact, reason=answer.reason or Why.SEARCH_FOUND_NONE())
+        return replace(fact, relation="shows", drive=drive, also=names_shown(drive, self.asked))
 
 
 def _is_on(decisions: list[Decision], wanted: Restriction) -> bool:

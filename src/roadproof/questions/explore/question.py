@@ -12,7 +12,6 @@ from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.points import Asking, Remembered
 from roadproof.engines.search.question import SearchOptions, Setting
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence.answer import Answer, undecided
 from roadproof.evidence.codec import read
 from roadproof.evidence.drive_file import road_of
 from roadproof.library.elaborate import read_claim
@@ -20,8 +19,7 @@ from roadproof.library.scenarios import Scenario, applied, numbers_of
 from roadproof.questions.explore.asking import Explorable, ask_for
 from roadproof.questions.explore.data import SCHEMA, AskedFormula, ExploreData, Exploring, exploration_data
 from roadproof.questions.explore.values import ExplorationResult, explore
-from roadproof.questions.question import Answers, Place, Steps, heading_of
-from roadproof.reasons import NO_REASON
+from roadproof.questions.question import Answers, Place, Steps, heading_of, seen
 from roadproof.runtime.budget import Work
 from roadproof.runtime.records import dataclass
 from roadproof.world.road import Road
@@ -128,7 +126,7 @@ class ExploreQuestion:
 
     def view(self, known: Answers) -> ExploreView:
         """Return what is known of each formula."""
-        return ExploreView({name: _seen(self.asking(name), known) for name in self.named})
+        return ExploreView({name: seen(self.asking(name), known) for name in self.named})
 
     def data(self, view: ExploreView, place: Place, seconds: float) -> ExploreData:
         """Return the view as ``--json`` prints it."""
@@ -163,18 +161,6 @@ def _is_scenario(search: Search, number: int) -> bool:
     if number not in numbers_of(home):
         return False
     return applied(home, Scenario(number, home.set_name)).formula == search.query.formula
-
-
-def _seen(asking: Asking[ExplorationResult], known: Answers) -> ExplorationResult:
-    """Return what answers show; claims without one are in doubt."""
-    try:
-        name, claim = next(asking)
-        while True:
-            answer: Answer = known.get(name) or undecided(claim, NO_REASON)
-            name, claim = asking.send(answer)
-    except StopIteration as end:
-        found: ExplorationResult = end.value
-        return found
 
 
 def _name_of(number: int, search: Search) -> str:
