@@ -17,7 +17,7 @@ from roadproof.evidence.strict import LARGEST_EVIDENCE, LARGEST_INDEX, Fields, r
 from roadproof.evidence.subject import OTHER
 from roadproof.library.motion import statement
 from roadproof.questions.data import QUESTION, SCHEMA, read_question
-from roadproof.questions.question import Linkable, Question, walk
+from roadproof.questions.question import Linkable, Question, Telling, walk
 from roadproof.reasons import NO_REASON, Why
 from roadproof.runtime.records import dataclass
 
@@ -76,7 +76,7 @@ class QuestionFolder:
         if isinstance(answer.claim.mode, Beside):
             claim = found.claim  # which says the numbers that the claim leaves open
         linked = self.question.subject(name) if isinstance(self.question, Linkable) else OTHER
-        return replace(
+        told = replace(
             found,
             verdict=str(answer.verdict),
             label=self.question.label(name),
@@ -84,6 +84,7 @@ class QuestionFolder:
             subject=linked.kind,
             name=linked.name,
         )
+        return self.question.tell(name, answer, told) if isinstance(self.question, Telling) else told
 
 
 def _wants_trees(claim: Claim) -> bool:

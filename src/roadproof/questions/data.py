@@ -21,6 +21,7 @@ from roadproof.runtime.records import dataclass
 QUESTION: Final = "question.json"
 SCHEMA: Final = "roadproof/question/1"
 KINDS: Mapping[str, str] = {
+    "catalogue": "roadproof.questions.catalogue.question:CatalogueQuestion",
     "compare": "roadproof.questions.compare:CompareQuestion",
     "order": "roadproof.questions.order.question:OrderQuestion",
     "explore": "roadproof.questions.explore.question:ExploreQuestion",

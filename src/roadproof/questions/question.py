@@ -7,6 +7,7 @@ from roadproof.analysis.basis import Basis
 from roadproof.drivers import restriction
 from roadproof.evidence.answer import Answer, undecided
 from roadproof.evidence.claim import Claim
+from roadproof.evidence.finding import Finding
 from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.subject import Subject
@@ -107,6 +108,14 @@ class Linkable(Protocol):
 
     def subject(self, name: str) -> Subject:
         """Return what the claim of a name is about."""
+
+
+@runtime_checkable
+class Telling(Protocol):
+    """A question that says more of a checked answer than its label."""
+
+    def tell(self, name: str, answer: Answer, found: Finding) -> Finding:
+        """Return what was found, with what the answer shows."""
 
 
 def walk(batch: Batch, find: Callable[[str, Claim], Answer | None]) -> Iterator[tuple[str, Claim]]:

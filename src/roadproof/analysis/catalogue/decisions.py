@@ -9,18 +9,20 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 
-from roadproof.drivers.driving import DriverSettings
+from roadproof.drivers.driving import DriverSettings, require
 from roadproof.drivers.initial_state import State
 from roadproof.drivers.manoeuvres import ManoeuvreName
-from roadproof.drivers.models import MODELS, ModelName, course_in, foreseen
+from roadproof.drivers.models import DRIVERS, MODELS, ModelName, course_in, foreseen
 from roadproof.drivers.outcome import Outcome
 from roadproof.drivers.replay import first_cut, replay
 from roadproof.drivers.sampled_replay import replay_samples
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.subject import TestedSide
+from roadproof.library.bind import values_with
 from roadproof.library.elaborate import read_claim
+from roadproof.library.loading import load_library
 from roadproof.library.scenarios import number_in
-from roadproof.library.specification import Specification
+from roadproof.library.specification import Specification, on_request
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import with_values
 from roadproof.reasons import NO_REASON, Reason, Why
@@ -88,6 +90,23 @@ class Drivers:
         if text not in self._read:
             self._read[text] = with_values(read_claim(self.specification, text).formula, self.values)
         return self._read[text]
+
+
+def drivers_in(home: Specification, given: Mapping[str, Fraction], names: tuple[str, ...]) -> Drivers | None:
+    """Return the driver models of some names, in definitions on top of which ``driver.spec`` is read.
+
+    ``given``: values of parameters (SI). Raises ``InputError``, ``UsageError``.
+    """
+    if not names:
+        return None
+    library = home.library
+    path = on_request()[DRIVERS]
+    if all(x.name != str(path) for x in library.files):
+        library = load_library([path, *library.files])
+    specification = library.select(home.set_name, home.options)
+    values = values_with(library, given)
+    require(specification, values)
+    return Drivers(specification, values, tuple(MODELS[name].name for name in names))
 
 
 def content_of(drivers: Drivers) -> str:

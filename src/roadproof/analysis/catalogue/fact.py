@@ -1,17 +1,17 @@
-"""What is known of a test or a target, with its evidence, and the same as plain data."""
+"""What is known of a test or a target, with its evidence."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Literal
 
-from roadproof.analysis.study.evidence_store import EvidenceStore
-from roadproof.evidence.answers.catalogue_index import VERDICTS, FactVerdict, KeptFact, Relation
+from roadproof.evidence.answer import Answer
+from roadproof.evidence.answers.catalogue_index import VERDICTS, FactVerdict, Relation
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.evidence.strict import rational
 from roadproof.library.compose import both, implication, negation
-from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import Query, Specification
+from roadproof.library.scenarios import number_in
+from roadproof.library.specification import Query
 from roadproof.reasons import NO_REASON, Reason
 
 
@@ -23,8 +23,8 @@ class Fact:
     alone has a drive (runs) or a proof that there is none (empty); of a scenario or class there is a drive at
     the end of a range (reaches); open: none of these was found. ``premise`` is the formula of the test,
     ``conclusion`` that of the other. ``also``: of a drive, all names that it shows. ``term``, ``sense`` and
-    ``at`` (SI): which number of its start is least or greatest there. ``exhausted``: left open by a search
-    that finds no more with the same work; not kept.
+    ``at`` (SI): which number of its start is least or greatest there. ``name`` and ``answer``: of the claim
+    that shows it.
     """
 
     test: str
@@ -33,13 +33,18 @@ class Fact:
     premise: Query
     conclusion: Query | None = None
     reason: Reason = NO_REASON
-    certificate: Certificate | None = None
     drive: JudgedDrive | None = None
     also: tuple[str, ...] = ()
     term: str = ""
     sense: Literal["", "least", "greatest"] = ""
     at: Fraction | None = None
-    exhausted: bool = False
+    name: str = ""
+    answer: Answer | None = None
+
+    @property
+    def certificate(self) -> Certificate | None:
+        """The proof, if there is one."""
+        return None if self.answer is None else self.answer.certificate
 
     @property
     def verdict(self) -> FactVerdict:
@@ -59,39 +64,10 @@ class Fact:
                 return both(self.premise, self.conclusion)
 
 
-def record_of(fact: Fact, name: str, shelf: EvidenceStore) -> KeptFact:
-    """A fact as it is kept; its evidence goes to the shelf."""
-    return KeptFact(
-        test=fact.test,
-        other=fact.other,
-        relation=fact.relation,
-        premise=fact.premise.text,
-        conclusion=None if fact.conclusion is None else fact.conclusion.text,
-        formula=fact.query.text,
-        verdict=fact.verdict,
-        reason=fact.reason,
-        certificate=shelf.certificate(f"proofs/{name}.json", fact.certificate),
-        drive=shelf.drive(f"drives/{name}.json", fact.drive),
-        also=fact.also,
-        term=fact.term,
-        sense=fact.sense,
-        at=None if fact.at is None else str(fact.at),
-    )
-
-
-def read_fact(said: KeptFact, specification: Specification, shelf: EvidenceStore) -> Fact:
-    """The inverse of ``record_of``. Raises ``InputError``."""
-    return Fact(
-        said.test,
-        said.other,
-        said.relation,
-        read_claim(specification, said.premise),
-        None if said.conclusion is None else read_claim(specification, said.conclusion),
-        said.reason,
-        shelf.read_certificate(said.certificate),
-        shelf.read_drive(said.drive),
-        said.also,
-        said.term,
-        said.sense,
-        None if said.at is None else rational(said.at, "at"),
-    )
+def scenarios_shown(facts: Iterable[Fact]) -> tuple[str, ...]:
+    """The scenarios that a test implies, or that the first drive of it shows."""
+    named = [
+        (x.other,) if x.relation == "implies" else x.also for x in facts if x.relation in ("implies", "runs")
+    ]
+    shown = [name for those in named for name in those]
+    return tuple(dict.fromkeys(x for x in shown if number_in(x) is not None))

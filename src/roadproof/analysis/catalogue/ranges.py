@@ -4,7 +4,7 @@ How far a number can go is what drives show that were looked for, within limits;
 lies beyond them, nor of values between tests, which are taken as covered.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
@@ -14,16 +14,20 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.showing import ConcreteAnswer, signal_of
-from roadproof.engines.search.extreme import ExtremeQuestion, find_extreme
+from roadproof.engines.search.extreme import PROOF, ExtremeQuestion, ExtremeSearch
 from roadproof.engines.search.measure import Sense, read_measure
 from roadproof.engines.search.placing import judged_as
+from roadproof.engines.search.points import Asking, Points, Remembered
+from roadproof.evidence.answer import Answer
+from roadproof.evidence.claim import Claim
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import both
 from roadproof.library.elaborate import read_term
 from roadproof.library.specification import Query, Specification
 from roadproof.reasons import NO_REASON, Why
-from roadproof.runtime.budget import BudgetExceeded
+from roadproof.runtime.budget import Work
+from roadproof.runtime.canonical import digest
 from roadproof.world.units import unit_text
 
 EFFORT = 6.0
@@ -72,28 +76,55 @@ class Span:
         return sum(high - low for low, high in self.untested) / width if width else 0.0
 
 
-def reached(basis: Basis, reach: Reach) -> tuple[Fact, ...]:
-    """A drive at each end of the range, or why there is none."""
-    return tuple(_end(basis, reach, sense) for sense in get_args(Sense))
+@dataclass(frozen=True)
+class ReachBatch:
+    """The claims about both ends of a range."""
 
+    basis: Basis
+    reach: Reach
 
-def _end(basis: Basis, reach: Reach, sense: Sense) -> Fact:
-    effort = basis.effort.of(min(basis.effort.units, EFFORT))
-    search = basis.search(reach.query, effort=effort)
-    measure = read_measure(basis.specification, sense, reach.term, given=reach.query.claim.given)
-    still_open = Fact("", reach.target, "open", reach.query, term=reach.term, sense=sense)
-    asked = ExtremeQuestion(sense, search, measure, _PRECISION[signal_of(reach.term)])
-    try:
-        found = find_extreme(asked, reach.known)
-    except BudgetExceeded as late:
-        return replace(still_open, reason=Why.EXTREME(sense, reach.term, late.reason))
-    beyond = NO_REASON if found.missed is None else found.missed.reason
-    if found.best is None:
-        return replace(still_open, reason=Why.EXTREME(sense, reach.term, beyond))
-    [value] = found.best.at
-    bound = both(*measure.bound(value))
-    made = replace(still_open, relation="reaches", conclusion=bound, reason=beyond, at=value)
-    return replace(made, drive=found.best.drive)
+    @property
+    def name(self) -> str:
+        """How the names of its claims begin."""
+        return f"range-{self.reach.target}-{digest(self.reach.term)[:6]}"
+
+    @property
+    def work(self) -> Work:
+        """The work that is allowed for a claim."""
+        effort = self.basis.effort
+        return Work(effort.of(min(effort.units, EFFORT)), PROOF, staged=True, moves=False)
+
+    @property
+    def seeds(self) -> tuple[JudgedDrive, ...]:
+        """The drives of tests that show the target."""
+        return self.reach.known
+
+    def steps(self) -> Generator[tuple[str, Claim], Answer, None]:
+        """Yield each claim, and be sent its answer."""
+        yield from self.facts()
+
+    def facts(self) -> Asking[tuple[Fact, ...]]:
+        """Ask for a drive at each end of the range, and return it, or why there is none."""
+        facts: list[Fact] = []
+        for sense in get_args(Sense):
+            facts.append((yield from self._end(sense)))
+        return tuple(facts)
+
+    def _end(self, sense: Sense) -> Asking[Fact]:
+        reach, home = self.reach, self.basis.specification
+        measure = read_measure(home, sense, reach.term, given=reach.query.claim.given)
+        fact = Fact("", reach.target, "open", reach.query, term=reach.term, sense=sense)
+        search = self.basis.search(reach.query, effort=self.work.effort)
+        precision = _PRECISION[signal_of(reach.term)]
+        asked = ExtremeQuestion(f"{self.name}-{sense}", search, measure, precision)
+        found = yield from ExtremeSearch(asked, Points(Remembered())).run(reach.known)
+        beyond = NO_REASON if found.missed is None else found.missed.reason
+        if found.best is None:
+            return replace(fact, reason=Why.EXTREME(sense, reach.term, beyond))
+        [value] = found.best.at
+        bound = both(*measure.bound(value))
+        made = replace(fact, relation="reaches", conclusion=bound, reason=beyond, at=value)
+        return replace(made, drive=found.best.drive, name=found.best.name, answer=found.best.answer)
 
 
 def spans_of(

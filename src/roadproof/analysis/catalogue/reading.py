@@ -1,17 +1,16 @@
 """Folders of tests: files that are tests as they are, and ``catalogue.toml``, which says more of them."""
 
-from collections.abc import Collection, Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
 
-from roadproof.analysis.catalogue.entries import Catalogue, Concrete, Entry
+from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete, Entry
 from roadproof.analysis.catalogue.listing import FILE_NAME, listed
+from roadproof.drivers.restriction import said_in
 from roadproof.errors import InputError
-from roadproof.evidence.answers.catalogue_index import SCHEMA
 from roadproof.evidence.drive_file import SCHEMAS_READ
-from roadproof.evidence.folder import INDEX
-from roadproof.evidence.journal import HEAD
+from roadproof.evidence.strict import LARGEST_INDEX, read_json
 from roadproof.library.specification import Specification
 from roadproof.recordings.evaluate.one_trace import is_pair
 from roadproof.recordings.formats.samples import HEADER
@@ -20,6 +19,9 @@ from roadproof.recordings.formats.storyboard.distributions import scenarios_of, 
 from roadproof.runtime.files import refuse_name
 
 _LOOK = 400  # bytes of a file that tell what it is
+
+
+QUESTION = "question.json"
 
 
 @dataclass(frozen=True)
@@ -102,7 +104,7 @@ def _folder(
 ) -> list[_Found]:
     """The tests of a folder; files that nobody names are called as in it, or by path if that is taken."""
     found: list[_Found] = []
-    answers = {x.parent for name in (INDEX, HEAD) for x in folder.rglob(name) if is_answer(x)}
+    answers = {x.parent for x in folder.rglob(QUESTION) if is_answer(x)}
     for path in sorted(folder.rglob(FILE_NAME)):
         found += _listed(path, specification)
     places = [x.entry.place for x in found if isinstance(x.entry, Concrete)]
@@ -127,8 +129,12 @@ def _folder(
 
 
 def is_answer(path: Path) -> bool:
-    """Whether an index, or the head of kept answers, is one of ``catalogue``, whose drives are no tests."""
-    return f'"{SCHEMA}"' in _beginning(path)
+    """Whether a ``question.json`` is one of ``catalogue``, whose drives are no tests."""
+    try:
+        content = read_json(path, LARGEST_INDEX)
+    except InputError:
+        return False
+    return isinstance(content, dict) and content.get("question") == "catalogue"
 
 
 def is_test(path: Path) -> bool:
@@ -163,3 +169,15 @@ def _beginning(path: Path) -> str:
             return file.read(_LOOK).decode("utf-8", "replace")
     except OSError:
         return ""
+
+
+def read_tests(paths: Sequence[str | Path], plain: Specification, asked: Specification) -> Catalogue:
+    """Return the tests as the library says them, whatever the scenarios are that are ``asked`` about."""
+    tests = read_catalogue(paths, plain)
+    if plain is asked:
+        return tests
+    entries = tuple(
+        replace(x, query=said_in(x.query, plain, asked)) if isinstance(x, Abstract) else x
+        for x in tests.entries
+    )
+    return replace(tests, entries=entries)

@@ -7,7 +7,6 @@ from roadproof.analysis.catalogue.asked import NOWHERE, Questions
 from roadproof.analysis.catalogue.entries import Abstract, Freedom
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.gaps import PREFIX
-from roadproof.analysis.catalogue.meaning import Kept, facts_in
 from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, ConcreteAnswer, why_not
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.drivers.restriction import restriction_of
@@ -332,11 +331,6 @@ def _implied(abstract: Sequence[Abstract], facts: Sequence[Fact]) -> Iterator[Re
             yield Remark((one, other), "every drive of the first is one of the second: that is proved")
         elif one < other:
             yield Remark((one, other), "have the same drives: that is proved")
-
-
-def all_facts(answers: Mapping[str, Kept]) -> tuple[Fact, ...]:
-    """What is known of all abstract tests."""
-    return tuple(fact for answer in answers.values() for fact in facts_in(answer))
 
 
 # --- how much tests show, in figures ---------------------------------------------------------------

@@ -1,33 +1,29 @@
 """What a catalogue of tests shows, what it misses, and drives for what is missing."""
 
-import time
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import field, replace
-from functools import cached_property
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar, Unpack
 
-from roadproof.analysis.basis import ProofResult
 from roadproof.analysis.catalogue.completing import PriorResults, complete
-from roadproof.analysis.catalogue.entries import Concrete, Request
-from roadproof.analysis.catalogue.examination import Examination, examine
-from roadproof.analysis.catalogue.meaning import Kept, Meanings, gap_answers
-from roadproof.analysis.catalogue.result import Result
-from roadproof.analysis.catalogue.tested import SCENARIOS, all_facts, kind_of
+from roadproof.analysis.catalogue.decisions import Decision
+from roadproof.analysis.catalogue.entries import Catalogue, Concrete, Request
+from roadproof.analysis.catalogue.showing import ConcreteAnswer
+from roadproof.analysis.catalogue.tested import SCENARIOS, Targets, kind_of
 from roadproof.analysis.catalogue.traces import Courses, courses_of, of_drive
 from roadproof.analysis.study.pool import Progress
 from roadproof.drivers.models import MODELS
 from roadproof.errors import UsageError
 from roadproof.evidence.answers import catalogue_index as kept
 from roadproof.evidence.claim import Objective
-from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.completing import CompletionAnswer, write_completions
 from roadproof.frontends.api.definitions import Definitions, definitions_of
-from roadproof.frontends.api.restricting import drivers_of, restricted
+from roadproof.frontends.api.questioned import QuestionAnswers
+from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import basis_of, one_of
-from roadproof.frontends.api.studied import StudyAnswers, drawn
+from roadproof.frontends.api.studied import drawn
 from roadproof.frontends.report import catalogue as report
 from roadproof.frontends.report.catalogue_drives import DrivePicture, draw_tests
 from roadproof.frontends.report.ci.cases import Case
@@ -38,26 +34,49 @@ from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import CatalogueKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.library.scenarios import number_in, numbers_of
+from roadproof.questions.catalogue.question import AskedTests, CatalogueQuestion
+from roadproof.questions.catalogue.view import CatalogueView
 from roadproof.runtime.executors import Jobs
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
 
 
 @dataclass(frozen=True, repr=False)
-class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record], Result, BuildResult):
-    """What tests show and mean; ``examination`` has the tests, and what concrete ones show."""
+class CatalogueAnswer(QuestionAnswers[CatalogueView], BuildResult):
+    """What tests show and mean."""
 
-    examination: Examination = field(kw_only=True)
-    pieces: ClassVar[str] = "questions about abstract tests"
+    question: CatalogueQuestion
+    pieces: ClassVar[str] = "questions about tests"
     command: ClassVar[str] = "catalogue"
 
     def cases(self) -> Iterator[Case]:
-        home, sources = self.study.basis.specification, self.catalogue.sources
+        home, sources = self.question.basis.specification, self.catalogue.sources
         return catalogue_cases(self.tests, self.tested, sources, home)
 
-    @cached_property
-    def known(self) -> Mapping[str, Kept]:
-        return self.study.in_order(self.found.answers)
+    @property
+    def catalogue(self) -> Catalogue:
+        """The tests, as they were read."""
+        return self.view.catalogue
+
+    @property
+    def tested(self) -> Targets:
+        """What is tested, what is missing, and what is to be said of tests."""
+        return self.view.tested
+
+    @property
+    def concrete(self) -> tuple[ConcreteAnswer, ...]:
+        """What concrete tests show, in order."""
+        return self.view.concrete
+
+    @property
+    def decisions(self) -> tuple[tuple[str, Decision], ...]:
+        """What becomes of each test, by id, under each driver model."""
+        return self.view.decisions
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """What is to be tested, and no test shows: scenarios, classes, with ``gaps`` classes of gaps."""
+        return self.view.missing
 
     @property
     def tests(self) -> tuple[str, ...]:
@@ -79,15 +98,6 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record], Result, BuildRe
         return found
 
     @property
-    def evidence(self) -> tuple[Evidence, ...]:
-        found = [y for x in all_facts(self.known) for y in (x.certificate, x.drive)]
-        claims = gap_answers(self.known).values() if self.tested.gaps.asked else ()
-        found += [x.certificate for x in claims if isinstance(x, ProofResult)]
-        for answer in self.gap_answers.values():
-            found += [] if answer is None else [answer.certificate, *(gap.drive for gap in answer.gaps)]
-        return tuple(x for x in found if x is not None)
-
-    @property
     def exit_code(self) -> ExitCode:
         found = self.tested
         if found.contradictions:
@@ -95,9 +105,6 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record], Result, BuildRe
         if found.doubts:
             return ExitCode.UNKNOWN
         return ExitCode.UNEXPECTED if found.missing or found.faults else ExitCode.AS_EXPECTED
-
-    def _index(self, records: Mapping[str, kept.Record]) -> kept.Index:
-        return self.index(self.study.in_order(records), self.seconds)
 
     @property
     def _sheet(self) -> Sheet[kept.Target]:
@@ -107,7 +114,7 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record], Result, BuildRe
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """Which test shows which scenario and gap, how many tests each class has; then all tests, small."""
-        yield "matrix", picture(report.draw_matrix(self.tests, self.tested, self.in_force))
+        yield "matrix", picture(report.draw_matrix(self.tests, self.tested, self.view.in_force))
         for k, page in enumerate(draw_tests(self._drawn()), 1):
             yield f"tests-{k}", picture(page)
 
@@ -119,7 +126,7 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record], Result, BuildRe
             for x in reversed(targets)
             for test in (*x.possible, *x.tested)
         }
-        runs = {x.test: x.drive for x in all_facts(self.known) if x.relation == "runs"}
+        runs = {x.test: x.drive for x in self.view.facts if x.relation == "runs"}
         courses: dict[str, Courses | None] = {}
         for entry in self.catalogue.entries:
             if isinstance(entry, Concrete):
@@ -136,20 +143,20 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record], Result, BuildRe
 
     def files(self, pictures: bool) -> dict[str, bytes]:
         """A table for a spreadsheet, a report for CI, and the picture."""
-        return report.tables(self) | drawn(self.pictures() if pictures else {})
+        return report.tables(self.view) | drawn(self.pictures() if pictures else {})
 
     def to_csv(self) -> str:
         """A row a test, a column a scenario, class, gap: x shown or implied, o by some drives of the test."""
-        return report.as_csv(self.tests, self.tested, self.in_force)
+        return report.as_csv(self.tests, self.tested, self.view.in_force)
 
     def to_junit(self) -> str:
         """Tests that fail where they are not what they claim, and what is to be tested, as JUnit XML."""
-        return as_junit(f"roadproof {self.command}", tuple(self.all_cases()), self.in_force)
+        return as_junit(f"roadproof {self.command}", tuple(self.all_cases()), self.view.in_force)
 
     def __str__(self) -> str:
-        drivers = report.driver_lines(self.decisions)
-        told = report.as_text(len(self.tests), self.tested, self.notes, self.figures, drivers)
-        ranges = report.range_lines(self.spans, self.study.basis.horizon)
+        drivers, view = report.driver_lines(self.decisions), self.view
+        told = report.as_text(len(self.tests), self.tested, view.notes, view.figures, drivers)
+        ranges = report.range_lines(view.spans, self.question.basis.horizon)
         return "\n".join([*ranges, told])
 
     def complete(
@@ -173,8 +180,8 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record], Result, BuildRe
         one_of("objective", objective, Objective)
         if spread < 1:
             raise UsageError(f"spread={spread}: write how many tests each class is to have, 1 or more")
-        asked = self.study.asked
-        basis = replace(self.study.basis, objective=objective)
+        asked = self.view.asked
+        basis = replace(self.question.basis, objective=objective)
         made = complete(basis, asked, self.missing, self._known(), spread, jobs, progress)
         words = {x.name: x.words for x in (*self.tested.all_targets, *self.tested.gaps.empty)}
         like = "" if objective == "smooth" else f", {objective}"
@@ -189,7 +196,7 @@ class CatalogueAnswer(StudyAnswers[Meanings, Kept, kept.Record], Result, BuildRe
         begins = {x.name: [y.begins for y in self.concrete if x.name in y.names] for x in self.tested.targets}
         copies = {x.entry.id for x in self.concrete if x.entry.copy_of in self.tests}
         tests = {x.name: len({*x.tested} - copies) for x in self.tested.targets}
-        gaps = {name: x for name, x in self.gap_answers.items() if x is not None and x.gaps}
+        gaps = {name: x for name, x in (self.view.gap_answers or {}).items() if x is not None and x.gaps}
         return PriorResults(begins, tests, gaps)
 
 
@@ -209,7 +216,6 @@ def catalogue(
     the scenarios that tests show, all where None. ``out``: a folder for evidence on abstract tests, gaps
     and ranges. Raises ``InputError``, ``TextError``, ``UsageError``.
     """
-    begun = time.monotonic()
     given = settings.Catalogue.of(options)
     plain = definitions_of(using)
     wanted = restricted(plain, given, given.among)
@@ -229,11 +235,5 @@ def catalogue(
     )
     basis = basis_of(replace(wanted, sets=wanted.sets[:1]), given, given.vehicles)
     numbers = wanted.among(given.among) or numbers_of(wanted.specification)
-    asked = drivers_of(wanted, models)
-    made = examine(
-        request, basis, numbers, plain.specification, asked, given.jobs, given.progress, given.fresh
-    )
-    if made.known and given.say is not None:
-        told = f"{made.known} of {len(made.concrete)} tests were judged in earlier runs"
-        given.say(f"{told}; --fresh judges them again")
-    return CatalogueAnswer.asked(made.study, given, more=lambda: {"examination": made}, begun=begun)
+    question = CatalogueQuestion(basis, AskedTests(request=request.kept, scenarios=tuple(numbers)))
+    return CatalogueAnswer.settled(question, given)

@@ -15,11 +15,10 @@ from roadproof.engines.solve.smt import Satisfiability as SolverAnswer
 from roadproof.engines.solve.smt import ask
 from roadproof.errors import RoadproofError, UsageError
 from roadproof.evidence.answers import check as kept
-from roadproof.evidence.answers.catalogue_index import SCHEMA as CATALOGUE
 from roadproof.evidence.checking import Checker
 from roadproof.evidence.codec import write
 from roadproof.evidence.finding import Acceptance, Finding, OtherVerdict, exit_code, summary
-from roadproof.evidence.folder import FolderStatements, Survey, conclude, survey
+from roadproof.evidence.folder import Survey, conclude, survey
 from roadproof.evidence.heading import heading
 from roadproof.evidence.none_within import Derived, NoneWithinFile
 from roadproof.evidence.strict import JsonObject
@@ -46,7 +45,6 @@ from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 
 if TYPE_CHECKING:
-    from roadproof.frontends.api.judging_again import Comparison
     from roadproof.frontends.api.kernel import KernelAnswer, KernelQuestion
 
 Solver: TypeAlias = Literal["z3", "cvc5"]
@@ -188,10 +186,7 @@ def _check(paths: Sequence[str | Path], asked: Check, takes_over: bool) -> Check
         if x.others:
             left[str(x.folder)] = x.others
     for told in surveyed.told:
-        again = _judged_again(told, asked)
-        findings += () if again is None else again.findings
-        compared = () if again is None else again.compared
-        if unchecked := tuple(x for x in told.not_checked if x not in compared):
+        if unchecked := tuple(told.not_checked):
             left[str(told.folder)] = unchecked
     make_room(CHECKED)
     solver = asked.kernel or asked.solver
@@ -224,15 +219,6 @@ def _put_to_kernel(
     names += [(where, x.name) for where, x in traces]
     said = answered.rulings
     return answered, {path: ruled(said[name]) for path, name in names if name in said}
-
-
-def _judged_again(told: FolderStatements, asked: Check) -> "Comparison | None":
-    """What judging the tests of a catalogue again shows; None of other folders."""
-    if told.index is None or told.index.text("schema") != CATALOGUE:
-        return None
-    from roadproof.frontends.api.judging_again import compare  # what reads tests takes long to import
-
-    return compare(told, asked.jobs, asked.progress)
 
 
 @dataclass(frozen=True)

@@ -4,16 +4,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, get_args
 
-from roadproof.drivers.models import DRIVERS, MODELS, check_courses, check_formulas
+from roadproof.drivers.models import check_courses, check_formulas
 from roadproof.drivers.restriction import About, Restriction, Side, check_library, files_for
 from roadproof.errors import UsageError
 from roadproof.frontends.api.definitions import Among, Definitions, What
 from roadproof.frontends.settings.groups import Prevention
-from roadproof.library.bind import values_with
 from roadproof.library.diagnose import checked_library
-from roadproof.library.loading import load_library
 from roadproof.library.scenarios import number_in, numbers_of
-from roadproof.library.specification import Query, on_request
+from roadproof.library.specification import Query
 from roadproof.logic import formula as f
 from roadproof.logic.formula import subformulas
 
@@ -58,19 +56,9 @@ def drivers_of(home: Definitions, names: tuple[str, ...]) -> "Drivers | None":
 
     Raises ``InputError``, ``UsageError``.
     """
-    if not names:
-        return None
-    from roadproof.analysis.catalogue.decisions import Drivers
-    from roadproof.drivers.driving import require
+    from roadproof.analysis.catalogue.decisions import drivers_in
 
-    library = home.library
-    path = on_request()[DRIVERS]
-    if all(x.name != str(path) for x in library.files):
-        library = load_library([path, *library.files])
-    specification = library.select(home.sets[0], home.specification.options)
-    values = values_with(library, home.values)
-    require(specification, values)
-    return Drivers(specification, values, tuple(MODELS[name].name for name in names))
+    return drivers_in(home.specification.in_set(home.sets[0]), home.values, names)
 
 
 def _asked(home: Definitions, among: Among, what: Sequence[What] | None) -> Iterator[int]:

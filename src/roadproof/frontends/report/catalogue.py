@@ -10,7 +10,6 @@ from typing import Any
 from roadproof.analysis.catalogue.decisions import Decision
 from roadproof.analysis.catalogue.gaps import PREFIX
 from roadproof.analysis.catalogue.ranges import Span
-from roadproof.analysis.catalogue.result import Result
 from roadproof.analysis.catalogue.tested import CLASSES, SCENARIOS, Targets, kind_of
 from roadproof.drivers.models import MODELS
 from roadproof.drivers.outcome import told_faster
@@ -21,6 +20,7 @@ from roadproof.frontends.report.figures import count_axis, make_figure
 from roadproof.frontends.report.sheet import Column, Mark, Sheet, csv_text
 from roadproof.frontends.report.sheet import as_csv as csv_of
 from roadproof.library.scenarios import number_in
+from roadproof.questions.catalogue.view import CatalogueView
 from roadproof.runtime.files import utf8
 from roadproof.verdict import Verdict
 
@@ -146,7 +146,7 @@ def range_lines(spans: Sequence[Span], horizon: Fraction) -> Iterator[str]:
             yield f"    {x.term}: {tested} of {can} {x.unit}; {x.share:.0%} is not tested"
 
 
-def tables(result: Result) -> dict[str, bytes]:
+def tables(result: CatalogueView) -> dict[str, bytes]:
     """The tables beside an index, by file name."""
     tests = tuple(x.id for x in result.catalogue.entries)
     found, in_force = result.tested, result.in_force

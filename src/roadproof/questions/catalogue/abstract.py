@@ -58,16 +58,19 @@ class TestBatch:
     def facts(self) -> Asking[tuple[Fact, ...]]:
         """Ask all of the test, and return what is known of it, in the order of the scenarios."""
         entry = self.entry
-        first = yield f"{self.name}-runs", self.exists(entry.query)
+        runs = f"{self.name}-runs"
+        first = yield runs, self.exists(entry.query)
         if first.drive is None:
-            return (_alone(entry, first),)
+            return (_alone(entry, runs, first),)
         shown = names_shown(first.drive, self.asked)
         drives, others = [shown], dict[str, Fact]()
         for name, query in self.scenarios.items():
             if name not in shown:
                 others[name] = yield from self._shown(name, query)
                 drives += [others[name].also] if others[name].drive is not None else []
-        facts = [Fact(entry.id, "", "runs", entry.query, drive=first.drive, also=shown)]
+        facts = [
+            Fact(entry.id, "", "runs", entry.query, drive=first.drive, also=shown, name=runs, answer=first)
+        ]
         for name, query in self.scenarios.items():
             fact = others.get(name)
             if fact is None:
@@ -85,23 +88,25 @@ class TestBatch:
     def _shown(self, name: str, query: Query) -> Asking[Fact]:
         """Ask for a drive of the test that shows a scenario, or a proof that the two clash."""
         fact = Fact(self.entry.id, name, "open", self.entry.query, query)
-        answer = yield self.named("shows", name), self.exists(both(self.entry.query, query))
+        asked = self.named("shows", name)
+        answer = yield asked, self.exists(both(self.entry.query, query))
+        fact = replace(fact, name=asked, answer=answer)
         if answer.drive is not None:
             also = names_shown(answer.drive, self.asked)
             return replace(fact, relation="shows", drive=answer.drive, also=also)
         if answer.certificate is not None:
-            return replace(fact, relation="excludes", certificate=answer.certificate)
+            return replace(fact, relation="excludes")
         return replace(fact, reason=answer.reason or Why.NO_DRIVE())
 
     def _implied(self, name: str, query: Query, drives: Sequence[Sequence[str]]) -> Asking[Fact | None]:
         """Ask whether the test implies what all its drives show."""
         if not all(name in x for x in drives):
             return None
-        answer = yield self.named("implies", name), self.implies(query)
+        asked = self.named("implies", name)
+        answer = yield asked, self.implies(query)
         if answer.verdict is not Verdict.PROVED:
             return None
-        fact = Fact(self.entry.id, name, "implies", self.entry.query, query)
-        return replace(fact, certificate=answer.certificate)
+        return Fact(self.entry.id, name, "implies", self.entry.query, query, name=asked, answer=answer)
 
     def _in_set(self, asked: Questions, drive: JudgedDrive) -> Asking[list[Fact]]:
         """Ask which scenarios of another set the test implies, among those that its drive shows."""
@@ -134,11 +139,12 @@ class TestBatch:
         return valid_under(self.basis.specification, implication(self.entry.query, query))
 
 
-def _alone(entry: Abstract, answer: Answer) -> Fact:
+def _alone(entry: Abstract, name: str, answer: Answer) -> Fact:
     """Return what is known of a test of which there is no drive."""
     if answer.certificate is not None:
-        return Fact(entry.id, "", "empty", entry.query, certificate=answer.certificate)
-    return Fact(entry.id, "", "open", entry.query, reason=answer.reason or Why.NO_DRIVE())
+        return Fact(entry.id, "", "empty", entry.query, name=name, answer=answer)
+    reason = answer.reason or Why.NO_DRIVE()
+    return Fact(entry.id, "", "open", entry.query, reason=reason, name=name, answer=answer)
 
 
 @dataclass(frozen=True)
@@ -172,4 +178,4 @@ class PairBatch:
         if answer.verdict is not Verdict.PROVED:
             return ()
         fact = Fact(self.one.id, self.other.id, "implies", self.one.query, self.other.query)
-        return (replace(fact, certificate=answer.certificate),)
+        return (replace(fact, name=self.name, answer=answer),)

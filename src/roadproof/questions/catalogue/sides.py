@@ -113,8 +113,9 @@ class SidesBatch:
         claim = self._claim(wanted)
         if not isinstance(claim, Claim):
             return replace(fact, reason=claim)
-        answer = yield f"{self.name}-{wanted.side}-{wanted.model}", claim
-        drive = self._drive(answer, wanted)
+        name = f"{self.name}-{wanted.side}-{wanted.model}"
+        answer = yield name, claim
+        drive, fact = self._drive(answer, wanted), replace(fact, name=name, answer=answer)
         if drive is None:
             return replace(fact, reason=answer.reason or Why.SEARCH_FOUND_NONE())
         return replace(fact, relation="shows", drive=drive, also=names_shown(drive, self.asked))

@@ -1,90 +1,82 @@
-"""All that is known of a catalogue: what its tests show, imply and miss, and the index that says so."""
+"""All that is known of a catalogue: what its tests show, imply and miss."""
 
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
+from typing import Any
 
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.decisions import Decision, Drivers, decide_formula
-from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete
-from roadproof.analysis.catalogue.examination import Examination
-from roadproof.analysis.catalogue.meaning import Kept, gap_answers, scenarios_shown
+from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete, Request
+from roadproof.analysis.catalogue.fact import Fact, scenarios_shown
 from roadproof.analysis.catalogue.ranges import Span, spans_of
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
 from roadproof.analysis.catalogue.sides import decisions_of, read_side_name
-from roadproof.analysis.catalogue.tested import (
-    Targets,
-    all_facts,
-    figures,
-    figures_beside,
-    targets_of,
-    tested,
-)
+from roadproof.analysis.catalogue.tested import Targets, figures, figures_beside, targets_of, tested
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.drivers.restriction import restriction_of
 from roadproof.evidence.answers import catalogue_index as kept
-from roadproof.evidence.answers import coverage
 from roadproof.evidence.answers.catalogue_index import Figure
 from roadproof.library.bind import values_with
+from roadproof.questions.question import Place, heading_of
 from roadproof.recordings.formats.reliable import left_out_in
+from roadproof.runtime.records import dataclass
 
 
-class Result(ABC):
-    """What tests show and mean; ``examination`` has the tests, and what concrete ones show."""
+@dataclass(frozen=True)
+class CatalogueView:
+    """What tests show and mean.
 
-    examination: Examination
+    ``shown``: what concrete tests show, in each spec set; ``facts``: what is known of the others;
+    ``gap_answers``: where it was asked, what is known of each class of gaps, None of those that tests show.
+    """
+
+    basis: Basis
+    request: Request
+    catalogue: Catalogue
+    questions: tuple[Questions, ...]
+    shown: tuple[tuple[ConcreteAnswer, ...], ...]
+    facts: tuple[Fact, ...]
+    drivers: Drivers | None
+    gap_answers: Mapping[str, ClassAnswer | None] | None
 
     @property
-    @abstractmethod
-    def known(self) -> Mapping[str, Kept]:
-        """What is known of abstract tests."""
+    def asked(self) -> Questions:
+        """What tests are asked in the first spec set."""
+        return self.questions[0]
 
     @property
     def concrete(self) -> tuple[ConcreteAnswer, ...]:
-        """What concrete tests show, in order."""
-        return self.examination.concrete
-
-    @property
-    def catalogue(self) -> Catalogue:
-        """The tests."""
-        return self.examination.tests
+        """What concrete tests show in the first spec set, in order."""
+        return self.shown[0]
 
     @cached_property
     def tested(self) -> Targets:
         """What is tested, what is missing, and what is to be said of tests."""
-        study, near = self.examination.study, self.examination.request.near
-        words, gaps = targets_of(study.asked), None if study.gaps is None else self.gap_answers
-        return tested(study.asked, self.concrete, study.entries, all_facts(self.known), words, near, gaps)
-
-    @cached_property
-    def gap_answers(self) -> dict[str, ClassAnswer | None]:
-        """Where it was asked, what is known of each class of gaps by name: None of those that tests show."""
-        study = self.examination.study
-        if study.gaps is None or study.survey is None:
-            return {}
-        known = study.survey.classes_in(gap_answers(self.known))
-        return {n: known(part) for n, part in study.gaps.parts.items()}
+        abstract = [x for x in self.catalogue.entries if isinstance(x, Abstract)]
+        words, near = targets_of(self.asked), self.request.near
+        return tested(self.asked, self.concrete, abstract, self.facts, words, near, self.gap_answers)
 
     @cached_property
     def figures(self) -> tuple[Figure, ...]:
         """How much is tested: by spec set, kind and road sector."""
-        facts, set_name = all_facts(self.known), self.examination.study.basis.specification.set_name
+        set_name = self.basis.specification.set_name
         found = figures(set_name, self.tested.targets, self.tested.gaps)
-        pairs = zip(self.examination.study.beside, self.examination.beside, strict=True)
-        return (*found, *(x for asked, answers in pairs for x in figures_beside(asked, answers, facts)))
+        pairs = zip(self.questions[1:], self.shown[1:], strict=True)
+        return (*found, *(x for asked, answers in pairs for x in figures_beside(asked, answers, self.facts)))
 
     @cached_property
     def spans(self) -> tuple[Span, ...]:
         """Where it was asked, how tests of each class begin, and how drives of it can."""
-        if not self.examination.study.reaches:
+        if not self.request.explore:
             return ()
         covered = {x.name: x.covered for x in self.tested.targets}
-        return tuple(spans_of(self.examination.study.basis.specification, covered, all_facts(self.known)))
+        return tuple(spans_of(self.basis.specification, covered, self.facts))
 
     @cached_property
     def decisions(self) -> tuple[tuple[str, Decision], ...]:
         """What becomes of each test, by id, under each driver model, in the order of tests."""
-        drivers = self.examination.drivers
+        drivers = self.drivers
         concrete = {x.entry.id: x.decisions for x in self.concrete}
         if drivers is None:
             return ()
@@ -98,14 +90,12 @@ class Result(ABC):
 
     def _of_formula(self, entry: Abstract, drivers: Drivers) -> Iterator[Decision]:
         """What becomes of an abstract test by the drives of it that were found, each once."""
-        facts = [x for x in all_facts(self.known) if x.test == entry.id]
+        facts = [x for x in self.facts if x.test == entry.id]
         drives = {repr(x.drive.file.drive): x.drive for x in facts if x.drive is not None}
         scenarios = scenarios_shown(facts)
         sides = [read_side_name(x.other) for x in facts if x.relation == "open"]
         missed = {(x[0], x[2]) for x in sides if x is not None}
-        return decide_formula(
-            decisions_of(drives.values(), scenarios, self.examination.study.asked, drivers), missed
-        )
+        return decide_formula(decisions_of(drives.values(), scenarios, self.asked, drivers), missed)
 
     @property
     def missing(self) -> tuple[str, ...]:
@@ -141,7 +131,7 @@ class Result(ABC):
     @property
     def in_force(self) -> tuple[str, ...]:
         """What was asked otherwise than by default: spec set, readings, parameters, a driver model."""
-        basis = self.examination.study.basis
+        basis = self.basis
         home = basis.specification
         driver = restriction_of(home.options)
         said = [] if home.set_name == "base" else [f"set {home.set_name}"]
@@ -152,21 +142,23 @@ class Result(ABC):
         said += [f"{k} = {v} (SI)" for k, v in basis.values.items() if v != declared[k]]
         return (*said, *(() if driver is None else (str(driver),)))
 
-    def index(self, records: Mapping[str, kept.Record], seconds: float) -> kept.Index:
-        """The index, made of the answers as they are recorded."""
+    def data(self, place: Place, seconds: float) -> kept.Index:
+        """Return the view as ``--json`` prints it."""
         found = self.tested
-        answers = list(records.values())
+        said: dict[str, Any] = {"set": self.basis.specification.set_name, **self.basis.said()}
         return kept.Index(
-            **self.examination.study.question.heading,
-            request=self.examination.request.kept,
+            **heading_of(kept.SCHEMA, self.basis),
+            **said,
+            scenarios=self.asked.numbers,
+            request=self.request.kept,
             tests=tuple(map(self._test, self.catalogue.entries)),
             targets=found.targets,
-            gaps=self._gaps([x.gaps for x in answers if x.gaps is not None]),
+            gaps=self._gaps(),
             not_tested=self.missing,
             figures=self.figures,
             decisions=tuple(_kept(test, x) for test, x in self.decisions),
             ranges=tuple(map(_range, self.spans)),
-            facts=tuple(fact for x in answers for fact in x.facts),
+            facts=tuple(fact_data(x, place) for x in self.facts),
             faults=found.faults,
             doubts=found.doubts,
             alike=found.alike,
@@ -176,8 +168,8 @@ class Result(ABC):
             seconds=round(seconds, 1),
         )
 
-    def _gaps(self, answers: Sequence[coverage.Record]) -> kept.Gaps:
-        """The classes of gaps: those that tests show, or all with what shows that they are empty or not."""
+    def _gaps(self) -> kept.Gaps:
+        """Return the classes of gaps: those that tests show, or all."""
         gaps = self.tested.gaps
         return kept.Gaps(
             asked=gaps.asked,
@@ -185,8 +177,8 @@ class Result(ABC):
             targets=gaps.targets,
             empty=tuple(x.name for x in gaps.empty),
             open=gaps.open,
-            claims=tuple(x.claim for x in answers if x.claim is not None and gaps.asked),
-            classes=tuple(y for x in answers if gaps.asked for y in x.classes),
+            claims=(),
+            classes=(),
         )
 
     def _test(self, entry: Concrete | Abstract) -> kept.ConcreteTest | kept.AbstractTest:
@@ -211,18 +203,6 @@ class Result(ABC):
         )
 
 
-@dataclass(frozen=True)
-class DerivedResult(Result):
-    """A result out of an examination and of what is known of abstract tests."""
-
-    examination: Examination
-    answers: Mapping[str, Kept]
-
-    @property
-    def known(self) -> Mapping[str, Kept]:
-        return self.answers
-
-
 def _range(span: Span) -> kept.Range:
     said = {name: x for name, x in vars(span).items() if name != "unit"}
     return kept.Range(**said, untested=span.untested, share=round(span.share, 4))
@@ -232,3 +212,24 @@ def _kept(test: str, decision: Decision) -> kept.KeptDecision:
     """Return a decision as the index has it: without its drive, which ``check`` makes again."""
     fields = {name: value for name, value in vars(decision).items() if name != "drive"}
     return kept.KeptDecision(test=test, **fields)
+
+
+def fact_data(fact: Fact, place: Place) -> kept.KeptFact:
+    """Return a fact as ``--json`` prints it."""
+    file = None if fact.answer is None else place(fact.name, fact.answer)
+    return kept.KeptFact(
+        test=fact.test,
+        other=fact.other,
+        relation=fact.relation,
+        premise=fact.premise.text,
+        conclusion=None if fact.conclusion is None else fact.conclusion.text,
+        formula=fact.query.text,
+        verdict=fact.verdict,
+        reason=fact.reason,
+        certificate=file if fact.certificate is not None else None,
+        drive=file if fact.drive is not None else None,
+        also=fact.also,
+        term=fact.term,
+        sense=fact.sense,
+        at=None if fact.at is None else str(fact.at),
+    )

@@ -1,0 +1,255 @@
+"""The question what a catalogue of tests shows, means and misses."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import Annotated, Any, ClassVar
+
+from roadproof.analysis.basis import Basis
+from roadproof.analysis.catalogue.asked import Questions
+from roadproof.analysis.catalogue.decisions import Drivers, drivers_in
+from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete, Request
+from roadproof.analysis.catalogue.fact import Fact, scenarios_shown
+from roadproof.analysis.catalogue.gaps import GapKinds, gap_kinds
+from roadproof.analysis.catalogue.ranges import Reach, ReachBatch, reaches_of
+from roadproof.analysis.catalogue.reading import read_tests
+from roadproof.analysis.catalogue.showing import ConcreteAnswer
+from roadproof.analysis.catalogue.sides import has_sides
+from roadproof.analysis.catalogue.tested import CLASSES, SCENARIOS, kind_of, targets_of, tested
+from roadproof.analysis.classify.classes import Classes, plan_of
+from roadproof.analysis.classify.divide import divide
+from roadproof.drivers.restriction import restriction_of, unrestricted
+from roadproof.errors import InputError, RoadproofError, UsageError
+from roadproof.evidence.answer import Answer, Judged
+from roadproof.evidence.answers import shared
+from roadproof.evidence.answers.catalogue_index import KeptRequest
+from roadproof.evidence.codec import Doc, Rule, read
+from roadproof.evidence.finding import Finding
+from roadproof.evidence.subject import DriverSide, SubjectKind
+from roadproof.questions.catalogue.abstract import PairBatch, TestBatch
+from roadproof.questions.catalogue.concrete import ConcreteBatch
+from roadproof.questions.catalogue.sides import SidesBatch
+from roadproof.questions.catalogue.view import CatalogueView
+from roadproof.questions.question import Answers, Batch, Place, seen, walk
+from roadproof.runtime.budget import Work
+from roadproof.runtime.records import dataclass
+
+TESTS_IN_A_BATCH = 20
+
+
+@dataclass(frozen=True, kw_only=True)
+class AskedTests:
+    """The tests, and the scenarios that they are asked about."""
+
+    request: KeptRequest
+    scenarios: Annotated[tuple[shared.Number, ...], Rule(least=1), Doc("Numbers of the scenarios.")]
+
+
+@dataclass(frozen=True)
+class CatalogueQuestion:
+    """The question what tests show and mean. Its tests are read when they are asked for first."""
+
+    kind: ClassVar[str] = "catalogue"
+    basis: Basis
+    asked: AskedTests
+
+    @property
+    def work(self) -> Work:
+        """The work that is allowed for a claim."""
+        return Work(self.basis.effort, self.basis.proof, explain=True)
+
+    @classmethod
+    def of(cls, basis: Basis, asked: object, where: str) -> "CatalogueQuestion":
+        """Return the question that plain data ask. Raises ``InputError``."""
+        question = cls(basis, read(AskedTests, asked, where))
+        try:
+            _ = question.request, question.tests
+        except UsageError as error:
+            raise InputError(f"{where}: {error}") from None
+        return question
+
+    @cached_property
+    def request(self) -> Request:
+        """What is asked of the tests. Raises ``UsageError``."""
+        return Request(**vars(self.asked.request))
+
+    @cached_property
+    def tests(self) -> Catalogue:
+        """The tests. Raises ``InputError``, ``TextError``."""
+        home = self.basis.specification
+        return read_tests(self.request.paths, unrestricted(home), home)
+
+    @cached_property
+    def concrete(self) -> tuple[Concrete, ...]:
+        """The tests whose vehicles move as they say."""
+        return tuple(x for x in self.tests.entries if isinstance(x, Concrete))
+
+    @cached_property
+    def abstract(self) -> tuple[Abstract, ...]:
+        """The tests that are formulas."""
+        return tuple(x for x in self.tests.entries if isinstance(x, Abstract))
+
+    @cached_property
+    def drivers(self) -> Drivers | None:
+        """The driver models that are asked what becomes of tests."""
+        return drivers_in(self.basis.specification, self.basis.all_values(), self.request.drivers)
+
+    @property
+    def is_restricted(self) -> bool:
+        """Whether a driver model says how scenarios begin."""
+        return restriction_of(self.basis.specification.options) is not None
+
+    @cached_property
+    def questions(self) -> tuple[Questions, ...]:
+        """What tests are asked, in each spec set. Raises ``UsageError`` where classes are in doubt."""
+        return tuple(map(self._questions_in, self.request.sets))
+
+    def _questions_in(self, set_name: str) -> Questions:
+        here = replace(self.basis, specification=self.basis.specification.in_set(set_name), sets=())
+        classes = _divided(here, self.asked.scenarios) if self.request.classes else None
+        return Questions(here.specification, self.asked.scenarios, classes, here.all_values())
+
+    @cached_property
+    def kinds(self) -> GapKinds | None:
+        """The classes of gaps, where each is to be tested. Raises ``UsageError``."""
+        return gap_kinds(self.basis, self.asked.scenarios) if self.request.gaps else None
+
+    # --- claims ---------------------------------------------------------------------------------------
+
+    def batches(self, known: Answers) -> list[Batch]:
+        """Batches of concrete tests, and one for each other test; later ones for what follows from these."""
+        first: list[Batch] = [*self._concrete_batches, *self._test_batches]
+        left = [x for x in first if [*walk(x, lambda name, _: known.get(name))]]
+        return first if left else [*first, *self._later(known)]
+
+    @cached_property
+    def _concrete_batches(self) -> tuple[ConcreteBatch, ...]:
+        return tuple(x for k in range(len(self.questions)) for x in self._in_set(k))
+
+    def _in_set(self, place: int) -> list[ConcreteBatch]:
+        """The batches of concrete tests in a spec set."""
+        drivers = self.drivers if place == 0 or self.is_restricted else None
+        chunks = range(0, len(self.concrete), TESTS_IN_A_BATCH)
+        return [
+            ConcreteBatch(
+                self.questions[place], self.request.freedom, drivers, self.concrete[k : k + TESTS_IN_A_BATCH]
+            )
+            for k in chunks
+        ]
+
+    @cached_property
+    def _test_batches(self) -> tuple[TestBatch, ...]:
+        asked, *beside = self.questions if self.abstract else (None,)
+        if asked is None:
+            return ()
+        return tuple(TestBatch(self.basis, asked, x, tuple(y for y in beside if y)) for x in self.abstract)
+
+    def _later(self, known: Answers) -> Iterator[Batch]:
+        """Yield what is asked when all is known of each test by itself."""
+        yield from self._pairs_and_sides(known)
+        yield from self._reaches(known)
+
+    def _pairs_and_sides(self, known: Answers) -> "Iterator[PairBatch | SidesBatch]":
+        facts = {x.entry.id: seen(x.facts(), known) for x in self._test_batches}
+        for one in self.abstract:
+            drive = next((x.drive for x in facts[one.id] if x.relation == "runs"), None)
+            for other in self.abstract:
+                fits = one is not other and {*other.query.vehicles} <= {*one.query.vehicles}
+                if fits and drive is not None:
+                    yield PairBatch(self.basis, self.questions[0], one, other, drive)
+        drivers = None if self.is_restricted else self.drivers
+        for entry in self.abstract:
+            drives = tuple(x.drive for x in facts[entry.id] if x.drive is not None)
+            for scenario in scenarios_shown(facts[entry.id]):
+                if drivers is not None and has_sides(drivers, scenario):
+                    yield SidesBatch(self.basis, self.questions[0], drivers, entry, scenario, drives)
+
+    def _reaches(self, known: Answers) -> Iterator[ReachBatch]:
+        """Yield how far drives can go of what concrete tests show: classes, or scenarios without them."""
+        if not self.request.explore:
+            return
+        asked, answers = self.questions[0], self.shown(0, known)
+        found = tested(asked, answers, (), (), targets_of(asked), 0.0, None).targets
+        kind = SCENARIOS if asked.classes is None else CLASSES
+        covered = {x.name: x.covered for x in found if kind_of(x.name) == kind}
+        reaches: Iterator[Reach] = reaches_of(asked, covered, answers)
+        yield from (ReachBatch(self.basis, x) for x in reaches)
+
+    # --- what answers show ----------------------------------------------------------------------------
+
+    def shown(self, place: int, known: Answers) -> tuple[ConcreteAnswer, ...]:
+        """Return what concrete tests show in a spec set, in order; those that are not judged are left out."""
+        found: dict[str, ConcreteAnswer] = {}
+        for batch in self._in_set(place):
+            found |= batch.answers(known)
+        return tuple(found[x.id] for x in self.concrete if x.id in found)
+
+    def facts(self, known: Answers) -> tuple[Fact, ...]:
+        """Return what is known of tests that are formulas, and of ranges."""
+        alone = [x for batch in self._test_batches for x in seen(batch.facts(), known)]
+        later = [x for batch in self._reaches(known) for x in seen(batch.facts(), known)]
+        later += [x for batch in self._pairs_and_sides(known) for x in seen(batch.facts(), known)]
+        return (*alone, *later)
+
+    def label(self, name: str) -> str:
+        """Return which test or target the claim of a name is about."""
+        for batch in self._test_batches:
+            if name.startswith(batch.name):
+                return f"test {batch.entry.id}"
+        for judged in self._concrete_batches:
+            for entry in judged.entries:
+                if judged.named(entry) == name:
+                    return f"test {entry.id}"
+        return name
+
+    def tell(self, name: str, answer: Answer, found: Finding) -> Finding:
+        """Return what was found of a test, with what it shows and what becomes of it under driver models."""
+        test = answer.evidence.shows if isinstance(answer.evidence, Judged) else None
+        if not isinstance(test, ConcreteAnswer):
+            return found
+        shown = ", ".join(dict.fromkeys(x.what for x in test.shown)) or "no scenario"
+        how = (
+            "read again" if test.fault else "judged again in dense time" if test.dense else "monitored again"
+        )
+        sides = (DriverSide(driver=x.driver, scenario=x.scenario, side=x.side) for x in test.decisions)
+        return replace(
+            found,
+            verdict="JUDGED",
+            label=f"test {test.entry.id}",
+            claim=f"cannot be read: {test.fault}" if test.fault else f"shows {shown}",
+            checked=("read again" if test.fault else how, "its file is unchanged"),
+            subject=SubjectKind.TEST,
+            name=test.entry.id,
+            shows="unreadable" if test.fault else "scenarios" if test.shown else "nothing",
+            drivers=tuple(sides),
+        )
+
+    def view(self, known: Answers) -> CatalogueView:
+        """Return what tests show, mean and miss."""
+        return CatalogueView(
+            self.basis,
+            self.request,
+            self.tests,
+            self.questions,
+            tuple(self.shown(k, known) for k in range(len(self.questions))),
+            self.facts(known),
+            self.drivers,
+            None,
+        )
+
+    def data(self, view: CatalogueView, place: Place, seconds: float) -> Any:
+        """Return the view as ``--json`` prints it."""
+        return view.data(place, seconds)
+
+
+def _divided(basis: Basis, numbers: Sequence[int]) -> Classes:
+    """Return the classes of scenarios. Raises ``UsageError`` where it is in doubt which there are."""
+    try:
+        plan = plan_of(basis.specification, numbers)
+    except RoadproofError as error:
+        raise UsageError(f"{error}; or leave out classes with --no-classes") from None
+    division = divide(basis, plan, None, None, in_few_words=False)
+    if division.cut_off:
+        told = "; ".join(x.reason for x in division.doubts)
+        raise UsageError(f"the classes are in doubt ({told}): give more work, or use --no-classes")
+    return division.classes
