@@ -20,21 +20,16 @@ from asking import prove
 from monitoring.cases import random_traffic
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.classify import divide as dividing
-from roadproof.analysis.classify import study as settling
 from roadproof.analysis.classify.cells import Axis, Cell, Outline, outline, query_of, refine, whole_cell
 from roadproof.analysis.classify.classes import Classes, plan_of, what_axis, where_axis
 from roadproof.analysis.classify.divide import divide
 from roadproof.analysis.classify.drives import find_examples, patched, with_zones
 from roadproof.analysis.classify.shares import Shares, count_shares
 from roadproof.analysis.classify.simulated import SimulatedShares
-from roadproof.analysis.classify.study import ProofClaims, classification_of
 from roadproof.analysis.classify.text import claims_of, with_classes, write_classes
 from roadproof.analysis.study.evidence_store import EvidenceStore
-from roadproof.analysis.study.frame import conduct
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence import codec
 from roadproof.evidence.drive_file import load_drive
-from roadproof.evidence.journal import seal_of
 from roadproof.evidence.judged import judge_file
 from roadproof.frontends.cli.main import main
 from roadproof.library.bind import default_values
@@ -44,6 +39,9 @@ from roadproof.library.scenarios import components
 from roadproof.library.specification import Query, Source, Specification
 from roadproof.library.words import spans
 from roadproof.logic.rewrite import with_values, without_names
+from roadproof.questions.classify.question import question_of
+from roadproof.questions.settle import settle
+from roadproof.questions.views import folder_data
 from roadproof.recordings.simulate.simulate import simulate
 from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.runtime.budget import BudgetExceeded, Effort
@@ -164,8 +162,8 @@ def test_rows_that_follow_are_not_said_and_not_denied() -> None:
 
 
 def test_the_command_writes_what_is_checked_again(written: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    index = json.loads((written / "index.json").read_text())
-    assert (index["schema"], index["scenarios"]) == ("roadproof/classify/1", [4, 8])
+    index = folder_data(written)
+    assert (index["schema"], index["scenarios"]) == ("roadproof/classify/2", [4, 8])
     assert {x["name"]: tuple(x["scenarios"]) for x in index["classes"]} == {
         "class_4": (4,),
         "class_4_8": (4, 8),
@@ -177,7 +175,7 @@ def test_the_command_writes_what_is_checked_again(written: Path, capsys: pytest.
     said = capsys.readouterr().out.splitlines()
     assert said[0] == f"read with {written / 'classes.spec'}"
     assert said[-1] == "8 of 8 accepted by z3 and the exact judge"
-    assert said[-2].startswith(f"not checked in {written}: shares, classes[].happens, ")
+    assert said[-2] == f"not checked in {written}: claims.txt"
     assert said[-5:-2] == [
         "  4: deceleration ahead, lane keep",
         "  8: deceleration ahead, lane change (SV leaves its lane)",
@@ -190,7 +188,7 @@ def test_the_text_is_read_by_the_other_commands(written: Path, capsys: pytest.Ca
     read = ["--spec", str(written / "classes.spec"), "--set", "classes"]
     assert main(["show", "class_4_8", *read]) == 0
     assert "exactly 4 and 8" in capsys.readouterr().out
-    drive = str(written / "drives/class_4_8.json")
+    drive = str(written / "class_4_8.json")
     assert main(["monitor", "class_4_8(SV,POV,L)", drive, *read]) == 0
     assert main(["monitor", "class_4(SV,POV,L)", drive, *read]) == 10
     claims = str(written / "claims.txt")
@@ -199,7 +197,7 @@ def test_the_text_is_read_by_the_other_commands(written: Path, capsys: pytest.Ca
 
 def test_a_class_holds_on_its_own_drive_only(written: Path) -> None:
     library = load_library([written / "classes.spec"])
-    files = {path.stem: load_drive(path) for path in (written / "drives").glob("*.json")}
+    files = {path.stem: load_drive(path) for path in written.glob("class_*.json")}
     assert len(files) == 3
     for name, file in files.items():
         assert file.formula == f"{name}(SV, POV, L)"
@@ -215,12 +213,9 @@ def test_another_run_leaves_nothing_of_the_first(tmp_path: Path) -> None:
     assert main([*line, "--among", "7"]) == 0
     assert main([*line, "--among", "4"]) == 0
     assert sorted(x.relative_to(tmp_path).as_posix() for x in tmp_path.rglob("*.json")) == [
-        "answers/class_4.json",
-        "answers/covers-scenario-04.json",
-        "drives/class_4.json",
-        "index.json",
+        "class_4.json",
+        "covers-scenario-04.json",
         "mine.json",
-        "proofs/covers-scenario-04.json",
         "question.json",
     ]
 
@@ -239,63 +234,69 @@ def test_drives_of_ones_own_are_left_alone_in_a_new_folder(tmp_path: Path) -> No
 def test_a_run_that_was_broken_off_goes_on(
     written: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """What was kept is not asked again, what was lost or changed is; evidence without an answer goes."""
+    """What was kept is not asked again, what was lost or changed is; evidence without a claim goes."""
     out = tmp_path / "out"
     shutil.copytree(written, out)
-    whole = json.loads((out / "index.json").read_text())
-    (out / "index.json").unlink()
-    (out / "answers/class_8.json").unlink()  # a run that was killed before it had kept this
-    (out / "proofs/covers-scenario-04.json").write_text("{}")
-    (out / "proofs/exclusive-class_9-class_10.json").write_text("{}")
+    files = {path.name: path.read_bytes() for path in out.iterdir()}
+    (out / "class_8.json").unlink()  # a run that was killed before it had kept this
+    (out / "covers-scenario-04.json").write_text("{}")
+    shutil.copyfile(out / "class_4.json", out / "class_9.json")
     assert main(["check", str(out), "--jobs", "1"]) != 0
-    before = {path.stem: path.stat().st_mtime_ns for path in (out / "answers").iterdir()}
+    before = {path.name: path.stat().st_mtime_ns for path in out.iterdir()}
     line = ["classify", "--among", "4,8", "--no-shares", "--no-pictures", "--jobs", "1", "--out", str(out)]
     capsys.readouterr()
     assert main(line) == 0
-    after = {path.stem: path.stat().st_mtime_ns for path in (out / "answers").iterdir()}
+    after = {path.name: path.stat().st_mtime_ns for path in out.glob("*-*.json")}
+    after |= {path.name: path.stat().st_mtime_ns for path in out.glob("class_*.json")}
     written_now = {name for name in after if after[name] != before.get(name)}
-    assert written_now == {"class_8", "covers-scenario-04"}
-    assert "a stored answer is invalid and is computed again" in capsys.readouterr().err
-    again = json.loads((out / "index.json").read_text())
-    assert again == whole
+    # What one process settles together is written together.
+    assert written_now == {"class_8.json", "covers-scenario-04.json", "covers-scenario-08.json"}
+    said = capsys.readouterr().err
+    assert "a stored answer is invalid and is computed again" in said
+    assert f"a stored answer is asked for no more and is removed: {out / 'class_9.json'}" in said
+    assert {path.name: path.read_bytes() for path in out.iterdir()} == files
     assert main(["check", str(out), "--jobs", "1"]) == 0
     assert "8 of 8 accepted" in capsys.readouterr().out
 
 
-def test_a_folder_without_its_index_is_checked_with_the_text_beside_it(
-    written: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ("def class_8(", "def class_9("),
+        (" and not behaviourSV_8(SV, POV, L)", ""),
+        (":= scenario_4(SV, POV, L)", ":= scenario_1(SV, POV, L)"),
+    ],
+)
+def test_a_forged_text_is_rejected(before: str, after: str, written: Path, tmp_path: Path) -> None:
+    """Each answer is about what the definitions say, so other definitions make other claims."""
     out = tmp_path / "out"
     shutil.copytree(written, out)
-    (out / "index.json").unlink()
-    assert main(["check", str(out), "--jobs", "1"]) == 0
-    assert "8 of 8 accepted" in capsys.readouterr().out
+    text = (out / "classes.spec").read_text()
+    forged = text.replace("\n  := ", " := ").replace(before, after, 1)
+    assert forged != text.replace("\n  := ", " := ")
+    (out / "classes.spec").write_text(forged)
+    assert main(["check", str(out), "--jobs", "1"]) != 0
 
 
-def test_answers_of_another_class_do_not_count(written: Path, tmp_path: Path) -> None:
-    """Also where the seal is right: the drive of class_8 as that of class_4."""
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda asked: asked["groups"][0]["cells"].pop(),
+        lambda asked: asked["groups"][0]["cells"].append([1]),
+        lambda asked: asked["scenarios"].pop(),
+        lambda asked: asked["scenarios"].append(1),
+        lambda asked: asked["groups"].pop(),
+        lambda asked: asked["groups"][0]["empty"].append("false"),
+        lambda asked: asked["places"].append([9]),
+    ],
+)
+def test_a_forged_division_is_rejected(change: Callable[..., object], written: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     shutil.copytree(written, out)
-    head = json.loads((out / "question.json").read_text())
-    for name, forged in (("class_8", "class_4"), ("exclusive-class_4-class_8", "covers-scenario-04")):
-        record = json.loads((out / f"answers/{name}.json").read_text())
-        del record["seal"]
-        (entry,) = (*record["classes"], *record["claims"])
-        entry["name"] = forged
-        record["seal"] = seal_of(record, head["question"], out)
-        (out / f"answers/{forged}.json").write_text(json.dumps(record))
-    told: list[str] = []
-    study = classification_of(Basis(BASE), divide(Basis(BASE), plan_of(BASE, (4, 8)), 1))
-    shelf = EvidenceStore(out, study.question)
-    recalled = {}
-    for name, record in shelf.answers(told.append):
-        try:
-            recalled[name] = study.recall(codec.read(study.record_type, record, name), shelf)[0]
-        except InputError as error:
-            told.append(str(error))
-    assert not {"class_4", "covers-scenario-04"} & {*recalled}
-    assert len(recalled) == 6
-    assert len(told) == 2
+    data = json.loads((out / "question.json").read_text())
+    change(data["asked"])
+    (out / "question.json").write_text(json.dumps(data))
+    assert main(["check", str(out), "--jobs", "1", "--strict"]) != 0
 
 
 def die(*_: object) -> None:
@@ -329,7 +330,7 @@ def test_a_cell_in_doubt_is_said_in_full_and_the_run_is_in_doubt(
     printed = capsys.readouterr().out
     assert f"UNKNOWN: whether there is a shorter text for class_4: {said}" in printed
     assert "3 classes: 3 WITNESSED" in printed
-    index = json.loads((tmp_path / "index.json").read_text())
+    index = folder_data(tmp_path)
     assert ":= scenario_4(SV, POV, L) and not scenario_8(SV, POV, L)" in index["text"].replace("\n  ", " ")
     assert "and not behaviourSV_4(SV, POV, L)" in index["text"]
     (doubt,) = index["doubts"]
@@ -366,17 +367,14 @@ def test_an_outline_in_doubt_makes_no_classes_and_leaves_the_folder_alone(
     assert {path: path.read_bytes() for path in out.rglob("*") if path.is_file()} == before
 
 
-def test_lost_drives_and_proofs_are_doubts(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_lost_drives_are_doubts(monkeypatch: pytest.MonkeyPatch) -> None:
     basis = Basis(BASE)
-    study = classification_of(basis, divide(basis, plan_of(BASE, (4, 8)), 1))
-    monkeypatch.setattr(settling, "find_examples", die)
-    found = study.classified(conduct(study, hands=2).answers)
+    question = question_of(basis, (4, 8), divide(basis, plan_of(BASE, (4, 8)), 1))
+    monkeypatch.setattr("roadproof.engines.search.batches.ask", die)
+    found = question.view(settle(question, hands=2).answers)
     assert {(x.verdict, x.drive) for x in found.examples} == {(Verdict.UNKNOWN, None)}
-    assert all("its process ended each time" in x.reason for x in found.examples)
+    assert all("its process ended each time" in x.reason for x in found.examples[:1])
     assert {x.verdict for x in found.decisions} == {Verdict.PROVED}
-    claims = study.doubt(ProofClaims(study.claims), "lost")
-    assert {(x.verdict, x.reason) for x in claims.values()} == {(Verdict.UNKNOWN, "lost")}
-    assert not any(map(study.is_sure, (*found.examples, *claims.values())))
 
 
 def test_a_doubt_is_no_pass(capsys: pytest.CaptureFixture[str]) -> None:
@@ -494,7 +492,7 @@ def test_claims_about_places_are_proved_and_a_fault_is_refuted() -> None:
 def test_places_of_three_vehicles_alone_are_of_any_group() -> None:
     """Their definitions take SV and any group, so they are not said of POV1 and POV2."""
     division = divide(QUICK, plan_of(BASE, (2, 10, 18)), 1)
-    study = classification_of(QUICK, division)
+    study = question_of(QUICK, (2, 10, 18), division)
     assert len(study.classes.all()) == 7
     assert ":= roadSector_2(SV, POV) and not roadSector_10(SV, POV)" in study.text.replace("\n  ", " ")
 
@@ -512,7 +510,7 @@ def test_zones_may_change_under_vehicles() -> None:
 
 
 def test_a_drive_is_put_in_every_place(written: Path) -> None:
-    file = load_drive(written / "drives/class_4.json")
+    file = load_drive(written / "class_4.json")
     library = bundled_library()
     found = set()
     for road in patched(file.road, file.drive):
@@ -677,15 +675,12 @@ def test_ranges() -> None:
 def test_a_specification_beside_evidence_may_only_add(
     written: Path, tmp_path: Path, more: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    index = json.loads((written / "index.json").read_text())
-    classes = [{**x, "drive": "drive.json"} for x in index["classes"] if x["name"] == "class_4"]
-    (tmp_path / "index.json").write_text(json.dumps({**index, "classes": classes, "claims": []}))
-    (tmp_path / "drive.json").write_text((written / "drives/class_4.json").read_text())
-    text = (written / "classes.spec").read_text()
-    (tmp_path / "classes.spec").write_text(text)
-    assert main(["check", str(tmp_path), "--jobs", "1"]) == 0
-    (tmp_path / "classes.spec").write_text(f"{text}\n{more}\n")
-    assert main(["check", str(tmp_path), "--jobs", "1"]) == 3
+    out = tmp_path / "out"
+    shutil.copytree(written, out)
+    text = (out / "classes.spec").read_text()
+    assert main(["check", str(out), "--jobs", "1"]) == 0
+    (out / "classes.spec").write_text(f"{text}\n{more}\n")
+    assert main(["check", str(out), "--jobs", "1"]) == 10
     assert "of the library, so what the evidence says is not what it seems" in capsys.readouterr().out
 
 

@@ -4,7 +4,6 @@ The files that they name are not looked at here.
 """
 
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -19,14 +18,11 @@ from roadproof.evidence.answers.read import (
     faults_of,
     index_fields,
     read_index,
-    read_record,
-    record_fields,
 )
 from roadproof.evidence.answers.reader import Background, first_set
 from roadproof.evidence.codec import read as read_as
-from roadproof.evidence.journal import head_of
 from roadproof.evidence.strict import Fields
-from roadproof.library.loading import bundled_library, load_library
+from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import Scenario
 from roadproof.library.specification import Library
 from roadproof.runtime.version import VERSION
@@ -257,109 +253,6 @@ def test_a_class_that_occurs_in_traffic_may_say_where() -> None:
     seen = {**part, **more, "in_traffic": 2, "trace": "recording 01, vehicles 3 and 5, frames 1 to 9"}
     [found] = [x for x in entries({**coverage("ext"), "classes": [seen]}) if x.key[0] == "class"]
     assert (found.verdict, found.shows) == ("UNKNOWN", "nothing")
-
-
-# --- classify ------------------------------------------------------------------------------------
-
-DEFINED = """
-set classes extends base "classes of base" {}
-def fast(SV, POV: vehicle, L: lane) := atLane(SV, L) and v_lon(SV) > 20 m/s and fasterThan(POV, SV)
-def slow(SV, POV: vehicle, L: lane) := not fast(SV, POV, L)
-"""
-CLASS = {"vehicles": ["SV", "POV"], "scenarios": [], "happens": [], "where": None, "description": ""}
-CLASSIFY = {
-    "schema": "roadproof/classify/1",
-    "set": "classes",
-    **SAID,
-    "scenarios": [],
-    "classes": [
-        {"name": "fast", **CLASS, "formula": "fast(SV, POV, L)", "verdict": "WITNESSED", "drive": "d.json"},
-        {"name": "slow", **CLASS, "formula": "slow(SV, POV, L)", "verdict": "UNKNOWN", "drive": None},
-    ],
-    "claims": [
-        {
-            **{"name": "exclusive-fast-slow", "kind": "exclusive"},
-            **{"claim": "not (fast(SV, POV, L) and slow(SV, POV, L))"},
-            **{"verdict": "PROVED", "certificate": "c.json"},
-        }
-    ],
-}
-COVERS = {
-    "name": "covers-scenario-01",
-    "kind": "covers",
-    "claim": "scenario_1(SV, POV, L) <-> fast(SV, POV, L)",
-}
-
-
-def test_classes_and_claims_about_them(tmp_path: Path) -> None:
-    path = tmp_path / "classes.spec"
-    path.write_text(DEFINED, "utf-8")
-    library = load_library((path,))
-    fast, slow, claim = entries(CLASSIFY, library)
-    assert (fast.shows, fast.file, fast.fault) == ("drive", "d.json", "")
-    assert (slow.shows, slow.file, slow.unchecked) == ("nothing", None, ())
-    assert (claim.where, claim.key) == ("index.json, claim 1", ("claim", "exclusive-fast-slow"))
-    assert (claim.shows, claim.file) == ("proof", "c.json")
-    assert claim.claim == "not (fast(SV, POV, L) and slow(SV, POV, L))"
-    assert [slow.fault, claim.fault] == ["", ""]
-
-
-@pytest.mark.parametrize(
-    ("kind", "other", "told"),
-    [
-        ("classes", {"name": "quick"}, "there is no definition 'quick'"),
-        ("classes", {"name": "slow"}, "its formula is not slow"),
-        ("classes", {"vehicles": ["POV", "SV"]}, "its formula is not fast"),
-        ("classes", {"formula": "fast(SV, POV, L) or slow(SV, POV, L)"}, "its formula is not fast"),
-        ("claims", {"name": "exclusive-fast-quick"}, "is called exclusive-fast-quick, but its claim is"),
-        ("claims", {"name": "covers-scenario-01"}, "is none of kind exclusive"),
-        ("claims", {"kind": "covers", "name": "covers-scenario-01"}, "is called covers-scenario-01, but"),
-        (
-            "claims",
-            {"claim": "fast(SV, POV, L) or not fast(SV, POV, L)"},
-            "is called exclusive-fast-slow, but",
-        ),
-        ("claims", {"claim": "not (fast(SV, POV, L) and slow(POV, SV, L))"}, "is called exclusive-fast-slow"),
-        (
-            "claims",
-            {
-                **{"kind": "covers", "name": "covers-scenario-01"},
-                **{"claim": "scenario_1(SV, POV, L) -> fast(SV, POV, L)"},
-            },
-            "is called covers-scenario-01, but",
-        ),
-        (
-            "claims",
-            {"kind": "empty", "name": "empty-1", "claim": "fast(SV, POV, L)"},
-            "is called empty-1, but",
-        ),
-    ],
-)
-def test_classes_and_claims_under_another_name(
-    kind: str, other: dict[str, Any], told: str, tmp_path: Path
-) -> None:
-    path = tmp_path / "classes.spec"
-    path.write_text(DEFINED, "utf-8")
-    found = entries(with_one(CLASSIFY, kind, **other), load_library((path,)))
-    assert told in found[0 if kind == "classes" else 2].fault
-
-
-def test_a_kept_answer_about_classes_and_doubts_about_all_of_them(tmp_path: Path) -> None:
-    path = tmp_path / "classes.spec"
-    path.write_text(DEFINED, "utf-8")
-    library = load_library((path,))
-    said = {"set": "base", "options": {}, "parameters": {}, "scenarios": [], "specs": ["classes.spec"]}
-    head = Fields(head_of(CLASSIFY["schema"], "question", said), "question.json")
-    for kept in (
-        {"classes": CLASSIFY["classes"][:1], "claims": []},
-        {"classes": [], "claims": CLASSIFY["claims"]},
-    ):
-        (entry,) = read_record(head, Fields(kept, "answer", record_fields(CLASSIFY["schema"], "")), library)
-        assert (entry.key, entry.claim) in [(x.key, x.claim) for x in entries(CLASSIFY, library)]
-    doubts = [{"about": "whether there is a shorter text", "reason": "lost"}]
-    assert entries(with_one(CLASSIFY, "claims", **COVERS), library)[2].fault == ""
-    *_, doubt = entries({**CLASSIFY, "doubts": doubts}, library)
-    assert (doubt.verdict, doubt.shows, doubt.label) == ("UNKNOWN", "nothing", doubts[0]["about"])
 
 
 def test_fields_that_no_index_has() -> None:

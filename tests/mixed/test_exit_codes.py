@@ -179,7 +179,7 @@ def test_classes() -> None:
             )
             codes = [*(examples[x] for x in some), *(decisions[x] for x in claims), 20 * doubts]
             shares = None if broken is None else of(broken=["a situation"] * broken)
-            found = code_of(Classifications, classified=classified, shares=shares)
+            found = code_of(Classifications, view=classified, shares=shares)
             assert found == gravest([*codes, 30 * bool(broken)])
 
 

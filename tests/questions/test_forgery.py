@@ -40,6 +40,7 @@ def trees(out: Path) -> None:
 FAST = "v_lon(SV) = 30 m/s and v_lon(SV)^3 > rho*rho*rho*(50 m/s^2)*(50 m/s^2)*(50 m/s^2)"
 """For rho below 0.6 s; elsewhere it is proved for each value."""
 FOLDERS: dict[str, Callable[[Path], object]] = {
+    "classify": lambda out: rp.classify("4,8", shares=False, out=out, jobs=1),
     "order": lambda out: rp.order("4", rp.load("base", "extA"), out=out, jobs=1),
     "explore": lambda out: rp.explore(FAST, vary={"rho": (0, 1)}, steps=2, precision=1, out=out, jobs=1),
     "overlap": lambda out: rp.overlap("4,5,8", out=out, jobs=1),

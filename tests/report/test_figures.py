@@ -17,13 +17,11 @@ from roadproof.analysis.classify.cells import Cell
 from roadproof.analysis.classify.classes import Class
 from roadproof.analysis.classify.drives import Example
 from roadproof.analysis.classify.shares import Shares
-from roadproof.analysis.classify.study import ClassificationResult
 from roadproof.engines.search.extreme import Extreme
 from roadproof.engines.search.measure import read_measure
 from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.points import PointFinding
 from roadproof.errors import InputError
-from roadproof.evidence.answers.classify import Doubt
 from roadproof.frontends.report.answers import answer_questions
 from roadproof.frontends.report.classify import as_table, draw_classes, summary
 from roadproof.frontends.report.explore import as_text, draw_exploration, show
@@ -53,6 +51,8 @@ from roadproof.library.loading import bundled_library
 from roadproof.library.scenario_references import read_query
 from roadproof.library.scenarios import COMPARISON as DETECTORS
 from roadproof.library.words import Words
+from roadproof.questions.classify.data import Doubt
+from roadproof.questions.classify.question import ClassesView
 from roadproof.questions.explore.asking import Explorable, Variable
 from roadproof.questions.explore.values import Boundary, ExplorationResult
 from roadproof.recordings.evaluate.questions import Settings, default_settings
@@ -134,10 +134,9 @@ def test_without_shares_there_are_none() -> None:
 def test_doubts_are_told_and_traces_that_are_shown_twice() -> None:
     shares = shares_of(class_4=10)
     shares.repeated = 5
-    found = ClassificationResult(
-        (one((4,), None, Verdict.UNKNOWN),), (), (Doubt(about="what there is", reason="lost"),), shares
-    )
-    assert [*summary(found)] == [
+    doubts = (Doubt(about="what there is", reason="lost"),)
+    found = ClassesView((one((4,), None, Verdict.UNKNOWN),), (), doubts=doubts)
+    assert [*summary(found, shares)] == [
         "1 class: 1 UNKNOWN",
         "  UNKNOWN: what there is: lost",
         "  UNKNOWN: class_4: none was found",

@@ -9,11 +9,11 @@ from roadproof.analysis.classify.classes import plan_of
 from roadproof.analysis.classify.divide import Dividing
 from roadproof.analysis.classify.divide import divide as divide_plan
 from roadproof.analysis.classify.simulated import SimulatedShares
-from roadproof.analysis.classify.study import classification_of
 from roadproof.analysis.study.frame import Study, StudyResult, conduct
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.settings.studies import Classify
 from roadproof.library.scenarios import numbers_of
+from roadproof.questions.classify.question import question_of
 
 SETS = ("base", "extA", "ext")
 MANOEUVRES = ("cut-in", "cut-out", "deceleration")
@@ -46,7 +46,7 @@ def count_shares(jobs: int | None = None) -> Asked:
     """The shares of the classes in a simulated recording."""
     asked = _dividing()
     division = divide_plan(asked.basis, asked.plan, jobs)
-    made = classification_of(asked.basis, division)
+    made = question_of(asked.basis, asked.plan.numbers, division)
     study = SimulatedShares(made.basis, made.classes)
     return Asked(study, conduct(study, hands=1))
 

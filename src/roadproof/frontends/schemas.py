@@ -14,7 +14,6 @@ from roadproof.evidence.answers import (
     catalogue_index,
     certificate,
     check,
-    classify,
     coverage,
     drive,
     library,
@@ -46,6 +45,7 @@ from roadproof.evidence.plate import BoundaryFile
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.motion import INDUCTIONS
 from roadproof.questions import overlap as overlap_question
+from roadproof.questions.classify.data import ClassesData
 from roadproof.questions.compare import ComparisonData
 from roadproof.questions.data import QuestionFile
 from roadproof.questions.explore.data import ExploreData
@@ -72,9 +72,7 @@ TITLES: Mapping[type, str] = {
         "roadproof catalogue --json, and index.json of its folder: what tests show and mean, and what "
         "nobody tests"
     ),
-    classify.Index: (
-        "roadproof classify --json, and index.json of its folder: classes that exclude each other"
-    ),
+    ClassesData: "roadproof classify --json: classes that exclude each other",
     coverage.Index: (
         "roadproof coverage --json, and index.json of its folder: which disturbances a set misses"
     ),
@@ -108,7 +106,7 @@ WITHOUT_ASSUMPTION: JsonObject = {
 }
 """Only inductions may stand in a certificate that assumes nothing."""
 DRIVES = (drive.Drive, drive.JerkDrive)
-KEEPING = (coverage, classify, catalogue_index)
+KEEPING = (coverage, catalogue_index)
 """The questions whose answers are kept one by one."""
 RECORDS: Mapping[str, type] = {x.SCHEMA: x.Record for x in KEEPING}
 

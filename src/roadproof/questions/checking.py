@@ -17,7 +17,7 @@ from roadproof.evidence.strict import LARGEST_EVIDENCE, LARGEST_INDEX, Fields, r
 from roadproof.evidence.subject import OTHER
 from roadproof.library.motion import statement
 from roadproof.questions.data import QUESTION, SCHEMA, read_question
-from roadproof.questions.question import Linkable, Question, Telling, walk
+from roadproof.questions.question import Doubted, Linkable, Question, Telling, walk
 from roadproof.reasons import NO_REASON, Why
 from roadproof.runtime.records import dataclass
 
@@ -63,6 +63,9 @@ class QuestionFolder:
                 without = () if answer.verdict == "UNKNOWN" else ("there is no evidence for it",)
                 said = Finding(where, NO_EVIDENCE, Acceptance.ACCEPTED, label=label, claim=text)
                 yield replace(said, verdict=str(answer.verdict), unchecked=without)
+        for about, reason in self.question.doubted if isinstance(self.question, Doubted) else ():
+            said = Finding(str(self.folder / QUESTION), NO_EVIDENCE, Acceptance.ACCEPTED, reason, label=about)
+            yield replace(said, verdict="UNKNOWN")
 
     def finding(self, name: str, found: Finding) -> Finding:
         """Return what was found of a file, in the words of the question; a trace is judged again."""

@@ -22,6 +22,7 @@ QUESTION: Final = "question.json"
 SCHEMA: Final = "roadproof/question/1"
 KINDS: Mapping[str, str] = {
     "catalogue": "roadproof.questions.catalogue.question:CatalogueQuestion",
+    "classify": "roadproof.questions.classify.question:ClassifyQuestion",
     "compare": "roadproof.questions.compare:CompareQuestion",
     "order": "roadproof.questions.order.question:OrderQuestion",
     "explore": "roadproof.questions.explore.question:ExploreQuestion",

@@ -11,7 +11,7 @@ from roadproof.evidence.finding import Finding
 from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.subject import Subject
-from roadproof.reasons import NO_REASON
+from roadproof.reasons import NO_REASON, Reason
 from roadproof.runtime.budget import Work
 
 View = TypeVar("View", covariant=True)
@@ -100,6 +100,22 @@ class Growing(Protocol):
 
     def displaced(self, former: Any) -> list[str]:
         """Return how names of former answers begin in whose place there are others now."""
+
+
+@runtime_checkable
+class Replacing(Protocol):
+    """A question that takes the place of another of its kind in a folder: its claims follow from a search."""
+
+    replaces: ClassVar[bool]
+
+
+@runtime_checkable
+class Doubted(Protocol):
+    """A question of which more might be asked, had nothing been cut off."""
+
+    @property
+    def doubted(self) -> Sequence[tuple[str, Reason]]:
+        """What is in doubt beside the claims, and why."""
 
 
 @runtime_checkable

@@ -21,7 +21,7 @@ from roadproof.evidence.answer_files import Undecided
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.strict import LARGEST_EVIDENCE, LARGEST_INDEX, read_json
 from roadproof.questions.data import QUESTION, basis_data, question_data, read_question
-from roadproof.questions.question import Answers, Growing, Question
+from roadproof.questions.question import Answers, Growing, Question, Replacing
 from roadproof.reasons import Why
 from roadproof.runtime.archives import archived
 from roadproof.runtime.budget import Work
@@ -55,14 +55,17 @@ class Store:
         make_folder(self.folder)
         keep_specifications(self.folder, question.basis.library)
         head = self.folder / QUESTION
-        former = read_json(head, LARGEST_INDEX) if head.exists() else None
+        former: Any = read_json(head, LARGEST_INDEX) if head.exists() else None
         if former is not None and isinstance(question, Growing):
             question = self._grown(question)
         data = json.loads(json.dumps(question_data(question)))
         if former is None or isinstance(question, Growing):
             write_json(head, data)
         elif former != data:
-            raise self._other()
+            if not isinstance(question, Replacing) or former.get("question") != question.kind:
+                raise self._other()
+            self.leave_only({})
+            write_json(head, data)
 
     def _grown(self, question: Any) -> Any:
         """Return the question with former ones of the folder; answers that it displaces are removed."""

@@ -8,7 +8,7 @@ from roadproof.evidence.answer import Answer, answer_data
 from roadproof.evidence.codec import write
 from roadproof.evidence.strict import JsonObject
 from roadproof.questions.checking import read_folder
-from roadproof.questions.question import Answers, Question
+from roadproof.questions.question import Answers, Place, Question
 
 
 def view_data(
@@ -16,10 +16,16 @@ def view_data(
 ) -> JsonObject:
     """Return the view as plain data; evidence is named by its path, or is inside where there is no folder."""
 
+    return write(question.data(question.view(known), placing(folder), seconds))
+
+
+def placing(folder: Path | None) -> Place:
+    """Return where evidence is: the path of its file, or itself where there is no folder."""
+
     def place(name: str, answer: Answer) -> object:
         return inside(answer) if folder is None else str(folder / f"{name}.json")
 
-    return write(question.data(question.view(known), place, seconds))
+    return place
 
 
 def folder_data(folder: Path, given: Sequence[Path] = ()) -> JsonObject:

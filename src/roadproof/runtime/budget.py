@@ -73,7 +73,7 @@ class Work:
     is looked for that was looked for in vain, also on other roads; ``disprove``: whether a proof that there
     is no drive is tried before one is looked for. ``staged``: whether natural drives, others, and that there
     is none are looked for one after the other, with the effort for each. ``moves``: whether drives that are
-    known are put on other roads.
+    known are put on other roads; ``zones``: also on their own with other zones.
     """
 
     effort: Effort = field(default_factory=Effort)
@@ -86,6 +86,7 @@ class Work:
     disprove: bool = True
     staged: bool = False
     moves: bool = True
+    zones: bool = False
 
 
 @dataclass

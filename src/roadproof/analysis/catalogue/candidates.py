@@ -6,31 +6,34 @@ the definitions at hand.
 """
 
 import json
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache, cached_property
+from typing import Any, Final
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.entries import Abstract
-from roadproof.analysis.study.known import shipped_answers
+from roadproof.analysis.classify.classes import plan_of, scenarios_in
 from roadproof.engines.search.impossible import at_start
 from roadproof.engines.search.placing import judged_as, placed
 from roadproof.errors import RoadproofError
-from roadproof.evidence.answers import classify as kept
-from roadproof.evidence.codec import read
-from roadproof.evidence.drive_file import DriveFile, read_drive
+from roadproof.evidence.drive_file import SCHEMAS_READ, DriveFile, read_drive
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.bind import bind, telling_values
 from roadproof.library.compose import both
-from roadproof.library.scenarios import PAIR, SUBJECT, name_of
+from roadproof.library.loading import bundled_library
+from roadproof.library.scenarios import PAIR, SUBJECT, name_of, numbers_of
 from roadproof.library.specification import Query
+from roadproof.runtime.archives import archived
 from roadproof.semantics.exact.exact import LazyJudge
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_vehicle
 from roadproof.world.motion import monotone_starts
 from roadproof.world.signals import KINDS
 
+_CLASS: Final = re.compile(r"(class_\w+)\((.*), L\)")
 _DIGITS = 10  # least parts of m and m/s by which drives are moved
 
 
@@ -51,14 +54,15 @@ class Candidate:
 @cache
 def candidates() -> tuple[Candidate, ...]:
     """All shipped drives of classes, those of classes with few scenarios first."""
-    found: list[Candidate] = []
-    for answer in shipped_answers("classify"):
-        record = read(kept.Record, answer.record, "a shipped answer")
-        for one in record.classes:
-            text = answer.files.get(str(one.drive))
-            if text is not None:
-                found.append(Candidate(text, one.vehicles, frozenset(map(name_of, one.scenarios))))
-    return tuple(sorted(found, key=lambda x: len(x.scenarios)))
+    home, found = bundled_library().select(), dict[str, Candidate]()
+    plan = plan_of(home, numbers_of(home))
+    for text in archived("classify").values():
+        content: Any = json.loads(text)
+        shown = _CLASS.fullmatch(content.get("formula", "")) if content["schema"] in SCHEMAS_READ else None
+        if shown is not None:
+            names = frozenset(map(name_of, scenarios_in(plan, shown[1])))
+            found[shown[1]] = Candidate(text, tuple(shown[2].split(", ")), names)
+    return tuple(sorted(found.values(), key=lambda x: (len(x.scenarios), x.text)))
 
 
 @dataclass(frozen=True)

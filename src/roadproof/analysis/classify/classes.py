@@ -165,6 +165,11 @@ def plan_of(specification: Specification, numbers: Sequence[int]) -> Plan:
         raise UsageError(f"there is a set '{SET_NAME}' already: classify the set that it extends")
     if FILE_NAME in specification_names(specification.library):
         raise UsageError(f"--spec: the output file for classes is {FILE_NAME}: rename your file")
+    return plan_within(specification, numbers)
+
+
+def plan_within(specification: Specification, numbers: Sequence[int]) -> Plan:
+    """Return a plan whether or not its classes are defined. Raises ``InputError``, ``UsageError``."""
     likes = likes_of(specification)
     disturbances: dict[int, int] = {}
     sectors: dict[Formula, int] = {}
@@ -181,6 +186,18 @@ def plan_of(specification: Specification, numbers: Sequence[int]) -> Plan:
         _names(specification, tuple(sectors.values())),
         {number: s.sector_words(specification, number) for number in sectors.values()},
         {number: s.happening_words(specification, number) for number in disturbances.values()},
+    )
+
+
+def scenarios_in(plan: Plan, name: str) -> tuple[int, ...]:
+    """Return the scenarios that hold in a class of a plan with places, which its name says."""
+    words = name.split("_")[1:]
+    holds = {int(x) for x in words if x.isdigit()}
+    return tuple(
+        number
+        for group in plan.groups
+        for number, (disturbance, sector) in group.rows.items()
+        if disturbance in holds and plan.sectors[sector] in words
     )
 
 

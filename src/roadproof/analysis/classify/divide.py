@@ -16,11 +16,11 @@ from roadproof.analysis.classify.classes import Classes, Plan, what_axis, where_
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.analysis.study.frame import Unprepared, conduct
 from roadproof.analysis.study.pool import Progress
-from roadproof.evidence.answers.classify import Doubt
 from roadproof.evidence.codec import Doc
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.elaborate import StatedQuery
 from roadproof.library.specification import Query
+from roadproof.questions.classify.data import Doubt
 from roadproof.reasons import NO_REASON, Reason
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.runtime.executors import Jobs

@@ -1,28 +1,25 @@
 """A drive for each class: one is looked for, and put on roads where the same happens in other zones."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from fractions import Fraction
-from itertools import combinations, pairwise, product
+from dataclasses import dataclass
 from typing import get_args
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.classify.classes import Class
 from roadproof.engines.search.ask import ask
-from roadproof.engines.search.placing import placed, placed_on
+from roadproof.engines.search.placing import patched, placed, placed_on, with_zones
 from roadproof.engines.search.question import usual_road, zones_of
-from roadproof.evidence.answers.classify import Word
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.settled import Settled
 from roadproof.library.compose import both, with_parts
 from roadproof.library.scenarios import sector
-from roadproof.library.specification import Query
+from roadproof.library.specification import Query, Specification
+from roadproof.questions.classify.data import Word
 from roadproof.reasons import Why, joined
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.verdict import Verdict
-from roadproof.world.drive import Drive
 from roadproof.world.models import load_road
-from roadproof.world.road import Lanelet, Road, Zone
+from roadproof.world.road import Road, Zone
 
 MOST_FAILURES = 2
 PLAIN_ROAD = "main-2"
@@ -69,7 +66,7 @@ class _DriveJobs:
         if self.failures == MOST_FAILURES:
             return Example(one, verdict=Verdict.UNKNOWN, reason=Why.NO_DRIVE_ELSEWHERE())
         reasons = []
-        for road in self._roads(one, query):
+        for road in roads_of(one, self.basis.specification):
             outcome = ask(self.basis.search(query, road))
             if outcome.drives:
                 self.found.append(outcome.drives[0])
@@ -84,52 +81,20 @@ class _DriveJobs:
         file, library = judged.file, self.basis.library
         return placed(file, query, library) or placed_on(file, query, library, patched(file.road, file.drive))
 
-    def _roads(self, one: Class, query: Query) -> Iterator[Road]:
-        """The usual road for the sectors that hold; those that do not hold would ask for their zones too.
 
-        Then, for sectors of one zone that it has beside others, one that has no other: motions have to
-        settle in one lanelet within the horizon, for which zones of the usual roads can be too long.
-        """
-        specification = self.basis.specification
-        if one.where is not None:
-            query = both(*(sector(specification, number, one.vehicles) for number in one.where.holds))
-        usual = usual_road(query.formula)
-        yield usual
-        zones = zones_of(query.formula)
-        if len(zones) == 1 and not zones >= {x.zone for x in usual.lanelets}:
-            yield from (
-                with_zones(load_road(PLAIN_ROAD), (), (zone,)) for zone in get_args(Zone) if zone in zones
-            )
+def roads_of(one: Class, specification: Specification) -> Iterator[Road]:
+    """Yield the usual road for the sectors that hold; those that do not would ask for their zones, too.
 
-
-def patched(road: Road, drive: Drive) -> Iterator[Road]:
-    """``road`` with new zones that begin and end across it under the vehicles at time 0; lanes are kept.
-
-    Tried are ends under the same part of every vehicle, then any two ends: vehicles may be side by side.
+    Then, for sectors of one zone that it has beside others, one that has no other: motions have to settle
+    in one lanelet within the horizon, for which zones of the usual roads can be too long.
     """
-    shares = (Fraction(1, 2), Fraction(1, 4), Fraction(3, 4))
-    choices = [sorted({motion.s - x * motion.length for motion in drive.vehicles.values()}) for x in shares]
-    choices.append(sorted({end for ends in choices for end in ends}))
-    for ends in choices:
-        for count in (0, 1, 2):
-            for cuts in combinations(ends, count):
-                for zones in product(get_args(Zone), repeat=count + 1):
-                    if all(a != b for a, b in pairwise(zones)):
-                        yield with_zones(road, cuts, zones)
-
-
-def with_zones(road: Road, cuts: Sequence[Fraction], zones: Sequence[Zone]) -> Road:
-    """``road`` cut across at ``cuts`` (m, rising), with ``zones`` from the first piece to the last."""
-    bounds = [None, *cuts, None]
-
-    def pieces(lanelet: Lanelet) -> Iterator[Lanelet]:
-        for k, zone in enumerate(zones):
-            low = max((x for x in (lanelet.s[0], bounds[k]) if x is not None), default=None)
-            high = min((x for x in (lanelet.s[1], bounds[k + 1]) if x is not None), default=None)
-            if low is None or high is None or low < high:
-                yield replace(lanelet, id=f"{lanelet.id}-{k + 1}", zone=zone, s=(low, high))
-
-    told = ", ".join(zones)
-    return Road(
-        f"{road.name} with zones {told}", tuple(x for y in road.lanelets for x in pieces(y)), road.adjacent
-    )
+    query = one.query(specification)
+    if one.where is not None:
+        query = both(*(sector(specification, number, one.vehicles) for number in one.where.holds))
+    usual = usual_road(query.formula)
+    yield usual
+    zones = zones_of(query.formula)
+    if len(zones) == 1 and not zones >= {x.zone for x in usual.lanelets}:
+        for zone in get_args(Zone):
+            if zone in zones:
+                yield with_zones(load_road(PLAIN_ROAD), (), (zone,))

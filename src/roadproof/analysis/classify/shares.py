@@ -13,13 +13,13 @@ from typing import TypeAlias, TypeVar
 
 from roadproof.analysis.classify.classes import Class, Classes
 from roadproof.engines.search.impossible import at_start
-from roadproof.evidence.answers import classify
 from roadproof.library.elaborate import apply_definition, walk_of
 from roadproof.library.scenarios import LANE, MIN_DANGER, PAIR, TRIPLE, disturbance, name_of, number_in
 from roadproof.library.specification import Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import all_with_values
+from roadproof.questions.classify.data import SharesData, Situations
 from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
 from roadproof.recordings.evaluate.questions import (
     ROLES,
@@ -64,15 +64,15 @@ class Shares:
     left_out: list[str] = field(default_factory=list)
 
     @property
-    def told(self) -> classify.Shares:
-        """What an index says of them."""
-        return classify.Shares(
+    def told(self) -> SharesData:
+        """What answers say of them."""
+        return SharesData(
             source=self.source,
             recordings=tuple(self.recordings),
             traces=self.all_traces,
             covered=self.covered,
             repeated=self.repeated,
-            situations=classify.Situations(pairs=self.classified[2], triples=self.classified[3]),
+            situations=Situations(pairs=self.classified[2], triples=self.classified[3]),
             broken=tuple(self.broken),
         )
 

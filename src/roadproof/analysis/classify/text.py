@@ -9,12 +9,12 @@ from roadproof.analysis.classify.cells import Cell, query_of
 from roadproof.analysis.classify.classes import FILE_NAME, SET_NAME, Classes, Group, what_axis, where_axis
 from roadproof.analysis.study.evidence_store import specification_names
 from roadproof.errors import InputError
-from roadproof.evidence.answers.classify import Kind
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import build_library
 from roadproof.library.scenarios import name_of
 from roadproof.library.specification import Query, Source, Specification
 from roadproof.library.words import spans
+from roadproof.questions.classify.data import Kind
 
 WIDTH = 110
 

@@ -154,8 +154,10 @@ class Engines:
         if recast is not None:
             return recast
         elsewhere = [x for x in self.drives if x.has_vehicles_of(claim)][-MOVED:]
+        if self.work.zones:
+            elsewhere = [*{repr(x.judged.file.drive): x for x in reversed(elsewhere)}.values()][::-1]
         for earlier in (*self.alike.get(without_sectors(claim.formula), ()), *elsewhere):
-            found = earlier.elsewhere(claim.query, claim)
+            found = earlier.elsewhere(claim.query, claim, self.work.zones)
             if found is not None:
                 return Answer(claim, found)
         return None

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import permutations
 
-from roadproof.engines.search.placing import judged_as, placed, placed_on
+from roadproof.engines.search.placing import judged_as, patched, placed, placed_on
 from roadproof.evidence.answer import assumed_by, sought_by
 from roadproof.evidence.claim import Claim, Exists
 from roadproof.evidence.drive_file import DriveFile
@@ -68,9 +68,16 @@ class KnownDrive:
             return None
         return judged_as(file, claim.query, claim.home.library)
 
-    def elsewhere(self, query: Query, claim: Claim) -> JudgedDrive | None:
-        """Return the drive on a road on which it shows ``query``; None where none is found."""
-        return placed(self.judged.file, query, claim.home.library, judge=self._judge)
+    def elsewhere(self, query: Query, claim: Claim, cut: bool = False) -> JudgedDrive | None:
+        """Return the drive on a road on which it shows ``query``; None where none is found.
+
+        ``cut``: also on its own road with other zones.
+        """
+        file, library = self.judged.file, claim.home.library
+        found = placed(file, query, library, judge=self._judge)
+        if found is None and cut:
+            return placed_on(file, query, library, patched(file.road, file.drive), self._judge)
+        return found
 
     def recast(self, claim: Claim, moved: bool) -> JudgedDrive | None:
         """Return the drive with its vehicles in other roles, in which it shows a claim; None if in none.

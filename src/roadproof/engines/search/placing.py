@@ -3,6 +3,8 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import combinations, pairwise, product
+from typing import get_args
 
 from roadproof.engines.search.question import zones_of
 from roadproof.evidence.drive_file import DriveFile
@@ -15,7 +17,7 @@ from roadproof.logic.parts import parts_of
 from roadproof.semantics.exact.exact import LazyJudge
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road, names_of
-from roadproof.world.road import Lanelet, Road
+from roadproof.world.road import Lanelet, Road, Zone
 
 
 def placed(
@@ -95,3 +97,36 @@ def moved(road: Road, by: Fraction) -> Road:
         return replace(lanelet, s=(low, high))
 
     return Road(f"{road.name} moved by {by} m", tuple(map(move, road.lanelets)), road.adjacent)
+
+
+def patched(road: Road, drive: Drive) -> Iterator[Road]:
+    """``road`` with new zones that begin and end across it under the vehicles at time 0; lanes are kept.
+
+    Tried are ends under the same part of every vehicle, then any two ends: vehicles may be side by side.
+    """
+    shares = (Fraction(1, 2), Fraction(1, 4), Fraction(3, 4))
+    choices = [sorted({motion.s - x * motion.length for motion in drive.vehicles.values()}) for x in shares]
+    choices.append(sorted({end for ends in choices for end in ends}))
+    for ends in choices:
+        for count in (0, 1, 2):
+            for cuts in combinations(ends, count):
+                for zones in product(get_args(Zone), repeat=count + 1):
+                    if all(a != b for a, b in pairwise(zones)):
+                        yield with_zones(road, cuts, zones)
+
+
+def with_zones(road: Road, cuts: Sequence[Fraction], zones: Sequence[Zone]) -> Road:
+    """``road`` cut across at ``cuts`` (m, rising), with ``zones`` from the first piece to the last."""
+    bounds = [None, *cuts, None]
+
+    def pieces(lanelet: Lanelet) -> Iterator[Lanelet]:
+        for k, zone in enumerate(zones):
+            low = max((x for x in (lanelet.s[0], bounds[k]) if x is not None), default=None)
+            high = min((x for x in (lanelet.s[1], bounds[k + 1]) if x is not None), default=None)
+            if low is None or high is None or low < high:
+                yield replace(lanelet, id=f"{lanelet.id}-{k + 1}", zone=zone, s=(low, high))
+
+    told = ", ".join(zones)
+    return Road(
+        f"{road.name} with zones {told}", tuple(x for y in road.lanelets for x in pieces(y)), road.adjacent
+    )

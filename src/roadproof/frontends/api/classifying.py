@@ -1,33 +1,25 @@
 """Classes of scenarios that exclude each other, with a drive and shares for each."""
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import ClassVar, Unpack
 
-from roadproof.analysis.basis import ProofResult
 from roadproof.analysis.classify.classes import plan_of
 from roadproof.analysis.classify.divide import divide
-from roadproof.analysis.classify.drives import Example
 from roadproof.analysis.classify.shares import Shares, count_shares
 from roadproof.analysis.classify.simulated import simulated_shares
-from roadproof.analysis.classify.study import (
-    Classification,
-    ClassificationResult,
-    classification_of,
-    make_room,
-)
-from roadproof.analysis.classify.text import ClassClaim, claims_text
-from roadproof.analysis.study.frame import StudyResult
-from roadproof.evidence.answers import classify as kept
-from roadproof.evidence.kinds import Evidence
+from roadproof.analysis.classify.text import claims_text
+from roadproof.evidence.codec import write
+from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Among, Definitions, definitions_of
+from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import basis_of
-from roadproof.frontends.api.studied import StudyAnswers, drawn
+from roadproof.frontends.api.studied import drawn
 from roadproof.frontends.report import classify as report
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings import studies as settings
@@ -35,6 +27,10 @@ from roadproof.frontends.settings.keywords import ClassifyKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.words import Called, called
+from roadproof.questions.classify.data import ClassData, ClassesData, counted
+from roadproof.questions.classify.question import ClassesView, ClassifyQuestion, question_of
+from roadproof.questions.classify.shares import SHARES, shares_table
+from roadproof.questions.views import placing
 from roadproof.recordings.formats.sources import find_sources
 from roadproof.runtime.files import make_folder, write_whole
 from roadproof.runtime.records import dataclass
@@ -44,39 +40,29 @@ CLAIMS_FILE = "claims.txt"
 
 
 @dataclass(frozen=True, repr=False)
-class Classifications(StudyAnswers[Classification, Example | ProofResult[ClassClaim], kept.Record]):
+class Classifications(QuestionAnswers[ClassesView]):
     """Classes with a drive for each, and proofs that they are a division; ``shares`` in recordings."""
 
+    question: ClassifyQuestion
     shares: Shares | None = None
     pieces: ClassVar[str] = "groups of drives and claims"
-
-    @cached_property
-    def classified(self) -> ClassificationResult:
-        """All answers together, in the order of the classes and of the claims."""
-        return self.study.classified(self.found.answers, self.shares)
 
     @property
     def text(self) -> str:
         """The classes as a specification file."""
-        return self.study.text
+        return self.question.text
 
     @property
     def verdicts(self) -> dict[str, Verdict]:
-        found = self.classified
+        found = self.view
         verdicts: dict[str, Verdict] = {x.one.name: x.verdict for x in found.examples}
         verdicts |= {x.claim.name: x.verdict for x in found.decisions}
         return verdicts | {x.about: Verdict.UNKNOWN for x in found.doubts}
 
     @property
-    def evidence(self) -> tuple[Evidence, ...]:
-        drives = (x.drive for x in self.classified.examples)
-        proofs = (x.certificate for x in self.classified.decisions)
-        return tuple(x for x in (*drives, *proofs) if x is not None)
-
-    @property
     def exit_code(self) -> ExitCode:
         """A class without a drive is in doubt, and so are all where a part of the division is."""
-        found = self.classified
+        found = self.view
         verdicts = [Verdict.UNKNOWN for _ in found.doubts]
         verdicts += [Verdict.PROVED if x.verdict is Verdict.WITNESSED else x.verdict for x in found.examples]
         verdicts += [Verdict.PROVED if x.holds else x.verdict for x in found.decisions]
@@ -84,40 +70,46 @@ class Classifications(StudyAnswers[Classification, Example | ProofResult[ClassCl
         broken = self.shares is not None and self.shares.broken
         return max(code, ExitCode.CROSSCHECK_FAILED) if broken else code
 
+    def _data(self) -> ClassesData:
+        data = self.question.data(self.view, placing(self.folder), self.seconds)
+        found = self.shares
+        return data if found is None else counted(data, found.told, found.situations, found.traces)
+
+    def as_data(self) -> JsonObject:
+        return write(self._data())
+
     @property
-    def _sheet(self) -> Sheet[kept.CountedClass]:
+    def _sheet(self) -> Sheet[ClassData]:
         """An entry for each class; situations where shares were counted."""
-        return report.sheet_of(self._index(self.found.records).classes)
+        return report.sheet_of(self._data().classes)
 
     @cached_property
     def words(self) -> Called:
         """What the scenarios are called."""
-        return called(self.study.basis.specification)
-
-    def _index(self, records: Mapping[str, kept.Record]) -> kept.Index:
-        return self.study.index(self.classified, records, self.seconds)
+        return called(self.question.basis.specification)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """Which scenarios make up which class, and how often it occurs."""
-        title = f"Classes of scenarios of set {self.study.classes.plan.set_name}"
-        drawn = report.draw_classes(self.classified.examples, self.shares, title, self.words)
+        title = f"Classes of scenarios of set {self.question.classes.plan.set_name}"
+        drawn = report.draw_classes(self.view.examples, self.shares, title, self.words)
         yield "classes", picture(drawn)
 
-    def _write_index(
-        self, folder: Path, found: StudyResult[Example | ProofResult[ClassClaim], kept.Record]
-    ) -> None:
-        write_whole(folder / CLAIMS_FILE, self.files(False)[CLAIMS_FILE])
-        super()._write_index(folder, found)
-
     def files(self, pictures: bool) -> dict[str, bytes]:
-        """The claims, for ``prove --claims``, and the picture."""
-        claims = {CLAIMS_FILE: claims_text(self.study.claims).encode()}
-        return claims | drawn(self.pictures() if pictures else {})
+        """The claims, for ``prove --claims``, what was counted, and the picture."""
+        return self.texts() | drawn(self.pictures() if pictures else {})
+
+    def texts(self) -> dict[str, bytes]:
+        """Return the claims, for ``prove --claims``, and what was counted."""
+        made = {CLAIMS_FILE: claims_text(tuple(self.question.claims.values())).encode()}
+        if self.shares is not None:
+            found = self.shares
+            made[SHARES] = shares_table(found.told, found.situations, found.traces).encode()
+        return made
 
     def __str__(self) -> str:
-        found = self.classified
+        found = self.view
         table = [report.as_table(found.examples, self.shares, self.words), ""] if found.examples else []
-        return "\n".join([*table, *report.summary(found)])
+        return "\n".join([*table, *report.summary(found, self.shares)])
 
 
 @takes(settings.Classify)
@@ -142,18 +134,20 @@ def classify(
         make_folder(folder)
     sources = () if given.on is None else find_sources(Path(given.on), given.strict)
     division = divide(basis, plan, given.jobs, given.progress, fresh=given.fresh)
-    study = classification_of(basis, division)
+    question = question_of(basis, plan.numbers, division)
     if division.cut_off:
         folder = None  # what earlier runs have found stays
-    if folder is not None:
-        make_room(folder, study.question)
-    counted = None
+    counts = None
     if given.shares and not division.cut_off:
         if given.on is None:
-            counted = simulated_shares(study.basis, study.classes, given.fresh)
+            counts = simulated_shares(question.basis, question.classes, given.fresh)
         else:
-            about, values = study.basis.specification, study.basis.all_values()
+            about, values = question.basis.specification, question.basis.all_values()
             recordings = (source.read() for source in sources)
-            counted = count_shares(study.classes, about, values, recordings, source=str(given.on))
-    more = {"shares": counted}
-    return Classifications.asked(study, replace(given, out=folder), more=lambda: more, begun=begun)
+            counts = count_shares(question.classes, about, values, recordings, source=str(given.on))
+    found = Classifications.settled(question, replace(given, out=folder))
+    found = replace(found, shares=counts, seconds=time.monotonic() - begun)
+    if folder is not None:
+        for name, content in found.texts().items():
+            write_whole(folder / name, content)
+    return found

@@ -8,7 +8,6 @@ from typing import Any, Final, TypeVar
 
 from roadproof.drivers.manoeuvres import MANOEUVRES
 from roadproof.errors import UsageError
-from roadproof.evidence.answers import classify as kept_classes
 from roadproof.evidence.answers import coverage as kept_gaps
 from roadproof.evidence.codec import read
 from roadproof.evidence.drive_file import DriveFile
@@ -23,6 +22,7 @@ from roadproof.frontends.settings.groups import Readings
 from roadproof.frontends.settings.studies import Atlas
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.specification import Library
+from roadproof.questions.classify.data import ClassesData
 from roadproof.questions.order.data import OrderData
 from roadproof.questions.overlap import OverlapData
 from roadproof.questions.preventable.data import PreventableData
@@ -72,7 +72,7 @@ class Answers:
     diagram: Picture | None = None
     redundancy: RedundancyData | None = None
     coverage: kept_gaps.Index | None = None
-    classes: kept_classes.Index | None = None
+    classes: ClassesData | None = None
     library: Library | None = None
     plates: dict[str, PreventableData] = field(default_factory=dict)
 
@@ -181,8 +181,8 @@ class _Questions:
     def classes(self) -> None:
         told: Any = {"shares": False, **self._keywords("classes")}
         found = classifying.classify(self.among, self.answers.home, **told)
-        self.answers.library = found.study.question.library
-        self.answers.classes = self._index(kept_classes.Index, "classes")
+        self.answers.library = found.library
+        self.answers.classes = read(ClassesData, found.as_data(), "classes")
 
     def plates(self) -> None:
         for manoeuvre in MANOEUVRES:

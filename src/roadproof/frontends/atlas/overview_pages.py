@@ -83,13 +83,13 @@ def class_values(answers: Answers, drawn: Mapping[str, DrivePicture]) -> dict[st
     """The classes, and the claims that they exclude each other and make up the scenarios."""
     index = answers.classes
     assert index is not None, "it is asked only where there are classes"
-    sources = [answers.source("classify", "--no-shares", "classes", x.drive) for x in index.classes]
+    sources = [answers.source("classify", "--no-shares", "classes", _name(x.drive)) for x in index.classes]
     cards = [(x, source, drawn.get(source.file)) for x, source in zip(index.classes, sources, strict=True)]
     proofs = [
         Statement(
             x.verdict,
             shown(x.claim),
-            answers.source("classify", "--no-shares", "classes", x.certificate),
+            answers.source("classify", "--no-shares", "classes", _name(x.certificate)),
             x.name,
             x.kind,
         )
@@ -113,3 +113,8 @@ def gap_values(answers: Answers, drawn: Mapping[str, DrivePicture]) -> dict[str,
         for x in index.claims
     ]
     return {"groups": groups, "verdict": index.verdict, "general": general}
+
+
+def _name(evidence: object) -> str | None:
+    """Return the name of a file of evidence; None where there is none."""
+    return None if evidence is None else name_in([evidence])

@@ -77,7 +77,7 @@ def _drives(answers: Answers) -> Iterator[tuple[str, str]]:
             yield f"{EVIDENCE}/overlap/{name_in(x.evidence)}", f"A drive of scenarios {x.a} and {x.b} at once"
     for y in () if answers.classes is None else answers.classes.classes:
         if isinstance(y.drive, str):
-            yield f"{EVIDENCE}/classes/{y.drive}", f"A drive of class {y.name}: {y.description}"
+            yield f"{EVIDENCE}/classes/{name_in([y.drive])}", f"A drive of class {y.name}: {y.description}"
     for z in () if answers.coverage is None else answers.coverage.gaps:
         if isinstance(z.drive, str):
             yield f"{EVIDENCE}/coverage/{z.drive}", f"A drive of gap {z.number}, which no scenario describes"

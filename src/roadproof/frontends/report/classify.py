@@ -7,12 +7,12 @@ from typing import Any
 
 from roadproof.analysis.classify.drives import Example
 from roadproof.analysis.classify.shares import Shares
-from roadproof.analysis.classify.study import ClassificationResult
 from roadproof.analysis.classify.text import HEADINGS
-from roadproof.evidence.answers.classify import CountedClass
 from roadproof.frontends.report.figures import count_axis, hide_frame, legend_beside, make_figure
 from roadproof.frontends.report.sheet import Bar, Column, Sheet, as_lines
 from roadproof.library.words import Called
+from roadproof.questions.classify.data import ClassData
+from roadproof.questions.classify.question import ClassesView
 from roadproof.verdict import Verdict
 
 _DOT, _NO_DOT, _BAR, _DOUBT = "#1f5fbf", "#dddddd", "#3f7d4e", "#b5473c"
@@ -63,21 +63,21 @@ def as_table(examples: Sequence[Example], shares: Shares | None, words: Called) 
     return "\n".join(lines)
 
 
-def sheet_of(classes: Sequence[CountedClass]) -> Sheet[CountedClass]:
+def sheet_of(classes: Sequence[ClassData]) -> Sheet[ClassData]:
     """An entry for each class; the share is that of situations with as many vehicles."""
     totals: Counter[int] = Counter()
     for x in classes:
         totals[len(x.vehicles)] += x.situations or 0
     counted = totals.total() > 0
 
-    def share(x: CountedClass) -> Bar | str:
+    def share(x: ClassData) -> Bar | str:
         total = totals[len(x.vehicles)]
         if x.situations is None or not total:
             return ""
         part = x.situations / total
         return Bar(f"{x.situations}, {100 * part:.1f} %", part)
 
-    shares: tuple[Column[CountedClass], ...] = (
+    shares: tuple[Column[ClassData], ...] = (
         Column("traces", lambda x: x.traces, "" if counted else "frame"),
         Column("situations", lambda x: x.situations, "frame"),
         *((Column("share of situations with as many vehicles", share, "page"),) if counted else ()),
@@ -139,7 +139,7 @@ def _share_column(shares: Shares) -> Column[_Row]:
     return Column("situations", cell)
 
 
-def summary(found: ClassificationResult) -> Iterator[str]:
+def summary(found: ClassesView, shares: Shares | None) -> Iterator[str]:
     """What is proved, what was found, what is in doubt, and whether recordings agree."""
     count = len(found.examples)
     verdicts = Counter(x.verdict for x in found.examples)
@@ -152,8 +152,8 @@ def summary(found: ClassificationResult) -> Iterator[str]:
         if those:
             yield f"{heading}: " + ", ".join(f"{n} {v}" for v, n in those.items())
     yield from (f"  {x.verdict}: {x.one.name}: {x.reason}" for x in found.examples if x.reason)
-    if found.shares is not None:
-        yield from _of_shares(found.shares)
+    if shares is not None:
+        yield from _of_shares(shares)
 
 
 def _of_shares(shares: Shares) -> Iterator[str]:

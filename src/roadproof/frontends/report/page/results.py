@@ -12,6 +12,8 @@ from roadproof.evidence.checking import SCHEMAS
 from roadproof.evidence.journal import ANSWERS, HEAD
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, Json, read_json
 from roadproof.questions.checking import is_question, read_folder
+from roadproof.questions.classify.question import ClassifyQuestion
+from roadproof.questions.classify.shares import with_shares
 from roadproof.questions.data import QUESTION
 from roadproof.questions.views import view_data
 
@@ -87,6 +89,8 @@ def _answered(folder: Path, given: Sequence[Path], number: int) -> Result:
     """The view of a folder of answers."""
     read = read_folder(folder, given)
     data = view_data(read.question, read.answers, Path())
+    if read.question.kind == ClassifyQuestion.kind:
+        data = with_shares(data, folder)
     digest = hashlib.sha256((folder / QUESTION).read_bytes()).hexdigest()
     return Result(folder.name or str(folder), str(data["schema"]), data, folder, number, digest)
 

@@ -4,8 +4,8 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from roadproof.evidence.answers import classify, monitor
 from roadproof.evidence.answers import coverage as gaps
+from roadproof.evidence.answers import monitor
 from roadproof.evidence.answers import traffic as evaluations
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.finding import Acceptance, Finding
@@ -16,6 +16,7 @@ from roadproof.frontends.report.page.results import Result, Words
 from roadproof.frontends.report.page.templates import in_unit, notes
 from roadproof.frontends.report.redundancy import sheet_of as sheet_of_changes
 from roadproof.frontends.report.sheet import Heading, Linked, Matrix
+from roadproof.questions.classify.data import ClassesData
 from roadproof.questions.explore.data import ExplorationData, ExploreData
 from roadproof.questions.order.data import OrderData
 from roadproof.questions.overlap import OverlapData
@@ -153,7 +154,7 @@ def _map(x: ExplorationData, place: str) -> Matrix:
 
 def classes(result: Result, context: PageContext, words: Words) -> dict[str, object]:
     """Classes; ``claims``: counted by kind."""
-    index = read(classify.Index, result.data, result.name)
+    index = read(ClassesData, result.data, result.name)
     claims = Counter((x.kind, x.verdict) for x in index.claims)
     return {"answer": index, "sheet": sheet_of(index.classes), "claims": [*claims.items()]}
 
