@@ -139,13 +139,18 @@ class Deciding:
     open: dict[tuple[Scenario, Scenario], list[Reading]] = field(default_factory=dict)
     answered: bool = True
 
-    def replay(self, known: Answers) -> None:
-        """Answer all claims with what is known; those without an answer are in doubt."""
+    def replay(self, known: Answers, whole: bool = True) -> None:
+        """Answer all claims with what is known; those without an answer are in doubt.
+
+        Unless ``whole``, it ends at the first of these.
+        """
         steps = self.run()
         try:
             name, claim = next(steps)
             while True:
                 self.answered = self.answered and name in known
+                if not self.answered and not whole:
+                    return
                 name, claim = steps.send(known.get(name) or undecided(claim, NO_REASON))
         except StopIteration:
             return

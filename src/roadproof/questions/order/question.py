@@ -90,9 +90,11 @@ class OrderQuestion:
     def batches(self, known: Answers) -> list["FamilyBatch | DoubtBatch"]:
         """A batch for each family; when these are settled, one for the doubts about each."""
         first: list[FamilyBatch | DoubtBatch] = [FamilyBatch(self, family) for family in self.families]
-        decided = [self._decided(family, known) for family in self.families]
-        if not all(x.answered for x in decided):
-            return first
+        decided = []
+        for family in self.families:
+            decided.append(self._decided(family, known, whole=False))
+            if not decided[-1].answered:
+                return first
         drives = {x.name: x.answer.claim for each in decided for x in each.drives}
         return [
             *first,
@@ -103,10 +105,10 @@ class OrderQuestion:
             ),
         ]
 
-    def _decided(self, family: Sequence[Kind], known: Answers) -> Deciding:
+    def _decided(self, family: Sequence[Kind], known: Answers, whole: bool = True) -> Deciding:
         """Return what the answers say of a family; what is not answered is in doubt."""
         deciding = Deciding(self.basis, self.kinds, family, self.judged)
-        deciding.replay(known)
+        deciding.replay(known, whole)
         return deciding
 
     def label(self, name: str) -> str:
