@@ -189,6 +189,19 @@ def test_none_within_is_said_where_that_is_shown(verdict: Verdict, monkeypatch: 
     assert len(shown) == 2
 
 
+def test_a_doubt_on_either_side_of_a_bracket_leaves_an_exploration_open() -> None:
+    def at(value: int, verdict: Verdict = Verdict.WITNESSED) -> PointFinding:
+        return PointFinding((F(value),), read_claim(BASE, "true"), verdict=verdict)  # type: ignore[arg-type]
+
+    measure = read_measure(BASE, "least", "v_lon(SV)")
+    for doubtful in range(5):
+        verdicts = [Verdict.UNKNOWN if k == doubtful else Verdict.NONE_WITHIN for k in range(5)]
+        value, held, missed, best, beyond = (at(k, x) for k, x in enumerate(verdicts))
+        boundary, extreme = values.Boundary(held, missed, None), Extreme(measure, (), best, beyond, None, 1)
+        explored = ExplorationResult((value,), (boundary,), (extreme,))
+        assert sorted(explored.verdicts) == sorted(verdicts)
+
+
 def test_what_is_proved_impossible_takes_no_search() -> None:
     what = "scenario_1(SV,POV,L) and scenario_4(SV,POV,L)"
     explored = explore(Explorable(search_for(what), (Variable("minDanger", "s", F(0), F(3)),), 4))
