@@ -24,7 +24,7 @@ from roadproof.evidence.answer_files import (
 from roadproof.evidence.answers.doubt import Doubt
 from roadproof.evidence.answers.none_within import Model
 from roadproof.evidence.certificate import Certificate, certificate_data, read_certificate_data
-from roadproof.evidence.claim import Beside, Claim, Exists, Judgement, Lines, On, Valid
+from roadproof.evidence.claim import Beside, Claim, Exists, Judgement, Lines, Mode, On, Valid
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.countermodel import Countermodel, read_trace, trace_data
 from roadproof.evidence.drive_file import DriveFile, natural_of, read_drive
@@ -49,9 +49,10 @@ from roadproof.world.vehicle import Vehicle
 
 @dataclass(frozen=True)
 class Refutation:
-    """A trace on which a claim is false, judged."""
+    """A trace on which a claim is false, judged; ``drive_sought``: whether a drive was looked for in vain."""
 
     trace: Countermodel
+    drive_sought: bool = False
 
 
 @dataclass(frozen=True)
@@ -83,12 +84,16 @@ class Answer:
     def verdict(self) -> Verdict:
         """The verdict that the evidence shows."""
         match self.claim.mode, self.evidence:
-            case _, Undecided():
-                return self.evidence.verdict
+            case mode, Undecided(verdict=open_verdict) if _may_be(mode, open_verdict):
+                return open_verdict
             case Valid(), Certificate():
                 return Verdict.VACUOUS if self._denied is not None else Verdict.PROVED
-            case Valid(), JudgedDrive() | Refutation():
+            case Valid(), JudgedDrive():
                 return Verdict.REFUTED
+            case Valid(moving=False, within=None), Refutation():
+                return Verdict.REFUTED
+            case Valid(), Refutation():
+                raise ValueError("it is a trace, but only a drive refutes the claim")
             case Exists() | Beside(), JudgedDrive():
                 return Verdict.WITNESSED
             case Lines(), BoundaryFile():
@@ -100,7 +105,8 @@ class Answer:
             case On(), Judged(shows):
                 return shows.verdict
             case mode, evidence:
-                raise ValueError(f"{type(evidence).__name__} decides no {type(mode).__name__} claim")
+                word = f" {evidence.verdict}" if isinstance(evidence, Undecided) else ""
+                raise ValueError(f"{type(evidence).__name__}{word} decides no {type(mode).__name__} claim")
 
     @property
     def reason(self) -> Reason:
@@ -133,6 +139,17 @@ class Answer:
     def certificate(self) -> Certificate | None:
         """The certificate that shows the verdict, if one does."""
         return self.evidence if isinstance(self.evidence, Certificate) else None
+
+
+def _may_be(mode: Mode, verdict: OpenVerdict) -> bool:
+    """Whether a claim without evidence may have this verdict: within limits only where it is about drives."""
+    match verdict:
+        case Verdict.NONE_WITHIN:
+            return isinstance(mode, Exists)
+        case Verdict.PROVED_BOUNDED:
+            return isinstance(mode, Valid) and mode.within is not None
+        case _:
+            return True
 
 
 def vacuities(claim: Claim) -> Iterator[Query]:
@@ -196,13 +213,14 @@ def answer_data(answer: Answer) -> JsonObject:
             mode = answer.claim.mode
             assert isinstance(mode, On)
             return write(JudgedFile(files=mode.files, asked=mode.asked, shows=write(shows)))
-        case Refutation(trace):
+        case Refutation(trace, drive_sought):
             home, claim = answer.claim.home, answer.claim
             file = RefutationFile(
                 set=home.set_name,
                 options=dict(home.options),
                 claim=claim.query.text,
                 assuming=assumed_by(claim),
+                drive_sought=drive_sought,
                 trace=trace_data(trace),
             )
             return write(file)
@@ -256,7 +274,8 @@ def _drive(claim: Claim, content: object, where: str) -> JudgedDrive:
     file = read_drive(content, where)
     _require_readings(claim, file.set_name, file.options, where)
     _require(_shows(claim, file), where, f"its drive is one of {_short(file.formula)}")
-    _require_values(claim, file.values, where)
+    if not isinstance(claim.mode, Valid) or claim.mode.within is not None:
+        _require_values(claim, file.values, where)
     if isinstance(claim.mode, Exists):
         mode, overlaps = claim.mode, file.overlaps_allowed
         _require(file.drive not in mode.unlike, where, "it is a drive from which it has to differ")
@@ -292,7 +311,7 @@ def _refutation(claim: Claim, content: object, where: str) -> Refutation:
     query = under_limits(claim.home, claim.query, assumed_by(claim))
     fault = fault_of(trace, query.formula, claim.home.library.bounds)
     _require(fault is None, where, f"its trace does not refute the claim: {fault}")
-    return Refutation(trace)
+    return Refutation(trace, file.drive_sought)
 
 
 def _none_within(claim: Claim, content: object, where: str) -> NoneWithinFile:

@@ -55,4 +55,5 @@ class RefutationFile(AboutClaim):
     """A trace on which a claim is false at time 0."""
 
     schema: Literal["roadproof/refutation/1"] = REFUTATION
+    drive_sought: Annotated[bool, LEFT_OUT, Doc("Whether a drive was looked for in vain, too.")] = False
     trace: Annotated[object, Doc("The trace: instants, values and a road.")]

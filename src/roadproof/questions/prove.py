@@ -69,9 +69,11 @@ class ClaimTask:
 
     @cached_property
     def name(self) -> str:
-        """The name of its answer."""
+        """The name of its answer, whoever asks: a claim of the list is named as the list does."""
         under = "" if self.within is None else f"-within-{digest(self.within)[:8]}"
-        return f"{self.task.name}{under}"
+        listed = find_task(self.task.claim, self.task.set_name)
+        named = self.task if listed is None else replace(listed, assuming=self.task.assuming)
+        return f"{named.name}{under}"
 
 
 @dataclass(frozen=True)
@@ -122,8 +124,8 @@ class ClaimResult:
     def trace(self) -> Countermodel | None:
         """The trace over points in time that refutes the claim, if one does."""
         match None if self.answer is None else self.answer.evidence:
-            case Refutation(trace):
-                return trace
+            case Refutation() as shown:
+                return shown.trace
             case _:
                 return None
 

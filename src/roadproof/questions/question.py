@@ -99,7 +99,7 @@ class Growing(Protocol):
         """Return the question about what was asked before, too."""
 
     def displaced(self, former: Any) -> list[str]:
-        """Return how names of former answers begin in whose place there are others now."""
+        """Return the names of former answers in whose place there are others now."""
 
 
 @runtime_checkable

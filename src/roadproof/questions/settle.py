@@ -14,12 +14,12 @@ from roadproof.engines.prove.doubt import Cause, Doubt
 from roadproof.errors import SharedError, UsageError
 from roadproof.evidence.answer import Answer, undecided
 from roadproof.evidence.claim import Claim
-from roadproof.questions.question import Batch, Growing, OwnWork, Question, Seeded, walk
+from roadproof.questions.question import Answers, Batch, Growing, OwnWork, Question, Seeded, walk
 from roadproof.questions.store import Store
 from roadproof.reasons import Reason
 from roadproof.runtime.budget import Work
 from roadproof.runtime.cost import NO_COST, Cost
-from roadproof.runtime.executors import Jobs, hands_of, is_fork_unsafe
+from roadproof.runtime.executors import Jobs, Shard, hands_of, is_fork_unsafe
 from roadproof.runtime.records import dataclass
 
 Priced: TypeAlias = tuple[str, Answer, Cost]
@@ -57,7 +57,7 @@ def settle(
         raise UsageError(f"--shard {shard} requires --out, the folder that the runs share")
     work = question.work
     store = Store(folder, question.kind, work, reads_known=not fresh and not is_off())
-    store.open(question)
+    store.open(question, say)
     run = _Run(question, store, each or _nobody, say)
     first = [batch.name for batch in question.batches({})]
     dealt = first if shard is None else shard.among(first)
@@ -69,16 +69,23 @@ def settle(
             x for x in batches if shard is None or (x.name in dealt if x.name in first else shard.has(x.name))
         ]
         if not ours:
-            raise SharedError(
-                f"shard {shard} is done: other runs settle {len(batches)} {what}. When all runs are done, "
-                "run once without --shard to merge"
-            )
+            raise SharedError(_told(shard, run.known, len(batches), what))
         run.ask(ours, hands, progress, what)
         batches = run.open_batches()
     if not isinstance(question, Growing):
         store.leave_only(run.known, say)
     store.make_room()
     return Settled(run.known, run.origins, run.costs)
+
+
+def _told(shard: Shard | None, known: Answers, left: int, what: str) -> str:
+    """How far a run that has its share done is."""
+    unsure = sum(not x.is_final for x in known.values())
+    doubts = f", {unsure} in doubt, to be computed again" if unsure else ""
+    return (
+        f"shard {shard} is done: {len(known) - unsure} answers are stored{doubts}; other runs process {left} "
+        f"{what}. When all runs are done, run once without --shard to merge"
+    )
 
 
 def look_up(question: Question[Any]) -> Mapping[str, Answer]:

@@ -6,7 +6,6 @@ the archive a file stands under the digest of its claim, of the work that was al
 
 import json
 import lzma
-from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
@@ -15,11 +14,13 @@ from typing import Any
 
 from roadproof.analysis.study.evidence_store import keep_specifications
 from roadproof.analysis.study.known import Origin
+from roadproof.analysis.study.pool import Say
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence.answer import SCHEMAS, Answer, answer_data, read_answer
+from roadproof.evidence.answer import SCHEMAS, Answer, Refutation, answer_data, read_answer
 from roadproof.evidence.answer_files import Undecided
 from roadproof.evidence.claim import Claim
-from roadproof.evidence.strict import LARGEST_EVIDENCE, LARGEST_INDEX, read_json
+from roadproof.evidence.heading import library_of
+from roadproof.evidence.strict import LARGEST_EVIDENCE, LARGEST_INDEX, Fields, read_json
 from roadproof.questions.data import QUESTION, basis_data, question_data, read_question
 from roadproof.questions.question import Answers, Growing, Question, Replacing
 from roadproof.reasons import Why
@@ -48,8 +49,11 @@ class Store:
     work: Work
     reads_known: bool = True
 
-    def open(self, question: Question[Any]) -> None:
-        """Begin a folder, or go on in it. Raises ``UsageError`` where it holds another question's answers."""
+    def open(self, question: Question[Any], say: Say | None = None) -> None:
+        """Begin a folder, or go on in it; ``say`` is told of answers that others displace.
+
+        Raises ``UsageError`` where it holds another question's answers.
+        """
         if self.folder is None:
             return
         make_folder(self.folder)
@@ -57,7 +61,7 @@ class Store:
         head = self.folder / QUESTION
         former: Any = read_json(head, LARGEST_INDEX) if head.exists() else None
         if former is not None and isinstance(question, Growing):
-            question = self._grown(question)
+            question = self._grown(question, say)
         data = json.loads(json.dumps(question_data(question)))
         if former is None or isinstance(question, Growing):
             write_json(head, data)
@@ -67,12 +71,14 @@ class Store:
             self.leave_only({})
             write_json(head, data)
 
-    def _grown(self, question: Any) -> Any:
-        """Return the question with former ones of the folder; answers that it displaces are removed."""
+    def _grown(self, question: Any, say: Say | None) -> Any:
+        """Return the question with former ones of the folder; displaced ones and their views are removed."""
         assert self.folder is not None
         former = self._former(question)
         for name in question.displaced(former):
-            for path in self.folder.glob(f"*{name}*.json"):
+            if say is not None and (self.folder / f"{name}.json").exists():
+                say(f"the answer '{name}' is that to another search, which this one displaces")
+            for path in self.folder.glob(f"{name}.*"):
                 path.unlink()
         return question.beside(former)
 
@@ -83,13 +89,16 @@ class Store:
             former = read_question(self.folder)
         except InputError:
             raise self._other() from None
-        if former.kind != question.kind or basis_data(former.basis) != basis_data(question.basis):
+        head = self.folder / QUESTION
+        library = library_of(Fields(read_json(head, LARGEST_INDEX), str(head)))
+        is_same = former.kind == question.kind and library == question.basis.library.fingerprint
+        if not is_same or basis_data(former.basis) != basis_data(question.basis):
             raise self._other()
         return former
 
     def _other(self) -> UsageError:
         return UsageError(
-            f"{self.folder} holds answers to another question, or to this one under another library: "
+            f"{self.folder} holds the answers to another question, or to this one under another library: "
             "name another folder with --out, or remove it"
         )
 
@@ -116,9 +125,7 @@ class Store:
         """The digest of all that an answer depends on."""
         return digest(claim.digest(), self.work, ANSWERS)
 
-    def find(
-        self, name: str, claim: Claim, say: Callable[[str], None] | None = None
-    ) -> tuple[Answer, Origin | None] | None:
+    def find(self, name: str, claim: Claim, say: Say | None = None) -> tuple[Answer, Origin | None] | None:
         """Return the answer to a claim that is known; None where none stands.
 
         It comes with its origin, which is None where the folder has it. ``say`` is told of a file in the
@@ -126,7 +133,9 @@ class Store:
         """
         if self.folder is not None and (path := self.folder / f"{name}.json").is_file():
             try:
-                return read_answer(claim, read_json(path, LARGEST_EVIDENCE), str(path)), None
+                answer = read_answer(claim, read_json(path, LARGEST_EVIDENCE), str(path))
+                self._require_enough(answer, path)
+                return answer, None
             except InputError as error:
                 if say is not None:
                     say(f"a stored answer is invalid and is computed again: {error}")
@@ -135,6 +144,12 @@ class Store:
             with suppress(InputError):
                 return read_answer(claim, known[0], "a known answer"), known[1]
         return None
+
+    def _require_enough(self, answer: Answer, path: Path) -> None:
+        """Raises ``InputError`` for a trace, where a drive is to be looked for that refutes it, too."""
+        shown = answer.evidence
+        if isinstance(shown, Refutation) and self.work.seek_drive and not shown.drive_sought:
+            raise InputError(f"{path} is a trace, and no drive was looked for")
 
     def _known(self, claim: Claim) -> tuple[object, Origin] | None:
         key = self.key(claim)

@@ -205,8 +205,14 @@ class WitnessQuestion:
         return replace(self, tasks=tuple({**former.named, **self.named}.values()))
 
     def displaced(self, former: "WitnessQuestion") -> list[str]:
-        """Return the names of former searches in whose place there is another now."""
-        return [x for x, task in former.named.items() if x in self.named and task != self.named[x]]
+        """Return the names of answers to former searches in whose place there is another now."""
+        others = [x for x in former.named if x in self.named and not self._is_asked_by(former, x)]
+        return [y for x in others for y in (*former.claim_names(x), f"{NONE_WITHIN}-{x}")]
+
+    def _is_asked_by(self, other: "WitnessQuestion", name: str) -> bool:
+        """Whether another question has this search under this name, too."""
+        is_same = self.named[name].count == other.named[name].count
+        return is_same and self.claim(name) == other.claim(name)
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -253,9 +259,7 @@ class WitnessQuestion:
         groups: dict[object, list[str]] = {}
         for name, task in self.named.items():
             number = task.scenario
-            group = (
-                name if number is None else (like_of(task.specification, number), task.specification.set_name)
-            )
+            group = name if number is None else like_of(task.specification, number)
             groups.setdefault(group, []).append(name)
         return [SearchBatch(self, tuple(names)) for names in groups.values()]
 

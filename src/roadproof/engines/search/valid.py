@@ -49,7 +49,7 @@ def _answer(claim: Claim, work: Work, found: Settlement) -> Answer:
         case Verdict.PROVED if result.certificate is not None:
             return Answer(claim, result.certificate)
         case Verdict.REFUTED if result.countermodel is not None:
-            return Answer(claim, Refutation(result.countermodel))
+            return Answer(claim, Refutation(result.countermodel, work.seek_drive))
         case Verdict.PROVED_BOUNDED if found.limits is not None:
             return undecided(claim, result.reason, Verdict.PROVED_BOUNDED, found.limits.as_json())
         case Verdict.CROSSCHECK_FAILED:

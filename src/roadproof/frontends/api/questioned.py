@@ -101,8 +101,8 @@ class QuestionAnswers(Answer, Generic[View]):
 def evidence_of(answer: answers.Answer) -> Evidence:
     """Return the evidence that decides a claim. Raises ``ValueError`` where none does."""
     match answer.evidence:
-        case answers.Refutation(trace):
-            return trace
+        case answers.Refutation() as shown:
+            return shown.trace
         case Undecided() | answers.Judged():
             raise ValueError(f"{answer.verdict} has no evidence")
         case found:
