@@ -21,7 +21,6 @@ def search_for(
     what: str,
     set_name: str = "base",
     search_options: SearchOptions | None = None,
-    count: int = 1,
     road: str | None = None,
     vehicles: dict[str, str] | None = None,
     **setting: object,
@@ -35,7 +34,7 @@ def search_for(
         **setting,  # type: ignore[arg-type]
     )
     return Search(
-        specification, query, place, search_options or SearchOptions(effort=Effort(30)), count, scenario
+        specification, query, place, search_options or SearchOptions(effort=Effort(30)), scenario=scenario
     )
 
 

@@ -125,6 +125,6 @@ def test_a_claim_ends_with_its_timeout_whatever_is_tried(claim, options):
     """Proofs, sampled drives and searches share the seconds; one step may be under way when they end."""
     found = rp.prove(claim, jobs=1, timeout=2, effort=500, fresh=True, **options)
     answer = found.answers[0]
-    cut_off = answer.verdict is Verdict.UNKNOWN and "after 2 s" in answer.settled.result.reason
+    cut_off = answer.verdict is Verdict.UNKNOWN and "after 2 s" in answer.reason
     assert cut_off or answer.verdict is Verdict.REFUTED, "a machine may be quick enough to refute it"
-    assert answer.settled.result.work < 500, "it does not go on for the effort"
+    assert answer.cost.work < 500, "it does not go on for the effort"

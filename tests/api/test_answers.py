@@ -225,7 +225,7 @@ def test_kept_answers_are_taken_up(tmp_path: Path) -> None:
 def test_a_planted_certificate_is_noticed() -> None:
     proved = rp.prove(SYMMETRIC, jobs=1)
     [answered] = proved.answers
-    certificate = answered.settled.result.certificate
+    certificate = answered.certificate
     assert certificate is not None
     forged = replace(certificate, claim=FALSE)
     result = replace(answered.settled.result, certificate=forged)

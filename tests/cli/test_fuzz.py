@@ -17,10 +17,10 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import pytest
+from roadproof.engines.search.compare import compare
 
 from roadproof.analysis.study import pool
 from roadproof.engines.search import ask
-from roadproof.engines.search.compare import compare
 from roadproof.errors import RoadproofError
 from roadproof.frontends.cli.help import command_parser
 from roadproof.frontends.cli.main import COMMANDS, answer

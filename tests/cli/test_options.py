@@ -37,6 +37,7 @@ from roadproof.frontends.settings.groups import Definitions
 from roadproof.frontends.settings.option import Settings
 from roadproof.frontends.settings.questions import Check, Prove, Witness
 from roadproof.frontends.settings.recordings import Evaluate, Monitor, Simulate
+from roadproof.questions.prove import ProveQuestion
 from roadproof.recordings.simulate.traffic import Ramp
 from roadproof.semantics.sampled.answers import Convention
 
@@ -159,13 +160,13 @@ def test_a_target_that_cannot_be_written_ends_a_run_before_its_work(
 )
 def test_prove_takes_scenarios_as_other_commands_do(words: list[str], scenarios: set[int]) -> None:
     tasks = asked_of_prove([*words, "--set", "base"]).tasks
-    assert {task.scenario for task in tasks} == scenarios
-    assert {task.id for task in tasks} == {"P1"} or "P1" not in words
+    assert {x.task.scenario for x in tasks} == scenarios
+    assert {x.task.id for x in tasks} == {"P1"} or "P1" not in words
     with pytest.raises(UsageError, match="no claim of P9, 4"):
         asked_of_prove(["P9", "4"])
 
 
-def asked_of_prove(words: list[str]) -> Claims:
+def asked_of_prove(words: list[str]) -> ProveQuestion:
     args = command_parser("prove").parse_args(words)
     return prove._asked(args, Prove.of(read_keywords(args, Prove)))
 

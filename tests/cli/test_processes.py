@@ -15,13 +15,16 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.analysis.claims import ClaimResult, Claims
 from roadproof.analysis.study.pool import in_order, work
-from roadproof.engines.prove.properties import Task, choose, template_properties
+from roadproof.engines.prove.properties import choose, template_properties
+from roadproof.engines.search.batches import Engines
 from roadproof.errors import InputError, LostError, MissingSolverError, TextError
+from roadproof.evidence.answer import Answer
+from roadproof.evidence.claim import Claim
 from roadproof.frontends.cli import supervising
 from roadproof.frontends.cli.main import main
 from roadproof.runtime import process_pool
+from roadproof.runtime.cost import Cost
 from roadproof.runtime.executors import LostJob
 from roadproof.runtime.process_pool import answers_of
 
@@ -235,14 +238,14 @@ def test_claims_about_a_scenario_and_the_same_on_other_road_sectors_are_kin() ->
 def test_a_claim_whose_process_dies_is_unknown_and_the_others_stand(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    settle = Claims.settle
+    settle = Engines.settle
 
-    def settle_or_die(claims: Claims, task: Task) -> dict[str, ClaimResult]:
-        if task.claim == "false":
+    def settle_or_die(engines: Engines, claim: Claim) -> tuple[Answer, Cost]:
+        if claim.text == "false":
             os.kill(os.getpid(), signal.SIGKILL)
-        return settle(claims, task)
+        return settle(engines, claim)
 
-    monkeypatch.setattr(Claims, "settle", settle_or_die)
+    monkeypatch.setattr(Engines, "settle", settle_or_die)
     claims = ["true", "false", "not false"]
     target = tmp_path / "answer.json"
     assert main(["prove", *claims, "--jobs", "2", "--json", str(target)]) == 20

@@ -39,7 +39,7 @@ def claim(
     text: str = TEXT, spec: str = SPEC, mode: Any = None, values: Mapping[str, Fraction] | None = None
 ) -> Claim:
     home = specification(spec)
-    return claim_of(home.library, read_claim(home, text), mode or Exists(), values or {})
+    return claim_of(home, read_claim(home, text), mode or Exists(), values or {})
 
 
 def test_a_claim_has_exactly_the_parameters_that_occur() -> None:

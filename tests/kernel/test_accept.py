@@ -108,7 +108,7 @@ def test_proofs_at_values_are_accepted_with_the_values_put_in():
     """Not at another value, at which the claim is false."""
     proved = rp.prove(AT, kernel="coq", drive=False, jobs=1)
     assert [x["kernel"]["says"] for x in proved.as_data()["verdicts"]] == ["accepted"]
-    certificate = proved.answers[0].settled.result.certificate
+    certificate = proved.answers[0].certificate
     text = prepare("one", certificate, bundled_library()).module.text
     assert "At minDanger = 0.6 s: numbers in place of these parameters." in text
     assert "G[0, 3 # 5] rssViolation SV POV" in " ".join(text.split()).replace("(", "").replace(")", "")
@@ -141,8 +141,8 @@ def test_definitions_called_like_words_of_coq_and_comments_that_would_end(tmp_pa
     ]
     found = rp.prove(*claims, using=home, kernel="coq", drive=False, jobs=1)
     assert [str(x) for x in found.kernel.rulings.values()] == ["accepted", "accepted"]
-    certificate = found.answers[0].settled.result.certificate
-    text = prepare("one", certificate, found.study.library).module.text
+    certificate = found.answers[0].certificate
+    text = prepare("one", certificate, found.library).module.text
     said = re.sub(r"\(\*.*?\*\)", "", text, flags=re.DOTALL)
     assert "absurd" in text
     assert "absurd" not in said

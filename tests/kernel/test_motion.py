@@ -47,7 +47,7 @@ def proved():
 @pytest.mark.parametrize("number", range(len(PROVED)))
 def test_a_claim_about_motions_is_accepted_and_rests_on_no_fact(number):
     schemas, claim = PROVED[number]
-    certificate = proved().answers[number].settled.result.certificate
+    certificate = proved().answers[number].certificate
     assert " ".join(sorted({x.schema for x in certificate.assumed.axioms})) == schemas
     entry = proved().as_data()["verdicts"][number]
     limits = len(certificate.assumed.limits)
@@ -103,7 +103,7 @@ def test_what_is_no_fact_is_no_instance():
 @cache
 def strict_certificate():
     claim = "G v_lon(SV) <= v_lon(POV) and s(SV) < s(POV) -> G s(SV) < s(POV)"
-    return rp.prove(claim, assume="motion", drive=False, jobs=1).answers[0].settled.result.certificate
+    return rp.prove(claim, assume="motion", drive=False, jobs=1).answers[0].certificate
 
 
 @needs_coq
@@ -125,7 +125,7 @@ def test_a_module_with_another_fact_claim_or_theorem_is_not_accepted():
 @cache
 def forms():
     """Certificates of claims under motion and of inductions, for the extracted program."""
-    certificates = [x.settled.result.certificate for x in proved().answers]
+    certificates = [x.certificate for x in proved().answers]
     return [prepare(f"n{k}", x, bundled_library(), extracted.proof) for k, x in enumerate(certificates)]
 
 

@@ -57,7 +57,7 @@ def test_nonlinear_claims_of_users_are_accepted_by_products_alone_and_who_is_not
     said = [entry["kernel"]["says"] for entry in found.as_data()["verdicts"]]
     assert said == ["accepted"] * len(CLAIMS) + ["unknown (lemma 1)"]
     for answer, tactics in zip(found.answers, [0] * len(CLAIMS) + [1], strict=True):
-        text = prepare("one", answer.settled.result.certificate, found.study.library).module.text
+        text = prepare("one", answer.certificate, found.library).module.text
         assert text.count("some_instant") == tactics
         assert text.count("Products.settled") >= 1 - tactics
 
@@ -87,18 +87,18 @@ def test_sums_that_are_written_wrongly_are_not_accepted(monkeypatch, right, wron
 
 def test_of_a_large_fact_without_a_reason_the_tactics_are_not_asked(monkeypatch):
     found = rp.prove(NOT_FOUND, drive=False, jobs=1)
-    certificate = found.answers[0].settled.result.certificate
-    assert "some_instant" in prepare("one", certificate, found.study.library).module.text
+    certificate = found.answers[0].certificate
+    assert "some_instant" in prepare("one", certificate, found.library).module.text
     monkeypatch.setattr(source, "MOST_COMPARISONS", 0)
-    prepared = prepare("one", certificate, found.study.library)
+    prepared = prepare("one", certificate, found.library)
     assert prepared.module is None
     assert str(prepared.refusal) == "unknown (lemma 1)"
     assert "more than 0 comparisons: Coq's own tactics are not asked" in prepared.refusal.reason
-    assert prepare("one", _proved(CLAIMS[0]), found.study.library).module is not None
+    assert prepare("one", _proved(CLAIMS[0]), found.library).module is not None
 
 
 def _proved(claim):
-    return rp.prove(claim, drive=False, jobs=1).answers[0].settled.result.certificate
+    return rp.prove(claim, drive=False, jobs=1).answers[0].certificate
 
 
 def module_of(name):

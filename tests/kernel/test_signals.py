@@ -98,7 +98,7 @@ def test_a_proof_that_needs_a_declared_bound_fails_without_it(tmp_path):
     """The same certificates, read with a specification that declares wider bounds, or none."""
     claims = [x for x in TRUE if "15" in x or "550" in x]
     found = rp.prove(*claims, using=library(tmp_path), kernel="coq", drive=False, jobs=1)
-    certificates = [x.settled.result.certificate for x in found.answers]
+    certificates = [x.certificate for x in found.answers]
     wider = library(tmp_path, SPEC.replace("[-15, 15]", "[-15, 16]").replace("in [-50, 500]", ""))
     prepared = {f"n{k}": prepare(f"n{k}", x, wider.library) for k, x in enumerate(certificates)}
     with ready() as coq:

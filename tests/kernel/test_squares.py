@@ -30,7 +30,7 @@ CLAIMS = read_table(__file__, "claims")
 
 def _module(claim):
     found = rp.prove(claim, drive=False, jobs=1)
-    return prepare("one", found.answers[0].settled.result.certificate, bundled_library()).module
+    return prepare("one", found.answers[0].certificate, bundled_library()).module
 
 
 @needs_coq

@@ -24,7 +24,7 @@ def test_untils_inside_untils_are_accepted():
 @needs_coq
 def test_the_converse_is_refused_with_the_same_tableau():
     (answer,) = rp.prove(spelled(VALID[0]), using=rp.load("base"), drive=False, jobs=1).answers
-    certificate = answer.settled.result.certificate
+    certificate = answer.certificate
     tableau = find_tableau(certificate, bundled_library())
     claims = {"right": certificate.claim, "wrong": spelled(FALSE)}
     asked = {x: replace(certificate, claim=y, tableau=tableau) for x, y in claims.items()}

@@ -25,7 +25,7 @@ def test_proofs_with_demanded_values_are_accepted():
 def test_values_that_no_premise_demands_are_refused():
     """The same tableau, for a claim with another value, without a value, and with a value of its own."""
     (answer,) = rp.prove(DEMANDED[1], drive=False, jobs=1).answers
-    certificate = answer.settled.result.certificate
+    certificate = answer.certificate
     assert certificate.pinned == ("minDanger = 0.6 s",)
     whole = replace(certificate, tableau=find_tableau(certificate, bundled_library()))
     text = prepare("one", whole, bundled_library()).module.text

@@ -9,7 +9,7 @@ import pytest
 
 from roadproof.analysis.basis import Basis
 from roadproof.engines.search import batches
-from roadproof.engines.search.batches import settle_batch
+from roadproof.engines.search.batches import Engines
 from roadproof.evidence.answer import Answer, undecided
 from roadproof.evidence.certificate import read_certificate
 from roadproof.evidence.judged import JudgedDrive
@@ -18,6 +18,7 @@ from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import Scenario
 from roadproof.logic.parts import parts_of
 from roadproof.questions.overlap import Meeting, OverlapQuestion, PairVerdict, conjunctions, name_of
+from roadproof.questions.question import walk
 from roadproof.questions.settle import settle
 from roadproof.reasons import Why
 from roadproof.runtime.budget import BudgetExceeded
@@ -47,7 +48,7 @@ def answered(claim: Any, verdict: Verdict, reason: str = "") -> Answer:
 
 def seen(verdicts: Any, question: OverlapQuestion = QUESTION) -> PairVerdict:
     """The pair whose readings have these verdicts, None where one is not asked."""
-    names = [*question._claims[question.pairs[0]].items()]
+    names = [*question.claims[question.pairs[0]].items()]
     known = {
         name: answered(claim, verdict, f"why-{k}")
         for k, ((name, claim), verdict) in enumerate(zip(names, verdicts, strict=True))
@@ -93,11 +94,12 @@ def test_what_is_claimed_of_a_pair() -> None:
 
 def test_the_next_reading_is_asked_until_one_holds() -> None:
     [batch] = QUESTION.batches({})
-    [first] = batch
+    [(first, claim)] = walk(batch, lambda *_: None)
     for verdict, left in ((V.WITNESSED, 0), (V.IMPOSSIBLE, 1), (V.NONE_WITHIN, 1), (V.UNKNOWN, 1)):
-        following = QUESTION.batches({first: answered(batch[first], verdict)})
+        known = {first: answered(claim, verdict)}
+        following = [name for name, _ in walk(batch, lambda name, _, known=known: known.get(name))]
         assert len(following) == left, verdict
-        assert all(first not in x for x in following)
+        assert first not in following
 
 
 def test_what_the_clock_cuts_off_is_in_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -105,8 +107,8 @@ def test_what_the_clock_cuts_off_is_in_doubt(monkeypatch: pytest.MonkeyPatch) ->
         raise BudgetExceeded(3.0)
 
     monkeypatch.setattr(batches, "prove_of_scenarios", late)
-    claims = [BASIS.claim(x) for x in READINGS]
-    answers = [*settle_batch(claims, BASIS.work)]
+    engines = Engines(QUESTION.work)
+    answers = [engines.settle(BASIS.claim(x))[0] for x in READINGS]
     assert [x.verdict for x in answers] == [V.UNKNOWN, V.UNKNOWN]
     assert all("--timeout" in x.reason for x in answers)
 
@@ -124,7 +126,7 @@ def test_parts_that_another_claim_does_not_have_do_not_clash_there(monkeypatch: 
     here, there = ([*parts_of(x.formula)] for x in (mine, other))
     foreign = [x for x in there if x not in here]
     assert foreign
-    batch = batches._Batch(BASIS.work)
+    batch = Engines(QUESTION.work)
     for core, is_tried in ((here[:1], True), (foreign, False), ([*here[:1], *foreign], False)):
         batch.clashes[:] = [negation(batches.of_parts(other, core)).formula]
         asked.clear()
@@ -137,20 +139,21 @@ def test_parts_that_another_claim_does_not_have_do_not_clash_there(monkeypatch: 
 
 def test_the_claims_of_a_lost_batch_are_asked_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     question = OverlapQuestion(BASIS, Meeting(among=(3, 4, 11, 12)))
-    sizes: list[int] = []
+    asked: list[list[str]] = []
 
-    def work(job: Any, batches: Any, hands: Any, lost: Any, *_: Any) -> Any:
-        sizes.extend(map(len, batches))
-        for place, batch in enumerate(batches):
-            yield place, lost(batch, Why.PROCESS("SIGKILL"))
+    def work(job: Any, jobs: Any, hands: Any, lost: Any, *_: Any) -> Any:
+        asked.append([x.batch.name for x in jobs if x.batch.name])
+        for place, x in enumerate(jobs):
+            yield place, lost(x, Why.PROCESS("SIGKILL"))
 
     monkeypatch.setattr("roadproof.analysis.study.pool.work", work)
     found = settle(question, hands=1, fresh=True).answers
     assert len(found) == len(question.pairs)
     assert {x.verdict for x in found.values()} == {V.UNKNOWN}
     assert {x.reason for x in found.values()} == {Why.PROCESS("SIGKILL")}
-    assert max(sizes) > 1
-    assert sizes.count(1) >= len(question.pairs)
+    batches, *alone = asked
+    assert batches == [x.name for x in question.batches({})]
+    assert sorted(alone) == sorted([x] for x in found), "each by itself"
 
 
 def test_pairs_across_two_sets_keep_their_order_and_their_names() -> None:
@@ -158,10 +161,10 @@ def test_pairs_across_two_sets_keep_their_order_and_their_names() -> None:
     question = OverlapQuestion(basis, Meeting(among=(3, 4)))
     expected = [(Scenario(a, "base"), Scenario(b, "ext")) for a, b in product((3, 4), repeat=2)]
     assert [*question.pairs] == expected
-    listed = [name for batch in question.batches({}) for name in batch]
+    listed = {name: claim for claims in question.claims.values() for name, claim in claims.items()}
     assert sorted(listed) == sorted(name_of(*pair) for pair in expected)
     sets, numbers = ("base", "extA", "ext"), [(3, 4), (4, 3), (3, 3), (11, 12)]
     every = [(Scenario(a, x), Scenario(b, y)) for a, b in numbers for x, y in product(sets, sets)]
     assert len({name_of(a, b) for a, b in every}) == len(every)
-    digests = {claim.digest() for batch in question.batches({}) for claim in batch.values()}
+    digests = {claim.digest() for claim in listed.values()}
     assert len(digests) == len(expected)

@@ -345,7 +345,7 @@ GROWTH = "within(v_lon(SV), 4 m/s, 3 m/s^2, 1 s)"
 def proved(claim: str, **asked):
     answer = rp.prove(claim, jobs=1, **asked)
     assert str(answer.verdict) == "PROVED"
-    return answer, answer.answers[0].settled.result.certificate
+    return answer, answer.answers[0].certificate
 
 
 @pytest.mark.parametrize(

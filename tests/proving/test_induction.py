@@ -50,7 +50,7 @@ TRUE = [
 def certificate_of(claim: str):
     answer = rp.prove(claim, effort=8, drive=False, jobs=1)
     assert str(answer.verdict) == "PROVED"
-    return answer, answer.answers[0].settled.result.certificate
+    return answer, answer.answers[0].certificate
 
 
 @pytest.mark.parametrize(("claim", "schema"), TRUE)

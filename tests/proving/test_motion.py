@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 import roadproof as rp
 from asking import prove as prove_text
-from evidence.folders import answer, check, read, write
+from evidence.folders import answer, read, write
 from proving.claims import specification as known_specification
 from roadproof.engines.prove.motion import prove_of_motions, stages
 from roadproof.engines.prove.properties import Task, name_of_claim, template_properties
@@ -24,7 +24,7 @@ from roadproof.engines.search import settle as settling
 from roadproof.engines.search.settle import settle
 from roadproof.engines.solve.smt import ask
 from roadproof.evidence.certificate import certificate_data, read_certificate_data, refusal
-from roadproof.evidence.finding import Acceptance
+from roadproof.evidence.finding import Acceptance, Finding
 from roadproof.library import motion as spec_motion
 from roadproof.library.bind import default_values
 from roadproof.library.elaborate import read_claim
@@ -33,6 +33,7 @@ from roadproof.library.motion import SCHEMAS, Assumption, Axiom
 from roadproof.logic import motion
 from roadproof.logic import terms as t
 from roadproof.logic.rewrite import with_values
+from roadproof.questions.data import QUESTION
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact import judge
 from roadproof.verdict import Verdict
@@ -322,7 +323,7 @@ def test_rates_are_of_the_list_of_signals():
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A claim about motions, proved, and one that is refuted, each with its file in an index."""
+    """A claim about motions, proved, and one that is refuted, each with its file."""
     out = tmp_path_factory.mktemp("made") / "out"
     rp.prove(BEHIND, FALSE, assume="motion", jobs=1, out=out)
     return out
@@ -335,54 +336,63 @@ def folder(made: Path, tmp_path: Path) -> Path:
     return tmp_path / "out"
 
 
+def check(folder: Path) -> tuple[Finding, ...]:
+    return rp.check(folder, jobs=1).findings
+
+
 def findings(folder: Path) -> list[Acceptance]:
     return [x.outcome for x in check(folder)]
+
+
+def asked_in(folder: Path) -> list[dict[str, Any]]:
+    return read(folder / QUESTION)["asked"]["claims"]
+
+
+def file_of(folder: Path, claim: str, *assuming: str) -> Path:
+    return folder / f"{name_of_claim(claim, 'base', assuming)}.json"
 
 
 def test_what_is_assumed_is_a_part_of_the_answer(folder):
     told = [str(x) for x in check(folder)]
     assert all("assuming motion: " in x for x in told)
-    assert {x["assuming"][0] for x in read(folder / "index.json")["claims"]} == {"motion"}
+    assert {x["assuming"][0] for x in asked_in(folder)} == {"motion"}
     again = rp.prove(BEHIND, drive=False, jobs=1, out=folder)
-    assert (again.verdict, again.answers[0].settled.refuted_by) == (Verdict.REFUTED, "trace")
+    assert (again.verdict, again.answers[0].refuted_by) == (Verdict.REFUTED, "trace")
     kept = rp.prove(BEHIND, assume="motion", jobs=1, out=folder)
     assert kept.verdict is Verdict.PROVED
-    assert len(read(folder / "index.json")["claims"]) == 3
+    assert len(asked_in(folder)) == 3
     assert findings(folder) == [Acceptance.ACCEPTED] * 3
     assert name_of_claim(BEHIND, "base") != name_of_claim(BEHIND, "base", ("motion",))
     assert name_of_claim(BEHIND, "base", ("motion",)) != name_of_claim(BEHIND, "base", ("motion", LIMIT))
 
 
 def spoil(folder: Path, change: Callable[[dict[str, Any]], None], number: int) -> None:
-    index = read(folder / "index.json")
-    change(index["claims"][number])
-    write(folder / "index.json", index)
+    question = read(folder / QUESTION)
+    change(question["asked"]["claims"][number])
+    write(folder / QUESTION, question)
 
 
-def test_an_index_that_does_not_say_what_is_assumed_is_noticed_as_a_planted_fault(folder):
+def test_a_question_that_does_not_say_what_is_assumed_is_noticed_as_a_planted_fault(folder):
     spoil(folder, lambda entry: entry.pop("assuming"), 0)
     assert Acceptance.REJECTED in findings(folder)
 
 
-def test_an_index_that_says_a_limit_more_is_noticed_as_a_planted_fault(folder):
+def test_a_question_that_says_a_limit_more_is_noticed_as_a_planted_fault(folder):
     for number in (0, 1):
         spoil(folder, lambda entry: entry["assuming"].append(LIMIT), number)
     assert findings(folder).count(Acceptance.REJECTED) >= 2
 
 
-def test_a_trace_for_a_drive_is_noticed_as_a_planted_fault(folder):
-    free = rp.prove(BEHIND, drive=False, jobs=1).as_data()["verdicts"][0]
-
-    def jump(entry: dict[str, Any]) -> None:
-        entry |= {"verdict": "REFUTED", "evidence": None, "counterexample": free["counterexample"]}
-
-    spoil(folder, jump, 0)
+def test_a_trace_for_a_drive_is_noticed_as_a_planted_fault(folder, tmp_path):
+    rp.prove(BEHIND, drive=False, jobs=1, out=tmp_path / "free")
+    free = read(file_of(tmp_path / "free", BEHIND))
+    write(file_of(folder, BEHIND, "motion"), free | {"assuming": ["motion"]})
     told = [x for x in check(folder) if x.outcome is Acceptance.REJECTED]
-    assert any("only a drive refutes it" in x.reason for x in told)
+    assert any("only a drive refutes" in x.reason for x in told)
 
 
 def test_a_certificate_without_what_it_assumes_is_noticed_as_a_planted_fault_of_its_folder(folder):
-    path = folder / read(folder / "index.json")["claims"][0]["evidence"]
+    path = file_of(folder, BEHIND, "motion")
     data = read(path)
     without_what_is_assumed(data)
     write(path, data)

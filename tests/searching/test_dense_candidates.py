@@ -7,10 +7,10 @@ from fractions import Fraction
 import pytest
 
 from asking import posed, search_for
-from roadproof.analysis.shipped_drives import shipped_drives
 from roadproof.engines.search.bounded import check_bounded
 from roadproof.engines.search.dense_candidates import keeps_limits
 from roadproof.engines.search.question import SearchOptions
+from roadproof.engines.search.shipped_drives import shipped_drives
 from roadproof.evidence.judged import judge_file
 from roadproof.library.loading import bundled_library
 from roadproof.runtime.budget import Effort

@@ -15,7 +15,7 @@ def test_an_option_that_decides_a_claim_decides_it_for_every_engine(engine):
     assert rp.prove(DECIDED, using=rp.load(), **asked).verdict is Verdict.PROVED
     refuted = rp.prove(DECIDED, using=rp.load(options={"speed": "total"}), **asked)
     assert refuted.verdict is Verdict.REFUTED
-    assert refuted.answers[0].settled.drive.file.options["speed"] == "total"
+    assert refuted.answers[0].drive.file.options["speed"] == "total"
 
 
 @pytest.mark.parametrize("engine", ["dense", "milp", "smt"])
@@ -25,4 +25,4 @@ def test_each_option_is_named_by_the_drive_that_refutes_under_it(engine):
         for value in option.values:
             chosen = rp.load(options={name: value})
             found = rp.prove("not (v_lon(SV) > 20 m/s)", using=chosen, engine=engine, horizon=1.2, jobs=1)
-            assert found.answers[0].settled.drive.file.options[name] == value
+            assert found.answers[0].drive.file.options[name] == value

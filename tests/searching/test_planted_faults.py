@@ -58,7 +58,7 @@ def outcome(verdict, **changes):
 
 ANSWERS = {
     "a drive": (replace(outcome(Verdict.WITNESSED), drives=({"drive": 1},)), Verdict.REFUTED),
-    "a proof": (outcome(Verdict.IMPOSSIBLE, impossibility=Impossibility((), True, {})), Verdict.PROVED),
+    "a proof": (outcome(Verdict.IMPOSSIBLE, impossibility=Impossibility((), True, {}, {})), Verdict.PROVED),
     "none": (outcome(Verdict.NONE_WITHIN, limits=posed(search_for("s(SV) > 0 m", **SHORT)).limits()), None),
     "in doubt": (outcome(Verdict.UNKNOWN), Verdict.UNKNOWN),
 }

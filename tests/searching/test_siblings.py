@@ -7,17 +7,19 @@ from fractions import Fraction
 
 import pytest
 
+import roadproof as rp
 from asking import posed, search_for
-from roadproof.analysis.study.frame import conduct
-from roadproof.analysis.witnesses import WitnessStudy
 from roadproof.engines.search import ask, search, siblings
 from roadproof.engines.search.ask import answer
 from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.question import FoundDrive, SearchOptions, SearchProblem, Setting
 from roadproof.evidence.judged import judge_file
+from roadproof.frontends.api.drives import drives_asked
+from roadproof.frontends.settings.questions import Witness
 from roadproof.library.loading import bundled_library, load_library
 from roadproof.library.scenario_references import read_query
 from roadproof.library.specification import Source
+from roadproof.questions.settle import settle
 from roadproof.reasons import Why
 from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
@@ -100,7 +102,7 @@ def test_a_sibling_that_cannot_be_asked_or_has_other_vehicles_is_passed_over(sol
     scenario, query = read_query(specification, number)
     first = siblings._first(specification, int(number), query, Setting())
     assert first is not None
-    outcome = answer(Search(specification, query, Setting(), SearchOptions(effort=Effort(30)), 1, scenario))
+    outcome = answer(Search(specification, query, Setting(), SearchOptions(effort=Effort(30)), (), scenario))
     drive = outcome.drives[0].file.drive
     assert (outcome.verdict, sorted(drive.vehicles)) == (Verdict.WITNESSED, vehicles)
 
@@ -167,18 +169,18 @@ def test_a_drive_in_a_lane_that_is_not_asked_for_is_refused(pair):
 # --- Which questions are asked together ------------------------------------------------------------
 
 
-def test_scenarios_alike_are_one_piece_whatever_their_set():
-    asked = [("4", "base"), ("12", "base"), ("5", "base"), ("4", "ext"), ("20", "ext"), ("true", "base")]
-    study = WitnessStudy(tuple(search_for(text, set_name=name) for text, name in asked))
-    alike = ("scenario-04-base", "scenario-12-base", "scenario-04-ext", "scenario-20-ext")
-    assert study.pieces({}) == [alike, ("scenario-05-base",), ("formula-06-base",)]
-    turned = [("12", "base"), ("4", "ext"), ("4", "base"), ("12", "ext")]
-    assert len(WitnessStudy(tuple(search_for(text, set_name=name) for text, name in turned)).pieces({})) == 1
-    known = answer(search_for("true and v_lon(SV) > 20 m/s", horizon=Fraction(6, 5)))
-    assert study.pieces({"scenario-12-base": known, "formula-06-base": known}) == [
-        ("scenario-04-base", "scenario-04-ext", "scenario-20-ext"),
-        ("scenario-05-base",),
-    ]
+def question(*what, using=None):
+    return drives_asked(what, using or rp.load("base"), Witness(jobs=1))
+
+
+def test_scenarios_alike_are_one_batch_whatever_their_set():
+    asked = question(4, 12, 5, 20, "true", using=rp.load("base", "ext"))
+    alike = [f"scenario-{n:02}-{x}" for n in (4, 12, 20) for x in ("base", "ext")]
+    batches = [sorted(batch.names) for batch in asked.batches({})]
+    assert sorted(alike) in batches
+    assert [len(x) for x in batches].count(1) == 2, "a formula is asked for in each set by itself"
+    turned = question(20, 4, 12, using=rp.load("base", "ext"))
+    assert [sorted(batch.names) for batch in turned.batches({})] == [sorted(alike)]
 
 
 def test_of_scenarios_alike_only_that_whose_process_dies_is_in_doubt(monkeypatch):
@@ -187,8 +189,9 @@ def test_of_scenarios_alike_only_that_whose_process_dies_is_in_doubt(monkeypatch
             os.kill(os.getpid(), signal.SIGKILL)
         return ask.undecided(search, Why.NONE_FOUND())
 
-    monkeypatch.setattr(ask, "answer", die_at_12)
-    study = WitnessStudy(tuple(search_for(number) for number in ("4", "12", "20", "5")))
-    answers = conduct(study, hands=2).answers
-    dead = {name for name, outcome in answers.items() if outcome.reason.kind is Why.PROCESS}
+    monkeypatch.setattr("roadproof.engines.search.batches.ask", die_at_12)
+    monkeypatch.setattr(ask, "ask", die_at_12)
+    asked = question(4, 12, 20, 5)
+    answers = settle(asked, hands=2).answers
+    dead = {name for name, answer in answers.items() if answer.reason.kind is Why.PROCESS}
     assert (len(answers), dead) == (4, {"scenario-12-base"})

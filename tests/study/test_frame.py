@@ -7,33 +7,31 @@ import signal
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cache
 from pathlib import Path
 from typing import Any, ClassVar
 
 import pytest
-from roadproof.analysis.claims import ClaimResult, Claims
-from roadproof.analysis.overlap import Overlap, PairVerdict
-from roadproof.analysis.overlap import name_of as pair_name
-from roadproof.evidence.answers.overlap import Record
 
-from evidence.folders import changes, check, places
+import roadproof as rp
+from questions.heard import Asked
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.analysis.study.frame import Unprepared, conduct
+from roadproof.engines.search.batches import Engines
 from roadproof.errors import InputError, SharedError, UsageError
-from roadproof.evidence.codec import read, write
-from roadproof.evidence.finding import Acceptance
-from roadproof.evidence.journal import ANSWERS, HEAD, seal_of
+from roadproof.evidence.answer import answer_data, undecided
 from roadproof.frontends.api.definitions import load
 from roadproof.frontends.api.proofs import claims_of
 from roadproof.frontends.cli.main import main
 from roadproof.library.loading import build_library, bundled_library
-from roadproof.library.scenarios import Scenario
 from roadproof.library.specification import Source
+from roadproof.questions.overlap import Meeting, OverlapQuestion
+from roadproof.questions.redundancy import RedundancyQuestion
+from roadproof.questions.settle import Settled, settle
+from roadproof.reasons import Why
 from roadproof.runtime.executors import Cluster, Executor, Shard
 from roadproof.runtime.files import hold_folder
-from roadproof.verdict import Verdict
+from sharing import made_once
 
 
 @dataclass(frozen=True)
@@ -188,38 +186,17 @@ def test_a_folder_that_goes_away_ends_the_run_before_an_index_names_what_is_lost
 NAMES = [f"piece-{k}" for k in range(500)]
 
 
-@dataclass(frozen=True)
-class Counted(Claims):
-    """Claims that note in a file which of them are asked; ``doubtful``: one that is never sure."""
-
-    notes: Path = Path("/dev/null")
-    doubtful: str = ""
-
-    def settle(self, piece: Any) -> dict[str, ClaimResult]:
-        with self.notes.open("a") as file:
-            file.write(f"{piece.claim}\n")
-        return super().settle(piece)
-
-    def is_sure(self, answer: ClaimResult) -> bool:
-        return answer.task.claim != self.doubtful and super().is_sure(answer)
-
-    @property
-    def asked(self) -> list[str]:
-        return self.notes.read_text().splitlines()
-
-
 @pytest.fixture
-def study(tmp_path: Path) -> Counted:
-    return some(tmp_path / "notes")
+def asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Asked:
+    """The claims that engines are asked."""
+    return Asked(tmp_path / "notes", monkeypatch, Engines, lambda claim: claim.text)
 
 
-def some(notes: Path = Path("/dev/null")) -> Counted:
-    claims = claims_of(load(), [f"v_lon(SV) > {k} m/s -> v_lon(SV) > {k - 1} m/s" for k in range(1, 8)], None)
-    return Counted(claims.tasks, claims.specifications, notes=notes)
+QUESTION = claims_of(load(), [f"v_lon(SV) > {k} m/s -> v_lon(SV) > {k - 1} m/s" for k in range(1, 8)], None)
 
 
-def plain(answers: Mapping[str, ClaimResult]) -> dict[str, Any]:
-    return {name: (x.task, x.verdict, x.settled.result.certificate) for name, x in sorted(answers.items())}
+def plain(found: Settled) -> dict[str, Any]:
+    return {name: answer_data(x) for name, x in sorted(found.answers.items())}
 
 
 @pytest.mark.parametrize("of", [1, 2, 3, 7])
@@ -230,38 +207,51 @@ def test_each_piece_is_in_one_share(of: int) -> None:
     assert all(sum(map(shard.has, NAMES)) > len(NAMES) / of / 2 for shard in shards)
 
 
-def test_shares_make_up_the_whole(study: Counted, tmp_path: Path) -> None:
-    whole, folder = conduct(some(), hands=1).answers, tmp_path / "out"
+def test_shares_make_up_the_whole(asked: Asked, tmp_path: Path) -> None:
+    whole, folder = settle(QUESTION, hands=1), tmp_path / "out"
+    assert len(asked.since()) == 7
+    shares = []
     for number in (2, 1, 2):
         with pytest.raises(
             SharedError, match=f"shard {number}/3 is done: . answers are stored; other runs process . claims"
         ):
-            conduct(study, folder, Executor(1, shard=Shard(number, 3)), what="claims")
-    assert len(study.asked) == 5  # of 7: every third to each of two runs
-    found = conduct(study, folder, Executor(1, shard=Shard(3, 3)))  # the last one has the whole
-    assert len(study.asked) == len({*study.asked}) == len(whole)
-    assert plain(found.answers) == plain(whole)
-    assert plain(conduct(study, folder, 1).answers) == plain(whole)
-    assert len(study.asked) == len(whole)
+            settle(QUESTION, folder, Executor(1, shard=Shard(number, 3)))
+        shares += asked.since()
+    assert len(shares) == 5  # of 7: every third to each of two runs
+    found = settle(QUESTION, folder, Executor(1, shard=Shard(3, 3)))  # the last one has the whole
+    shares += asked.since()
+    assert len(shares) == len({*shares}) == len(whole.answers)
+    assert plain(found) == plain(whole)
+    assert plain(settle(QUESTION, folder, 1)) == plain(whole)
+    assert asked.since() == []
 
 
-def test_the_last_run_asks_what_a_run_that_never_came_was_to_ask(study: Counted, tmp_path: Path) -> None:
+def test_the_last_run_asks_what_a_run_that_never_came_was_to_ask(asked: Asked, tmp_path: Path) -> None:
     with pytest.raises(SharedError):
-        conduct(study, tmp_path / "out", Executor(1, shard=Shard(1, 2)))
-    assert len(study.asked) == 4
-    assert plain(conduct(study, tmp_path / "out", 1).answers) == plain(conduct(some(), hands=1).answers)
-    assert len(study.asked) == len({*study.asked}) == 7
+        settle(QUESTION, tmp_path / "out", Executor(1, shard=Shard(1, 2)))
+    first = asked.since()
+    assert len(first) == 4
+    settle(QUESTION, tmp_path / "out", 1)
+    assert len({*first, *asked.since()}) == 7
 
 
-def test_a_doubt_is_told_and_left_to_the_last_run(study: Counted, tmp_path: Path) -> None:
-    first = Shard(1, 3)
-    doubtful = study.tasks[0].claim
-    study = replace(study, doubtful=doubtful)
-    with pytest.raises(SharedError) as raised:
-        conduct(study, tmp_path / "out", Executor(1, shard=first))
+def test_a_doubt_is_told_and_left_to_the_last_run(
+    asked: Asked, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    doubtful, true_settle = QUESTION.tasks[0].task.claim, Engines.settle
+
+    def doubt(engines: Engines, claim: Any) -> Any:
+        answer, cost = true_settle(engines, claim)
+        return (undecided(claim, Why.NONE_FOUND()) if claim.text == doubtful else answer), cost
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Engines, "settle", doubt)
+        with pytest.raises(SharedError) as raised:
+            settle(QUESTION, tmp_path / "out", Executor(1, shard=Shard(1, 3)))
     assert "1 in doubt, to be computed again" in str(raised.value)
-    conduct(study, tmp_path / "out", 1)
-    assert [x for x in study.asked if study.asked.count(x) > 1] == [doubtful] * 2
+    first = asked.since()
+    settle(QUESTION, tmp_path / "out", 1)
+    assert [x for x in first if x in asked.since()] == [doubtful]
 
 
 def test_what_no_share_is(capsys: pytest.CaptureFixture[str]) -> None:
@@ -269,7 +259,7 @@ def test_what_no_share_is(capsys: pytest.CaptureFixture[str]) -> None:
         with pytest.raises(UsageError, match="write K/N with K from 1 to N"):
             Shard.read(text)
     with pytest.raises(UsageError, match="the folder that the runs share"):
-        conduct(some(), hands=Executor(shard=Shard(1, 2)))
+        settle(QUESTION, hands=Executor(shard=Shard(1, 2)))
     for line, told in (
         ("--shard 1/2 --json -", "use --json in the run without --shard"),
         ("--tls-ca ca.pem", "--tls-ca requires --cluster"),
@@ -303,142 +293,62 @@ def test_what_a_cluster_may_be_called() -> None:
             Cluster(text)
 
 
-# --- Kept answers, one file each: only those count that are as they were written, and of this very question
+# --- Answers of a folder, one file each: only those count that are of this very question
 
 BASIS = Basis(bundled_library().select())
-PAIRS = ((Scenario(3, "base"), Scenario(4, "base")), (Scenario(5, "base"), Scenario(6, "base")))
-STUDY = Overlap(BASIS, PAIRS)
-FIRST, SECOND = (pair_name(*pair) for pair in PAIRS)
-
-
-@cache
-def answers() -> dict[str, PairVerdict]:
-    return dict(conduct(STUDY, hands=1).answers)
+PAIRS = OverlapQuestion(BASIS, Meeting(among=(3, 4, 5)))
+FIRST, SECOND, *_ = (name for claims in PAIRS.claims.values() for name in claims)
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A folder as a run leaves it that was broken off before its index."""
-    made = tmp_path / "out"
-    shelf = EvidenceStore(made, STUDY.question)
-    for name, answer in answers().items():
-        shelf.keep(name, write(STUDY.record(name, answer, shelf)), STUDY.is_sure(answer))
-    return made
+    made = made_once("pairs", lambda home: settle(PAIRS, home / "out", 1))
+    return Path(shutil.copytree(made / "out", tmp_path / "out"))
 
 
-def kept(folder: Path, question: Question | None = None) -> tuple[list[str], list[str]]:
-    """The names of the answers that count, and what is told of the others."""
+def again(folder: Path, asked: Asked, question: OverlapQuestion = PAIRS) -> tuple[int, list[str]]:
+    """How many claims are asked again, and what is told of files that do not count."""
+    asked.since()
     told: list[str] = []
-    found = [name for name, _ in EvidenceStore(folder, question or STUDY.question).answers(told.append)]
-    return found, told
+    settle(question, folder, 1, say=told.append)
+    return len(asked.since()), told
 
 
-def file_of(folder: Path, name: str = FIRST) -> Path:
-    return folder / ANSWERS / f"{name}.json"
+def test_nothing_that_is_there_is_asked_again(folder: Path, asked: Asked, tmp_path: Path) -> None:
+    before = {x.name: x.read_bytes() for x in folder.iterdir()}
+    assert again(folder, asked) == (0, [])
+    assert again(folder.rename(tmp_path / "moved"), asked) == (0, []), "a folder may be moved"
+    assert {x.name: x.read_bytes() for x in (tmp_path / "moved").iterdir()} == before
 
 
-def record_of(folder: Path, name: str = FIRST) -> Any:
-    return json.loads(file_of(folder, name).read_text("utf-8"))
+@pytest.mark.parametrize(
+    "content", [b"", b"{}", b"[1]", b'{"schema": "roadproof/drive/1"}', b"\xff", None], ids=str
+)
+def test_a_file_that_does_not_stand_is_told_and_computed_again(
+    content: bytes | None, folder: Path, asked: Asked
+) -> None:
+    path = folder / f"{FIRST}.json"
+    good = path.read_bytes()
+    path.write_bytes((folder / f"{SECOND}.json").read_bytes() if content is None else content)
+    count, [told] = again(folder, asked)
+    assert count == 1
+    assert "a stored answer is invalid and is computed again" in told
+    assert path.read_bytes() == good
 
 
-def test_answers_are_kept_and_checked(folder: Path) -> None:
-    assert kept(folder) == ([FIRST, SECOND], [])
-    findings = check(folder)
-    assert [(x.outcome, x.verdict, x.label) for x in findings] == [
-        (Acceptance.ACCEPTED, "IMPOSSIBLE", "scenarios 3@base and 4@base"),
-        (Acceptance.ACCEPTED, "IMPOSSIBLE", "scenarios 5@base and 6@base"),
-    ]
+def test_what_is_gone_is_asked_again(folder: Path, asked: Asked) -> None:
+    (folder / f"{FIRST}.json").unlink()
+    assert again(folder, asked) == (1, [])
+    assert rp.check(folder, jobs=1).accepted
 
 
-def test_what_is_kept_comes_back_as_it_was(folder: Path) -> None:
-    shelf = EvidenceStore(folder, STUDY.question)
-    records = (read(Record, content, "a kept answer") for _, content in shelf.answers())
-    found = dict(STUDY.recall(record, shelf) for record in records)
-    for name, answer in answers().items():
-        assert found[name].certificate == answer.certificate
-        assert found[name].query is not None
-        assert answer.query is not None
-        assert found[name].query.formula == answer.query.formula
-        assert [core.told for core in found[name].cores] == [core.told for core in answer.cores]
-
-
-def test_nothing_that_is_kept_is_asked_again(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Overlap, "settle", lambda *_: pytest.fail("asked again"))
-    found = conduct(STUDY, folder)
-    assert [x.verdict for x in found.answers.values()] == [Verdict.IMPOSSIBLE] * 2
-    told = found.as_data(found.records[FIRST])["verdict"]
-    assert told["certificate"] == str(folder / f"impossible-{FIRST}.json")
-
-
-def test_a_folder_may_be_moved(folder: Path, tmp_path: Path) -> None:
-    moved = folder.rename(tmp_path / "moved")
-    assert kept(moved) == ([FIRST, SECOND], [])
-
-
-def test_no_change_of_an_answer_counts(folder: Path) -> None:
-    """With the seal that was there; and, where it says something else, with one that was made anew."""
-    head, first = json.loads((folder / HEAD).read_text("utf-8")), record_of(folder)
-    told_only = ("verdict.core", "verdict.cores", "verdict.reason", "verdict.seconds")
-    tried, counting = 0, []
-    for place in places(first):
-        for word, changed in changes(first, place):
-            name = f"{'.'.join(map(str, place))}: {word}"
-            tried += 1
-            file_of(folder).write_text(json.dumps(changed), "utf-8")
-            assert kept(folder)[0] == [SECOND], name
-            if name.startswith(told_only) or "evidence" not in changed or place[0] in ("seal", "evidence"):
-                continue
-            try:
-                sealed = {**changed, "seal": seal_of(changed, head["question"], folder)}
-            except (TypeError, ValueError):
-                continue
-            file_of(folder).write_text(json.dumps(sealed), "utf-8")
-            if kept(folder)[0] != [SECOND]:
-                counting.append(name)
-    assert tried > 150
-    assert counting == []
-
-
-def test_a_changed_answer_is_rejected_by_check(folder: Path) -> None:
-    text = file_of(folder).read_text("utf-8")
-    file_of(folder).write_text(text.replace("IMPOSSIBLE", "WITNESSED"), "utf-8")
-    assert any(x.outcome is Acceptance.REJECTED and "seal" in x.reason for x in check(folder))
-
-
-def test_other_evidence_is_found_under_a_new_seal(folder: Path) -> None:
-    head, first = json.loads((folder / HEAD).read_text("utf-8")), record_of(folder)
-    other = (folder / f"impossible-{SECOND}.json").read_bytes()
-    (folder / f"impossible-{FIRST}.json").write_bytes(other)
-    sealed = {**first, "seal": seal_of(first, head["question"], folder)}
-    file_of(folder).write_text(json.dumps(sealed), "utf-8")
-    names, told = kept(folder)
-    assert names == [SECOND]
-    assert "but its file" in told[0]
-    assert any("but its file" in x.reason for x in check(folder))
-
-
-@pytest.mark.parametrize("gone", [f"impossible-{FIRST}.json", f"{ANSWERS}/{FIRST}.json"])
-def test_what_is_gone_is_asked_again(folder: Path, gone: str) -> None:
-    (folder / gone).unlink()
-    assert kept(folder)[0] == [SECOND]
-
-
-def test_an_answer_under_another_name_is_no_other_answer(folder: Path) -> None:
-    """Each name is that of a pair, and a pair is asked by its name."""
-    file_of(folder).rename(file_of(folder, "base-07-base-08"))
-    other = Overlap(BASIS, ((Scenario(7, "base"), Scenario(8, "base")),))
-    found = conduct(other, folder, hands=1)
-    (verdict,) = other.verdicts(found.answers)
-    assert (verdict.a.number, verdict.b.number) == (7, 8)
-
-
-def other_questions() -> Iterator[tuple[str, Question]]:
+def other_questions() -> Iterator[tuple[str, Any]]:
     library = bundled_library()
 
-    def under(basis: Basis) -> Question:
-        return Overlap(basis, PAIRS).question
+    def under(basis: Basis) -> OverlapQuestion:
+        return OverlapQuestion(basis, PAIRS.asked)
 
-    def added(text: str) -> Question:
+    def added(text: str) -> OverlapQuestion:
         return under(Basis(build_library([Source("m", text)], library).select()))
 
     yield "another value", under(replace(BASIS, values={"rho": Fraction(1)}))
@@ -448,48 +358,26 @@ def other_questions() -> Iterator[tuple[str, Question]]:
     yield "another default", added("param rho = 1 s where rho >= 0")
     yield "another bound", added("param rho = 0.6 s where rho > 0")
     yield "another order of readings", added("option lateral_sign = literal | rss")
-    yield "another analysis", replace(STUDY.question, schema="roadproof/redundancy/1")
+    yield "another analysis", RedundancyQuestion(BASIS)
+    yield "other pairs", OverlapQuestion(BASIS, Meeting(among=(3, 4)))
+    yield "another start", OverlapQuestion(BASIS, replace(PAIRS.asked, start="any"))
 
 
 OTHERS = dict(other_questions())
 
 
 @pytest.mark.parametrize("other", OTHERS.values(), ids=OTHERS.keys())
-def test_answers_to_another_question_are_not_taken_over(folder: Path, other: Question) -> None:
+def test_answers_to_another_question_are_not_taken_over(folder: Path, other: Any) -> None:
+    before = {x.name: x.read_bytes() for x in folder.glob("*.json")}
     with pytest.raises(UsageError, match="the answers to another question"):
-        kept(folder, other)
+        settle(other, folder, 1)
+    assert {x.name: x.read_bytes() for x in folder.glob("*.json")} == before
 
 
 def test_answers_of_another_version_are_not_taken_over(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("roadproof.evidence.heading.VERSION", "0.0.0")
     with pytest.raises(UsageError, match="the answers to another question"):
-        kept(folder)
-
-
-def test_planted_seals_that_are_not_compared_are_noticed(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    first = record_of(folder)
-    slower = {**first, "verdict": {**first["verdict"], "seconds": 9.0}}
-    file_of(folder).write_text(json.dumps(slower), "utf-8")
-    with monkeypatch.context() as patch:
-        patch.setattr("roadproof.evidence.journal.seal_of", lambda record, question, folder: record["seal"])
-        assert kept(folder)[0] == [FIRST, SECOND]
-    assert kept(folder)[0] == [SECOND]
-
-
-def test_planted_evidence_that_is_not_looked_at_is_noticed(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    head, first = json.loads((folder / HEAD).read_text("utf-8")), record_of(folder)
-    wrong = {**first, "verdict": {**first["verdict"], "verdict": "WITNESSED"}}
-    sealed = {**wrong, "seal": seal_of(wrong, head["question"], folder)}
-    file_of(folder).write_text(json.dumps(sealed), "utf-8")
-    with monkeypatch.context() as patch:
-        patch.setattr("roadproof.evidence.journal.read_record", lambda *_: [])
-        patch.setattr("roadproof.evidence.journal.faults_of_line", lambda *_: iter(()))
-        assert kept(folder)[0] == [FIRST, SECOND]
-    assert kept(folder)[0] == [SECOND]
+        settle(PAIRS, folder, 1)
 
 
 def test_copies_of_specification_files_lie_beside_the_evidence(tmp_path: Path) -> None:
@@ -498,5 +386,5 @@ def test_copies_of_specification_files_lie_beside_the_evidence(tmp_path: Path) -
     out = tmp_path / "out"
     assert main(["overlap", "--among", "5,6", "--spec", str(mine), "--out", str(out), "--no-pictures"]) == 0
     assert (out / "mine.spec").read_text() == mine.read_text()
-    assert json.loads((out / "index.json").read_text())["specs"] == ["mine.spec"]
+    assert json.loads((out / "question.json").read_text())["basis"]["specs"] == ["mine.spec"]
     assert main(["check", str(out)]) == 0
