@@ -160,27 +160,6 @@ def test_nothing_to_ask_is_nothing_found() -> None:
     assert conduct(replace(Sums(()))).answers == {}
 
 
-@dataclass(frozen=True)
-class Kept(Sums):
-    """The same under a schema that folders may have."""
-
-    @property
-    def question(self) -> Question:
-        return Question("roadproof/index/1", {"options": {}, "specs": []}, {}, bundled_library())
-
-
-def test_a_folder_that_goes_away_ends_the_run_before_an_index_names_what_is_lost(tmp_path) -> None:
-    folder = tmp_path / "answers"
-
-    def remove(name: str, answer: int | None) -> None:
-        if name == "square-2" and folder.exists():
-            shutil.rmtree(folder)
-
-    with pytest.raises(InputError, match="was removed during the run"):
-        conduct(Kept((1, 2, 3)), folder, hands=1, each=remove)
-    assert not list(folder.rglob("*.json"))
-
-
 # --- Runs that divide a question without talking to each other: nothing is lost, and nothing is asked twice
 
 NAMES = [f"piece-{k}" for k in range(500)]
@@ -291,6 +270,17 @@ def test_what_a_cluster_may_be_called() -> None:
     for text in ("local", "local:", "local:x", "host:8786", "tcp://host", "http://host:1", "tcp:// a:1"):
         with pytest.raises(UsageError, match="write the address of a scheduler"):
             Cluster(text)
+
+
+def test_a_folder_that_goes_away_ends_the_run(tmp_path: Path) -> None:
+    folder = tmp_path / "answers"
+
+    def remove(*_: Any) -> None:
+        shutil.rmtree(folder, ignore_errors=True)
+
+    with pytest.raises(InputError, match="was removed during the run"):
+        settle(QUESTION, folder, hands=1, each=remove)
+    assert not list(tmp_path.rglob("*.json"))
 
 
 # --- Answers of a folder, one file each: only those count that are of this very question

@@ -72,6 +72,7 @@ def settle(
             raise SharedError(_told(shard, run.known, len(batches), what))
         run.ask(ours, hands, progress, what)
         batches = run.open_batches()
+    store.require_folder()
     if not isinstance(question, Growing):
         store.leave_only(run.known, say)
     store.make_room()

@@ -162,12 +162,13 @@ class Store:
         """Write an answer into the folder, and into the cache where it is new and stands."""
         data = answer_data(answer)
         if self.folder is not None:
+            self.require_folder()
             write_json(self.folder / f"{name}.json", data)
         if is_new and self.reads_known and self.stands(answer):
             key = digest(self.key(answer.claim), program())
             keep_bytes(CACHE, key, lzma.compress(json.dumps(data).encode(), preset=0))
 
-    def leave_only(self, answers: Answers, say: Callable[[str], None] | None = None) -> None:
+    def leave_only(self, answers: Answers, say: Say | None = None) -> None:
         """Remove answers to claims that are asked no more, since others were answered; ``say`` is told."""
         every = [] if self.folder is None else sorted(self.folder.glob("*.json"))
         for path in every:
@@ -177,6 +178,14 @@ class Store:
                     path.unlink()
                     if say is not None:
                         say(f"a stored answer is asked for no more and is removed: {path}")
+
+    def require_folder(self) -> None:
+        """Raises ``InputError`` where the folder was removed since it was opened."""
+        if self.folder is not None and not (self.folder / QUESTION).exists():
+            raise InputError(
+                f"{self.folder} or its {QUESTION} was removed during the run, and with it evidence that the "
+                "answer would name: run the command again"
+            )
 
     def make_room(self) -> None:
         """Keep the cache within its bounds."""

@@ -16,7 +16,10 @@ def archived(kind: str) -> Mapping[str, str]:
     path = archive(shipped("proofs") / "known", kind)
     if not path.is_file():
         return {}
-    seal, _, lines = lzma.decompress(path.read_bytes()).decode().partition("\n")
+    try:
+        seal, _, lines = lzma.decompress(path.read_bytes()).decode().partition("\n")
+    except (lzma.LZMAError, EOFError, UnicodeDecodeError):
+        return {}
     if seal != hashlib.sha256(lines.encode()).hexdigest():
         return {}
     return {key: text for key, _, text in (line.partition(" ") for line in lines.splitlines())}

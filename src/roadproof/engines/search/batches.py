@@ -13,6 +13,7 @@ from roadproof.engines.search.ask import ask
 from roadproof.engines.search.impossible import explain
 from roadproof.engines.search.known_drive import KnownDrive, is_same_motion
 from roadproof.engines.search.looking import search_of
+from roadproof.engines.search.question import zones_of
 from roadproof.engines.search.stages import look
 from roadproof.engines.search.valid import settle_valid
 from roadproof.evidence.answer import Answer, Judged, Refutation, undecided
@@ -193,7 +194,11 @@ class Engines:
         if proof is not None:
             return Answer(claim, proof)
         found = ask(search_of(claim, self.work, explain=False))
-        if self.work.explain and not found.drives and found.verdict is not Verdict.IMPOSSIBLE:
+        is_open = not found.drives and found.verdict is not Verdict.IMPOSSIBLE
+        drive = self._across_sectors(claim) if is_open else None
+        if drive is not None:
+            return Answer(claim, drive)
+        if self.work.explain and is_open:
             found = ask(search_of(claim, self.work))
         return answer_of(claim, found, found.told(("--horizon",)))
 
@@ -205,6 +210,20 @@ class Engines:
             if (proof.set_name, dict(proof.options)) == read_alike and {*parts_of(_body(denied))} <= mine:
                 return proof
         return None
+
+    def _across_sectors(self, claim: Claim) -> JudgedDrive | None:
+        """Return a drive that is found where road sectors do not count, on a road with all zones of a claim.
+
+        No usual road has several zones.
+        """
+        if not isinstance(claim.mode, Exists) or claim.mode.road is not None:
+            return None
+        if len(zones_of(claim.formula)) < 2:
+            return None
+        free = of_parts(claim.query, [without_sectors(claim.formula)])
+        found = ask(search_of(replace(claim, formula=free.formula, query=free), self.work, explain=False))
+        drives = (self._known(x).elsewhere(claim.query, claim) for x in found.drives)
+        return next((x for x in drives if x is not None), None)
 
     def _has_trace(self, claim: Claim) -> bool:
         never, bounds = negation(claim.query).formula, claim.home.library.bounds

@@ -8,9 +8,10 @@ from roadproof.analysis.basis import Basis
 from roadproof.engines.search.question import SearchOptions, exists
 from roadproof.errors import UsageError
 from roadproof.evidence import answer as answers
+from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
-from roadproof.frontends.api.questioned import QuestionAnswers
+from roadproof.frontends.api.questioned import QuestionAnswers, evidence_of
 from roadproof.frontends.api.settings import setting, work_of
 from roadproof.frontends.api.studied import drive_pictures
 from roadproof.frontends.report import compare as compare_report
@@ -46,6 +47,11 @@ class ComparisonAnswer(QuestionAnswers[Comparison]):
     @property
     def verdicts(self) -> dict[str, Verdict]:
         return {name: x.verdict for name, x in self.view.directions.items()}
+
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        shown = (x.answer for x in self.view.directions.values() if x.answer is not None)
+        return tuple(evidence_of(x) for x in shown if x.is_final)
 
     @property
     def road(self) -> Road | None:

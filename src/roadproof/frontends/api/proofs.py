@@ -15,11 +15,12 @@ from roadproof.evidence import answer as answers
 from roadproof.evidence.claim import Engine
 from roadproof.evidence.codec import write
 from roadproof.evidence.heading import heading
+from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
-from roadproof.frontends.api.questioned import QuestionAnswers
+from roadproof.frontends.api.questioned import QuestionAnswers, evidence_of
 from roadproof.frontends.api.settings import models_of, setting, work_of
 from roadproof.frontends.api.studied import drive_pictures
 from roadproof.frontends.report import claims as claims_text
@@ -97,6 +98,11 @@ class Proofs(QuestionAnswers[ClaimsView], BuildResult):
     @property
     def verdicts(self) -> dict[str, Verdict]:
         return {x.task.name: x.verdict for x in self.answers}
+
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        shown = (x.answer for x in self.answers if x.answer is not None and x.answer.is_final)
+        return tuple(map(evidence_of, shown))
 
     @property
     def road(self) -> Road | None:

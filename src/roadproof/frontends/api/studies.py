@@ -49,6 +49,10 @@ class Overlaps(QuestionAnswers[OverlapView]):
     def verdicts(self) -> dict[str, Verdict]:
         return {f"{x.a}, {x.b}": x.verdict for x in self.pairs}
 
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        return tuple(evidence_of(y) for x in self.pairs for y in x.evidence.values())
+
     @cached_property
     def words(self) -> Called:
         """What the scenarios are called."""
@@ -171,6 +175,11 @@ class Redundancies(QuestionAnswers[RedundancyView]):
     def findings(self) -> Mapping[int, Sequence[ChangeFinding]]:
         """The findings on every change, by the number of the scenario."""
         return self.view.findings
+
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        every = (x.shown for each in self.findings.values() for x in each)
+        return tuple(evidence_of(x) for x in every if x is not None)
 
     @cached_property
     def words(self) -> Called:
