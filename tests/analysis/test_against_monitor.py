@@ -11,8 +11,6 @@ from itertools import combinations, permutations
 from pathlib import Path
 
 import pytest
-from roadproof.analysis.overlap import Meeting, conjunctions
-from roadproof.analysis.redundancy import changes_of
 
 import roadproof as rp
 from asking import prove
@@ -32,6 +30,8 @@ from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import Scenario, applied
 from roadproof.library.specification import Specification
 from roadproof.logic.rewrite import with_values
+from roadproof.questions.overlap import Meeting, conjunctions
+from roadproof.questions.redundancy import changes_of
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.sampled import compile
 from roadproof.verdict import Verdict

@@ -8,10 +8,9 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from roadproof.analysis.redundancy import ChangeFinding, Redundancy
+from roadproof.analysis.preventable.study import Plate, Shown
 
 from roadproof.analysis.coverage.answers import ClassAnswer, is_covered, verdict_on, with_counts
-from roadproof.analysis.preventable.study import Plate, Shown
 from roadproof.drivers.lines import Line, end_of
 from roadproof.engines.search.extreme import Extreme
 from roadproof.engines.search.points import PointFinding
@@ -270,11 +269,3 @@ def test_an_exploration_is_decided_where_both_sides_of_every_bracket_are() -> No
         listed = [grid, held, missed, best, *([] if beyond is None else [beyond])]
         assert sorted(explored.verdicts) == sorted(x.verdict for x in listed)
         assert (V.UNKNOWN in explored.verdicts) is (open_ in places)
-
-
-def test_a_change_in_doubt_is_neither_redundant_nor_needed() -> None:
-    said = {V.PROVED: True, V.REFUTED: False, V.UNKNOWN: None}
-    for mixed in mixtures([*said]):
-        found = tuple(ChangeFinding(DRIVE, DRIVE, verdict=x) for x in mixed)  # type: ignore[arg-type]
-        assert [x.redundant for x in found] == [said[x] for x in mixed]
-        assert Redundancy.is_sure(DRIVE, found) is (V.UNKNOWN not in mixed)

@@ -3,12 +3,12 @@
 import errno
 import json
 import os
-import shutil
 import stat
 import subprocess
 import sys
 import time
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -18,10 +18,13 @@ import roadproof as rp
 from api.doors import FALSE, SYMMETRIC
 from roadproof.analysis.study.evidence_store import EvidenceStore, Question, inside, specification_names
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence.journal import ANSWERS
+from roadproof.evidence.claim import Exists
 from roadproof.frontends.api.proofs import claims_of
 from roadproof.library.loading import build_library, bundled_library
 from roadproof.library.specification import Source
+from roadproof.questions.checking import read_folder
+from roadproof.questions.data import QUESTION as QUESTION_FILE
+from roadproof.questions.store import Store
 from roadproof.runtime import files
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.files import hold_folder, read_limited, utf8, whole_file, write_whole
@@ -205,8 +208,8 @@ def claims(folder: Path, *what: str, **more: Any) -> dict[str, str]:
 
 
 def index_of(folder: Path) -> dict[str, str]:
-    content = json.loads((folder / "index.json").read_text("utf-8"))
-    return {x["claim"]: x["verdict"] for x in content["claims"]}
+    """The verdicts of a folder by claim, as it is read again."""
+    return {x.claim.query.text: str(x.verdict) for x in read_folder(folder).answers.values()}
 
 
 def test_a_folder_grows_and_new_answers_count(tmp_path: Path) -> None:
@@ -229,7 +232,7 @@ def test_a_claim_in_doubt_beside_one_that_is_proved(tmp_path: Path) -> None:
             "UNKNOWN" if x is doubtful else "PROVED" for x in what
         ]
         assert found.exit_code == 20
-        assert len([*(tmp_path / ANSWERS).glob("*.json")]) == 1, "a doubt is asked again by the next run"
+    assert index_of(tmp_path) == {FAST: "PROVED", doubtful: "UNKNOWN"}
 
 
 @pytest.mark.parametrize(
@@ -250,51 +253,24 @@ def test_claims_read_otherwise_go_into_another_folder(other: Any, tmp_path: Path
 
 def test_a_folder_of_another_command_is_refused(tmp_path: Path) -> None:
     rp.overlap("5,6", out=tmp_path, jobs=1)
-    shutil.rmtree(tmp_path / ANSWERS)
-    before = (tmp_path / "index.json").read_bytes()
-    with pytest.raises(UsageError, match="belongs to another command"):
+    before = (tmp_path / QUESTION_FILE).read_bytes()
+    with pytest.raises(UsageError, match="holds the answers to another question"):
         claims(tmp_path, NEAR)
-    assert (tmp_path / "index.json").read_bytes() == before
-
-
-def only_the_index(folder: Path, **changes: Any) -> None:
-    """A folder as it is shipped: evidence and an index, and no answers to go on with."""
-    shutil.rmtree(folder / ANSWERS)
-    path = folder / "index.json"
-    content = json.loads(path.read_text("utf-8"))
-    path.write_text(json.dumps({**content, **changes}), "utf-8")
+    assert (tmp_path / QUESTION_FILE).read_bytes() == before
 
 
 @pytest.mark.parametrize(
-    "changes",
-    [
-        {"options": {"lateral_sign": "literal"}},
-        {"library": "0" * 16},
-        {"specs": ["mine.spec"]},
-    ],
-    ids=["options", "library", "files"],
+    ("field", "value"),
+    [("options", {"lateral_sign": "literal"}), ("specs", ["mine.spec"]), ("sets", ["ext"])],
 )
-def test_an_index_that_was_read_otherwise_does_not_grow(changes: Any, tmp_path: Path) -> None:
+def test_a_question_that_was_read_otherwise_does_not_grow(field: str, value: Any, tmp_path: Path) -> None:
     claims(tmp_path, FAST)
     (tmp_path / "mine.spec").write_text("def mine(a: vehicle) := v_lon(a) > 3 m/s\n")
-    only_the_index(tmp_path)
-    assert claims(tmp_path, NEAR) == {NEAR: "PROVED"}
-    only_the_index(tmp_path, **changes)
-    with pytest.raises(UsageError, match="holds claims for other options, specification files or another"):
+    content = json.loads((tmp_path / QUESTION_FILE).read_text("utf-8"))
+    content["basis"][field] = value
+    (tmp_path / QUESTION_FILE).write_text(json.dumps(content), "utf-8")
+    with pytest.raises(UsageError, match="holds the answers to another question"):
         claims(tmp_path, SYMMETRIC)
-
-
-def test_evidence_that_no_entry_names_any_more_is_removed(tmp_path: Path) -> None:
-    claims(tmp_path, FAST)
-    index = json.loads((tmp_path / "index.json").read_text("utf-8"))
-    [entry] = index["claims"]
-    (tmp_path / "old.json").write_bytes((tmp_path / entry["evidence"]).read_bytes())
-    (tmp_path / "mine.json").write_text("{}")
-    only_the_index(tmp_path, claims=[{**entry, "evidence": "old.json"}])
-    claims(tmp_path, FAST)
-    assert not (tmp_path / "old.json").exists()
-    assert (tmp_path / "mine.json").exists()
-    assert index_of(tmp_path) == {FAST: "PROVED"}
 
 
 def test_what_is_assumed_is_assumed_in_every_answer(tmp_path: Path) -> None:
@@ -306,39 +282,41 @@ def test_what_is_assumed_is_assumed_in_every_answer(tmp_path: Path) -> None:
     assert again.verdict == "REFUTED"
 
 
-def test_a_digest_of_a_claim_changes_with_all_that_is_asked() -> None:
-    def key(claim: str, **more: Any) -> str | None:
+def test_a_key_changes_with_all_that_is_asked() -> None:
+    def key(claim: str, **more: Any) -> str:
         asked = replace(claims_of(rp.load(), [claim], None), **more)
-        return asked.key(*asked.named)
+        [found] = asked.claims.values()
+        return Store(None, asked.kind, asked.work).key(found)
 
     usual = key(FAST)
-    assert usual is not None
     assert usual == key(f"  {FAST}  ")
     task = claims_of(rp.load(), [FAST], None).tasks[0]
+    basis = claims_of(rp.load(), [FAST], None).basis
     others = [
         key(NEAR),
-        key(FAST, effort=Effort(3.0)),
+        key(FAST, basis=replace(basis, effort=Effort(3.0))),
         key(FAST, seek_drive=False),
-        key(FAST, tasks=(replace(task, assuming=("motion",)),)),
+        key(FAST, tasks=(replace(task, task=replace(task.task, assuming=("motion",))),)),
+        key(FAST, tasks=(replace(task, within=Exists()),)),
+        key(FAST, tasks=(replace(task, within=Exists(horizon=Fraction(3))),)),
     ]
     assert len({usual, *others}) == 1 + len(others)
-    assert key(FAST, within=(None, None)) is None, "an answer within limits has no evidence"
 
 
 def test_an_answer_to_another_claim_is_not_taken_for_this_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Names are digests of claims, and two may be the same."""
-    monkeypatch.setattr("roadproof.analysis.claims.name_of_claim", lambda *_: "claim-one")
+    monkeypatch.setattr("roadproof.engines.prove.properties.name_of_claim", lambda *_: "claim-one")
     assert claims(tmp_path, FAST) == {FAST: "PROVED"}
     assert claims(tmp_path, FALSE) == {FALSE: "REFUTED"}
 
 
 def test_each_claim_of_the_list_is_read_in_its_set() -> None:
     asked = claims_of(rp.load(), ["P1", "P2", "P3", "P4", "P5", "P6"], None)
-    sets = {x.set_name for x in asked.tasks}
+    sets = {x.task.set_name for x in asked.tasks}
     assert len(sets) > 1
-    for task in asked.tasks:
+    for task in (x.task for x in asked.tasks):
         assert asked.specification_of(task).set_name == task.set_name
 
 

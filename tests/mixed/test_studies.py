@@ -7,32 +7,34 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from roadproof.analysis.redundancy import ChangeFinding, Redundancy, learn
 
-from roadproof.analysis import placing, redundancy
+import roadproof as rp
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.classify.classes import plan_of
 from roadproof.analysis.classify.divide import CellAnswer, CellTask, Dividing, Undivided, _division, divide
-from roadproof.engines.prove.prover import Result
-from roadproof.errors import InputError
+from roadproof.engines.search import placing
+from roadproof.evidence.answer import Answer, Refutation, undecided
 from roadproof.evidence.certificate import read_certificate_data
+from roadproof.evidence.claim import Claim
 from roadproof.evidence.drive_file import load_drive
-from roadproof.evidence.journal import ANSWERS
+from roadproof.evidence.judged import JudgedDrive
+from roadproof.frontends.api.drives import drives_asked
+from roadproof.frontends.settings.questions import Witness
 from roadproof.library.loading import bundled_library
-from roadproof.library.scenarios import Scenario
+from roadproof.questions.question import walk
+from roadproof.questions.redundancy import Changes, RedundancyQuestion, changes_of
+from roadproof.questions.store import Store
 from roadproof.reasons import Why
-from roadproof.runtime.budget import Effort
 from roadproof.verdict import Verdict
 
 ROOT = Path(__file__).parents[2]
 HOME = bundled_library().select()
 BASIS = Basis(HOME)
 DRIVE_FILE = load_drive(ROOT / "examples/catalogue/tests/drives/braking.json")
-DRIVE: Any = SimpleNamespace(file=DRIVE_FILE)
+DRIVE: Any = object.__new__(JudgedDrive)
 PROOF = ROOT / "proofs/P4-scenario-03-base.json"
 CERTIFICATE: Any = read_certificate_data(json.loads(PROOF.read_text("utf-8")), "proof")
 V = Verdict
-ONE, TWO, THREE = (Scenario(k, "base") for k in (1, 2, 3))
 
 
 def of(**fields: Any) -> Any:
@@ -41,69 +43,70 @@ def of(**fields: Any) -> Any:
 
 # --- changes -----------------------------------------------------------------------------------------
 
-
-def examining(monkeypatch: pytest.MonkeyPatch, results: dict[int, Result], drives: Any = ()) -> Any:
-    jobs = redundancy._ExaminationJobs(BASIS, THREE)
-    answers = iter(results.values())
-    monkeypatch.setattr(Basis, "proof_of", lambda *_, **__: next(answers))
-    monkeypatch.setattr(redundancy, "ask", lambda _: of(drives=drives))
-    return jobs
+QUESTION = RedundancyQuestion(BASIS, Changes(among=(3,)))
+CHANGES = QUESTION.changes(3)
+NAMES, CLAIMS = QUESTION.named(3)[0]
+TRACE: Any = Refutation(of())
 
 
-CHANGES = list(redundancy.changes_of(HOME, redundancy._ExaminationJobs(BASIS, THREE).query))
-UNKNOWN = Result(verdict=V.UNKNOWN, reason=Why.STATE("none", ""))
+def known(*shown: Any) -> dict[str, Answer]:
+    """Answers to the claims of the first change; None where one is not asked, or is in doubt."""
+    claims = (CLAIMS.equal, CLAIMS.moving, CLAIMS.apart)
+    pairs = zip(NAMES, claims, shown, strict=True)
+    return {name: undecided(x, Why.TOLD(name)) if y is None else Answer(x, y) for name, x, y in pairs}
 
 
 @pytest.mark.parametrize(
-    ("first", "second", "drives", "verdict"),
+    ("equal", "moving", "apart", "verdict"),
     [
-        (UNKNOWN, UNKNOWN, (), V.UNKNOWN),
-        (UNKNOWN, UNKNOWN, (DRIVE,), V.REFUTED),
-        (UNKNOWN, Result(verdict=V.PROVED, certificate=CERTIFICATE), (DRIVE,), V.PROVED),
-        (Result(verdict=V.PROVED, certificate=CERTIFICATE), UNKNOWN, (), V.PROVED),
-        (Result(verdict=V.REFUTED, countermodel=of()), UNKNOWN, (), V.REFUTED),  # type: ignore[arg-type]
-        (Result(verdict=V.PROVED), UNKNOWN, (), V.UNKNOWN),
+        (None, None, None, V.UNKNOWN),
+        (None, None, DRIVE, V.REFUTED),
+        (None, CERTIFICATE, None, V.PROVED),
+        (TRACE, CERTIFICATE, None, V.PROVED),
+        (CERTIFICATE, None, None, V.PROVED),
+        (TRACE, None, None, V.REFUTED),
+        (TRACE, None, DRIVE, V.REFUTED),
+        (DRIVE, None, None, V.REFUTED),
     ],
 )
 def test_a_change_without_proof_drive_and_trace_is_in_doubt(
-    first: Result, second: Result, drives: Any, verdict: Verdict, monkeypatch: pytest.MonkeyPatch
+    equal: Any, moving: Any, apart: Any, verdict: Verdict
 ) -> None:
-    jobs = examining(monkeypatch, {1: first, 2: second}, drives)
-    found = jobs._decide(CHANGES[0])
+    found = QUESTION.view(known(equal, moving, apart)).findings[3][0]
     assert found.verdict is verdict
-    assert (found.assuming is not None) is (verdict is V.PROVED and not first.holds)
-    assert (found.certificate is not None) is (verdict is V.PROVED)
+    assert found.redundant is {V.PROVED: True, V.REFUTED: False, V.UNKNOWN: None}[verdict]
+    assert (found.assuming is not None) is (moving is CERTIFICATE)
+    shown = next((x for x in (equal, moving, apart) if x in (CERTIFICATE, DRIVE)), equal)
+    assert (None if found.shown is None else found.shown.evidence) is shown
+    assert (found.reason == "") is (shown in (CERTIFICATE, DRIVE))
     if found.assuming is not None:
-        claim = found.claim.text
-        assert claim.count("->") >= 2, "both ways"
+        assert found.claim.text.count("->") >= 2, "both ways"
 
 
-def test_a_drive_shows_a_change_where_the_judge_finds_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    jobs = examining(monkeypatch, {})
-    holds = iter([False, True])
-    seen: list[Any] = []
-    monkeypatch.setattr(redundancy, "judge", lambda *_: of(holds=next(holds)))
-    monkeypatch.setattr(redundancy, "judged_as", lambda *_: DRIVE)
-    monkeypatch.setattr(redundancy, "bind", lambda formula, road, lanes, values: seen.append(values))
-    query = jobs.query
-    assert jobs._tells_apart(DRIVE, query, False) is None
-    assert jobs._tells_apart(DRIVE, query, False) is DRIVE
-    assert {*seen[0]} == {*HOME.library.parameters}
-    assert jobs._tells_apart(DRIVE, of(vehicles=("SV", "POV", "POV9")), False) is None
+@pytest.mark.parametrize(
+    ("shown", "asked"),
+    [
+        ((CERTIFICATE,), 1),
+        ((DRIVE,), 1),
+        ((TRACE, CERTIFICATE), 2),
+        ((None, CERTIFICATE), 2),
+        ((TRACE, None, DRIVE), 3),
+        ((None, None, None), 3),
+    ],
+)
+def test_of_a_change_claims_are_asked_until_one_decides(shown: Any, asked: int) -> None:
+    [batch] = QUESTION.batches({})
+    first = known(*shown, *[None] * (3 - len(shown)))
+    names: list[str] = []
 
+    def find(name: str, claim: Claim) -> Answer:
+        names.append(name)
+        return first.get(name) or undecided(claim, Why.TOLD("none"))
 
-def test_only_what_was_looked_for_in_vain_is_not_looked_for_again() -> None:
-    def finding(**fields: Any) -> ChangeFinding:
-        return ChangeFinding(CHANGES[0], of(), **fields)  # type: ignore[arg-type]
-
-    assert learn((finding(verdict=V.UNKNOWN),)).vain
-    assert learn((finding(verdict=V.REFUTED),)).vain, "a trace refutes it, and no drive was found"
-    for sure in (
-        finding(verdict=V.UNKNOWN, late=True),
-        finding(verdict=V.PROVED, certificate=CERTIFICATE),
-        finding(verdict=V.REFUTED, drive=DRIVE),
-    ):
-        assert not learn((sure,)).vain
+    [*walk(batch, find)]
+    assert names[0] == "scenario-03"
+    assert [x for x in names if x in NAMES] == [*NAMES[:asked]]
+    assert len(names) == len({*names}), "changes that come to the same are asked once"
 
 
 def test_both_values_of_a_part_are_tried_on_the_side_where_they_matter() -> None:
@@ -117,86 +120,38 @@ def test_both_values_of_a_part_are_tried_on_the_side_where_they_matter() -> None
     from roadproof.library.elaborate import read_claim
 
     negated = read_claim(HOME, "not (danger(SV,POV) and aheadOf(SV,POV))")
-    inside = [x for x in redundancy.changes_of(HOME, negated) if x.part.startswith("danger(")]
+    inside = [x for x in changes_of(HOME, negated) if x.part.startswith("danger(")]
     assert [(x.value, x.weakens) for x in inside] == [(True, False), (False, True)]
-
-
-@pytest.mark.parametrize("change", ["one less", "another text"])
-def test_kept_findings_are_on_the_changes_that_there_are(change: str) -> None:
-    study = Redundancy(BASIS, (3,))
-    doubt = redundancy._ExaminationJobs(BASIS, THREE)
-    answer = tuple(doubt.doubt(x, Why.TOLD("why")) for x in CHANGES)
-    assert all(x.late and x.verdict is V.UNKNOWN for x in answer)
-    shelf: Any = of(certificate=lambda *_: None, drive=lambda *_: None)
-    shelf.read_certificate = shelf.read_drive = lambda _: None
-    record = study.record("scenario-03", answer, shelf)
-    assert study.recall(record, shelf)[0] == "scenario-03"
-    first, *rest = record.verdicts
-    wrong = record.verdicts[:-1] if change == "one less" else (replace(first, changed="true"), *rest)
-    with pytest.raises(InputError, match="finding"):
-        study.recall(replace(record, verdicts=wrong), shelf)
-
-
-def test_another_question_about_changes_is_another_folder() -> None:
-    usual = Redundancy(BASIS, (3,)).question.fingerprint
-    assert Redundancy(BASIS, (3,), whole=True).question.fingerprint != usual
-    harder = Redundancy(replace(BASIS, effort=Effort(61.0)), (3,))
-    assert harder.question.fingerprint != usual
-    assert ANSWERS
 
 
 # --- searches for drives, and drives on other roads -----------------------------------------------------
 
 
-def test_searches_are_told_apart_and_lost_ones_are_doubts_of_themselves() -> None:
-    from roadproof.analysis.witnesses import WitnessStudy
+def test_searches_are_told_apart() -> None:
+    def key(what: str = "danger(SV,POV)", using: Any = None, **more: Any) -> str:
+        asked = drives_asked((what,), using or rp.load(), Witness(jobs=1, **more))
+        [name] = asked.named
+        claims = [asked.claim(x) for x in asked.claim_names(name)]
+        return Store(None, asked.kind, asked.work).key(claims[-1])
 
-    from roadproof.engines.search.outcome import Search
-    from roadproof.engines.search.question import SearchOptions, Setting
-    from roadproof.library.elaborate import read_claim
-
-    def search(text: str = "danger(SV,POV)", **more: Any) -> Search:
-        return Search(HOME, read_claim(HOME, text), *more.pop("place", (Setting(), SearchOptions())), **more)
-
-    def key(one: Search) -> str:
-        study = WitnessStudy((one,))
-        return study.key(*study.named)
-
-    usual = key(search())
+    usual = key()
     others = [
-        search("aheadOf(SV,POV)"),
-        search(place=(Setting(), SearchOptions("severe"))),
-        search(place=(Setting(), SearchOptions(effort=Effort(3.0)))),
-        search(place=(Setting(values={"rho": 2}), SearchOptions())),  # type: ignore[dict-item]
-        search(place=(Setting(horizon=3), SearchOptions())),  # type: ignore[arg-type]
-        search(count=2),
+        key("aheadOf(SV,POV)"),
+        key(objective="severe"),
+        key(effort=3),
+        key(using=rp.load(params={"rho": 2})),
+        key(horizon=3),
+        key(reach=60),
+        key(dt="3/10"),
+        key(engine="smt"),
+        key(allow_collisions=True),
+        *(
+            key("fast(SV)", rp.load(specs=[f"def fast(a: vehicle) := v_lon(a) > {k} m/s\n"]))
+            for k in (20, 21)
+        ),
     ]
-    assert usual == key(search())
-    assert len({usual, *map(key, others)}) == 1 + len(others)
-    two = WitnessStudy((search(), search("aheadOf(SV,POV)")))
-    names = two.names
-    doubts = two.doubt(names, Why.PROCESS("SIGKILL"))
-    assert [doubts[x].query.text for x in names] == ["danger(SV,POV)", "aheadOf(SV,POV)"]
-    assert two.parts(names) == [(x,) for x in names]
-    assert {x.verdict for x in doubts.values()} == {V.UNKNOWN}
-    fewer = of(verdict=V.WITNESSED, drives=(DRIVE,), reason=Why.FEWER_DRIVES(1, 2, "none"))
-    sure = [two.is_sure(x) for x in (fewer, of(verdict=V.WITNESSED, drives=(DRIVE,), reason=""))]
-    assert sure == [False, True]
-
-
-def test_a_definition_below_a_search_is_a_part_of_its_key() -> None:
-    from roadproof.analysis.witnesses import WitnessStudy
-
-    import roadproof as rp
-    from roadproof.engines.search.outcome import Search
-    from roadproof.engines.search.question import SearchOptions, Setting
-
-    keys = set()
-    for speed in (20, 21):
-        home = rp.load(specs=[f"def fast(a: vehicle) := v_lon(a) > {speed} m/s\n"])
-        study = WitnessStudy((Search(home.specification, home.read("fast(SV)"), Setting(), SearchOptions()),))
-        keys.add(study.key(*study.named))
-    assert len(keys) == 2
+    assert usual == key()
+    assert len({usual, *others}) == 1 + len(others)
 
 
 def test_a_zone_is_moved_under_each_vehicle() -> None:
