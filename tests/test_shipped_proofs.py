@@ -7,54 +7,49 @@ from typing import Literal
 import pytest
 
 from roadproof.engines.prove.properties import template_properties
-from roadproof.evidence.certificate import read_certificate
 from roadproof.evidence.finding import Acceptance
 from roadproof.frontends.api.checking import check
 from roadproof.library.loading import bundled_library
+from roadproof.questions.checking import QuestionFolder, read_folder
+from roadproof.questions.prove import ProveQuestion
 from roadproof.verdict import Verdict
 
 PROOFS = Path(__file__).parents[1] / "proofs"
-INDEX = json.loads(PROOFS.joinpath("index.json").read_text("utf-8"))
-EVIDENCE = sorted(path for path in PROOFS.glob("*.json") if path.name != "index.json")
+QUESTION = json.loads(PROOFS.joinpath("question.json").read_text("utf-8"))
+EVIDENCE = sorted(path for path in PROOFS.glob("*.json") if path.name != "question.json")
 
 
-def test_index_answers_every_property_as_expected() -> None:
-    answered = [
-        (e["property"], e["part"], e["scenario"], e["set"], e["claim"], e["verdict"]) for e in INDEX["claims"]
-    ]
-    expected = [
-        (x.id, x.part, x.scenario, x.set_name, x.claim, str(x.expected)) for x in template_properties()
-    ]
-    assert answered == expected
+@pytest.fixture(scope="module")
+def folder() -> QuestionFolder:
+    return read_folder(PROOFS)
 
 
-def test_index_names_the_definitions_at_hand() -> None:
-    assert INDEX["library"] == bundled_library().fingerprint, "prove all again, into a new folder"
-    assert (INDEX["options"], INDEX["specs"]) == (bundled_library().select().options, [])
+def test_the_folder_answers_every_property_as_expected(folder: QuestionFolder) -> None:
+    assert isinstance(folder.question, ProveQuestion)
+    tasks = [x.task for x in folder.question.tasks]
+    assert tasks == template_properties()
+    verdicts = [folder.answers[x.name].verdict for x in folder.question.tasks]
+    assert verdicts == [x.expected for x in tasks]
 
 
-def test_every_scenario_and_set_has_its_proof_that_danger_arises() -> None:
-    proved = {
-        (e["scenario"], e["set"])
-        for e in INDEX["claims"]
-        if e["property"] == "P1" and e["verdict"] == Verdict.PROVED
-    }
-    assert proved == {(i, s) for i in range(1, 25) for s in ("base", "extA", "ext")}
+def test_the_question_names_the_definitions_at_hand() -> None:
+    assert QUESTION["library"] == bundled_library().fingerprint, "prove all again, into a new folder"
+    assert (QUESTION["basis"]["options"], QUESTION["basis"]["specs"]) == (
+        bundled_library().select().options,
+        [],
+    )
 
 
-def test_every_answer_has_evidence_and_no_file_is_left_over() -> None:
-    named = [e["evidence"] for e in INDEX["claims"] if e["evidence"] is not None]
-    assert sorted(named) == [path.name for path in EVIDENCE]
-    for entry in INDEX["claims"]:
-        assert entry["evidence"] or entry["counterexample"], entry
+def test_every_scenario_and_set_has_its_proof_that_danger_arises(folder: QuestionFolder) -> None:
+    proved = {name for name, x in folder.answers.items() if x.verdict is Verdict.PROVED}
+    expected = {f"P1-scenario-{i:02}-{s}" for i in range(1, 25) for s in ("base", "extA", "ext")}
+    assert expected <= proved
 
 
-def test_certificates_are_of_the_claims_that_the_index_names() -> None:
-    for entry in INDEX["claims"]:
-        if entry["verdict"] == Verdict.PROVED:
-            certificate = read_certificate(PROOFS / entry["evidence"])
-            assert certificate.claim == entry["claim"].strip()
-            assert (certificate.set_name, certificate.scenario) == (entry["set"], entry["scenario"])
+def test_every_answer_has_evidence_and_no_file_is_left_over(folder: QuestionFolder) -> None:
+    assert folder.problems == ()
+    assert sorted(folder.files) == EVIDENCE
+    assert not [*folder.undecided]
 
 
 @pytest.mark.parametrize("solver", ["z3", "cvc5"])

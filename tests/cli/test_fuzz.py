@@ -80,7 +80,7 @@ def make_files(folder: Path) -> tuple[str, ...]:
         (folder / name).write_bytes(content)
     (folder / "inside").mkdir()
     good = folder / "good.json"
-    good.write_bytes((shipped("proofs") / "C1-base-drive.json").read_bytes())
+    good.write_bytes((shipped("proofs") / "C1-base.json").read_bytes())
     paths = [str(folder / name) for name in contents] + [str(folder / "inside"), str(folder), str(good)]
     return (*paths, "nowhere", "nowhere/file.json", str(folder / "01_tracks.csv:1,2"), "-", "")
 

@@ -139,10 +139,10 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
     problems += [Finding(str(path), "", Acceptance.REJECTED, Why.UNNAMED()) for path in there.values()]
     specs = tuple(folder / Path(x.name).name for x in question.basis.library.files)
     specs = tuple(x for x in specs if x.is_file())
-    beside = {x for x in folder.rglob("*") if x.suffix != ".json" and not x.is_dir()} - {*specs}
+    beside = {x for x in folder.iterdir() if x.suffix != ".json" and not x.is_dir()} - {*specs}
     strays = [x for x in folder.rglob("*.json") if x.parent != folder]
     problems += [Finding(str(path), "", Acceptance.REJECTED, Why.UNNAMED()) for path in sorted(strays)]
-    others = tuple(sorted(x.relative_to(folder).as_posix() for x in beside))
+    others = tuple(sorted(x.name for x in beside))
     return QuestionFolder(folder, question, specs, answers, tuple(problems), others, frozenset(missing))
 
 
