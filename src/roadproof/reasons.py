@@ -151,6 +151,7 @@ class Why(StrEnum):
     TWIN = "it says again what {} says"
     NOT_THERE = "{} is not there, or another index is about it"
     UNNAMED = "no entry of the index names it"
+    NOT_ITS_ANSWER = "no claim of the question has this name"
     # Evidence that a kernel is asked about
     NOT_PUT = "it cannot be put to the kernel: {}"
     NOT_PRINTED = "it is not printed for the kernel: {}"

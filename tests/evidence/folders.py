@@ -23,12 +23,14 @@ from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.finding import Finding, exit_code
 from roadproof.evidence.folder import Survey, conclude, survey
 from roadproof.evidence.journal import HEAD, seal_of
+from roadproof.frontends.api.checking import check as check_all
 from roadproof.library.loading import load_library
+from roadproof.questions.data import QUESTION, read_question
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.package_data import shipped
 
 # A template property, one more that is like it, the guarantee, a control with a drive and one with a trace.
-CHOSEN = ("P1-scenario-04-base", "P2-base", "P9-base", "C4-scenario-04-base-drive", None)
+CHOSEN = ("P1-scenario-04-base", "P2-base", "P9-base", "C4-scenario-04-base", "C5-base")
 
 
 @cache
@@ -43,7 +45,7 @@ def _finding(path: Path, content: bytes, specs: tuple[Path, ...]) -> Finding:
 
 def check(*paths: Path, specs: tuple[Path, ...] = ()) -> list[Finding]:
     """The findings, as ``roadproof check`` prints them."""
-    return conclusions(surveyed(*paths, specs=specs))
+    return list(check_all(*paths, specs=specs, jobs=1).findings)
 
 
 def surveyed(*paths: Path, specs: tuple[Path, ...] = ()) -> Survey:
@@ -82,15 +84,15 @@ def code(*paths: Path) -> int:
 
 
 def some_proofs(folder: Path) -> Path:
-    """A folder with the evidence of ``CHOSEN`` and an index of it."""
+    """A folder with the evidence of ``CHOSEN`` and the question that asks for it."""
     folder.mkdir(parents=True, exist_ok=True)
-    index = json.loads((shipped("proofs") / "index.json").read_text("utf-8"))
-    names = [None if name is None else f"{name}.json" for name in CHOSEN]
-    index["claims"] = [x for x in index["claims"] if x["evidence"] in names]
-    for name in names:
-        if name is not None:
-            shutil.copy(shipped("proofs") / name, folder)
-    write(folder / "index.json", index)
+    question = json.loads((shipped("proofs") / QUESTION).read_text("utf-8"))
+    names = [x.name for x in read_question(shipped("proofs")).tasks]
+    claims = question["asked"]["claims"]
+    question["asked"]["claims"] = [x for name, x in zip(names, claims, strict=True) if name in CHOSEN]
+    for name in CHOSEN:
+        shutil.copy(shipped("proofs") / f"{name}.json", folder)
+    write(folder / QUESTION, question)
     return folder
 
 

@@ -26,16 +26,20 @@ from evidence.folders import (
 )
 from evidence.folders import changes as folder_changes
 from evidence.kinds import MAKE, copy_of
-from roadproof.engines.prove.properties import find_label, template_properties
+from roadproof.engines.prove.properties import find_label, name_of_claim
 from roadproof.errors import InputError
 from roadproof.evidence.checking import Checker
 from roadproof.evidence.finding import Acceptance
 from roadproof.library.loading import bundled_library
+from roadproof.questions.data import KINDS as QUESTIONS
+from roadproof.questions.data import QUESTION
 from roadproof.runtime.package_data import shipped
 from roadproof.verdict import ExitCode
 
 # Without an index; and tests/analysis/test_catalogue_again.py changes that of a catalogue, beside its tests.
-INDEXED = [kind for kind in MAKE if kind not in ("witness", "catalogue")]
+OLD = [kind for kind in MAKE if {"proofs": "prove"}.get(kind, kind) not in QUESTIONS]
+"""Kinds of folders with an index; tests/questions/test_forgery.py forges the others."""
+INDEXED = [kind for kind in OLD if kind != "catalogue"]
 # Changes that leave what is said as true as it was, and why.
 EQUIVALENT = {
     ("preventable", "along[]"): "the lines are worked out again up to there, and have no other spans",
@@ -135,7 +139,7 @@ def test_no_field_is_changed_in_silence(kind: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("beside", ["with the index", "without"])
-@pytest.mark.parametrize("kind", MAKE)
+@pytest.mark.parametrize("kind", OLD)
 def test_no_field_of_a_kept_answer_is_changed_in_silence(kind: str, beside: str, tmp_path: Path) -> None:
     folder = copy_of(kind, tmp_path)
     if beside == "without":
@@ -189,7 +193,7 @@ MOST = 24  # pairs of entries of one kind
 EVIDENCE = ("certificate", "drive", "evidence", "trace")
 SAID = ("claim", "formula", "verdict", "premise", "conclusion", "gaps", "core")
 """What an entry says of its evidence, which an attacker exchanges with it."""
-KINDS = [kind for kind in MAKE if kind not in ("witness", "gaps")]  # these are in the second test
+KINDS = [kind for kind in OLD if kind not in ("witness", "gaps")]  # these are in the second test
 
 
 def holders(content: Any, at: Place = ()) -> Iterator[Place]:
@@ -332,7 +336,7 @@ SAME_ANSWERS = {
         "instances: turned around": "the order of a list of instances",
         "tableau": "the proof for Coq, which a solver is not asked about; see tests/kernel/test_refused.py",
     },
-    "C4-scenario-04-base-drive.json": {
+    "C4-scenario-04-base.json": {
         "scenario: removed": "it names none",
         "horizon: longer": "boxes are apart until then, too; check says until when",
         "parameters.": "judged with another value, which check names",
@@ -349,22 +353,6 @@ SAME_ANSWERS = {
         "verdict.view: ": "left out",
         "verdict.times: ": "left out",
         "verdict.natural: ": "check says that it was not checked",
-    },
-    "index.json": {
-        "roadproof: ": "which version made the folder: nothing rests on it",
-        "options: an object": "an option that is not named has its default",
-        "options: one less": "the default",
-        "options.lateral_sign: removed": "the default",
-        "options.lateral_rss: removed": "the default",
-        "options.speed: removed": "the default",
-        "options.rss_form: removed": "the default",
-        "specs: null": "there are none",
-        "specs: removed": "there are none",
-        "claims: turned around": "the order of claims",
-        "claims.4: removed": "a folder with one claim less, which check does not print",
-        "claims.4.evidence: removed": "it is null",
-        "claims.4.counterexample.parameters.": "another trace, which is judged",
-        "claims.4.counterexample.instants.0.values": "another trace, which is judged",
     },
 }
 
@@ -390,8 +378,10 @@ def test_no_change_is_accepted_that_changes_what_is_said(folder: Path, name: str
 # --- attacks on the folder as a whole ------------------------------------------------------------
 
 
-def entry(index: Any, label: str) -> Any:
-    return next(x for x in index["claims"] if x["property"] == label)
+def asked_in(folder: Path) -> tuple[Any, list[Any]]:
+    """The question of a folder, and the claims in it."""
+    question = read(folder / QUESTION)
+    return question, question["asked"]["claims"]
 
 
 def relabelled(folder: Path) -> None:
@@ -399,56 +389,26 @@ def relabelled(folder: Path) -> None:
     write(folder / "P9-base.json", {**read(folder / "P2-base.json"), "property": "P9"})
 
 
-def deleted(folder: Path) -> None:
-    (folder / "P1-scenario-04-base.json").unlink()
-    (folder / "P2-base.json").unlink()
-
-
 def a_false_claim(folder: Path) -> None:
     """An entry for a false claim, with a file that proves another."""
-    index = read(folder / "index.json")
-    claim = {"property": "claim", "claim": "scenario_3(SV,POV,L) -> false", "scenario": None}
-    index["claims"].append({**entry(index, "P2"), **claim})
-    write(folder / "index.json", index)
-
-
-def named_alike(folder: Path) -> None:
-    """A claim of one's own is called P3."""
-    index = read(folder / "index.json")
-    entry(index, "P2")["property"] = "P3"
-    write(folder / "index.json", index)
-
-
-def twice(folder: Path) -> None:
-    index = read(folder / "index.json")
-    index["claims"].append(entry(index, "P2"))
-    write(folder / "index.json", index)
-
-
-def outside(folder: Path) -> None:
-    shutil.move(folder / "P2-base.json", folder.parent / "P2-base.json")
-    index = read(folder / "index.json")
-    entry(index, "P2")["evidence"] = "../P2-base.json"
-    write(folder / "index.json", index)
+    question, claims = asked_in(folder)
+    claims.append({**claims[1], "claim": "scenario_3(SV,POV,L) -> false"})
+    write(folder / QUESTION, question)
+    name = name_of_claim("scenario_3(SV,POV,L) -> false", "base")
+    shutil.copy(folder / "P2-base.json", folder / f"{name}.json")
 
 
 def another_schema(folder: Path) -> None:
-    write(folder / "index.json", {**read(folder / "index.json"), "schema": "roadproof/index/9"})
+    write(folder / QUESTION, {**read(folder / QUESTION), "schema": "roadproof/question/9"})
 
 
-def two_indices(folder: Path) -> None:
-    """What the outer index names is under an inner one, which says something else."""
-    inner = folder / "inner"
-    inner.mkdir()
-    index = read(folder / "index.json")
-    entry(index, "P2")["evidence"] = "inner/P2-base.json"
-    shutil.move(folder / "P2-base.json", inner / "P2-base.json")
-    write(inner / "index.json", {**index, "claims": []})
-    write(folder / "index.json", index)
+def an_inner_folder(folder: Path) -> None:
+    (folder / "inner").mkdir()
+    shutil.move(folder / "P2-base.json", folder / "inner" / "P2-base.json")
 
 
-def a_second_index_beside(folder: Path) -> None:
-    shutil.copy(folder / "index.json", folder / "index-2.json")
+def a_second_question_beside(folder: Path) -> None:
+    shutil.copy(folder / QUESTION, folder / "question-2.json")
 
 
 def a_link(folder: Path) -> None:
@@ -460,34 +420,34 @@ def a_linked_folder(folder: Path) -> None:
     (folder / "more").symlink_to(folder.parent, target_is_directory=True)
 
 
-def a_file_without_entry(folder: Path) -> None:
+def a_file_without_claim(folder: Path) -> None:
     shutil.copy(folder / "P2-base.json", folder / "P10-base.json")
 
 
+def a_claim_less(folder: Path) -> None:
+    question, claims = asked_in(folder)
+    del claims[1]
+    write(folder / QUESTION, question)
+
+
 def refuted_is_proved(folder: Path) -> None:
-    index = read(folder / "index.json")
-    entry(index, "C4")["verdict"] = "PROVED"
-    write(folder / "index.json", index)
-
-
-def proved_is_unknown(folder: Path) -> None:
-    index = read(folder / "index.json")
-    entry(index, "P2")["verdict"] = "UNKNOWN"
-    write(folder / "index.json", index)
+    shutil.copy(folder / "P2-base.json", folder / "C4-scenario-04-base.json")
 
 
 def other_options(folder: Path) -> None:
-    write(folder / "index.json", {**read(folder / "index.json"), "options": {"lateral_sign": "literal"}})
+    question, _ = asked_in(folder)
+    question["basis"]["options"]["lateral_sign"] = "literal"
+    write(folder / QUESTION, question)
 
 
 def a_parameter_out_of_bounds(folder: Path) -> None:
-    path = folder / "C4-scenario-04-base-drive.json"
+    path = folder / "C4-scenario-04-base.json"
     data = read(path)
     write(path, {**data, "parameters": {**data["parameters"], "b_max": "-8"}})
 
 
 def an_unknown_parameter(folder: Path) -> None:
-    path = folder / "C4-scenario-04-base-drive.json"
+    path = folder / "C4-scenario-04-base.json"
     data = read(path)
     write(path, {**data, "parameters": {**data["parameters"], "rhoo": "1"}})
 
@@ -499,21 +459,17 @@ def the_same_key_twice(folder: Path) -> None:
 
 
 ATTACKS = {
-    relabelled: "is called P9, but its claim is that of P2",
-    deleted: "is not there",
-    a_false_claim: "says PROVED: scenario_3(SV,POV,L) -> false, but its file",
-    named_alike: "is called P3, but its claim is that of P2",
-    twice: "it says again what",
-    outside: "is no file in the folder of the index",
-    another_schema: "is none of an index",
-    two_indices: "is not there, or another index is about it",
-    a_second_index_beside: "its schema is 'roadproof/index/1'",
+    relabelled: "it proves danger(SV,POV) <-> danger(POV,SV)",
+    a_false_claim: "it proves danger(SV,POV) <-> danger(POV,SV)",
+    another_schema: "schema",
+    an_inner_folder: "no claim of the question has this name",
+    a_second_question_beside: "no claim of the question has this name",
     a_link: "a link is no evidence",
     a_linked_folder: "a link is no evidence",
-    a_file_without_entry: "no entry of the index names it",
-    refuted_is_proved: "its file is a drive",
-    proved_is_unknown: "UNKNOWN needs no evidence",
-    other_options: "has lateral_sign=literal, but its file lateral_sign=rss",
+    a_file_without_claim: "no claim of the question has this name",
+    a_claim_less: "no claim of the question has this name",
+    refuted_is_proved: "it proves danger(SV,POV) <-> danger(POV,SV)",
+    other_options: "it was read with other options",
     a_parameter_out_of_bounds: "b_max=-8: iso34502.spec, line 9, column 1: the library demands b_max > 0",
     an_unknown_parameter: "there is no parameter 'rhoo'; did you mean 'rho'?",
     the_same_key_twice: "the key 'claim' is given twice",
@@ -527,6 +483,11 @@ def test_an_attack_on_a_folder_is_found(folder: Path, attack: Callable[[Path], N
     bad = [x for x in findings if x.outcome is not Acceptance.ACCEPTED]
     assert any(ATTACKS[attack] in x.reason for x in bad), [x.reason for x in bad]
     assert code(folder) in (3, 10)
+
+
+def test_a_file_that_is_gone_leaves_its_claim_in_doubt(folder: Path) -> None:
+    (folder / "P2-base.json").unlink()
+    assert [x.verdict for x in check(folder) if x.label == "P2 base"] == ["UNKNOWN"]
 
 
 DAMAGE = {
@@ -578,10 +539,10 @@ def test_a_file_alone_says_what_it_is_of(folder: Path) -> None:
     assert [x.label for x in check(folder / "P2-base.json")] == ["P2 base"]
 
 
-def test_a_folder_without_an_index_is_its_files(folder: Path) -> None:
-    (folder / "index.json").unlink()
-    found = [(x.outcome, x.label) for x in check(folder)]
-    assert found[1:] == [(Acceptance.ACCEPTED, x) for x in ("P1 scenario 4 base", "P2 base", "P9 base")]
+def test_a_folder_without_a_question_is_its_files(folder: Path) -> None:
+    (folder / QUESTION).unlink()
+    found = [(x.outcome, x.label) for x in check(folder) if x.label[:1] == "P"]
+    assert found == [(Acceptance.ACCEPTED, x) for x in ("P1 scenario 4 base", "P2 base", "P9 base")]
     for path in folder.iterdir():
         path.unlink()
     with pytest.raises(InputError, match=r"holds no \.json file"):
@@ -597,7 +558,3 @@ def test_definitions_that_are_not_at_hand_are_said(folder: Path) -> None:
     assert finding.outcome is Acceptance.UNREADABLE
     assert "there is no definition 'near'" in finding.reason
     assert "--spec FILE" in finding.reason
-
-
-def test_the_shipped_index_names_every_claim() -> None:
-    assert len(read(shipped("proofs") / "index.json")["claims"]) == len(template_properties())

@@ -152,13 +152,13 @@ def test_who_is_about_to_end_holds_no_folder(
 # --- answers of this question and of others -----------------------------------------------------------
 
 LIBRARY = bundled_library()
-QUESTION = Question("roadproof/index/1", {"options": {}, "specs": []}, {"vehicles": "car"}, LIBRARY)
+QUESTION = Question("roadproof/coverage/1", {"options": {}, "specs": []}, {"vehicles": "car"}, LIBRARY)
 OTHERS = {
     "another model": replace(QUESTION, more={"vehicles": "truck"}),
     "no model": replace(QUESTION, more={}),
     "what some depend on": replace(QUESTION, of_some={"cc_delay": "1"}),
     "another set": replace(QUESTION, said={**QUESTION.said, "set": "ext"}),
-    "another analysis": replace(QUESTION, schema="roadproof/redundancy/1"),
+    "another analysis": replace(QUESTION, schema="roadproof/classify/1"),
     "another library": replace(
         QUESTION, library=build_library([Source("m", "def danger(a, b: vehicle) := true")], LIBRARY)
     ),

@@ -128,7 +128,7 @@ def test_parts_that_another_claim_does_not_have_do_not_clash_there(monkeypatch: 
     assert foreign
     batch = Engines(QUESTION.work)
     for core, is_tried in ((here[:1], True), (foreign, False), ([*here[:1], *foreign], False)):
-        batch.clashes[:] = [negation(batches.of_parts(other, core)).formula]
+        batch.clashes[:] = [(negation(batches.of_parts(other, core)).formula, PROOF)]
         asked.clear()
         try:
             assert batch.follow(BASIS.claim(mine)) is None
@@ -141,7 +141,7 @@ def test_the_claims_of_a_lost_batch_are_asked_alone(monkeypatch: pytest.MonkeyPa
     question = OverlapQuestion(BASIS, Meeting(among=(3, 4, 11, 12)))
     asked: list[list[str]] = []
 
-    def work(job: Any, jobs: Any, hands: Any, lost: Any, *_: Any) -> Any:
+    def work(job: Any, jobs: Any, hands: Any, lost: Any, *_: Any, **__: Any) -> Any:
         asked.append([x.batch.name for x in jobs if x.batch.name])
         for place, x in enumerate(jobs):
             yield place, lost(x, Why.PROCESS("SIGKILL"))

@@ -144,7 +144,7 @@ def test_searches_are_told_apart() -> None:
         key(reach=60),
         key(dt="3/10"),
         key(engine="smt"),
-        key(allow_collisions=True),
+        key(collisions=True),
         *(
             key("fast(SV)", rp.load(specs=[f"def fast(a: vehicle) := v_lon(a) > {k} m/s\n"]))
             for k in (20, 21)

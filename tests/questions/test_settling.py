@@ -382,9 +382,9 @@ def test_a_killed_run_asks_for_what_is_missing(
 
 
 def test_what_was_not_found_is_asked_again(tmp_path: Path, searched: Asked) -> None:
-    for count in (2, 1):
+    for times in (2, 1):
         assert witness(tmp_path, NONE) == 10
-        assert len(searched.since()) == count, "a drive, and once trees that show that there is none"
+        assert len(searched.since()) == times, "a drive, and once trees that show that there is none"
     assert [x.verdict for x in check(tmp_path)] == ["NONE-WITHIN"]
 
 

@@ -144,8 +144,7 @@ def test_every_limit_is_named_in_text_and_data():
         "rho=1",
     ):
         assert part in outcome.reason
-    assert outcome.kept.view == "grid"
-    told = outcome.kept.limits
+    told = outcome.limits.as_json()
     assert told["starts"] == ["-1072", "2027/2"]
     assert told["lanes"] == {"L": "main-2"}
     assert told["parameters"]["rho"] == "1"

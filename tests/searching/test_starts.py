@@ -37,7 +37,7 @@ GAP = "(s(POV) - s(SV))*v_lon(POV)^2 < 10000*1 m*1 m/s*1 m/s"
 
 def asked(text, units=20, home=HOME, **setting):
     scenario, query = read_query(home, text)
-    return Search(home, query, Setting(**setting), SearchOptions(effort=Effort(units)), 1, scenario)
+    return Search(home, query, Setting(**setting), SearchOptions(effort=Effort(units)), scenario=scenario)
 
 
 def question(text, **setting):

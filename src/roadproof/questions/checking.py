@@ -122,12 +122,15 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
 
     def find(name: str, claim: Claim) -> Answer:
         if name not in answers:
-            missing.update(() if name in there else (name,))
+            path, outcome = there.pop(name, None), Acceptance.UNREADABLE
+            missing.update((name,) if path is None else ())
             try:
-                answers[name] = _read(claim, there.pop(name, None))
+                content = None if path is None else _content(path)
+                outcome = Acceptance.REJECTED
+                answers[name] = _read(claim, content, str(path))
             except InputError as error:
                 fault = Why.TOLD(error)
-                problems.append(Finding(str(folder / f"{name}.json"), "", Acceptance.REJECTED, fault))
+                problems.append(Finding(str(folder / f"{name}.json"), "", outcome, fault))
                 answers[name] = undecided(claim, fault)
         return answers[name]
 
@@ -136,21 +139,28 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
         for batch in new:
             seen.add(batch.name)
             [*walk(batch, find)]
-    problems += [Finding(str(path), "", Acceptance.REJECTED, Why.UNNAMED()) for path in there.values()]
+    problems += [Finding(str(path), "", Acceptance.REJECTED, Why.NOT_ITS_ANSWER()) for path in there.values()]
     specs = tuple(folder / Path(x.name).name for x in question.basis.library.files)
     specs = tuple(x for x in specs if x.is_file())
     beside = {x for x in folder.iterdir() if x.suffix != ".json" and not x.is_dir()} - {*specs}
     strays = [x for x in folder.rglob("*.json") if x.parent != folder]
-    problems += [Finding(str(path), "", Acceptance.REJECTED, Why.UNNAMED()) for path in sorted(strays)]
+    problems += [Finding(str(path), "", Acceptance.REJECTED, Why.NOT_ITS_ANSWER()) for path in sorted(strays)]
+    links = sorted(x for x in folder.iterdir() if x.is_symlink() and x.is_dir())
+    problems += [Finding(str(path), "", Acceptance.REJECTED, Why.LINK()) for path in links]
     others = tuple(sorted(x.name for x in beside))
     return QuestionFolder(folder, question, specs, answers, tuple(problems), others, frozenset(missing))
 
 
-def _read(claim: Claim, path: Path | None) -> Answer:
-    if path is None:
-        return undecided(claim, Why.TOLD("the folder has no answer to it"))
+def _content(path: Path) -> object:
+    """Return what a file says. Raises ``InputError`` for a link, and for what is no JSON object."""
     if path.is_symlink():
-        raise InputError(f"{path} is a link")
+        raise InputError(f"{path}: a link is no evidence")
     content = read_json(path, LARGEST_EVIDENCE)
     Fields(content, str(path))
-    return read_answer(claim, content, str(path))
+    return content
+
+
+def _read(claim: Claim, content: object, where: str) -> Answer:
+    if content is None:
+        return undecided(claim, Why.TOLD("the folder has no answer to it"))
+    return read_answer(claim, content, where)
