@@ -16,7 +16,7 @@ def ask_once(search: Search) -> Outcome:
     """As ``engines.search.ask._ask``, of which it takes the place."""
     home, query = search.specification, search.query
     definitions = (home.library.fingerprint, home.set_name, *home.options.items())
-    rest = repr((search.setting, search.search_options, search.count, search.scenario))
+    rest = repr((search.setting, search.search_options, search.unlike, search.scenario))
     key = (definitions, query.formula, query.text, query.written, query.vehicles, query.lanes, rest)
     if key not in _KNOWN:
         _KNOWN[key] = _ask(search)
