@@ -209,7 +209,7 @@ def test_kept_answers_are_taken_up(tmp_path: Path) -> None:
     with pytest.raises(rp.UsageError, match="holds the answers to another question"):
         rp.overlap("3,4", roles="any", **asked)
     [answer] = (tmp_path / "kept").glob("base-*.json")
-    answer.write_text(answer.read_text().replace("scenario_3(", "scenario_4("))
+    answer.write_text(answer.read_text().replace('"base"', '"ext"'))
     assert not rp.check(tmp_path / "kept", jobs=1).accepted
     assert rp.overlap("3,4", **asked).verdicts == first.verdicts
     assert len(told) == 1

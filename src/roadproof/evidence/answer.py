@@ -100,7 +100,7 @@ class Answer:
                 return Verdict.DERIVED
             case Exists(), Certificate():
                 return Verdict.IMPOSSIBLE
-            case Exists(), NoneWithinFile():
+            case Exists(trees=True), NoneWithinFile():
                 return Verdict.NONE_WITHIN
             case On(), Judged(shows):
                 return shows.verdict

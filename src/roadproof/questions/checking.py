@@ -122,7 +122,9 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
 
     def find(name: str, claim: Claim) -> Answer:
         if name not in answers:
-            path, outcome = there.pop(name, None), Acceptance.UNREADABLE
+            path = there.pop(name, None)
+            is_link = path is not None and path.is_symlink()
+            outcome = Acceptance.REJECTED if is_link else Acceptance.UNREADABLE
             missing.update((name,) if path is None else ())
             try:
                 content = None if path is None else _content(path)

@@ -12,6 +12,7 @@ from roadproof.analysis.study import pool
 from roadproof.engines.search.question import SearchOptions, Setting, exists, pose
 from roadproof.errors import UsageError
 from roadproof.evidence import answer as answers
+from roadproof.evidence.claim import Claim
 from roadproof.evidence.codec import write
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.kinds import Evidence
@@ -32,7 +33,9 @@ from roadproof.frontends.settings.keywords import WitnessKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Witness
 from roadproof.library.specification import Library
+from roadproof.questions.question import walk
 from roadproof.questions.settle import look_up
+from roadproof.questions.store import keep_all
 from roadproof.questions.witness import (
     NONE_WITHIN,
     SearchResult,
@@ -132,6 +135,25 @@ class Witnesses(QuestionAnswers[WitnessView], BuildResult):
     def as_data(self) -> JsonObject:
         data = self.question.data(WitnessView(self.outcomes), lambda *_: None, self.seconds)
         return write(data)
+
+    def _write(self, folder: Path, pictures: bool) -> None:
+        """Write the answers; trees that show a NONE-WITHIN are looked for where they were not."""
+        if folder != self.folder:
+            from roadproof.engines.search.batches import Engines  # here: known answers need no solver
+
+            tasks = tuple(replace(x, trees=True) for x in self.question.tasks)
+            question, known = replace(self.question, tasks=tasks), dict(self.found.answers)
+            engines = Engines(question.work)
+
+            def find(name: str, claim: Claim) -> answers.Answer:
+                if name not in known:
+                    known[name], _ = engines.settle(claim)
+                return known[name]
+
+            for batch in question.batches(known):
+                list(walk(batch, find))
+            keep_all(folder, question, known)
+        self._add_files(folder, pictures)
 
     def _add_files(self, folder: Path, pictures: bool) -> None:
         beside = DriveFolder(folder, self.library, Views(pictures))
