@@ -246,7 +246,7 @@ def _settle(job: _Job) -> list[Priced]:
             answer, cost = found[0], NO_COST
         else:
             answer, cost = engines.settle(claim)
-            answer = answer if job.store is None else job.store.exhausted(answer)
+            answer = answer if job.store is None else job.store.whole(job.store.exhausted(answer))
         new.append((name, answer, cost))
         return answer
 

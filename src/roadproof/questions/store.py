@@ -158,9 +158,19 @@ class Store:
         data = kept_bytes(CACHE, digest(key, program()))
         return None if data is None else (json.loads(lzma.decompress(data)), "cache")
 
+    def whole(self, answer: Answer) -> Answer:
+        """Return an answer as files have it: a certificate with its tableau, if one is found."""
+        proof = answer.certificate
+        if self.folder is None or proof is None or proof.tableau is not None:
+            return answer
+        from roadproof.evidence.kernel.accept import find_tableau  # here: most answers are written nowhere
+
+        tableau = find_tableau(proof, answer.claim.home.library)
+        return replace(answer, evidence=replace(proof, tableau=tableau))
+
     def keep(self, name: str, answer: Answer, is_new: bool = True) -> None:
         """Write an answer into the folder, and into the cache where it is new and stands."""
-        data = answer_data(answer)
+        data = answer_data(answer if is_new else self.whole(answer))
         if self.folder is not None:
             self.require_folder()
             write_json(self.folder / f"{name}.json", data)
@@ -197,4 +207,4 @@ def keep_all(folder: Path, question: Question[Any], answers: Answers) -> None:
     store = Store(folder, question.kind, question.work, reads_known=False)
     store.open(question)
     for name, answer in answers.items():
-        store.keep(name, answer)
+        store.keep(name, answer, is_new=False)
