@@ -35,7 +35,6 @@ from roadproof.evidence.refutation import fault_of
 from roadproof.evidence.strict import Fields, JsonObject
 from roadproof.library.bind import values_with
 from roadproof.library.compose import denied_premise, never
-from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import under_limits, value_texts
 from roadproof.library.specification import Query
 from roadproof.logic import formula as f
@@ -122,7 +121,7 @@ class Answer:
         """What a certificate denies that proves a claim to say nothing; None of all other evidence."""
         if not isinstance(self.claim.mode, Valid) or not isinstance(self.evidence, Certificate):
             return None
-        shown = read_claim(self.claim.home, self.evidence.claim).formula
+        shown = self.claim.read(self.evidence.claim)
         return next((x.formula for x in vacuities(self.claim) if x.formula == shown), None)
 
     @property
@@ -254,11 +253,12 @@ def _certificate(claim: Claim, content: object, where: str) -> Certificate:
         where,
         f"it assumes {', '.join(file.assumed.said) or 'nothing'}",
     )
-    shown = read_claim(claim.home, file.claim).formula
+    shown = claim.read(file.claim)
     about = (claim.formula, *(x.formula for x in vacuities(claim)))
     wanted = isinstance(claim.mode, Valid) and shown in about
     _require(wanted or _is_part_denied(claim, shown), where, f"it proves {_short(file.claim)}")
-    fault = certificate.fault_of_queries(file, claim.home.library)
+    known = claim.query if file.claim == claim.text else None
+    fault = certificate.fault_of_queries(file, claim.home.library, known)
     _require(fault is None, where, "" if fault is None else fault[1])
     return file
 
@@ -293,7 +293,7 @@ def _shows(claim: Claim, file: DriveFile) -> bool:
         from roadproof.evidence.boundary import start_of  # here: other answers need no driver model
 
         return start_of(claim, file) is not None
-    return read_claim(claim.home, file.formula).formula == sought_by(claim)
+    return claim.read(file.formula) == sought_by(claim)
 
 
 def sought_by(claim: Claim) -> Formula:
@@ -318,7 +318,7 @@ def _none_within(claim: Claim, content: object, where: str) -> NoneWithinFile:
     file = read_none_within(content, where)
     _require_readings(claim, file.set_name, file.options, where)
     _require(
-        read_claim(claim.home, file.formula).formula == claim.formula,
+        claim.read(file.formula) == claim.formula,
         where,
         f"it is about {_short(file.formula)}",
     )
@@ -395,14 +395,10 @@ def _require_about(claim: Claim, file: AboutClaim, where: str) -> None:
     _require_readings(claim, file.set, file.options, where)
     _require(file.assuming == assumed_by(claim), where, f"it assumes {', '.join(file.assuming) or 'nothing'}")
     _require(
-        read_claim(claim.home, file.claim).formula == claim.formula,
+        claim.read(file.claim) == claim.formula,
         where,
         f"it is about {_short(file.claim)}",
     )
-
-
-def _require_assumed(claim: Claim, assuming: tuple[str, ...], where: str) -> None:
-    _require(assuming == assumed_by(claim), where, f"it assumes {', '.join(assuming) or 'nothing'}")
 
 
 def _require_readings(claim: Claim, set_name: str, options: Mapping[str, str], where: str) -> None:

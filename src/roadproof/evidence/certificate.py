@@ -159,11 +159,16 @@ def rule(certificate: Certificate, library: Library, ask: Callable[[str], str]) 
     return Acceptance.ACCEPTED, NO_REASON
 
 
-def fault_of_queries(certificate: Certificate, library: Library) -> tuple[Acceptance, Reason] | None:
-    """Return why the stored queries do not follow from the claim and the instances; None where they do."""
+def fault_of_queries(
+    certificate: Certificate, library: Library, query: Query | None = None
+) -> tuple[Acceptance, Reason] | None:
+    """Return why the stored queries do not follow from the claim and the instances; None where they do.
+
+    ``query``: the claim as it was read, where it was.
+    """
     try:
         specification = library.select(certificate.set_name, certificate.options)
-        query = read_claim(specification, certificate.claim)
+        query = query or read_claim(specification, certificate.claim)
     except RoadproofError as error:
         return Acceptance.UNREADABLE, Why.TOLD(error)
     try:

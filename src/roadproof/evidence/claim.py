@@ -12,6 +12,7 @@ from fractions import Fraction
 from typing import Final, Literal, Protocol, TypeAlias
 
 from roadproof.evidence.plate import Plate
+from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import is_moving, under_limits, values_said
 from roadproof.library.specification import Library, Query, Specification
 from roadproof.logic.formula import Application, Formula, children, intervals
@@ -168,6 +169,13 @@ class Claim:
     def text(self) -> str:
         """The claim as people read it."""
         return self.query.text
+
+    def read(self, text: str) -> Formula:
+        """Return what a text says in the definitions of the claim; its own is not read again.
+
+        Raises ``TextError``.
+        """
+        return self.formula if text == self.text else read_claim(self.home, text).formula
 
     def digest(self) -> str:
         """64 hexadecimal digits that no other claim has."""
