@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from shutil import copytree
@@ -11,21 +12,26 @@ import pytest
 
 import roadproof as rp
 from preventing.read import boundary, specification, values
-from roadproof.analysis.study.evidence_store import EvidenceStore
 from roadproof.drivers.driving import DriverSettings
 from roadproof.drivers.lemmas import lemmas_for
 from roadproof.drivers.lines import SIDES
 from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES, Plane, line
 from roadproof.drivers.models import MODELS, manoeuvre_of, models_for
+from roadproof.engines.search.batches import Engines
 from roadproof.engines.search.beside import beside_boundary, first_drive, judged_drive
-from roadproof.evidence.certificate import read_certificate
+from roadproof.evidence.answer import answer_data, read_answer
+from roadproof.evidence.strict import read_json
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.report import preventable as report
 from roadproof.logic import parse
 from roadproof.logic.parse import parse_claim
+from roadproof.questions.preventable.question import PreventableQuestion
+from roadproof.questions.store import Store
 from roadproof.reasons import Reason, Why
+from roadproof.runtime.files import write_json
 from roadproof.semantics.exact.algebraic import moved
 from roadproof.semantics.exact.truth import Cut, TruthSet, union
+from roadproof.verdict import Verdict
 
 OPTIONS = (
     {},
@@ -151,17 +157,21 @@ def test_a_lemma_is_the_tree_of_its_text():
 def test_a_lemma_is_proved_and_kept_without_reading_its_text(monkeypatch, tmp_path):
     """Trees are handed on: of all texts only values of parameters are parsed, as evidence has them."""
     home = rp.load(specs=["driver"])
-    study = rp.preventable("cut-in", ["r157"], using=home, lines=2, lemmas=False).study
-    lemma = next(x for x in lemmas_for("cut-in", models_for("cut-in", ("r157",))) if x.name == "r157-faster")
-    shelf, read = EvidenceStore(tmp_path / "kept", study.question), list[str]()
+    asked = rp.preventable("cut-in", ["r157"], using=home, lines=2, lemmas=False).question
+    question = replace(asked, with_lemmas=True)
+    read = list[str]()
     honest = parse._parse
     monkeypatch.setattr(parse, "_parse", lambda text, *more: read.append(text) or honest(text, *more))
     parse_claim.cache_clear()
-    ((name, answer),) = study.settle(lemma).items()
-    study.record(name, answer, shelf)
+    claim = question.lemma_claim("lemma-r157-faster")
+    answer, _ = Engines(question.work).settle(claim)
+    answer = Store(tmp_path, "preventable", question.work).whole(answer)
+    assert answer.verdict is Verdict.PROVED
+    write_json(tmp_path / "lemma.json", answer_data(answer))
     assert read == ["r157_braking = 6 m/s^2"]
-    kept = read_certificate(tmp_path / "kept" / f"{name}.json")
-    assert kept == answer.certificate
+    kept = read_answer(claim, read_json(tmp_path / "lemma.json"), "it").evidence
+    assert read == ["r157_braking = 6 m/s^2"]
+    assert kept == answer.evidence
     assert kept.tableau is not None
     assert kept.query is None  # which is read of the text again, by whoever rests on it
 
@@ -283,16 +293,16 @@ def folder(tmp_path_factory) -> Path:
 def test_check_accepts_it(folder):
     checked = rp.check(folder)
     assert checked.exit_code == 0
-    assert len(checked.rows()) == 2 + len(lemmas_for("cut-in", models_for("cut-in", ("r157",))))
+    assert len(checked.rows()) == 3 + len(lemmas_for("cut-in", models_for("cut-in", ("r157",))))
 
 
 def test_another_drive_in_its_place_is_told(folder, tmp_path):
     out = tmp_path / "forged"
     copy(folder, out)
-    index = json.loads((out / "index.json").read_text("utf-8"))
-    shown = index["plates"][0]["shown"]
-    shown[0]["drive"], shown[1]["drive"] = shown[1]["drive"], shown[0]["drive"]
-    (out / "index.json").write_text(json.dumps(index), "utf-8")
+    first, second = sorted(out.glob("r157-*preventable.json"))
+    content = first.read_bytes()
+    first.write_bytes(second.read_bytes())
+    second.write_bytes(content)
     assert rp.check(out).exit_code != 0
 
 
@@ -306,31 +316,21 @@ def test_another_driver_spec_beside_it_is_told(folder, tmp_path):
     assert "is not the file of that name that comes with roadproof" in str(checked)
 
 
-def test_what_is_said_to_have_no_say_is_checked(folder, tmp_path):
-    index = json.loads((folder / "index.json").read_text("utf-8"))
-    assert index["idle"] == []
-    copy(folder, tmp_path / "forged")
-    (tmp_path / "forged" / "index.json").write_text(json.dumps(index | {"idle": ["cc_delay=1"]}), "utf-8")
-    checked = rp.check(tmp_path / "forged")
-    assert checked.exit_code != 0
-    assert "what no boundary depends on is nothing that was chosen" in str(checked)
-    copy(folder, tmp_path / "before")
-    del index["idle"]
-    (tmp_path / "before" / "index.json").write_text(json.dumps(index), "utf-8")
-    assert rp.check(tmp_path / "before").exit_code == 0
-
-
 def test_a_line_that_is_not_where_the_formula_holds_is_told(folder, tmp_path):
-    index = json.loads((folder / "index.json").read_text("utf-8"))
     for number, change in enumerate((_moved, _without_a_line, _other_row)):
         out = tmp_path / f"forged-{number}"
         copy(folder, out)
-        forged = json.loads(json.dumps(index))
-        change(forged["plates"][0]["lines"])
-        (out / "index.json").write_text(json.dumps(forged), "utf-8")
+        with_changed(out / "r157-Ve0-50_3-Vy-1.json", lambda x, change=change: change(x["lines"]))
         checked = rp.check(out)
-        assert checked.exit_code != 0
-        assert "plate r157-" in str(checked)
+        assert checked.exit_code == 10
+        assert "r157-Ve0-50_3-Vy-1.json: it " in str(checked)
+
+
+def with_changed(path: Path, change: Callable[[Any], object]) -> None:
+    """Change the content of a file."""
+    content = json.loads(path.read_text("utf-8"))
+    change(content)
+    path.write_text(json.dumps(content), "utf-8")
 
 
 def _moved(lines):
@@ -365,10 +365,11 @@ def test_drives_are_of_the_scenario_that_is_asked_for(number, at, told, tmp_path
         assert x.drive is not None
         assert x.drive.file.formula.endswith(f" and {x.scenario}") == bool(x.scenario)
     assert rp.check(tmp_path).exit_code == 0
-    index = json.loads((tmp_path / "index.json").read_text("utf-8"))
-    index["plates"][0]["shown"][0]["scenario"] = f"scenario_{number}(SV, POV)"
-    (tmp_path / "index.json").write_text(json.dumps(index), "utf-8")
-    assert rp.check(tmp_path).exit_code != 0
+    other = {1: 4, 2: 1, 4: 1, 6: 4}[number]
+    with_changed(tmp_path / "question.json", lambda x: x["asked"].update(scenario=other))
+    checked = rp.check(tmp_path)
+    assert checked.exit_code == 10
+    assert f"scenario {other} is no" in str(checked)
 
 
 def copy(source: Path, target: Path) -> None:
@@ -379,11 +380,12 @@ def copy(source: Path, target: Path) -> None:
 
 
 def test_a_run_goes_on_where_it_was(folder):
-    before = {path.name: path.read_bytes() for path in (folder / "answers").iterdir()}
+    before = {path.name: path.read_bytes() for path in folder.glob("*.json")}
     again = rp.preventable("cut-in", ["r157"], at={"Ve0": "60 km/h", "Vy": 1}, lines=5, jobs=1, out=folder)
-    assert {path.name: path.read_bytes() for path in (folder / "answers").iterdir()} == before
+    assert {path.name: path.read_bytes() for path in folder.glob("*.json")} == before
     assert len(again.plates) == 1
     assert again.plates[0].lines[-1].spans
+    assert not again.found.costs
 
 
 def test_the_table_has_a_row_for_each_span(folder):
@@ -486,67 +488,181 @@ def plates(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
-def a_place(plate: Any, other: Any) -> None:
-    plate["shown"][0]["at"]["dx0"] = "100"
+ONE, OTHER = "r157-Ve0-50_3-Vy-1", "r157-Ve0-25-Vy-1"
 
 
-def a_fixed_value(plate: Any, other: Any) -> None:
-    plate["fixed"]["Vy"] = "3/2"
+def a_place(out: Path) -> None:
+    with_changed(out / f"{ONE}-preventable.json", lambda x: x["vehicles"]["POV"].update(s="1000"))
 
 
-def the_drives_of_the_other_plate(plate: Any, other: Any) -> None:
-    for mine, theirs in zip(plate["shown"], other["shown"], strict=True):
-        mine.update(theirs)
+def a_fixed_value(out: Path) -> None:
+    with_changed(out / f"{ONE}.json", lambda x: x["plate"]["fixed"].update(Vy="3/2"))
 
 
-def the_other_side(plate: Any, other: Any) -> None:
-    one, two = plate["shown"]
-    one["side"], two["side"] = two["side"], one["side"]
+def the_drives_of_the_other_plate(out: Path) -> None:
+    for side in SIDES:
+        (out / f"{ONE}-{side}.json").write_bytes((out / f"{OTHER}-{side}.json").read_bytes())
 
 
-def another_model(plate: Any, other: Any) -> None:
-    plate["model"] = "careful"
-    plate["name"] = plate["name"].replace("r157", "careful")
+def the_other_side(out: Path) -> None:
+    one, two = (out / f"{ONE}-{side}.json" for side in SIDES)
+    content = one.read_bytes()
+    one.write_bytes(two.read_bytes())
+    two.write_bytes(content)
 
 
-def a_controller(plate: Any, other: Any) -> None:
-    """Lines of a controller are not worked out again: an exact plate may not pass for one."""
-    plate["stepped"] = "each place is decided by a drive"
+def another_model(out: Path) -> None:
+    with_changed(out / f"{ONE}.json", lambda x: x["plate"].update(model="careful"))
 
 
-def no_side(plate: Any, other: Any) -> None:
-    del plate["shown"][0]
+def a_controller(out: Path) -> None:
+    with_changed(out / f"{ONE}.json", lambda x: x["plate"].update(model="fsm"))
 
 
-def a_place_off_the_plate(plate: Any, other: Any) -> None:
-    plate["shown"][0]["at"]["dV0"] = "1"
+def another_parameter(out: Path) -> None:
+    with_changed(out / f"{ONE}.json", lambda x: x["parameters"].update(r157_braking="5"))
+
+
+def a_line_more(out: Path) -> None:
+    with_changed(out / "question.json", lambda x: x["asked"].update(lines=4))
+
+
+def another_name(out: Path) -> None:
+    (out / f"{ONE}.json").rename(out / "r157-Ve0-50_3-Vy-2.json")
+
+
+def no_formula(out: Path) -> None:
+    with_changed(out / f"{ONE}.json", lambda x: x.update(claim="F touches(SV, POV)"))
 
 
 @pytest.mark.parametrize(
     ("change", "told"),
     [
-        (a_place, "its formula is not|but the plate says"),
-        (a_fixed_value, "its name is"),
-        (the_drives_of_the_other_plate, "are not those of the plate"),
-        (the_other_side, "but its formula is not"),
-        (another_model, "but that of its model is"),
-        (a_controller, "'stepped' does not go with"),
-        (no_side, "but has to show"),
-        (a_place_off_the_plate, "is not on the plate"),
+        (a_place, "its drive is one of"),
+        (a_fixed_value, "it is about another plate"),
+        (the_drives_of_the_other_plate, "its drive is one of"),
+        (the_other_side, "its drive is one of"),
+        (another_model, "it is about another plate"),
+        (a_controller, "it is about another plate"),
+        (another_parameter, "its parameters have other values"),
+        (a_line_more, "it is about another plate"),
+        (another_name, "no entry of the index names it"),
+        (no_formula, "it is about F touches"),
     ],
 )
 def test_a_changed_plate_is_rejected(
-    change: Callable[[Any, Any], None], told: str, plates: Path, tmp_path: Path
+    change: Callable[[Path], None], told: str, plates: Path, tmp_path: Path
 ) -> None:
     out = tmp_path / "forged"
     copytree(plates, out)
-    index = json.loads((out / "index.json").read_text("utf-8"))
-    change(*index["plates"])
-    (out / "index.json").write_text(json.dumps(index), "utf-8")
+    change(out)
     checked = rp.check(out)
     assert checked.exit_code == 10
-    assert any(x in str(checked) for x in told.split("|"))
+    assert told in str(checked)
 
 
 def test_the_folder_is_accepted(plates: Path) -> None:
-    assert rp.check(plates).exit_code == 0
+    checked = rp.check(plates)
+    assert checked.exit_code == 0
+    assert [x.verdict for x in checked.findings].count("DERIVED") == 2
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"lines": 1}, "below 2"),
+        ({"lines": 100_000}, "lines=100000"),
+        ({"fixed": {"dx0": "1"}}, "dx0 varies on the plate"),
+        ({"fixed": {"Vx": "1"}}, "there is no initial value of a cut-in 'Vx'"),
+        ({"models": ["r157", "r157"]}, "twice"),
+        ({"along": ["5", "5"]}, "the range is empty"),
+        ({"along": ["-5", "5"]}, "has to be >= 0"),
+        ({"manoeuvre": "cut-out"}, "says nothing of a cut-out"),
+        ({"sheet": [{"name": "Vy", "values": ["0"]}]}, "has to be > 0"),
+        ({"sheet": [{"name": "Vy", "values": [f"{k}" for k in range(1, 250)]}]}, "ask for 200 at most"),
+    ],
+)
+def test_a_question_that_nobody_can_ask_is_refused(
+    change: dict[str, object], told: str, plates: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "forged"
+    copytree(plates, out)
+    with_changed(out / "question.json", lambda x: x["asked"].update(change))
+    checked = rp.check(out)
+    assert checked.exit_code == 10
+    assert told in str(checked)
+
+
+# --- Claims: each thing that a plate depends on makes another one -----------------------------------
+
+
+def asked(**more: Any) -> PreventableQuestion:
+    given = {"at": {"Ve0": "60 km/h", "Vy": 1}, "lines": 2, "lemmas": False, **more}
+    options, params = given.pop("options", {}), given.pop("params", {})
+    manoeuvre, model = given.pop("manoeuvre", "cut-in"), given.pop("model", "careful")
+    home = rp.load(specs=["driver", *given.pop("specs", ())], options=options, params=params)
+    found: list[PreventableQuestion] = []
+
+    class Stopped(Exception):
+        pass
+
+    def stop(question: PreventableQuestion, *_: object) -> None:
+        found.append(question)
+        raise Stopped
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("roadproof.frontends.api.questioned.settle", stop)
+        with pytest.raises(Stopped):
+            rp.preventable(manoeuvre, [model], home, jobs=1, **given)
+    return found[0]
+
+
+def digests(question: PreventableQuestion) -> dict[str, str]:
+    """By what a claim is about, whatever the plate is called."""
+    found: dict[str, str] = {}
+    for name in question.plates:
+        found["lines"] = question.boundary_claim(name).digest()
+        found |= {side: question.side_claim(name, side).digest() for side in SIDES}
+    return found
+
+
+BRAKES = {"manoeuvre": "deceleration", "at": {"Ve0": "60 km/h", "dGdt": 5}}
+CHANGES: list[tuple[dict[str, Any], dict[str, Any], set[str]]] = [
+    ({}, {"lines": 3}, {"lines", *SIDES}),
+    ({}, {"along": (0, 60)}, {"lines", *SIDES}),
+    ({}, {"across": (1, 5)}, {"lines", *SIDES}),
+    ({}, {"at": {"Ve0": "61 km/h", "Vy": 1}}, {"lines", *SIDES}),
+    ({}, {"at": {"Ve0": "60 km/h", "Vy": 1, "length": 5}}, {"lines", *SIDES}),
+    ({}, {"model": "r157"}, {"lines", *SIDES}),
+    ({}, {"manoeuvre": 1}, {*SIDES}),
+    *(
+        ({}, {"params": {x: 4}}, {"lines", *SIDES})
+        for x in ("cc_braking", "cc_delay", "cc_ramp", "cc_wander")
+    ),
+    ({}, {"params": {"cc_evaluation": "0.5 s"}}, {"lines", *SIDES}),
+    ({}, {"options": {"cc_perception": "overlap"}}, {"lines", *SIDES}),
+    ({}, {"options": {"cc_gate": "before_delay"}}, {"lines", *SIDES}),
+    ({}, {"options": {"cc_aeb": "max"}}, {"lines", *SIDES}),
+    (BRAKES, {"params": {"cc_delay": 1}}, {"lines", *SIDES}),
+    (BRAKES, {"options": {"cc_threshold": "hard"}}, {"lines", *SIDES}),
+    (BRAKES, {"at": {"Ve0": "60 km/h", "dGdt": 6}}, {"lines", *SIDES}),
+    ({"manoeuvre": 1}, {"params": {"minSafe": 1}}, {*SIDES}),
+    ({}, {"params": {"minSafe": 1}}, set()),
+    ({}, {"params": {"aeb_braking": 9}}, {*SIDES}),
+]
+
+
+@pytest.mark.parametrize(("before", "change", "seen"), CHANGES)
+def test_what_a_plate_depends_on_makes_other_claims(
+    before: dict[str, Any], change: dict[str, Any], seen: set[str]
+) -> None:
+    one, other = digests(asked(**before)), digests(asked(**{**before, **change}))
+    assert {x for x in one if one[x] != other[x]} == seen
+
+
+def test_a_definition_that_only_drives_use_makes_other_claims(tmp_path: Path) -> None:
+    """The drive is judged on how SV follows its model; no boundary says that."""
+    own = tmp_path / "own.spec"
+    own.write_text("def follows_cutIn_careful(a, b: vehicle, y, z: m, v: m/s) := v_lon(a) <= v\n", "utf-8")
+    one, other = digests(asked()), digests(asked(specs=[own]))
+    assert {x for x in one if one[x] != other[x]} == {*SIDES}
