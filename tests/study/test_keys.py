@@ -13,12 +13,12 @@ import pytest
 import roadproof as rp
 from api.doors import without_seconds
 from roadproof.analysis.study import known
-from roadproof.analysis.study.frame import look_up
 from roadproof.analysis.study.known import SWITCH
 from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library
 from roadproof.logic.rewrite import parameters_of
+from roadproof.questions.settle import look_up
 
 # `both` meets `bar` under two spec sets; `near` has a quantified variable that is called as a parameter is.
 SPEC = """
@@ -353,10 +353,10 @@ def test_no_shipped_plate_answers_for_another_driver(name: str) -> None:
         raise Asked
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("roadproof.frontends.api.studied.conduct", ask)
+        patch.setattr("roadproof.frontends.api.questioned.settle", ask)
         for home in (using, None):
             with pytest.raises(Asked):
                 rp.preventable("cut-in", ["careful"], home, lemmas=False, jobs=1)
     other, declared = asked
-    assert {*look_up(declared)} == {*declared.plates}
+    assert {*look_up(declared)} >= {*declared.plates}
     assert not look_up(other)
