@@ -12,7 +12,7 @@ from roadproof.analysis.study.known import told as told_known
 from roadproof.analysis.study.pool import Progress, Say
 from roadproof.engines.prove.doubt import Cause, Doubt
 from roadproof.errors import SharedError, UsageError
-from roadproof.evidence.answer import Answer, undecided
+from roadproof.evidence.answer import Answer, Evidence, undecided
 from roadproof.evidence.claim import Claim
 from roadproof.questions.question import Answers, Batch, Growing, OwnWork, Question, Seeded, walk
 from roadproof.questions.store import Store
@@ -22,8 +22,8 @@ from roadproof.runtime.cost import NO_COST, Cost
 from roadproof.runtime.executors import Jobs, Shard, hands_of, is_fork_unsafe
 from roadproof.runtime.records import dataclass
 
-Priced: TypeAlias = tuple[str, Answer, Cost]
-"""The name of a claim, its answer, and what it cost."""
+Priced: TypeAlias = tuple[str, Evidence, Cost]
+"""The name of a claim, the evidence for its answer, and what it cost: a claim is not sent back."""
 
 
 @dataclass(frozen=True)
@@ -157,11 +157,22 @@ class _Run:
         jobs = [_Job(x, self._known_of(x), _store_of(x, self.store)) for x in batches]
         fresh = is_fork_unsafe()  # given traces can be tables
         with closing(pool.work(_settle, jobs, hands, lose, progress, what, fresh=fresh)) as answered:
-            for place, answers in answered:
-                for found in answers:
-                    self._keep(jobs[place], *found)
+            for place, found in answered:
+                self._take(jobs[place], found)
         for batch in lost:
             self._ask_alone(batch, hands)
+
+    def _take(self, job: "_Job", found: Sequence[Priced]) -> None:
+        """Keep answers to claims of a batch, which are listed again."""
+        new = {name: (evidence, cost) for name, evidence, cost in found}
+
+        def find(name: str, claim: Claim) -> Answer | None:
+            if name in new:
+                evidence, cost = new.pop(name)
+                self._keep(job, name, Answer(claim, evidence), cost)
+            return self.known.get(name)
+
+        [*walk(job.batch, find)] if new else []
 
     def _keep(self, job: "_Job", name: str, answer: Answer, cost: Cost) -> None:
         self.costs[name] = cost
@@ -185,13 +196,12 @@ class _Run:
 
             def lose(job: "_Job", reason: Reason, asked: Claim = claim, named: str = name) -> list[Priced]:
                 doubt = Doubt(Cause.PROCESS, (), job.work.effort.units, reason).kept
-                return [(named, undecided(asked, reason, doubt=doubt), NO_COST)]
+                return [(named, undecided(asked, reason, doubt=doubt).evidence, NO_COST)]
 
             job = _Job(batch, self._known_of(batch), _store_of(batch, self.store), alone=True)
             with closing(pool.work(_settle, [job, _NOTHING], hands, lose)) as answered:
-                for _, answers in answered:
-                    for found in answers:
-                        self._keep(job, *found)
+                for _, found in answered:
+                    self._take(job, found)
 
 
 def _store_of(batch: Batch, store: Store) -> Store:
@@ -247,7 +257,7 @@ def _settle(job: _Job) -> list[Priced]:
         else:
             answer, cost = engines.settle(claim)
             answer = answer if job.store is None else job.store.whole(job.store.exhausted(answer))
-        new.append((name, answer, cost))
+        new.append((name, answer.evidence, cost))
         return answer
 
     def find(name: str, claim: Claim) -> Answer | None:

@@ -1,11 +1,13 @@
 """Processes for many jobs, of which one that dies costs at most its own job."""
 
 import os
+import sys
 from collections import deque
 from collections.abc import Callable, Generator, Hashable, Sequence
+from dataclasses import dataclass
 from functools import partial
 from multiprocessing.connection import wait
-from typing import Any, Protocol, TypeVar, runtime_checkable
+from typing import Any, Generic, Protocol, TypeVar, runtime_checkable
 
 from roadproof.errors import UsageError
 from roadproof.reasons import Why
@@ -36,23 +38,40 @@ def answers_of(
     closed. An error that a job raises is raised here, and ends the others. ``most``: processes at once, None
     for one a core.
     """
-    start = partial(Worker, function, fresh, is_heard())
+    is_copy = not fresh and sys.platform == "linux"
+    does: Callable[[Any], Answer] = _AtPlace(function, jobs) if is_copy else function
+    start = partial(Worker, does, fresh, is_heard())
+    asked: Sequence[object] = range(len(jobs)) if is_copy else jobs
 
     def attempt(places: Sequence[int], died: dict[int, str]) -> Generator[tuple[int, Answer], None, None]:
-        return _try_once(start, jobs, places, min(most or os.cpu_count() or 1, len(places)), died)
+        waiting = _Waiting(jobs, places)
+        return _try_once(start, asked, waiting, min(most or os.cpu_count() or 1, len(places)), died)
 
     yield from try_again(attempt, len(jobs), Why.PROCESS)
 
 
+@dataclass(frozen=True)
+class _AtPlace(Generic[Job, Answer]):
+    """Does the job at a place. A process that is a copy of this one has the jobs, so none is sent."""
+
+    function: Callable[[Job], Answer]
+    jobs: Sequence[Job]
+
+    def __call__(self, place: int) -> Answer:
+        return self.function(self.jobs[place])
+
+
 def _try_once(
     start: Callable[[], Worker],
-    jobs: Sequence[Job],
-    places: Sequence[int],
+    jobs: Sequence[object],
+    waiting: "_Waiting",
     processes: int,
     died: dict[int, str],
 ) -> Generator[tuple[int, Any], None, None]:
-    """The answers at ``places``; where a process ended instead, ``died`` says by what."""
-    waiting = _Waiting(jobs, places)
+    """The answers at places that are waiting; where a process ended instead, ``died`` says by what.
+
+    ``jobs``: what a worker is asked at each place.
+    """
     team: dict[Worker, int | None] = {}  # the place of the job that each is at
     try:
         while waiting or any(place is not None for place in team.values()):
