@@ -11,7 +11,7 @@ import pytest
 from roadproof.analysis.preventable.study import Plate, Shown
 
 from roadproof.analysis.coverage.answers import ClassAnswer, is_covered, verdict_on, with_counts
-from roadproof.drivers.lines import Line, end_of
+from roadproof.drivers.lines import SIDES, Line, end_of, sides_in
 from roadproof.engines.search.extreme import Extreme
 from roadproof.engines.search.points import PointFinding
 from roadproof.evidence.finding import Acceptance
@@ -30,6 +30,7 @@ from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.api.studies import Orders, Overlaps
 from roadproof.frontends.api.traces import MonitorAnswer
 from roadproof.questions.explore.values import Boundary, ExplorationResult
+from roadproof.questions.preventable.view import Plate, Shown
 from roadproof.reasons import Why
 from roadproof.verdict import ExitCode, Verdict
 
@@ -199,27 +200,29 @@ def test_recordings() -> None:
         assert found == (30 if broken or denied else 20 if lost else 0)
 
 
-SHOWN = {
-    "both": (Shown("preventable", drive=DRIVE), Shown("unpreventable", drive=DRIVE)),
-    "one": (Shown("preventable", drive=DRIVE), Shown("unpreventable", reason=Why.NO_DRIVE())),
-    "other": (Shown("preventable", reason=Why.NO_DRIVE()), Shown("unpreventable", drive=DRIVE)),
-    "none": (Shown("preventable", reason=Why.NO_DRIVE()), Shown("unpreventable", reason=Why.NO_DRIVE())),
-}
+def shown(side: Any, drive: Any = None, is_there: bool = True) -> Shown:
+    return Shown(side, {}, drive, Why.NO_DRIVE(), is_there=is_there)
 
 
 def test_plates() -> None:
     """A side that no line has needs no drive; a plate without lines is one whose process died."""
+    for drives, there in product(product((None, DRIVE), repeat=2), product((False, True), repeat=2)):
+        sides = [shown(*x) for x in zip(SIDES, drives, there, strict=True)]
+        plate = Plate("p", "careful", {}, shown=tuple(sides))
+        lacking = any(x.is_there and x.drive is None for x in sides)
+        assert plate.verdict is (V.UNKNOWN if lacking else V.WITNESSED), (drives, there)
+    assert Plate("p", "careful", {}).verdict is V.UNKNOWN
+
+
+def test_sides_of_a_plate() -> None:
+    """Which sides a plate has more than single places of, as its lines say."""
     zero, half, one = Fraction(0), Fraction(1, 2), Fraction(1)
     mixed = Line(zero, ((end_of(zero), end_of(half)),))
     free, full = Line(zero, ()), Line(zero, ((end_of(zero), end_of(one)),))
-    for shown, lines in product(SHOWN, ((mixed,), (free,), (full,), (mixed, free), ())):
-        plate = Plate("p", "careful", {}, (zero, one), lines, SHOWN[shown])
-        needed = {"preventable"} if any(x is not full for x in lines) else set()
-        needed |= {"unpreventable"} if any(x is not free for x in lines) else set()
-        lacking = any(x.side in needed and x.drive is None for x in SHOWN[shown])
-        assert plate.verdict is (V.UNKNOWN if lacking or not lines else V.WITNESSED), (shown, lines)
-    died = Plate("p", "careful", {}, (zero, one), reason=Why.PROCESS("SIGKILL"))
-    assert died.verdict is V.UNKNOWN
+    for lines in ((mixed,), (free,), (full,), (mixed, free), ()):
+        wanted = {"preventable"} if any(x is not full for x in lines) else set()
+        wanted |= {"unpreventable"} if any(x is not free for x in lines) else set()
+        assert sides_in(lines, (zero, one), is_stepped=False) == wanted
 
 
 def test_plates_and_what_coq_says_of_their_boundaries(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -44,6 +44,9 @@ FOLDERS: dict[str, Callable[[Path], object]] = {
     "order": lambda out: rp.order("4", rp.load("base", "extA"), out=out, jobs=1),
     "explore": lambda out: rp.explore(FAST, vary={"rho": (0, 1)}, steps=2, precision=1, out=out, jobs=1),
     "overlap": lambda out: rp.overlap("4,5,8", out=out, jobs=1),
+    "preventable": lambda out: rp.preventable(
+        "deceleration", ["careful"], at={"Ve0": "60 km/h", "dGdt": 5}, lines=2, out=out, jobs=1
+    ),
     "prove": prove,
     "redundancy": lambda out: rp.redundancy(90, rp.load(specs=[MINE]), effort=1, out=out, jobs=1),
     "trees": trees,

@@ -256,7 +256,7 @@ class PreventableQuestion:
             there = sides_of(boundary)
             names: dict[Side, str] = {side: f"{name}-{side}" for side in SIDES}
             shown = [shown_by(side, x, known.get(x), side in there) for side, x in names.items()]
-        return Plate(name, asked.model, asked.fixed, self.along, boundary, tuple(shown))
+        return Plate(name, asked.model, asked.fixed, boundary, tuple(shown))
 
     def data(self, view: PreventableView, place: Place, seconds: float) -> data.PreventableData:
         """Return the view as ``--json`` prints it."""

@@ -1,7 +1,6 @@
 """What the answers about plates show: lines, drives on both sides, lemmas."""
 
 from collections.abc import Mapping, Sequence
-from fractions import Fraction
 
 from roadproof.drivers import gradual
 from roadproof.drivers.lemmas import Lemma
@@ -43,12 +42,11 @@ class Shown:
 
 @dataclass(frozen=True)
 class Plate:
-    """One model over the plane whose lines run ``along`` (SI); ``boundary``: the answer about its lines."""
+    """One model over the plane of two initial values; ``boundary``: the answer about its lines."""
 
     name: str
     model: ModelName
     fixed: Values
-    along: tuple[Fraction, Fraction]
     boundary: Answer | None = None
     shown: tuple[Shown, ...] = ()
 
