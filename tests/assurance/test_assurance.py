@@ -211,21 +211,23 @@ def test_the_template_refuses_folders_without_its_evidence(
 def test_the_template_claims_what_the_plates_show(tmp_path: Path, lemmas: bool, speeds: list[str]) -> None:
     """Plates of one model, its own drives and its own lemmas, and no more than these."""
     out, told = tmp_path / "plates", tmp_path / "case.toml"
-    rp.preventable("deceleration", models=["careful"], at={"Ve0": speeds}, lines=2, lemmas=lemmas, out=out)
-    index = json.loads((out / "index.json").read_text("utf-8"))
+    found = rp.preventable(
+        "deceleration", models=["careful"], at={"Ve0": speeds}, lines=2, lemmas=lemmas, out=out
+    )
     asked = ["assurance", "--template", "catalogue-coverage", "--evidence", str(out), "--out", str(told)]
     assert main(asked) == 0
     read = read_case(told)
     (solution,) = read.solutions
     assert solution.evidence is not None
-    drives, proofs = sum(len(x["shown"]) for x in index["plates"]), len(index["lemmas"])
+    drives, proofs = sum(len(x.shown) for x in found.plates), len(found.lemmas)
     assert (proofs > 0) is lemmas
-    assert solution.evidence.entries == drives + proofs
+    assert solution.evidence.entries == len(found.plates) + drives + proofs
+    assert "DERIVED" in solution.evidence.expect
     assert ("PROVED" in solution.evidence.expect) is lemmas
     assert ("lemma*" in solution.evidence.select) is lemmas
     goal = read.elements["G4.1"].text
     assert [x in goal for x in ("60 km/h", "80 km/h")] == [x in speeds for x in ("60 km/h", "80 km/h")]
-    assert f"{len(index['plates'])} plate" in goal
+    assert f"{len(found.plates)} plate" in goal
     assert ("without a lemma" in goal) is not lemmas
     assert (f"{proofs} lemmas" in solution.text) is lemmas
     state = rp.assurance(told, jobs=1).states

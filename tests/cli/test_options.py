@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import get_args
 
 import pytest
-from roadproof.analysis.claims import Claims
 
 import roadproof
 import roadproof as rp

@@ -48,9 +48,6 @@ MAKE: dict[str, Callable[[Path], Any]] = {
     "gaps": _gaps,
     "overlap": lambda out: rp.overlap(among=[1, 3, 4], out=out, jobs=1),
     "redundancy": lambda out: rp.redundancy(among=[4], out=out, jobs=1),
-    "preventable": lambda out: rp.preventable(
-        "cut-in", ["r157"], at={"Ve0": "60 km/h", "Vy": 1}, lines=3, out=out, jobs=1
-    ),
     "catalogue": _catalogue,
 }
 

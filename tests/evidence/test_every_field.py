@@ -42,7 +42,6 @@ OLD = [kind for kind in MAKE if {"proofs": "prove"}.get(kind, kind) not in QUEST
 INDEXED = [kind for kind in OLD if kind != "catalogue"]
 # Changes that leave what is said as true as it was, and why.
 EQUIVALENT = {
-    ("preventable", "along[]"): "the lines are worked out again up to there, and have no other spans",
     ("proofs", "claims[].part"): "the number of a claim of a user's, whose text is beside it",
     ("proofs", "claim.part"): "the same",
     ("witness", "outcome.parameters"): "of a proof, which is about all values",

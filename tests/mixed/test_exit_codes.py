@@ -8,7 +8,6 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from roadproof.analysis.preventable.study import Plate, Shown
 
 from roadproof.analysis.coverage.answers import ClassAnswer, is_covered, verdict_on, with_counts
 from roadproof.drivers.lines import SIDES, Line, end_of, sides_in

@@ -106,10 +106,9 @@ def test_plates_are_drawn_with_all_their_models_and_drives(tmp_path):
 
 
 def line_of(folder: Path) -> str:
-    """The third line of the first plate, as its index has it."""
-    [[begin, end]] = json.loads((folder / "index.json").read_text("utf-8"))["plates"][0]["lines"][2][
-        "unpreventable"
-    ]
+    """The third line of the first plate, as its file has it."""
+    content = json.loads((folder / "r157-Ve0-50_3-Vy-1.json").read_text("utf-8"))
+    [[begin, end]] = content["lines"][2]["unpreventable"]
     return f"{begin['near']:g} to {end['near']:g}"
 
 
