@@ -22,7 +22,7 @@ FOLDERS = {
     "recordings/simulate": "simulation",
     "recordings/export": "exporting",
     "drivers": "preventing",
-    "analysis/preventable": "preventing",
+    "questions/preventable": "preventing",
     "evidence/derivations": "deriving",
     "evidence/kernel": "kernel",
     "frontends/studio": "studio",
