@@ -159,6 +159,7 @@ def test_a_lemma_is_proved_and_kept_without_reading_its_text(monkeypatch, tmp_pa
     home = rp.load(specs=["driver"])
     asked = rp.preventable("cut-in", ["r157"], using=home, lines=2, lemmas=False).question
     question = replace(asked, with_lemmas=True)
+    assert "lemma-r157-faster" in question.lemmas  # whose trees are made of their file
     read = list[str]()
     honest = parse._parse
     monkeypatch.setattr(parse, "_parse", lambda text, *more: read.append(text) or honest(text, *more))
