@@ -11,7 +11,7 @@ from typing import TypeAlias
 from roadproof.drivers.driving import OWN_LANE, DriverSettings, drive_of, rest_of, road_of
 from roadproof.drivers.lines import Line as Drawn
 from roadproof.drivers.lines import Side, boundary_text, claim_of, end_of, told_line, truths, with_also
-from roadproof.drivers.manoeuvres import FIRST, MANOEUVRES, Manoeuvre, Values, is_possible
+from roadproof.drivers.manoeuvres import FIRST, MANOEUVRES, Manoeuvre, Values, is_possible, signals_of
 from roadproof.drivers.models import MODELS, ModelName
 from roadproof.drivers.stepped import labels_of, places_of, spans_of
 from roadproof.errors import InputError
@@ -24,6 +24,7 @@ from roadproof.library.scenarios import LANE, SUBJECT
 from roadproof.library.specification import Library, Specification
 from roadproof.semantics.exact.truth import TruthSet
 from roadproof.world.drive import Drive
+from roadproof.world.signals import STARTING
 
 Truths: TypeAlias = tuple[TruthSet, ...]
 Labels: TypeAlias = tuple[tuple[bool, ...], ...]
@@ -138,5 +139,12 @@ def _starts(plate: Plate, drive: Drive) -> Iterator[dict[str, Fraction]]:
     if plane.along[0] <= place <= plane.along[1]:
         for row in plane.rows:
             at = plane.values(row, place)
-            if is_possible(at):
+            if is_possible(at) and _begins_at(manoeuvre, at, drive):
                 yield at
+
+
+def _begins_at(manoeuvre: Manoeuvre, at: Values, drive: Drive) -> bool:
+    """Return whether the vehicles of a drive are where initial values say, and as fast."""
+    states = signals_of(manoeuvre, at)
+    every = ((x, name, motion) for name, motion in drive.vehicles.items() for x in STARTING)
+    return all(getattr(motion, x) == states[x, name] for x, name, motion in every)
