@@ -24,6 +24,7 @@ from roadproof.library.specification import Library, Specification, on_request
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
+from roadproof.questions.views import folder_data
 from roadproof.runtime.files import read_limited
 
 
@@ -106,12 +107,13 @@ class _Reader:
         self.libraries: dict[Path | None, Library] = {None: load_library(specs)}
         self.remarks: dict[Path, dict[str, str]] = {}
         self.values: dict[Path, Mapping[str, Fraction]] = {}
+        self.answers: dict[Path, Fields | None] = {}
 
     def read(self, finding: Finding) -> CheckedEvidence:
         path = Path(finding.where)
         library = self._library(path)
         remark = self._remark(finding)
-        if not path.is_file() or path.name in (INDEX, HEAD):
+        if not path.is_file() or path.name in (INDEX, HEAD) or finding.kind == "test":
             specification = self._named_in(finding.label, library)
             meaning, values = _meaning(specification, finding.claim), self._values(finding)
             return CheckedEvidence(finding, specification, meaning, values, remark=remark)
@@ -154,19 +156,28 @@ class _Reader:
         """The values that a test was judged with, and those of driver models that were put into it."""
         if finding.kind != "test":
             return {}
-        index = Path(finding.where)
-        if index not in self.values:
-            self.values[index] = _parameters(index)
+        folder = Path(finding.where).parent
+        if folder not in self.values:
+            self.values[folder] = _parameters(self._answer_in(folder))
         models = default_values(load_library([on_request()["driver"]])) if finding.drivers else {}
-        return {**models, **self.values[index]}
+        return {**models, **self.values[folder]}
+
+    def _answer_in(self, folder: Path) -> Fields | None:
+        """What the answers of a folder show together; None where that cannot be read."""
+        if folder not in self.answers:
+            try:
+                self.answers[folder] = Fields(folder_data(folder, self.specs), str(folder))
+            except RoadproofError:
+                self.answers[folder] = None
+        return self.answers[folder]
 
     def _remark(self, finding: Finding) -> str:
         if finding.kind != "test":
             return ""
-        index = Path(finding.where)
-        if index not in self.remarks:
-            self.remarks[index] = dict(_remarks(index))
-        return self.remarks[index].get(finding.name, "")
+        folder = Path(finding.where).parent
+        if folder not in self.remarks:
+            self.remarks[folder] = dict(_remarks(self._answer_in(folder)))
+        return self.remarks[folder].get(finding.name, "")
 
 
 def _meaning(specification: Specification, claim: str) -> Meaning | None:
@@ -186,26 +197,22 @@ def _said(folder: Path) -> Fields | None:
     return None if said is None else Fields(said, str(folder / HEAD))
 
 
-def _parameters(index: Path) -> Mapping[str, Fraction]:
-    """The values of parameters that an index names; none where it cannot be read."""
+def _parameters(said: Fields | None) -> Mapping[str, Fraction]:
+    """The values of parameters that an answer names; none where it cannot be read."""
     try:
-        said = Fields(Fields(read_json(index, LARGEST_INDEX), str(index)).mapping("parameters"), str(index))
-        return {name: said.rational(name) for name in said.content}
+        found = None if said is None else Fields(said.mapping("parameters"), said.where)
+        return {} if found is None else {name: found.rational(name) for name in found.content}
     except RoadproofError:
         return {}
 
 
-def _remarks(index: Path) -> Iterator[tuple[str, str]]:
+def _remarks(said: Fields | None) -> Iterator[tuple[str, str]]:
     """What a catalogue says against its tests: that one is not what it claims, or contradicts a proof."""
-    try:
-        content = Fields(read_json(index, LARGEST_INDEX), str(index))
-        if content.get("schema") != CATALOGUE:
-            return
-        for field_name in ("faults", "contradictions"):
-            for item in content.items(field_name):
-                remark: JsonObject = item if isinstance(item, dict) else {}
-                tests = remark.get("tests")
-                for test in tests if isinstance(tests, list) else ():
-                    yield str(test), str(remark.get("told", ""))
-    except RoadproofError:
+    if said is None or said.get("schema") != CATALOGUE:
         return
+    for field_name in ("faults", "contradictions"):
+        for item in said.items(field_name):
+            remark: JsonObject = item if isinstance(item, dict) else {}
+            tests = remark.get("tests")
+            for test in tests if isinstance(tests, list) else ():
+                yield str(test), str(remark.get("told", ""))
