@@ -194,7 +194,7 @@ class Why(StrEnum):
     TOO_NEAR = "two instants are too near"
     # Catalogues that are judged again
     NOT_AGAIN = "its tests cannot be judged again: {}; check where the catalogue was asked for"
-    OTHER_TABLE = "it is not the table of these tests"
+    OTHER_TABLE = "it is not the table that these answers make"
     ONE_ID = "two tests of it have one id, or one is no object"
     TEST_GONE = "there is no such test now: the answer is stale; ask again"
     TEST_UNKNOWN = "the answer does not know this test: it is stale; ask again"

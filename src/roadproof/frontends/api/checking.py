@@ -183,8 +183,10 @@ def _check(paths: Sequence[str | Path], asked: Check, takes_over: bool) -> Check
     for x in answered_in:
         findings += [*(x.finding(name, found[file]) for file, name in x.files.items()), *x.undecided]
         findings += x.problems
-        if x.others:
-            left[str(x.folder)] = x.others
+        tables, others = _tables(x)
+        findings += tables
+        if others:
+            left[str(x.folder)] = others
     for told in surveyed.told:
         if unchecked := tuple(told.not_checked):
             left[str(told.folder)] = unchecked
@@ -206,6 +208,19 @@ def _read_folders(
             where = str(folder / QUESTION)
             damaged.append(Finding(where, "", Acceptance.REJECTED, Why.TOLD(error)))
     return found, damaged
+
+
+def _tables(found: QuestionFolder) -> tuple[list[Finding], tuple[str, ...]]:
+    """A finding for each table of a folder that its answers do not make; and what is not compared."""
+    from roadproof.frontends.api.rebuilding import rebuilt  # what makes tables takes long to import
+
+    others = {x: found.folder / x for x in found.others}
+    if not any(x.endswith((".csv", ".dot", ".xml")) for x in others):
+        return [], found.others
+    made = rebuilt(found).files(False)
+    wrong = [x for x, content in made.items() if x in others and others[x].read_bytes() != content]
+    rejected = [Finding(str(others[x]), "", Acceptance.REJECTED, Why.OTHER_TABLE()) for x in wrong]
+    return rejected, tuple(x for x in found.others if x not in made)
 
 
 def _put_to_kernel(
