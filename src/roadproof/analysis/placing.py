@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
+from roadproof.engines.search.ask import telling_values
 from roadproof.engines.search.impossible import parts
 from roadproof.engines.search.question import zones_of
 from roadproof.evidence.drive_file import DriveFile
@@ -48,8 +49,12 @@ def placed_on(file: DriveFile, query: Query, library: Library, roads: Iterable[R
 
 
 def judged_as(file: DriveFile, query: Query, library: Library) -> JudgedDrive | None:
-    """The drive where it is, as one of ``query``; None where the judge rejects that."""
-    here = replace(file, formula=query.text, scenario=None)
+    """The drive where it is, as one of ``query``; None where the judge rejects that.
+
+    Its file says the value of each parameter of ``query``, so that it means the same wherever it is read.
+    """
+    told = telling_values(library, query.formula, values_with(library, file.values))
+    here = replace(file, formula=query.text, scenario=None, values={**file.values, **told})
     try:
         return JudgedDrive(here, library)
     except RejectedError:
