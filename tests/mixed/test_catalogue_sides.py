@@ -133,6 +133,7 @@ PAIR, TRIPLE = ("SV", "POV"), ("SV", "POV1", "POV2")
         (("SV", "POV", "x"), False, False, {(PAIR, PAIR)}),
         (("SV", "POV1", "POV2", "x"), False, False, set()),
         (("a", "b"), False, False, set()),
+        (("SV", "POV1"), False, False, set()),
         (("a", "b"), False, True, {(PAIR, ("a", "b")), (PAIR, ("b", "a"))}),
         (("SV", "b"), False, False, {(PAIR, ("SV", "b"))}),
         (("SV", "POV"), True, False, {(PAIR, PAIR), (PAIR, ("POV", "SV"))}),

@@ -329,7 +329,8 @@ def test_formulas_that_imply_each_other_are_told(
 
 def test_figures_count_targets_that_are_tested(asked: Questions) -> None:
     surveyed = {"gap_a": None, "gap_b": gap_class(Verdict.IMPOSSIBLE), "gap_c": gap_class(Verdict.WITNESSED)}
-    found = looked_at(asked, [concrete("t", ONE, "class_4", GAP, "gap_a")], surveyed=surveyed)
+    facts = [fact("u", "", "runs", [FOUR])]
+    found = looked_at(asked, [concrete("t", ONE, "class_4", GAP, "gap_a")], facts=facts, surveyed=surveyed)
     assert figures("base", found.targets, found.gaps) == (
         Figure("base", "scenarios", "", 1, 2),
         Figure("base", "classes", "", 1, 1),

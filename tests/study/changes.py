@@ -102,6 +102,7 @@ TOGETHER: Mapping[tuple[str, str], Mapping[str, Any]] = {
     ("explore", "least"): {"greatest": None},
     ("classify", "on"): {"shares": True},
     ("catalogue", "classes"): {"among": "90,91"},
+    ("catalogue", "explore"): {"among": "90", "effort": 0.2},
 }
 """What an option needs beside it."""
 _WHOM = "whom a run tells how far it is"
