@@ -70,6 +70,7 @@ class Finding:
     ] = SubjectKind.OTHER
     name: Annotated[str, LEFT_OUT, Doc("The name of a subject that has a kind, such as that of a test.")] = ""
     shows: Annotated[TestOutcome, LEFT_OUT, Doc("What a test of a catalogue shows.")] = ""
+    set: Annotated[str, LEFT_OUT, Doc("The spec set of an entry of an index that has no file.")] = ""
     drivers: Annotated[
         tuple[DriverSide, ...], LEFT_OUT, Doc("What becomes of a test of a catalogue under driver models.")
     ] = ()
