@@ -9,7 +9,7 @@ import pytest
 import roadproof as rp
 from asking import posed, search_for
 from roadproof.engines.prove.prover import ProofHeuristic, prove
-from roadproof.engines.search import ask, impossible
+from roadproof.engines.search import ask, impossible, search
 from roadproof.engines.search import compare as compare_module
 from roadproof.engines.search.ask import answer
 from roadproof.engines.search.bounded import check_bounded
@@ -137,7 +137,7 @@ def test_what_is_learnt_of_one_claim_does_not_change_the_next():
 
 
 def test_drives_that_were_found_stand_where_a_later_search_is_cut_off(monkeypatch):
-    true_find, calls = ask.find_witness, []
+    true_find, calls = search.find_witness, []
 
     def find(question, means, unlike=()):
         calls.append(len(unlike))
@@ -145,7 +145,7 @@ def test_drives_that_were_found_stand_where_a_later_search_is_cut_off(monkeypatc
             raise BudgetExceeded(3.0)
         return true_find(question, means, unlike)
 
-    monkeypatch.setattr(ask, "find_witness", find)
+    monkeypatch.setattr(search, "find_witness", find)
     outcome = ask.ask(search_for(SLOWER, count=3))
     assert (outcome.verdict, len(outcome.drives), calls) == (Verdict.WITNESSED, 1, [0, 1])
     assert "1 of 3 drives" in outcome.reason

@@ -17,7 +17,6 @@ from roadproof.analysis.study.evidence_store import EvidenceStore, Question
 from roadproof.engines.prove.prover import Result
 from roadproof.engines.search.ask import ask
 from roadproof.engines.search.impossible import explain, parts, told_parts
-from roadproof.engines.solve.milp import prepare
 from roadproof.evidence.answers import overlap as kept_answers
 from roadproof.evidence.answers.overlap import SCHEMA
 from roadproof.evidence.settled import Settled
@@ -215,6 +214,8 @@ class Overlap:
         )
 
     def prepare(self) -> None:
+        from roadproof.engines.solve.milp import prepare
+
         prepare()
 
     def record(self, name: str, answer: PairVerdict, shelf: EvidenceStore) -> kept_answers.Record:

@@ -4,12 +4,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
-from roadproof.engines.search.ask import telling_values
 from roadproof.engines.search.impossible import parts
 from roadproof.engines.search.question import zones_of
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, RejectedError
-from roadproof.library.bind import bind, values_with
+from roadproof.library.bind import bind, telling_values, values_with
 from roadproof.library.specification import Library, Query
 from roadproof.logic import formula as f
 from roadproof.logic.formula import is_state

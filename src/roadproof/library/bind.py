@@ -14,7 +14,7 @@ from roadproof.library.specification import Library, is_within, source_of, unkno
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import bounds_of, leaves_of, with_values
+from roadproof.logic.rewrite import bounds_of, leaves_of, parameters_of, with_values
 from roadproof.world.road import Lanelet, Road
 from roadproof.world.units import UNITS
 
@@ -219,3 +219,10 @@ def _is_empty(interval: f.Interval) -> bool:
     except ValueError as error:
         raise InputError(str(error)) from None
     return high is not None and high < low
+
+
+def telling_values(library: Library, formula: Formula, values: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    """Values of the parameters that ``formula`` speaks of, and of those that the user has changed."""
+    declared = default_values(library)
+    spoken = parameters_of(formula)
+    return {n: v for n, v in values.items() if n in spoken or v != declared.get(n)}

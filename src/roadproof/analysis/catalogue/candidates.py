@@ -15,14 +15,13 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.entries import Abstract
 from roadproof.analysis.placing import judged_as, placed
 from roadproof.analysis.study.known import shipped_answers
-from roadproof.engines.search.ask import telling_values
 from roadproof.engines.search.impossible import at_start
 from roadproof.errors import RoadproofError
 from roadproof.evidence.answers import classify as kept
 from roadproof.evidence.codec import read
 from roadproof.evidence.drive_file import DriveFile, read_drive
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.library.bind import bind
+from roadproof.library.bind import bind, telling_values
 from roadproof.library.compose import both
 from roadproof.library.scenarios import PAIR, SUBJECT, name_of
 from roadproof.library.specification import Query

@@ -14,14 +14,14 @@ from typing import Literal, TypeAlias
 from roadproof.analysis.explore.answer import Point, PointFinding
 from roadproof.engines.encode.unroll import common_step
 from roadproof.engines.prove.prover import prove
-from roadproof.engines.search.ask import judge_found, telling_values
+from roadproof.engines.search.ask import judge_found
 from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.question import COARSEST, SearchProblem, Setting, coarsest, durations, pose
 from roadproof.engines.search.search import Attempt, find_witness, show_none
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, RejectedError
-from roadproof.library.bind import values_with
+from roadproof.library.bind import telling_values, values_with
 from roadproof.library.compose import negation
 from roadproof.library.motion import Assumption, value_texts
 from roadproof.library.specification import Library, Query

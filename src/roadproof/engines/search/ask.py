@@ -1,28 +1,27 @@
 """A search for drives of values, and its typed outcome."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
-from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from roadproof.drivers.restriction import restriction_of
 from roadproof.engines.search.driven import Driven
 from roadproof.engines.search.initial_candidates import is_read
 from roadproof.engines.search.outcome import Outcome, Search, undecided
 from roadproof.engines.search.question import FoundDrive, SearchProblem, pose
-from roadproof.engines.search.search import Attempt, find_witness
 from roadproof.engines.search.siblings import find_once, offered
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.library.bind import default_values
-from roadproof.library.specification import Library
-from roadproof.logic.formula import Formula
-from roadproof.logic.rewrite import parameters_of
+from roadproof.library.bind import telling_values
 from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.runtime.progress import about, begin
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
+
+if TYPE_CHECKING:
+    from roadproof.engines.search.search import Attempt
 
 TRIES, AGAIN = 5, 8.0
 """Drives of a restricted search to which a driver model may object, and units of work for each after one."""
@@ -92,7 +91,7 @@ def _ask(search: Search) -> Outcome:
     )
 
 
-def _answers(question: SearchProblem, search: Search, objections: list[str]) -> Iterator[Attempt]:
+def _answers(question: SearchProblem, search: Search, objections: list[str]) -> Iterator["Attempt"]:
     """The answers to a search; a scenario takes the drive of its sibling where that answers it too.
 
     ``objections`` of a driver model to drives that were found are added.
@@ -111,11 +110,13 @@ def _answers(question: SearchProblem, search: Search, objections: list[str]) -> 
     yield sibling or find_once(question, options)
 
 
-def _clearly_different(question: SearchProblem, search: Search) -> Iterator[Attempt]:
+def _clearly_different(question: SearchProblem, search: Search) -> Iterator["Attempt"]:
     """The answers to one search after the other, each for a drive unlike those found before it.
 
     Where the clock cuts a later one off, the drives that were found still stand.
     """
+    from roadproof.engines.search.search import Attempt, find_witness  # here: what is known needs no numpy
+
     drives: list[Drive] = []
     while len(drives) < search.count:
         try:
@@ -133,8 +134,10 @@ def _clearly_different(question: SearchProblem, search: Search) -> Iterator[Atte
 
 def _driven(
     question: SearchProblem, search: Search, driven: Driven, objections: list[str]
-) -> Iterator[Attempt]:
+) -> Iterator["Attempt"]:
     """The answers as of ``_clearly_different``, without drives to which a driver model objects."""
+    from roadproof.engines.search.search import Attempt, find_witness
+
     drives: list[Drive] = []
     options, shown = search.search_options, 0
     while shown < search.count and len(objections) < TRIES:
@@ -163,7 +166,7 @@ def _driven(
         yield Attempt(Verdict.UNKNOWN, None, Why.NOT_DRIVEN(len(objections), model, "; ".join(objections)))
 
 
-def _reason(answers: list[Attempt], count: int) -> Reason:
+def _reason(answers: list["Attempt"], count: int) -> Reason:
     found = sum(a.found is not None for a in answers)
     if 0 < found < count:
         return Why.FEWER_DRIVES(found, count, answers[-1].reason)
@@ -186,10 +189,3 @@ def judge_found(search: Search, question: SearchProblem, found: FoundDrive) -> J
         found.assumptions.collisions,
     )
     return JudgedDrive(file, library, found.assumptions.natural)
-
-
-def telling_values(library: Library, formula: Formula, values: Mapping[str, Fraction]) -> dict[str, Fraction]:
-    """Values of the parameters that ``formula`` speaks of, and of those that the user has changed."""
-    declared = default_values(library)
-    spoken = parameters_of(formula)
-    return {n: v for n, v in values.items() if n in spoken or v != declared.get(n)}

@@ -11,12 +11,12 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from roadproof.engines.search.ask import telling_values
 from roadproof.engines.search.patterns import PIECES, Menu, Patterns, Shares, spread
 from roadproof.engines.search.question import SearchProblem, Setting, pose
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.library.bind import telling_values
 from roadproof.library.compose import negation
 from roadproof.library.specification import Query, Specification
 from roadproof.logic import formula as f

@@ -7,7 +7,6 @@ from math import prod
 from roadproof.engines.encode.build import Assumptions, encode_formula, frame
 from roadproof.engines.encode.motion import Layout, own_columns
 from roadproof.engines.encode.program import program_of
-from roadproof.engines.search.ask import telling_values
 from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.question import SearchProblem, make_grid, pose
 from roadproof.engines.solve.refuting import find_tree
@@ -15,7 +14,7 @@ from roadproof.engines.solve.relaxation import NotRefutedError
 from roadproof.errors import InputError
 from roadproof.evidence.none_within import Derived, NoneWithinFile
 from roadproof.evidence.program import Program
-from roadproof.library.bind import values_with
+from roadproof.library.bind import telling_values, values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library
 

@@ -13,7 +13,7 @@ from roadproof.frontends.settings import recordings as settings
 from roadproof.frontends.settings.keywords import MotionKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.value_types import RoadLike
-from roadproof.library.bind import Number, exact, values_with
+from roadproof.library.bind import Number, exact, telling_values, values_with
 from roadproof.library.roles import cast_of
 from roadproof.library.scenarios import LANE, Scenario, name_of, vehicles_of
 from roadproof.world.drive import Drive, Motion, pieces_of
@@ -92,7 +92,6 @@ def drive(
     Limits of vehicles are not asked for (``judge.replay.first_breach`` is). Raises ``InputError`` with the
     judge's reason where it does not hold, ``UsageError``, ``TextError``.
     """
-    from roadproof.engines.search.ask import telling_values
     from roadproof.engines.search.question import assignments, usual_road
 
     home = definitions_of(using)
