@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Questions
@@ -63,7 +62,7 @@ def examine(
     ``fresh``. Raises ``InputError``, ``TextError``, ``UsageError``.
     """
     home = basis.specification
-    tests = _read(request.paths, unrestricted(plain), home)
+    tests = _read(request, unrestricted(plain), home)
     kinds = gap_kinds(basis, numbers) if request.gaps else None
 
     def ask(set_name: str) -> Questions:
@@ -87,9 +86,9 @@ def examine(
     return Examination(request, tests, study, answers, tuple(beside), drivers, len(known[0]))
 
 
-def _read(paths: Sequence[str | Path], plain: Specification, asked: Specification) -> Catalogue:
+def _read(request: Request, plain: Specification, asked: Specification) -> Catalogue:
     """The tests as the library says them, whatever the scenarios are that are ``asked`` about."""
-    tests = read_catalogue(paths, plain)
+    tests = read_catalogue(request.paths, plain, request.strict)
     if plain is asked:
         return tests
     entries = tuple(

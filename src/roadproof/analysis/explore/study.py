@@ -136,7 +136,7 @@ class Exploration:
         explored = tuple(records[name].exploration for name in self.named)
         return kept.Index(
             **self.question.heading,
-            length_error=kept.Index.bends(self.road),
+            **kept.Index.of_road(self.road),
             seconds=round(seconds, 1),
             explored=explored,
         )

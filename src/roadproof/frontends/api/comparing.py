@@ -76,7 +76,7 @@ class ComparisonAnswer(Answer):
         one, two = found.sets
         answer = kept.Answer(
             **heading(SCHEMA, self.library),
-            length_error=kept.Answer.bends(self.road),
+            **kept.Answer.of_road(self.road),
             first=kept.Side(formula=found.first.text, set=one),
             second=kept.Side(formula=found.second.text, set=two),
             relation=found.relation,

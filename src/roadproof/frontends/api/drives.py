@@ -139,8 +139,7 @@ class Witnesses(StudyAnswers[WitnessStudy, Outcome, kept.Record], BuildResult):
 
     def _index(self, records: Mapping[str, kept.Record]) -> Answer:
         verdicts = tuple(x.kept for x in self.outcomes)
-        length_error = Answer.bends(self.road)
-        return Answer(**self.study.question.beginning, length_error=length_error, verdicts=verdicts)
+        return Answer(**self.study.question.beginning, **Answer.of_road(self.road), verdicts=verdicts)
 
     def _write_index(self, folder: Path, found: StudyResult[Outcome, kept.Record]) -> None:
         """There is none: drive files and proofs stand for themselves."""

@@ -155,7 +155,7 @@ class Proofs(StudyAnswers[Claims, ClaimResult, Record], BuildResult):
         says = {} if self.kernel is None else self.kernel.rulings
         answer = Answer(
             **heading(ANSWER_SCHEMA, self.study.library),
-            length_error=Answer.bends(self.road),
+            **Answer.of_road(self.road),
             verdicts=tuple(
                 x.as_settled(named.get(name), _said(says[name]) if name in says else None)
                 for x in self.answers
@@ -364,5 +364,6 @@ def _within_limits(asked: Claims, home: Definitions, engine: Engine, given: Prov
             "engine='dense'"
         )
     where = SearchPlace(road=given.road, vehicles=given.vehicles, horizon=given.horizon, dt=given.dt)
+    where = replace(where, strict=given.strict)
     place = replace(setting(home, where), values=dict(home.values))
     return replace(asked, within=(place, SearchOptions("any", engine, effort=asked.effort)))
