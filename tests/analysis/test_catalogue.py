@@ -289,10 +289,15 @@ def test_a_claim_of_a_scenario_that_is_not_asked_for_is_told_apart_from_one_that
     text = "".join(
         f'[[test]]\nid = "{n}"\nfile = "braking.json"\nclaims = ["{n}"]\n' for n in ("9", "class_1_2_3")
     )
+    text += '[[test]]\nid = "formula"\nformula = "scenario_4(SV,POV,L)"\nclaims = [4, 9]\n'
     (tmp_path / "catalogue.toml").write_text(text, "utf-8")
     found = catalogue(tmp_path, among="1-8", jobs=1, classes=False)
     remarks = {x.tests: x.told for x in found.tested.faults}
-    assert "scenario_9, which is not among the scenarios of this run" in remarks[("9",)]
+    for name in ("9", "formula"):
+        assert "scenario_9, which is not among the scenarios of this run" in remarks[(name,)]
+    assert "this run is about scenarios only" in remarks[("class_1_2_3",)]
+    divided = catalogue(tmp_path / "catalogue.toml", among="4,12,20", jobs=1, drivers=())
+    remarks = {x.tests: x.told for x in divided.tested.faults}
     assert "no scenario and no class of that name" in remarks[("class_1_2_3",)]
 
 
