@@ -161,5 +161,13 @@ def test_notes_say_with_what_drives_were_made() -> None:
         concrete("b", notes=("odd",)),
         concrete("c", notes=("odd",)),
     )
-    made.examination = cast(Any, SimpleNamespace(concrete=tests, tests=SimpleNamespace(notes=("first",))))
+    freedom = SimpleNamespace(lanes=False, start=False)
+    made.examination = cast(
+        Any,
+        SimpleNamespace(
+            concrete=tests,
+            tests=SimpleNamespace(notes=("first",), entries=()),
+            request=SimpleNamespace(freedom=freedom),
+        ),
+    )
     assert made.notes == ("first", "b, c: odd", "made with rho = 1, and judged with what is asked for: a")
