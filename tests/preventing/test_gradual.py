@@ -232,7 +232,7 @@ def test_a_plate_that_says_it_has_a_formula_is_told(folder, tmp_path, forged):
     copy(folder, out)
     index = json.loads((out / "index.json").read_text("utf-8"))
     plate = index["plates"][0]
-    assert plate["formula"] == "F touches(SV, POV)"
+    assert plate["formula"] == "meets(SV, POV)"
     plate["motion" if forged == "motion" else "formula"] = (
         "" if forged == "motion" else "unpreventable_deceleration_careful(SV, POV)"
     )

@@ -394,7 +394,7 @@ def test_the_evidence_says_that_it_is_stepped_and_what_is_not_checked(folder, ca
     index = json.loads((folder / "index.json").read_text("utf-8"))
     plate = index["plates"][0]
     assert "stepped at 10 Hz" in plate["stepped"]
-    assert plate["formula"] == "F touches(SV, POV2)"
+    assert plate["formula"] == "meets(SV, POV2)"
     assert [x["verdict"] for x in plate["shown"]] == ["WITNESSED", "WITNESSED"]
     table = (folder / "plates.csv").read_text("utf-8").splitlines()
     assert "stepped at 10 Hz" in table[1]

@@ -208,6 +208,13 @@ class Prevention:
         Doc("What begins so: scenarios, or, for coverage, drives between two vehicles."),
     ]
     scenarios: Annotated[tuple[Number, ...], Doc("The scenarios that begin so; all others are as they are.")]
+    drives_by: Annotated[
+        Literal["formula", "model"],
+        Doc(
+            "Which drives count: by the formula of a state those that begin so; by the model those in which "
+            "it, in place of SV, ends so."
+        ),
+    ]
 
 
 KeptPrevention: TypeAlias = Annotated[
