@@ -58,7 +58,12 @@ Section Aeb.
     { intros t H. assert (Wt : x t = X1 t + (x 0 - X1 0)); [|lra].
       apply way_as with (v := v) (L := L) (h := z) (w := v) (T' := T) (A' := A) (m := q); try assumption; lra. }
     assert (F : forall t t', 0 <= t <= t' -> L t <= L t') by (apply L_grows with (W := W) (k := k) (q := q) (z := z); assumption).
-    unfold collide, hits. rewrite (S y) by lra.
+    pose proof (lengths_positive W a b) as Lp.
+    assert (NP : (forall t, 0 <= t <= y -> x t - u * t <= g + r) <-> ~ hasEverGained v u (g + r) q y 1 T A).
+    { rewrite <- (ever_until v q T A Ha Q ltac:(lra) PA X1 X10 D1 u Hb (g + r) y ltac:(lra) ltac:(lra)).
+      rewrite (never_passed x (fun t => u * t)). apply neither.
+      split; intros [t [Lt Gt]]; exists t; (split; [exact Lt|]); [rewrite <- (S t) by lra|rewrite (S t) by lra]; exact Gt. }
+    unfold collide, hits. rewrite NP.
     rewrite (over_after u x (fun t => Rmax 0 (v - L t)) X (s_falls v L F) y g) by lra. rewrite (S y) by lra.
     assert (AR : over x u g <-> aided k (v - u) g q z T A B).
     { apply assisted_right with (L := L); try assumption; lra. }
@@ -79,9 +84,9 @@ Section Aeb.
         apply Rmax_lub; [apply Rmax_l|]. apply Rle_trans with (2 := Rmax_r _ _). lra. }
     split.
     - intros [H1 H2]. destruct H2 as [H2|[H2 H3]].
-      + split; [split; [lra|left; lra]|left; lra].
-      + split; [split; [lra|right; split; [split; assumption|apply N, H3]]|right; exact H3].
-    - intros [[H1 H2] H3]. split; [lra|]. destruct H2 as [H2|[[_ H2] _]]; [left; lra|].
+      + split; [split; [exact H1|left; lra]|left; lra].
+      + split; [split; [exact H1|right; split; [split; assumption|apply N, H3]]|right; exact H3].
+    - intros [[H1 H2] H3]. split; [exact H1|]. destruct H2 as [H2|[[_ H2] _]]; [left; lra|].
       destruct H3 as [H3|H3]; [left; lra|right; split; assumption].
   Qed.
 

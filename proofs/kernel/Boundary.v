@@ -8,6 +8,12 @@ Import ListNotations.
 Open Scope string_scope.
 Open Scope R_scope.
 
+Lemma never_passed (x p : R -> R) g y :
+  (forall t, 0 <= t <= y -> x t - p t <= g) <-> ~ exists t, 0 <= t <= y /\ x t - p t > g.
+Proof.
+  split; [intros N [t [L G]]; pose proof (N t L); lra|]. intros N t L. apply Rnot_lt_le. intros G. apply N. exists t. split; [exact L|lra].
+Qed.
+
 Section Brakes.
   Variables v q T A : R.
   Hypotheses (Hv : 0 <= v) (Hq : 0 <= q) (HT : 0 <= T) (HA : 0 < A).
@@ -16,7 +22,7 @@ Section Brakes.
   Proof.
     intros B Hw Hy Hg Hr. destruct (brakes_right v q T A Hq HT HA x B) as [X0 X]. unfold collide, hits.
     rewrite <- (ever v q T A Hv Hq HT HA x X0 X w Hw g y Hy).
-    rewrite (gained_right v q T A Hv Hq HT HA x X0 X w (g + r) y Hy). split; intros [P Q]; (split; [lra|exact Q]).
+    rewrite <- (ever_until v q T A Hv Hq HT HA x X0 X w Hw (g + r) y ltac:(lra) Hy). rewrite never_passed. reflexivity.
   Qed.
 End Brakes.
 
@@ -27,8 +33,8 @@ Proof. intros. field. lra. Qed.
 
 Lemma hits_over v u g r q y w T A : 0 < w -> (hits v u g r q y w T A <-> hits v u g r (q / w) (y / w) 1 T A).
 Proof.
-  intros P. rewrite <- (times_over q w P), <- (times_over y w P) at 1. unfold hits.
-  rewrite !scale_gained, scale_faster, scale_gains by exact P. reflexivity.
+  intros P. rewrite <- (times_over q w P), <- (times_over y w P) at 1. unfold hits, hasEverGained.
+  rewrite !scale_gained, !scale_faster, !scale_gains by exact P. reflexivity.
 Qed.
 Lemma brakes_collide v u g r q y w T A : 0 <= v -> 0 <= u -> 0 <= g -> 0 <= r -> 0 <= q -> 0 <= y -> 0 < w -> 0 <= T -> 0 < A ->
   ((exists x, brakes_from v (Some (q / w)) T A x /\ collide x (fun t => u * t) g r (y / w)) <-> hits v u g r q y w T A).
@@ -345,8 +351,9 @@ Section Cut_out.
       (collide x (fun t => speed W now c * t) (gap W now a c) (lengths W a c) 0
        <-> gains (speed W now a) (speed W now c) (gap W now a c) q 1 (par "cc_ramp") (par "cc_braking"))).
     { intros x B. destruct (brakes_right (speed W now a) q _ _ Q (Rlt_le _ _ HT) HA x B) as [X0 X].
-      rewrite <- (ever_from_0 _ q _ _ Ha Q (Rlt_le _ _ HT) HA x X0 X _ Hc _ Hg). unfold collide, lengths. rewrite X0.
-      split; [intros [_ H']; exact H'|intros H'; split; [lra|exact H']]. }
+      rewrite <- (ever_from_0 _ q _ _ Ha Q (Rlt_le _ _ HT) HA x X0 X _ Hc _ Hg). unfold collide, lengths.
+      split; [intros [_ H']; exact H'|intros H'; split; [|exact H']].
+      intros t Ht. replace t with 0 by lra. rewrite X0. lra. }
     split.
     - intros G. destruct (brakes_exists (speed W now a) q (par "cc_ramp") (par "cc_braking") Ha Q ltac:(lra) HA) as [x B].
       exists x. split; [apply E; exact B|apply C; assumption].

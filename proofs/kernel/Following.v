@@ -27,7 +27,8 @@ Section Following.
     pose proof (lengths_positive W a b) as L. split.
     - intros [[P [[I1 I2] G]] H']. apply (E P G) in H'. destruct H' as [x [Dx [p [Bp [t T]]]]].
       repeat split; try lra. exists x, p. repeat split; [exact Dx|exact Bp| |exists t; exact T].
-      destruct (brakes_right w 0 0 _ (Rle_refl 0) (Rle_refl 0) P p Bp) as [P0 _]. rewrite (Z x Dx), P0. lra.
+      destruct (brakes_right w 0 0 _ (Rle_refl 0) (Rle_refl 0) P p Bp) as [P0 _].
+      intros t0 H0. replace t0 with 0 by lra. rewrite (Z x Dx), P0. lra.
     - intros [P [[I1 I2] [G [x [p [Dx [Bp [_ C]]]]]]]]. repeat split; try lra. apply (E P); [lra|].
       exists x. split; [exact Dx|]. exists p. split; [exact Bp|exact C].
   Qed.

@@ -25,8 +25,10 @@ Definition gains v w g q W T A : Prop :=
 Definition stillFaster v w q y W T A : Prop :=
   w < v /\ (y <= q \/ (A * T <= 2 * (v - w) /\ 2 * A * (y - q) < W * (2 * (v - w) + A * T))
      \/ (2 * (v - w) < A * T /\ A * (y - q) ^ 2 < 2 * T * W ^ 2 * (v - w))).
+Definition hasEverGained v w g q y W T A : Prop :=
+  hasGained v w g q y W T A \/ (~ stillFaster v w q y W T A /\ gains v w g q W T A).
 Definition hits v w g r q y W T A : Prop :=
-  ~ hasGained v w (g + r) q y W T A
+  ~ hasEverGained v w (g + r) q y W T A
   /\ (hasGained v w g q y W T A \/ (stillFaster v w q y W T A /\ gains v w g q W T A)).
 
 (* --- times may be fractions of any denominator --- *)
@@ -297,6 +299,30 @@ Section Gained.
     - intros [G|[[_ M] [_ G]]].
       + exists y. split; lra.
       + exists meets. split; lra.
+  Qed.
+  Theorem ever_until g y : 0 <= g -> 0 <= y ->
+    ((exists t, 0 <= t <= y /\ x t - w * t > g) <-> hasEverGained v w g q y 1 T A).
+  Proof.
+    intros Hg Hy. unfold hasEverGained. rewrite gained_right, faster_right, gains_right by exact Hy.
+    set (D := fun t => x t - w * t). assert (Z : D 0 = 0) by (unfold D; lra).
+    assert (falling : forall t u, 0 <= t <= u -> (v <= w \/ (w <= v /\ meets <= t)) -> D u <= D t).
+    { intros t u L C. apply (falls D (fun t => speed_at v q T A t - w * 1)); [lra| |].
+      - intros s S. apply gained_slope. lra.
+      - intros s S. destruct C as [C|[C M]]; [pose proof (never_faster s C)|pose proof (slower_from s C ltac:(lra))]; lra. }
+    assert (growing : forall t u, 0 <= t <= u -> w <= v -> u <= meets -> D t <= D u).
+    { intros t u L V M. apply (grows D (fun t => speed_at v q T A t - w * 1)); [lra| |].
+      - intros s S. apply gained_slope. lra.
+      - intros s S. pose proof (faster_until s V ltac:(lra)). lra. }
+    split.
+    - intros [t [L G]]. change (g < D t) in G. change (g < D y \/ ~ (w < v /\ y < meets) /\ w < v /\ g < D meets).
+      destruct (Rle_lt_dec v w) as [V|V]; [pose proof (falling 0 t ltac:(lra) ltac:(left; lra)); lra|].
+      destruct (Rlt_le_dec y meets) as [M|M].
+      + left. pose proof (growing t y ltac:(lra) ltac:(lra) ltac:(lra)). lra.
+      + right. repeat split; [lra|exact V|]. destruct (Rle_lt_dec t meets) as [N|N].
+        * pose proof (growing t meets ltac:(lra) ltac:(lra) ltac:(lra)). lra.
+        * pose proof (meets_after ltac:(lra)). pose proof (falling meets t ltac:(lra) ltac:(right; lra)). lra.
+    - intros [G|[N [V G]]]; [exists y; split; lra|]. pose proof (meets_after ltac:(lra)).
+      assert (meets <= y) by (apply Rnot_lt_le; intros B; apply N; split; assumption). exists meets. split; lra.
   Qed.
   Theorem ever_from_0 g : 0 <= g -> ((exists t, 0 <= t /\ x t - w * t > g) <-> gains v w g q 1 T A).
   Proof.

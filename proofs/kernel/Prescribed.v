@@ -20,9 +20,9 @@ Definition brakes_from (v : R) (onset : option R) (T A : R) : (R -> R) -> Prop :
   match onset with Some q => goes v (fun t => ramp T A (t - q)) (q :: nil) | None => goes v (fun _ => 0) nil end.
 
 (* SV goes x.  A vehicle ahead by g goes p, and is in the way of SV from `arrives` on; r is both lengths.  They
-   collide where SV has not passed it by then, and at some time later the front of SV is beyond its rear. *)
+   collide where SV has never passed it until then, and at some time later the front of SV is beyond its rear. *)
 Definition collide (x p : R -> R) (g r arrives : R) : Prop :=
-  x arrives - p arrives <= g + r /\ exists t, arrives <= t /\ x t - p t > g.
+  (forall t, 0 <= t <= arrives -> x t - p t <= g + r) /\ exists t, arrives <= t /\ x t - p t > g.
 
 (* The first instant from s on at which P is so; None where it never is. *)
 Definition first (P : R -> Prop) (s : R) (found : option R) : Prop :=

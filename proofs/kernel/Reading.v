@@ -66,7 +66,7 @@ Ltac reads :=
   eapply iff_trans; [apply says_right|];
   cbv beta iota zeta delta [
     says told number Text.whole Text.s Text.d Text.v_lon Text.v_lat Text.a_lon Text.a_lat Text.length Text.width
-    from_both from_side intrusion_hits hits hasGained gains gainsByRamp stillFaster
+    from_both from_side intrusion_hits hits hasEverGained hasGained gains gainsByRamp stillFaster
     unaided careful_hits ungated gated seen weighed hit_by_careful cut_out_hits lies_in_way hit_behind
     standsLater meetsInFull meetsInRamp gainsSome gainsInRamp gainsBraking
     ahead following_hits notices rss_hits rss_following_hits

@@ -227,8 +227,11 @@ Section Boundaries.
       - intros D. exists s. split; [apply (reaches y w (Some s) Y P); reflexivity|exact D]. }
     assert (C : forall x, responds W now a s x -> (collide x (fun t => u * t) g (lengths W a b) s
       <-> (v - u) * s <= g + lengths W a b /\ ((v - u) * s > g \/ responds_late s))).
-    { intros x D. unfold collide. rewrite (before_response W now a s Hv S HA HB Hr x D s) by lra.
-      replace (v * s - u * s) with ((v - u) * s) by ring. rewrite (ever_responding s x S G D). reflexivity. }
+    { intros x D. unfold collide. rewrite (ever_responding s x S G D). apply and_iff_compat_r.
+      pose proof (lengths_positive W a b) as L. split.
+      - intros N. specialize (N s ltac:(lra)). rewrite (before_response W now a s Hv S HA HB Hr x D s) in N by lra. lra.
+      - intros N t H. rewrite (before_response W now a s Hv S HA HB Hr x D t) by lra.
+        destruct (Rle_lt_dec (v - u) 0); [nra|]. assert ((v - u) * t <= (v - u) * s) by (apply Rmult_le_compat_l; lra). lra. }
     assert (K : responds_late s <-> (u < faster
       /\ 2 * B * (w * (g - A * rho ^ 2 / 2) - (v - u) * (y + rho * w)) < w * (faster - u) ^ 2)).
     { unfold responds_late. apply both; [reflexivity|]. symmetry. apply (scaled_lt w); [exact P|rewrite Ey; ring|ring]. }

@@ -144,7 +144,7 @@ Proof.
             lanelets := fun _ _ => True; lanelets_reflexive := _; zone_of := fun _ => main |}; intros; try lra; tauto.
 Defined.
 Ltac by_boundary := rewrite <- r157_boundary by (cbn; lra); unfold from_both, from_side, intrusion_hits, Gained.hits,
-  Gained.hasGained, Gained.stillFaster, Gained.gains, Prescribed.beside, gap, lengths; cbn.
+  Gained.hasEverGained, Gained.hasGained, Gained.stillFaster, Gained.gains, Prescribed.beside, gap, lengths; cbn.
 Lemma some_collision : cut_in (ahead_at 0) 0 (r157 (ahead_at 0) 0 "SV") "SV" "POV".
 Proof. by_boundary. left. repeat split; lra. Qed.
 Lemma not_every_collision : ~ cut_in (ahead_at 20) 0 (r157 (ahead_at 20) 0 "SV") "SV" "POV".

@@ -10,12 +10,12 @@ from typing import Any
 from xml.etree import ElementTree as xml
 
 import pytest
+from roadproof.analysis.catalogue.meaning import Fact
 
 import roadproof as rp
 from roadproof.analysis.catalogue import examination, formula_facts, meaning, showing, tested
 from roadproof.analysis.catalogue.asked import NOWHERE, Questions, Row
 from roadproof.analysis.catalogue.entries import Abstract, Concrete, Freedom
-from roadproof.analysis.catalogue.meaning import Fact
 from roadproof.analysis.catalogue.reading import read_catalogue
 from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, show
 from roadproof.analysis.catalogue.tested import figures
@@ -289,10 +289,15 @@ def test_a_claim_of_a_scenario_that_is_not_asked_for_is_told_apart_from_one_that
     text = "".join(
         f'[[test]]\nid = "{n}"\nfile = "braking.json"\nclaims = ["{n}"]\n' for n in ("9", "class_1_2_3")
     )
+    text += '[[test]]\nid = "formula"\nformula = "scenario_4(SV,POV,L)"\nclaims = [4, 9]\n'
     (tmp_path / "catalogue.toml").write_text(text, "utf-8")
     found = catalogue(tmp_path, among="1-8", jobs=1, classes=False)
     remarks = {x.tests: x.told for x in found.tested.faults}
-    assert "scenario_9, which is not among the scenarios of this run" in remarks[("9",)]
+    for name in ("9", "formula"):
+        assert "scenario_9, which is not among the scenarios of this run" in remarks[(name,)]
+    assert "this run is about scenarios only" in remarks[("class_1_2_3",)]
+    divided = catalogue(tmp_path / "catalogue.toml", among="4,12,20", jobs=1, drivers=())
+    remarks = {x.tests: x.told for x in divided.tested.faults}
     assert "no scenario and no class of that name" in remarks[("class_1_2_3",)]
 
 

@@ -73,7 +73,7 @@ STRANGE = {"stranger": [[7]]}  # is nowhere what is wanted
 OPTIONAL = {
     "assurance.json": {"solution", "limits"},
     "answer.json": {"road", "counterexample", "assuming"},
-    "check.json": {"subject", "name", "shows", "drivers", "kernel"},
+    "check.json": {"subject", "name", "shows", "set", "drivers", "kernel"},
     "classify.json": {"doubts"},
     "coverage.json": {"in_traffic", "trace"},
     "drive.json": {"lanes", "overlaps_allowed", "natural", "kind", "signals"},

@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -117,8 +118,6 @@ def test_both_values_of_a_part_are_tried_on_the_side_where_they_matter() -> None
         assert sorted(x.value for x in those) == [False, True] * (len(those) // 2) or len(those) % 2 == 0
         assert {x.value for x in those} == {False, True}
         assert {x.weakens for x in those} == {False, True}
-    from roadproof.library.elaborate import read_claim
-
     negated = read_claim(HOME, "not (danger(SV,POV) and aheadOf(SV,POV))")
     inside = [x for x in changes_of(HOME, negated) if x.part.startswith("danger(")]
     assert [(x.value, x.weakens) for x in inside] == [(True, False), (False, True)]
@@ -169,8 +168,10 @@ def test_a_zone_is_moved_under_each_vehicle() -> None:
 def test_a_drive_of_another_formula_is_of_no_scenario(monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[Any] = []
     monkeypatch.setattr(placing, "JudgedDrive", lambda file, library: made.append(file))
-    placing.judged_as(replace(DRIVE_FILE, scenario=4), of(text="true"), HOME.library)
-    assert (made[0].formula, made[0].scenario) == ("true", None)
+    asked = read_claim(HOME, "v_lon(SV) > minSafe*1 m/s^2")
+    placing.judged_as(replace(DRIVE_FILE, scenario=4, values={"rho": Fraction(1)}), asked, HOME.library)
+    assert (made[0].formula, made[0].scenario) == (asked.text, None)
+    assert made[0].values == {"rho": 1, "minSafe": Fraction(3, 5)}
 
 
 # --- a division of which a part is in doubt ------------------------------------------------------------

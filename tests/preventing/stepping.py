@@ -43,29 +43,27 @@ def gated_onset(x, gate: str) -> Floats:
 def step_cut_in(v, w, gap, lengths, beside, lateral, braking, rate, seconds) -> Outcome:
     """POV at constant speed w comes in at ``lateral``; a collision while the boxes overlap across.
 
-    It is otherwise where SV comes as far as POV's rear, or not, once POV is in; or has passed it before.
+    It is otherwise where SV comes as far as POV's rear, or not, once POV is in; or has passed it before, even
+    where it is beside it again then.
     """
     arrives = beside / lateral
     speed, gained = v.astype(float).copy(), np.zeros_like(v)
-    farthest, to_pass = np.full(len(v), -np.inf), np.full(len(v), np.inf)
-    passed = np.zeros(len(v), bool)
+    farthest, past = np.full(len(v), -np.inf), np.full(len(v), -np.inf)
     begun = np.zeros(len(v), bool)
     for step in range(int(seconds * rate)):
         time = step / rate
         across = time >= arrives
         # Having passed it before it came in is no collision with it.
-        first = across & ~begun
-        to_pass = np.where(first, np.abs(gained - gap - lengths), to_pass)
-        passed |= first & (gained >= gap + lengths)
+        past = np.where(begun, past, np.maximum(past, gained - gap - lengths))
         begun |= across
-        inside = across & ~passed
+        inside = across & (past < 0)
         farthest = np.where(inside, np.maximum(farthest, gained - gap), farthest)
         faster = np.maximum(speed - braking(time + 0.5 / rate) / rate, 0)
         gained += (speed + faster) / 2 / rate - w / rate
         speed = faster
         if begun.all() and not speed.any():
             break  # whoever stands has braked, and stays where it is
-    return Outcome(farthest > 0, np.minimum(np.abs(farthest), to_pass))
+    return Outcome(farthest > 0, np.minimum(np.abs(farthest), np.abs(past)))
 
 
 def step_deceleration(v, w, gap, other_braking, braking, rate, seconds) -> Outcome:

@@ -231,7 +231,7 @@ def test_a_plate_that_says_it_has_a_formula_is_told(folder, tmp_path):
     out = tmp_path / "forged"
     copy(folder, out)
     formula = "unpreventable_deceleration_careful(SV, POV)"
-    assert json.loads((out / f"{PLATE}.json").read_text("utf-8"))["claim"] == "F touches(SV, POV)"
+    assert json.loads((out / f"{PLATE}.json").read_text("utf-8"))["claim"] == "meets(SV, POV)"
     with_changed(out / f"{PLATE}.json", lambda x: x.update(claim=formula))
     assert rp.check(out).exit_code == 10
 

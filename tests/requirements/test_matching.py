@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from fractions import Fraction
 from itertools import product
 from pathlib import Path
 from random import Random
@@ -364,3 +365,22 @@ drivers = ["cut: careful {other}"]
         (tmp_path / "other.toml").write_text(text.replace("[trace]\n", f"[trace]\n{more}\n"))
         states = rp.requirements(tmp_path / "other.toml", jobs=1).states
         assert states["A"] == "stale", "it was decided at other values"
+
+
+@pytest.mark.parametrize(
+    ("values", "given", "expected"),
+    [
+        ({"minSafe": Fraction(3, 5)}, {}, "witnessed"),
+        ({"minSafe": Fraction(1)}, {}, "stale"),
+        ({"minSafe": Fraction(1)}, {"minSafe": Fraction(1)}, "witnessed"),
+        ({"minSafe": Fraction(3, 5)}, {"minSafe": Fraction(1)}, "stale"),
+        ({"nobodys": Fraction(1)}, {}, "witnessed"),
+    ],
+)
+def test_a_drive_is_stale_by_values_that_are_given_or_declared(
+    values: dict[str, Fraction], given: dict[str, Fraction], expected: str
+) -> None:
+    [judged] = checked(PLATE)
+    link = Link("plate", "careful-Vy-1")
+    found = shown_by(read_target(link, HOME, "here"), [replace(judged, values=values)], given, Path())
+    assert combined("plate", found)[0] == expected

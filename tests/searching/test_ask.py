@@ -9,7 +9,7 @@ import pytest
 import roadproof as rp
 from asking import posed, search_for
 from roadproof.engines.prove.prover import ProofHeuristic, prove
-from roadproof.engines.search import alone, ask, impossible
+from roadproof.engines.search import alone, ask, impossible, search
 from roadproof.engines.search.ask import answer
 from roadproof.engines.search.bounded import check_bounded
 from roadproof.engines.search.enumeration import small_drive
@@ -133,7 +133,7 @@ def test_what_is_learnt_of_one_claim_does_not_change_the_next():
 
 
 def test_drives_that_were_found_stand_where_a_later_search_is_cut_off(monkeypatch):
-    true_find, calls = ask.find_witness, []
+    true_find, calls = search.find_witness, []
 
     def find(question, means, unlike=()):
         calls.append(len(unlike))
@@ -141,7 +141,7 @@ def test_drives_that_were_found_stand_where_a_later_search_is_cut_off(monkeypatc
             raise BudgetExceeded(3.0)
         return true_find(question, means, unlike)
 
-    monkeypatch.setattr(ask, "find_witness", find)
+    monkeypatch.setattr(search, "find_witness", find)
     found = rp.witness(SLOWER, count=3, jobs=1).outcomes[0]
     assert (found.verdict, len(found.drives), calls) == (Verdict.WITNESSED, 1, [0, 1])
     assert "1 of 3 drives" in found.reason

@@ -115,7 +115,7 @@ def test_a_first_scenario_without_a_drive_is_searched_once_for_all(solved, monke
         searched.append(question.query.text.replace(" ", ""))
         return search.Attempt(Verdict.UNKNOWN, None, Why.NONE_FOUND())
 
-    monkeypatch.setattr(siblings, "find_witness", search_in_vain)
+    monkeypatch.setattr("roadproof.engines.search.search.find_witness", search_in_vain)
     monkeypatch.setattr("roadproof.engines.search.impossible.show_impossible", lambda *_: None)
     outcomes = [answer(search_for(number)) for number in numbers]
     assert [outcome.verdict for outcome in outcomes] == [Verdict.UNKNOWN] * 3

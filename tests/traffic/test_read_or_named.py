@@ -20,12 +20,11 @@ from roadproof.recordings.formats import (
     osi,
     samples,
 )
-from roadproof.recordings.formats.reliable import left_out_in
 from roadproof.recordings.formats.table import Table
-from roadproof.recordings.formats.unread import unread_columns
 from roadproof.runtime.xml_element import parse
 from roadproof.world.maps import harmless, lanelet2, opendrive
 from roadproof.world.maps.opendrive import read_map
+from roadproof.world.unread import left_out_in, unread_columns
 from traffic.planar_exid import SAMPLES
 from traffic.schema_parts import Schema, Way, is_read, schema
 from traffic.test_exid import drawn

@@ -179,8 +179,13 @@ def boundary_name(manoeuvre: Course, model: str) -> str:
 
 
 def touched(vehicles: tuple[str, ...]) -> str:
-    """The formula about a drive: SV touches the last of the vehicles."""
-    return f"F touches({vehicles[0]}, {vehicles[-1]})"
+    """The formula about a drive: SV touches the last of the vehicles, and has not passed it before."""
+    return f"meets({vehicles[0]}, {vehicles[-1]})"
+
+
+def passed(vehicles: tuple[str, ...]) -> str:
+    """The formula about a state: SV has passed the last of the vehicles."""
+    return f"isPast({vehicles[0]}, {vehicles[-1]})"
 
 
 GRADUAL: Final = "gradual-deceleration"

@@ -16,7 +16,7 @@ from roadproof.drivers.fuzzy import HERTZ
 from roadproof.drivers.fuzzy_looks import LONGEST, Sight, controlled, known_from
 from roadproof.drivers.lanes import Across, Box, across
 from roadproof.drivers.manoeuvres import ManoeuvreName
-from roadproof.drivers.models import MODELS, ModelName
+from roadproof.drivers.models import MODELS, ModelName, passed
 from roadproof.drivers.outcome import Outcome, Result
 from roadproof.drivers.response import Phase, response
 from roadproof.library.elaborate import read_claim
@@ -289,7 +289,7 @@ def _judged(
     """
     me, last = vehicles[0], vehicles[-1]
     touching = read_claim(home, f"touches({me}, {last})").formula
-    passing = read_claim(home, f"s({me}) - length({me}) > s({last})").formula
+    passing = read_claim(home, passed(vehicles)).formula
     judgement = judge(f.conjunction(touching, passing), drive)
     touch, past = (first_cut(judgement.truth(x), since) for x in (touching, passing))
     if touch is not None and (past is None or touch <= past):

@@ -45,9 +45,11 @@ class Restriction:
         """The scenarios that begin so; all others are as they are."""
         return models.courses_of(self.model) if self.about == "scenarios" else ()
 
-    def as_data(self) -> dict[str, object]:
-        """What an answer says of it, as plain data."""
-        return {"side": self.side, "driver": self.model, "of": self.about, "scenarios": list(self.scenarios)}
+    def as_data(self, schema: str) -> dict[str, object]:
+        """Return what an answer of this schema says of it, as plain data."""
+        by = "formula" if self.about == "drives" or schema in _BY_FORMULA else "model"
+        said = {"side": self.side, "driver": self.model, "of": self.about}
+        return {**said, "scenarios": list(self.scenarios), "drives_by": by}
 
     def __str__(self) -> str:
         said = f"{self.side} ({models.MODELS[self.model].title}; by the formula of a state)"
@@ -71,10 +73,14 @@ def restriction_of(options: Mapping[str, str]) -> Restriction | None:
     return next((x for x in EVERY if x.options.items() <= options.items()), None)
 
 
-def told(options: Mapping[str, str]) -> dict[str, object]:
-    """What the heading of an answer says of a restriction; nothing where there is none."""
+_BY_FORMULA = ("roadproof/explore/1", "roadproof/coverage/1")
+"""Answers whose drives are restricted by the formula of a state alone."""
+
+
+def told(options: Mapping[str, str], schema: str) -> dict[str, object]:
+    """Return what the heading of an answer says of a restriction; nothing where there is none."""
     found = restriction_of(options)
-    return {} if found is None else {"prevention": found.as_data()}
+    return {} if found is None else {"prevention": found.as_data(schema)}
 
 
 # Of signals that no scenario speaks of: any drive may begin so, or not.

@@ -27,7 +27,10 @@ _WANDER = Fraction("0.375")  # m: past it POV is seen to cut out
 
 @dataclass(frozen=True)
 class Course:
-    """SV's brakings (m/s²) with for how many looks each is held; then it goes on. And whether boxes touch."""
+    """SV's brakings (m/s²) with for how many looks each is held; then it goes on.
+
+    ``touches``: whether the boxes touch, and SV has not passed the other vehicle before.
+    """
 
     brakings: tuple[tuple[int, Fraction], ...]
     touches: bool
@@ -110,7 +113,7 @@ def course_of(manoeuvre: m.Manoeuvre, values: m.Values, to_the_end: bool = True)
     other, speed = _other(m.start_of(manoeuvre, values))
     controller = Controller(other.scale)
     brakings: list[tuple[int, int]] = []
-    gone, time, touches = 0, 0, False
+    gone, time, touches, passed = 0, 0, False, False
     for _ in range(_MOST_LOOKS):
         ahead, its_speed = other.at(time)
         gap, braking = other.gap + ahead - gone, 0
@@ -119,10 +122,11 @@ def course_of(manoeuvre: m.Manoeuvre, values: m.Values, to_the_end: bool = True)
             braking = controller.look(gap, other.lengths, speed, its_speed, beside, other.lateral)
         state = _State(time, gap, speed, its_speed)
         acts = braking > 0 or controller.waits
-        if (touches and not to_the_end) or _is_over(other, state, acts and to_the_end):
-            touches = touches or _touches_later(other, state)
+        if ((touches or passed) and not to_the_end) or _is_over(other, state, acts and to_the_end):
+            touches = touches or (not passed and _touches_later(other, state))
             return Course(tuple(_held(other.scale, brakings)) if to_the_end else (), touches)
-        touches = touches or _touches(other, state, braking)
+        passed = passed or _passes(other, state, braking)
+        touches = touches or (not passed and _touches(other, state, braking))
         if not (to_the_end or touches) and _stays_clear(other, state, controller):
             return Course((), False)
         count = 1 if acts else _looks_without(other, state, controller)
@@ -194,6 +198,16 @@ def _touches(other: _Other, now: _State, braking: int) -> bool:
     return way.meets(begin, stands, other.lengths) or rest.meets(Fraction(0), end - stands, other.lengths)
 
 
+def _passes(other: _Other, now: _State, braking: int) -> bool:
+    """Whether SV is past the other, which keeps its speed, before it is in the way, and by the next look."""
+    if now.time >= other.in_way:
+        return False
+    lasts = min(Fraction(TICKS), other.in_way - now.time)
+    closing = now.speed - TICKS * braking - now.its_speed
+    by_then = now.gap - slip(braking) - closing * lasts
+    return now.gap < -other.lengths or by_then < -other.lengths
+
+
 @dataclass(frozen=True)
 class _GapCourse:
     """The gap over time: ``gap - closing*s + bend*s^2/2``."""
@@ -214,16 +228,15 @@ class _GapCourse:
 
 
 def _touches_later(other: _Other, now: _State) -> bool:
-    """Whether the boxes touch once SV's speed does not change any more.
+    """Whether the boxes touch once SV's speed does not change any more; SV has not passed the other so far.
 
-    Where the other brakes, SV stands behind it or is past it, and the gap has been what it is to be.
+    Where the other brakes, SV stands behind it, and the gap has been what it is to be.
     """
     if other.braking:
         return False
     rate = now.its_speed - now.speed
     begin = now.gap + rate * max(Fraction(0), other.in_way - now.time)
-    low_enough, high_enough = begin <= 0 or rate < 0, begin >= -other.lengths or rate > 0
-    return low_enough and high_enough
+    return begin >= -other.lengths and (begin <= 0 or rate < 0)
 
 
 def _held(scale: Scale, brakings: list[tuple[int, int]]) -> Iterator[tuple[int, Fraction]]:

@@ -18,8 +18,12 @@ _SIDE = "cannot prevent a collision with {b} from this side"
 _PARTS: Mapping[str, str] = MappingProxyType(
     {
         "comesIn": "{b}, ahead of {a} and beside its way, comes into it",
+        "isPast": "{a} has passed {b}",
+        "meets": "{a} touches {b}, and has not passed it before",
+        "touches": "{a} touches {b}",
         "hits": "{a} hits {b}, front to rear or side",
         "hasGained": "{a} has gained more than a given distance on {b} when {b} is in its way",
+        "hasEverGained": "{a} has gained more than a given distance on {b}, then or before",
         "stillFaster": "{a} is still faster than {b} when {b} is in its way",
         "gains": "{a} gains more than the gap on {b}",
         "gainsByRamp": "{a} gains more than the gap on {b} while its brakes build up",

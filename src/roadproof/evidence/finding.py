@@ -5,7 +5,7 @@ from enum import StrEnum
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers.shared import KernelWord, Reason
-from roadproof.evidence.codec import LEFT_OUT, Doc
+from roadproof.evidence.codec import LEFT_OUT, Doc, Rule
 from roadproof.evidence.subject import DriverSide, SubjectKind, TestOutcome
 from roadproof.reasons import NO_REASON, Why
 from roadproof.runtime.records import dataclass
@@ -70,6 +70,9 @@ class Finding:
     ] = SubjectKind.OTHER
     name: Annotated[str, LEFT_OUT, Doc("The name of a subject that has a kind, such as that of a test.")] = ""
     shows: Annotated[TestOutcome, LEFT_OUT, Doc("What a test of a catalogue shows.")] = ""
+    set: Annotated[
+        str, Rule(least=1), LEFT_OUT, Doc("The spec set of an entry of an index that has no file.")
+    ] = ""
     drivers: Annotated[
         tuple[DriverSide, ...], LEFT_OUT, Doc("What becomes of a test of a catalogue under driver models.")
     ] = ()

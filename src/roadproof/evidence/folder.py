@@ -285,7 +285,8 @@ def _bound(
     verdict = "WITNESSED" if entry.shows == "drive" else entry.verdict
     claim = statement(entry.assuming, entry.claim) if entry.claim else ""
     said = Finding(entry.where, "index", Acceptance.ACCEPTED, NO_REASON, verdict, entry.label, claim)
-    said = replace(said, subject=entry.subject.kind, name=entry.subject.name)
+    subject, set_name = entry.subject, entry.common.set_name
+    said = replace(said, subject=subject.kind, name=subject.name, set=set_name)
     rejected = replace(said, outcome=Acceptance.REJECTED)
     fault = entry.fault or stray_evidence(entry)
     if fault:

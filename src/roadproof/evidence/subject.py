@@ -26,10 +26,11 @@ OF_TESTS = (SubjectKind.TEST, SubjectKind.RUN, SubjectKind.FACT)
 
 
 class Subject(NamedTuple):
-    """A kind of subject with its name."""
+    """A kind of subject with its name, and the spec set that is asked; empty: that of the whole question."""
 
     kind: SubjectKind = SubjectKind.OTHER
     name: str = ""
+    set: str = ""
 
 
 OTHER: Final = Subject()

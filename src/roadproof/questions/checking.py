@@ -86,6 +86,7 @@ class QuestionFolder:
             claim=claim,
             subject=linked.kind,
             name=linked.name,
+            set=linked.set or self.question.basis.specification.set_name,
         )
         return self.question.tell(name, answer, told) if isinstance(self.question, Telling) else told
 

@@ -192,7 +192,7 @@ class CompareQuestion:
         """Return the view as ``--json`` prints it."""
         return ComparisonData(
             **heading_of(SCHEMA, self.basis),
-            length_error=ComparisonData.bends(self.within.road),
+            **ComparisonData.of_road(self.within.road),
             first=self.asked.first,
             second=self.asked.second,
             relation=view.relation,

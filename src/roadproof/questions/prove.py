@@ -247,8 +247,9 @@ class ProveQuestion:
 
     def subject(self, name: str) -> Subject:
         """Return what requirements link to: a property of the list."""
-        label = _label(self.named[name].task)
-        return Subject(SubjectKind.PROPERTY, label) if label else Subject()
+        task = self.named[name].task
+        label = _label(task)
+        return Subject(SubjectKind.PROPERTY if label else SubjectKind.OTHER, label, task.set_name)
 
     def view(self, known: Answers) -> ClaimsView:
         """Return the claims with their answers."""
@@ -262,7 +263,7 @@ class ProveQuestion:
         """Return the view as ``--json`` prints it."""
         return ClaimsData(
             **heading_of(SCHEMA, self.basis),
-            length_error=ClaimsData.bends(self.road),
+            **ClaimsData.of_road(self.road),
             verdicts=tuple(claim_data(x, place) for x in view.claims),
         )
 

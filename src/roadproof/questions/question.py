@@ -160,4 +160,4 @@ def seen(asking: Generator[tuple[str, Claim], Answer, T], known: Answers) -> T:
 
 def heading_of(schema: str, basis: Basis) -> dict[str, Any]:
     """Return how a view begins as plain data: its kind, the version, the library, what begins so."""
-    return {**heading(schema, basis.library), **restriction.told(basis.specification.options)}
+    return {**heading(schema, basis.library), **restriction.told(basis.specification.options, schema)}

@@ -281,7 +281,7 @@ class WitnessQuestion:
         """Return the view as ``--json`` prints it."""
         return WitnessData(
             **heading_of(SCHEMA, self.basis),
-            length_error=WitnessData.bends(self.road),
+            **WitnessData.of_road(self.road),
             verdicts=tuple(map(result_data, view.results)),
         )
 

@@ -21,7 +21,7 @@ class Concrete:
     ``01_tracks.csv:12,15``. ``claims``: the scenarios and classes that it is meant to show, by definition.
     ``copy_of``: the id of the test of which it is the same in another format, if any. ``roles``: the name of
     the vehicle of each role that it names. ``fault``: why the test cannot be read, concrete or not; its place
-    is then the file that names it where no other is known.
+    is then the file that names it where no other is known. ``strict``: nothing of its files may be left out.
     """
 
     id: str
@@ -31,6 +31,7 @@ class Concrete:
     copy_of: str = ""
     roles: Mapping[str, str] = field(default_factory=dict)
     fault: str = ""
+    strict: bool = False
 
 
 @dataclass(frozen=True)
@@ -82,7 +83,8 @@ class Request:
     ``classes``, ``gaps``, ``explore``: whether classes of scenarios, classes of gaps and ranges are asked
     about too. ``roles``, ``lanes``, ``start``: whether those are looked at that a test fixes, or "any".
     ``near``: how far apart tests that say the same may begin, in m and m/s. ``drivers``: the models that are
-    asked what becomes of tests. Raises ``UsageError``.
+    asked what becomes of tests. ``strict``: a test of whose files vehicles or parts would be left out has a
+    fault. Raises ``UsageError``.
     """
 
     paths: tuple[str, ...]
@@ -95,6 +97,7 @@ class Request:
     start: Look = "fixed"
     near: float = 0.5
     drivers: tuple[str, ...] = tuple(MODELS)
+    strict: bool = False
 
     def __post_init__(self) -> None:
         for name in _CHOICES:

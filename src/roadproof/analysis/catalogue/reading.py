@@ -1,11 +1,11 @@
 """Folders of tests: files that are tests as they are, and ``catalogue.toml``, which says more of them."""
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
 
-from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete, Entry
+from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete, Entry, Request
 from roadproof.analysis.catalogue.listing import FILE_NAME, listed
 from roadproof.drivers.restriction import said_in
 from roadproof.errors import InputError
@@ -17,6 +17,7 @@ from roadproof.recordings.formats.samples import HEADER
 from roadproof.recordings.formats.source import TRACK_FILES, first_line
 from roadproof.recordings.formats.storyboard.distributions import scenarios_of, split
 from roadproof.runtime.files import refuse_name
+from roadproof.world.unread import unread_of_road
 
 _LOOK = 400  # bytes of a file that tell what it is
 
@@ -33,13 +34,15 @@ class _Found:
     is_whole: bool = False
 
 
-def read_catalogue(paths: Iterable[Path | str], specification: Specification) -> Catalogue:
+def read_catalogue(
+    paths: Iterable[Path | str], specification: Specification, strict: bool = False
+) -> Catalogue:
     """The tests of folders and files, in order; one that cannot be read is a test with a fault.
 
     A folder's tests are those of each ``catalogue.toml`` in it, and every drive file, file of samples and
     scenario of CommonRoad or OpenSCENARIO that none of these names; but not the drives of answers about
-    catalogues, which may lie in it. Raises ``InputError`` where there is no test, or nothing but files of
-    tests that cannot be read at all.
+    catalogues, which may lie in it. ``strict``: nothing of the files of tests may be left out. Raises
+    ``InputError`` where there is no test, or nothing but files of tests that cannot be read at all.
     """
     found: list[_Found] = []
     notes: list[str] = []
@@ -60,7 +63,20 @@ def read_catalogue(paths: Iterable[Path | str], specification: Specification) ->
         raise InputError("\n".join(x.entry.fault for x in found if isinstance(x.entry, Concrete)))
     entries = tuple(_with_own_ids(found))
     sources = {entry.id: x.source for entry, x in zip(entries, found, strict=True)}
+    if strict:
+        entries = tuple(_strictly(x, sources[x.id]) for x in entries)
     return Catalogue(entries, tuple(notes), sources)
+
+
+def _strictly(entry: Entry, source: str) -> Entry:
+    """A test of which nothing may be left out, with a fault where parts of the map of its road are."""
+    if isinstance(entry, Concrete):
+        return replace(entry, strict=True)
+    try:
+        unread_of_road(entry.road, strict=True)
+    except InputError as error:
+        return Concrete(entry.id, source, entry.title, entry.claims, fault=str(error))
+    return entry
 
 
 def _with_own_ids(found: Iterable[_Found]) -> Iterator[Entry]:
@@ -171,9 +187,9 @@ def _beginning(path: Path) -> str:
         return ""
 
 
-def read_tests(paths: Sequence[str | Path], plain: Specification, asked: Specification) -> Catalogue:
+def read_tests(request: Request, plain: Specification, asked: Specification) -> Catalogue:
     """Return the tests as the library says them, whatever the scenarios are that are ``asked`` about."""
-    tests = read_catalogue(paths, plain)
+    tests = read_catalogue(request.paths, plain, request.strict)
     if plain is asked:
         return tests
     entries = tuple(

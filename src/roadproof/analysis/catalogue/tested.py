@@ -82,7 +82,7 @@ def tested(
     claimed = (
         ()
         if restricted
-        else (*_of_concrete(asked, concrete, known, gaps.asked), *_of_abstract(asked, abstract, facts))
+        else (*_of_concrete(asked, concrete, known, gaps.asked), *_of_abstract(asked, abstract, facts, known))
     )
     unreadable = (Remark((x.entry.id,), f"cannot be read: {x.fault}") for x in concrete if x.fault)
     # Drive files that are not what they say, judged with their own values.
@@ -225,6 +225,8 @@ def _no_target(claim: str, asked: Questions) -> str:
     number = number_in(claim)
     if number is not None and number in numbers_of(asked.specification):
         return "which is not among the scenarios of this run; add it with --among"
+    if number is None and asked.classes is None:
+        return "but this run is about scenarios only; classes need a run without --no-classes"
     return "but there is no scenario and no class of that name: classes that are proved empty are left out"
 
 
@@ -240,7 +242,10 @@ def _why_of_formula(runs: Fact, asked: Questions) -> str:
     return "" if why is None else f"; on the drive that was found: {why}"
 
 
-def _of_abstract(asked: Questions, abstract: Sequence[Abstract], facts: Sequence[Fact]) -> Iterator[Remark]:
+def _of_abstract(
+    asked: Questions, abstract: Sequence[Abstract], facts: Sequence[Fact], targets: Collection[str]
+) -> Iterator[Remark]:
+    """Tests that can never be run, show nothing, or show no drive of what they claim."""
     by_test: dict[str, dict[str, Fact]] = {}
     for x in facts:
         by_test.setdefault(x.test, {}).setdefault(x.other, x)
@@ -253,6 +258,9 @@ def _of_abstract(asked: Questions, abstract: Sequence[Abstract], facts: Sequence
         if alone is not None and alone.relation == "runs" and not entry.claims and not _says_something(known):
             yield Remark((entry.id,), "shows no scenario" + _why_of_formula(alone, asked))
         for claim in entry.claims:
+            if claim not in targets:
+                yield Remark((entry.id,), f"claims {claim}, {_no_target(claim, asked)}")
+                continue
             fact: Fact | None = known.get(claim)
             if fact is None and alone is not None and claim in alone.also:
                 continue

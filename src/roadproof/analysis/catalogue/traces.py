@@ -62,15 +62,15 @@ def _traces_of(entry: Concrete, known: Collection[str]) -> Iterator[tuple[OneTra
                 f"{entry.place}: roles: the order of the vehicles says their roles; leave roles out"
             )
         ids = entry.place.rpartition(":")[2].split(",")
-        trace = read_pair(entry.place)
+        trace = read_pair(entry.place, strict=entry.strict)
         yield trace, dict(zip(trace.lanes, ids, strict=True))
     elif is_samples(entry):
-        trace = read_samples(path)
+        trace = read_samples(path, strict=entry.strict)
         roles = roles_in(entry, tuple(trace.lanes), known)
         played = play_samples(trace, roles)
         yield replace(played, notes=(*played.notes, *((roles.note,) * bool(roles.note)))), roles.own_names
     else:
-        yield from _all_of(find_source(path).read(), entry, known)
+        yield from _all_of(find_source(path, entry.strict).read(), entry, known)
 
 
 def _all_of(

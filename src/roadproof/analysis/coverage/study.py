@@ -49,6 +49,7 @@ from roadproof.evidence.strict import JsonObject
 from roadproof.library.specification import Query
 from roadproof.reasons import Reason, Why, joined
 from roadproof.verdict import Verdict
+from roadproof.world.unread import unread_of_road
 
 CHUNKS = 7
 """The simple drives of a road are looked through in so many pieces."""
@@ -295,6 +296,7 @@ class Coverage(Unprepared):
             gaps=tuple(gaps),
             needs=tuple(x for x in needs if x is not None),
             traffic=None if surveyed.traffic is None else surveyed.traffic.told,
+            left_out=tuple(x for road in self.survey.roads for x in unread_of_road(road)),
             seconds=round(seconds, 1),
         )
 

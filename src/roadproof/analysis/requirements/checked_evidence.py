@@ -114,7 +114,7 @@ class _Reader:
         library = self._library(path)
         remark = self._remark(finding)
         if not path.is_file() or path.name in (INDEX, HEAD) or finding.kind == "test":
-            specification = self._named_in(finding.label, library)
+            specification = self._in_set_of(finding, library)
             meaning, values = _meaning(specification, finding.claim), self._values(finding)
             return CheckedEvidence(finding, specification, meaning, values, remark=remark)
         digest = hashlib.sha256(read_limited(path, LARGEST_INDEX, "no evidence is larger")).hexdigest()
@@ -122,7 +122,7 @@ class _Reader:
             said = read_evidence(path)
             specification = library.select(said.set_name, said.options)
         except RoadproofError:
-            specification = self._named_in(finding.label, library)
+            specification = self._in_set_of(finding, library)
             meaning = _meaning(specification, finding.claim)
             return CheckedEvidence(finding, specification, meaning, digest=digest)
         drive = None if isinstance(said, Certificate) else said
@@ -146,11 +146,10 @@ class _Reader:
                 self.libraries[folder] = self.libraries[None]
         return self.libraries[folder]
 
-    def _named_in(self, label: str, library: Library) -> Specification:
-        """The set that a label ends with, such as ``P1 scenario 4 ext``."""
-        last = label.rpartition(" ")[2]
+    def _in_set_of(self, finding: Finding, library: Library) -> Specification:
+        """The definitions of the set that a finding names; those of the trace where it names none."""
         options = {name: x for name, x in self.home.options.items() if name in library.options}
-        return library.select(last if last in library.sets else self.home.set_name, options)
+        return library.select(finding.set if finding.set in library.sets else self.home.set_name, options)
 
     def _values(self, finding: Finding) -> Mapping[str, Fraction]:
         """The values that a test was judged with, and those of driver models that were put into it."""

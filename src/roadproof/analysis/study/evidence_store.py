@@ -60,7 +60,7 @@ class Question:
         """How every answer begins: its kind, the version, the library, what begins so that is asked about."""
         from roadproof.drivers.restriction import told
 
-        return {**heading(self.schema, self.library), **told(self.options)}
+        return {**heading(self.schema, self.library), **told(self.options, self.schema)}
 
     @property
     def heading(self) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Why a claim ends UNKNOWN: an enumeration of causes, each with the one option or premise that helps.
+"""Why a claim ends UNKNOWN: an enumeration of causes, each with the options that help, if any are known to.
 
 The prover says where it stopped (``Stop``). Together with the form of the claim this tells the cause: some
 forms need a kind of reasoning that the prover does not have, so that more work is in vain.
@@ -14,7 +14,7 @@ from roadproof.library.specification import Query
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import signals_of
-from roadproof.runtime.budget import Effort
+from roadproof.runtime.budget import Effort, backstop
 from roadproof.runtime.records import dataclass
 from roadproof.world.signals import SIGNALS
 
@@ -36,35 +36,28 @@ class Stop(StrEnum):
     CERTIFICATE = "certificate"
 
 
-# What helps where no option does (``engines.search.remedy`` looks for one).
-WEAKER = "state a weaker claim, with more in its premise"
-# Each cause as a clause, and what helps.
-_WORDS: Mapping[Cause, tuple[str, str]] = {
-    Cause.WORK: ("the work limit ended the search", "raise --effort"),
-    Cause.CLOCK: ("the clock ended the search", "raise --timeout, or ask on an idle machine"),
-    Cause.PROCESS: ("the process of this claim ended", "ask this claim alone, with --jobs 1"),
-    Cause.SOLVER: ("z3 could not decide the arithmetic", WEAKER),
-    Cause.PLACE: ("candidate counterexamples were found, but none could be placed on a road", WEAKER),
-    Cause.FACTS: (
-        "the facts about motion give no proof, and no drive was found that refutes the claim",
-        WEAKER,
-    ),
-    Cause.CERTIFICATE: ("a proof was found, but its certificate could not be confirmed", WEAKER),
-    Cause.LANES: ("the claim asks for more and more lanes and lanelets", WEAKER),
+# Each cause as a clause.
+_WORDS: Mapping[Cause, str] = {
+    Cause.WORK: "the work limit ended the search",
+    Cause.CLOCK: "the clock ended the search",
+    Cause.PROCESS: "the process of this claim ended",
+    Cause.SOLVER: "z3 could not decide the arithmetic",
+    Cause.PLACE: "candidate counterexamples were found, but none could be placed on a road",
+    Cause.FACTS: "the facts about motion give no proof, and no drive was found that refutes the claim",
+    Cause.CERTIFICATE: "a proof was found, but its certificate could not be confirmed",
+    Cause.LANES: "the claim asks for more and more lanes and lanelets",
     Cause.INDUCTION: (
-        "the claim repeats a step of bounded time for ever; the prover has no induction that fits it",
-        WEAKER,
+        "the claim repeats a step of bounded time for ever; the prover has no induction that fits it"
     ),
-    Cause.ALTERNATION: ("a counterexample would have to change infinitely often; none was found", WEAKER),
+    Cause.ALTERNATION: "a counterexample would have to change infinitely often; none was found",
     Cause.FIRST_INSTANT: (
-        "the claim asks for a first instant of what it compares, and signals that jump need not have one",
-        WEAKER,
+        "the claim asks for a first instant of what it compares, and signals that jump need not have one"
     ),
-    Cause.SECOND_ORDER: (
-        "the claim relates positions to accelerations beyond the facts of second order",
-        WEAKER,
-    ),
+    Cause.SECOND_ORDER: "the claim relates positions to accelerations beyond the facts of second order",
 }
+NO_REMEDY = "no option is known that does"
+# How much more work, or time, is asked for.
+_MORE = 4
 
 
 # What was tried, in the order of trial, with its words.
@@ -72,17 +65,31 @@ _TRIES: Mapping[kept.Tried, str] = {"proof": "a proof", "traces": "traces", "dri
 
 
 @dataclass(frozen=True)
+class Remedy:
+    """What helps a claim, as an imperative, and the ``options`` of the command that follow it.
+
+    ``without_assumptions``: the claim is then asked without what it is assumed under.
+    """
+
+    told: str
+    options: tuple[str, ...]
+    without_assumptions: bool = False
+
+
+@dataclass(frozen=True)
 class Doubt:
     """Why a claim ends UNKNOWN. ``units``: the work limit; ``detail``: what a solver said, or empty.
 
-    ``option``: what helps this very claim, where more is known than the cause.
+    ``seconds``: after which the clock ends the search. ``option``: what helps this very claim where more work
+    does not; None where nothing is known to.
     """
 
     cause: Cause
     tried: tuple[kept.Tried, ...]
     units: float
     detail: str = ""
-    option: str | None = None
+    option: Remedy | None = None
+    seconds: float = 600.0
 
     @property
     def effort_helps(self) -> bool:
@@ -90,19 +97,31 @@ class Doubt:
         return self.cause in (Cause.WORK, Cause.CLOCK, Cause.PROCESS)
 
     @property
-    def remedy(self) -> str:
-        """The option or premise that helps, as an imperative; with the work limit where more can help."""
-        more = f" (now {self.units:g})" if self.cause is Cause.WORK else ""
-        return self.option or f"{_WORDS[self.cause][1]}{more}"
+    def remedy(self) -> Remedy | None:
+        """What helps; more work, more time or less company where that can help."""
+        match self.cause:
+            case Cause.WORK:
+                more = ("--effort", f"{self.units * _MORE:g}")
+                return Remedy(f"raise --effort (now {self.units:g})", more)
+            case Cause.CLOCK:
+                more = ("--timeout", f"{self.seconds * _MORE:g}")
+                return Remedy("raise --timeout, or ask on an idle machine", more)
+            case Cause.PROCESS:
+                return Remedy("ask this claim alone, with --jobs 1", ("--jobs", "1"))
+            case _:
+                return self.option
 
     @property
     def kept(self) -> kept.Doubt:
         """As the answer has it."""
+        remedy = self.remedy or Remedy("", ())
         return kept.Doubt(
             cause=self.cause,
             tried=self.tried,
             effort_helps=self.effort_helps,
-            remedy=self.remedy,
+            remedy=remedy.told,
+            options=remedy.options,
+            without_assumptions=remedy.without_assumptions,
             detail=self.detail,
         )
 
@@ -112,10 +131,10 @@ class Doubt:
         elif self.cause in (Cause.CLOCK, Cause.PROCESS):
             return self.detail
         else:
-            said = _WORDS[self.cause][0] + (f" ({self.detail})" if self.detail else "")
-        helps = "may help" if self.effort_helps else "does not help"
+            said = _WORDS[self.cause] + (f" ({self.detail})" if self.detail else "")
         tried = ", ".join(_TRIES[x] for x in self.tried)
-        return f"{said}; tried: {tried}; more work {helps}: {self.remedy}"
+        told = f"{said}; tried: {tried}; more work {'may help' if self.effort_helps else 'does not help'}"
+        return f"{told}, and {NO_REMEDY}" if self.remedy is None else f"{told}: {self.remedy.told}"
 
 
 def doubt_of(
@@ -127,7 +146,8 @@ def doubt_of(
     tried = tuple(x for x in _TRIES if done[x])
     cause = _cause(query.formula, said, stop, effort.units)
     kept = cause in (Cause.CLOCK, Cause.PROCESS, Cause.SOLVER, Cause.CERTIFICATE)
-    return Doubt(cause, tried, effort.units, detail if kept else "")
+    seconds = backstop(effort.units) if effort.timeout is None else effort.timeout
+    return Doubt(cause, tried, effort.units, detail if kept else "", seconds=seconds)
 
 
 def _cause(claim: Formula, said: Sequence[str], stop: Stop, units: float) -> Cause:

@@ -1,13 +1,13 @@
 """A search for drives of values, and its typed outcome."""
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from roadproof.drivers.restriction import restriction_of
 from roadproof.engines.search.driven import Driven
 from roadproof.engines.search.initial_candidates import is_read
 from roadproof.engines.search.outcome import Outcome, Search, undecided
 from roadproof.engines.search.question import FoundDrive, SearchProblem, pose
-from roadproof.engines.search.search import Attempt, find_witness
 from roadproof.engines.search.siblings import find_once, offered
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
@@ -17,6 +17,9 @@ from roadproof.runtime.budget import BudgetExceeded, Effort
 from roadproof.runtime.progress import about, begin
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import Verdict
+
+if TYPE_CHECKING:
+    from roadproof.engines.search.search import Attempt
 
 TRIES, AGAIN = 5, 8.0
 """Drives of a restricted search to which a driver model may object, and units of work for each after one."""
@@ -85,11 +88,13 @@ def _ask(search: Search) -> Outcome:
     )
 
 
-def _attempt(question: SearchProblem, search: Search, objections: list[str]) -> Attempt:
+def _attempt(question: SearchProblem, search: Search, objections: list[str]) -> "Attempt":
     """What a search comes to; a scenario takes the drive of its sibling where that answers it too.
 
     ``objections`` of a driver model to drives that were found are added.
     """
+    from roadproof.engines.search.search import find_witness  # here: what is known needs no numpy
+
     restriction = restriction_of(search.specification.options)
     if restriction is not None and restriction.scenarios:
         return _driven(question, search, Driven(search, question, restriction), objections)
@@ -102,8 +107,10 @@ def _attempt(question: SearchProblem, search: Search, objections: list[str]) -> 
     return sibling or find_once(question, options)
 
 
-def _driven(question: SearchProblem, search: Search, driven: Driven, objections: list[str]) -> Attempt:
+def _driven(question: SearchProblem, search: Search, driven: Driven, objections: list[str]) -> "Attempt":
     """What a search comes to without drives to which a driver model objects."""
+    from roadproof.engines.search.search import Attempt, find_witness
+
     drives = list(search.unlike)
     options = search.search_options
     while len(objections) < TRIES:

@@ -10,8 +10,8 @@ from math import ceil
 from roadproof.drivers.driving import PARAMETERS, DriverSettings, drive_of
 from roadproof.drivers.gradual import RATE
 from roadproof.drivers.lines import Side, boundary_text
-from roadproof.drivers.manoeuvres import MANOEUVRES, OTHER, CutIn, Manoeuvre, Plane, Values, start_of
-from roadproof.drivers.models import MODELS, ModelName
+from roadproof.drivers.manoeuvres import MANOEUVRES, CutIn, Manoeuvre, Plane, Values, start_of
+from roadproof.drivers.models import MODELS, ModelName, passed
 from roadproof.drivers.stepped import beside_change, labels_of
 from roadproof.errors import InputError
 from roadproof.evidence.answer import Answer, undecided
@@ -28,13 +28,12 @@ from roadproof.evidence.claim import Beside, Claim, Lines, parameters_in
 from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.evidence.plate import BoundaryFile, Plate
 from roadproof.library.elaborate import read_claim
-from roadproof.library.scenarios import SUBJECT
 from roadproof.library.specification import Specification
 from roadproof.reasons import Reason, Why
 from roadproof.runtime.canonical import digest
 from roadproof.semantics.exact.algebraic import Point, bounds
+from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.truth import TruthSet
-from roadproof.world.motion import state_at
 
 _ROWS = 10  # in which a drive of a scenario is looked for
 _FINE = 10**9  # of a line, for spans that have no place with few digits
@@ -174,7 +173,7 @@ def first_drive(
     """
     reason = Why.NO_PLACE(side)
     tried, manoeuvre, is_met = 0, plane.manoeuvre, False
-    without = partial(_is_without_drive, manoeuvre, model, reading)
+    without = partial(_is_without_drive, manoeuvre, model, specification, reading)
     left = (x for x in candidates if not (is_met and without(x)))
     for values in islice(left, _LOOKED_AT):
         try:
@@ -195,12 +194,12 @@ def first_drive(
 
 
 def _is_without_drive(
-    manoeuvre: Manoeuvre, model: ModelName, reading: DriverSettings, values: Values
+    manoeuvre: Manoeuvre, model: ModelName, home: Specification, reading: DriverSettings, values: Values
 ) -> bool:
     """Whether no drive of a preventable cut-in is to be expected from these values.
 
-    Either SV is ahead of POV when this comes into its way, which then may hit it from behind; or a gate never
-    opens, and the formula of a driver is about one who brakes. False where there is no exact drive.
+    Either SV passes POV, which then may hit it from behind; or a gate never opens, and the formula of a
+    driver is about one who brakes. False where there is no exact drive.
     """
     start = start_of(manoeuvre, values)
     if not isinstance(start, CutIn):
@@ -208,11 +207,11 @@ def _is_without_drive(
     if model == "careful" and reading.choices.cc_gate != "none" and start.dV0 <= 0:
         return True
     try:
-        moving = drive_of(manoeuvre, model, values, reading).vehicles
+        drive = drive_of(manoeuvre, model, values, reading)
     except InputError:
         return False
-    mine, other = (state_at(moving[name], start.dy0 / start.Vy) for name in (SUBJECT, OTHER))
-    return mine.s - start.length >= other.s
+    past = read_claim(home, f"F {passed(manoeuvre.vehicles)}").formula
+    return judge(past, drive).holds
 
 
 def far_apart(

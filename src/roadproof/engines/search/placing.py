@@ -9,7 +9,7 @@ from typing import get_args
 from roadproof.engines.search.question import zones_of
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, RejectedError
-from roadproof.library.bind import bind, values_with
+from roadproof.library.bind import bind, telling_values, values_with
 from roadproof.library.specification import Library, Query
 from roadproof.logic import formula as f
 from roadproof.logic.formula import is_state
@@ -56,8 +56,12 @@ def placed_on(
 
 
 def judged_as(file: DriveFile, query: Query, library: Library) -> JudgedDrive | None:
-    """The drive where it is, as one of ``query``; None where the judge rejects that."""
-    here = replace(file, formula=query.text, scenario=None)
+    """The drive where it is, as one of ``query``; None where the judge rejects that.
+
+    Its file says the value of each parameter of ``query``, so that it means the same wherever it is read.
+    """
+    told = telling_values(library, query.formula, values_with(library, file.values))
+    here = replace(file, formula=query.text, scenario=None, values={**file.values, **told})
     try:
         return JudgedDrive(here, library)
     except RejectedError:

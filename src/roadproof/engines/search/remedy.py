@@ -7,7 +7,7 @@ drives on a road is posed. Only the answer to it is not computed.
 from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
-from roadproof.engines.prove.doubt import WEAKER, Cause
+from roadproof.engines.prove.doubt import Cause, Remedy
 from roadproof.engines.search.question import Setting, pose, usual_model, usual_road
 from roadproof.errors import InputError, UsageError
 from roadproof.library.compose import negation
@@ -15,19 +15,11 @@ from roadproof.library.motion import MOTION, is_moving, limits_of, limits_said, 
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.rewrite import parameters_of
 
-Attempt: TypeAlias = Callable[[], str | None]
-# What a user can do in words where no option helps.
-_IN_WORDS = {
-    Cause.INDUCTION: "bound the time, such as F[0, 10 s] and G[0, 10 s]",
-    Cause.ALTERNATION: "bound the time, such as F[0, 10 s] and G[0, 10 s]",
-    Cause.LANES: "name the lanes (L, L1) instead of quantifying over them",
-    Cause.CERTIFICATE: "state the parts of the claim as claims of their own",
-    Cause.SOLVER: "bound the signals in the premise",
-}
+Attempt: TypeAlias = Callable[[], Remedy | None]
 
 
-def remedy_of(specification: Specification, query: Query, said: Sequence[str], cause: Cause) -> str | None:
-    """The option or premise that helps, as an imperative; None where the cause alone tells it.
+def remedy_of(specification: Specification, query: Query, said: Sequence[str], cause: Cause) -> Remedy | None:
+    """What helps; None where the cause alone tells it, and where no option is known to help.
 
     ``said``: what the claim is asked under, in words.
     """
@@ -40,24 +32,23 @@ def remedy_of(specification: Specification, query: Query, said: Sequence[str], c
         Cause.FIRST_INSTANT: (lambda: _motion(said),),
     }
     within: Attempt = lambda: _within(specification, query, said)  # noqa: E731
-    for attempt in (*tries.get(cause, ()), within):
-        found = attempt()
-        if found is not None:
-            return found
-    return _IN_WORDS.get(cause, WEAKER)
+    found = (attempt() for attempt in (*tries.get(cause, ()), within))
+    return next((x for x in found if x is not None), None)
 
 
-def _declared(specification: Specification, query: Query, said: Sequence[str]) -> str | None:
+def _declared(specification: Specification, query: Query, said: Sequence[str]) -> Remedy | None:
     """The declared values of parameters, where some have no value yet."""
     open_ = set(parameters_of(query.formula)) - set(values_said(specification, said))
-    return "fix the parameters: --declared" if open_ else None
+    return Remedy("fix the parameters: --declared", ("--declared",)) if open_ else None
 
 
-def _motion(said: Sequence[str]) -> str | None:
-    return None if is_moving(said) else "add --assume motion: positions and speeds are then continuous"
+def _motion(said: Sequence[str]) -> Remedy | None:
+    if is_moving(said):
+        return None
+    return Remedy("add --assume motion: positions and speeds are then continuous", ("--assume", "motion"))
 
 
-def _limits(specification: Specification, query: Query, said: Sequence[str]) -> str | None:
+def _limits(specification: Specification, query: Query, said: Sequence[str]) -> Remedy | None:
     """The limits of a model for a vehicle that has none yet."""
     limited = {x.partition("(")[2].partition(")")[0] for x in limits_said(tuple(said))}
     for name in query.vehicles:
@@ -70,11 +61,12 @@ def _limits(specification: Specification, query: Query, said: Sequence[str]) -> 
             under_limits(specification, query, (*begun, *more))
         except (InputError, UsageError):
             continue
-        return f"add the limits of a vehicle: --assume motion --vehicle {name}={model.name}"
+        options = ("--assume", "motion", "--vehicle", f"{name}={model.name}")
+        return Remedy(f"add the limits of a vehicle: {' '.join(options)}", options)
     return None
 
 
-def _within(specification: Specification, query: Query, said: Sequence[str]) -> str | None:
+def _within(specification: Specification, query: Query, said: Sequence[str]) -> Remedy | None:
     """A question about drives on one road, where it can be posed."""
     road = usual_road(query.formula)
     try:
@@ -83,7 +75,6 @@ def _within(specification: Specification, query: Query, said: Sequence[str]) -> 
             question.bound(lanes)
     except (InputError, UsageError):
         return None
-    option = f"--engine smt --road {road.name}"
-    if not said:
-        return f"ask about drives on one road: {option}"
-    return f"ask about drives on one road, and assume nothing: {option}"
+    options = ("--engine", "smt", "--road", road.name)
+    what = "ask about drives on one road" + (", and assume nothing" if said else "")
+    return Remedy(f"{what}: {' '.join(options)}", options, without_assumptions=bool(said))

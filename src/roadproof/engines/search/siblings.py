@@ -5,6 +5,7 @@ finds the same drive for a scenario whether it is asked for alone or with others
 """
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from roadproof.engines.encode.build import surroundings
 from roadproof.engines.encode.motion import Layout
@@ -17,7 +18,6 @@ from roadproof.engines.search.question import (
     pose,
     zones_of,
 )
-from roadproof.engines.search.search import Attempt, find_witness
 from roadproof.engines.solve.bounds import value_of
 from roadproof.errors import InputError, UsageError
 from roadproof.library.alike import like_of
@@ -28,13 +28,16 @@ from roadproof.semantics.exact.exact import judge
 from roadproof.world.motion import states_at
 from roadproof.world.signals import STARTING
 
+if TYPE_CHECKING:
+    from roadproof.engines.search.search import Attempt
+
 ROUNDED = 0.01  # m and m/s; by how much a drive of rounded numbers may miss what it was looked for under
 MOST = 64  # of the searches whose outcome a process remembers
 
-_remembered: dict[object, Attempt] = {}
+_remembered: dict[object, "Attempt"] = {}
 
 
-def find_once(question: SearchProblem, search_options: SearchOptions) -> Attempt:
+def find_once(question: SearchProblem, search_options: SearchOptions) -> "Attempt":
     """As ``find_witness``; a process searches once for equal formulas, of several spec sets too.
 
     Only for questions on the usual road, which have no start.
@@ -42,6 +45,8 @@ def find_once(question: SearchProblem, search_options: SearchOptions) -> Attempt
     key = _key(question, search_options)
     if key in _remembered:
         return _remembered[key]
+    from roadproof.engines.search.search import find_witness  # here: what is known needs no numpy
+
     attempt = find_witness(question, search_options)
     if len(_remembered) >= MOST:
         _remembered.clear()
@@ -63,7 +68,7 @@ def offered(
     question: SearchProblem,
     setting: Setting,
     search_options: SearchOptions,
-) -> Attempt | None:
+) -> "Attempt | None":
     """The drive of the first scenario that differs in its road sector only, judged for this one.
 
     None where there is no such scenario, where it cannot be asked for with this ``setting`` or is about other

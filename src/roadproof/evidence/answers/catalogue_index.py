@@ -48,6 +48,9 @@ class KeptRequest:
     start: Look
     near: Annotated[float, Rule(minimum=0), Doc("In m and m/s.")]
     drivers: tuple[str, ...]
+    strict: Annotated[
+        bool, LEFT_OUT, Doc("Whether tests are faults of whose files vehicles or parts would be left out.")
+    ] = False
 
 
 @dataclass(frozen=True)
@@ -278,11 +281,7 @@ class Index(Preamble, shared.Heading):
     alike: Annotated[Remarks, Doc("Tests that say the same.")]
     contradictions: Annotated[Remarks, Doc("What was seen although it is proved never to be.")]
     notes: tuple[str, ...]
-    left_out: Annotated[
-        tuple[str, ...],
-        LEFT_OUT,
-        Doc("Those of the notes that say which vehicles and parts of files were left out."),
-    ] = ()
+    left_out: shared.LeftOutParts = ()
     seconds: shared.Seconds = 0.0
 
 

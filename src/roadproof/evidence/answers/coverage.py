@@ -189,6 +189,7 @@ class Index(Preamble, shared.Heading):
         Doc("With --needed, of a set that covers: a drive for each definition that it needs."),
     ] = ()
     traffic: Annotated[Traffic | None, UNCHECKED, Doc("With --on: what recordings hold.")] = None
+    left_out: shared.LeftOutParts = ()
     seconds: shared.Seconds = 0.0
 
 

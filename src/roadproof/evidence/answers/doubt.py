@@ -29,10 +29,14 @@ Tried: TypeAlias = Literal["proof", "traces", "drives"]
 
 @dataclass(frozen=True, kw_only=True)
 class Doubt:
-    """Of an UNKNOWN: its cause, what was tried, and the option or premise that helps."""
+    """Of an UNKNOWN: its cause, what was tried, and the options that help."""
 
     cause: Cause
     tried: tuple[Tried, ...]
     effort_helps: Annotated[bool, Doc("Whether a higher --effort or --timeout can change the answer.")]
-    remedy: str
+    remedy: Annotated[str, Doc("What helps, as an imperative; empty where no option is known to help.")]
+    options: Annotated[tuple[str, ...], Doc("Options of the command that follow the remedy.")]
+    without_assumptions: Annotated[
+        bool, Doc("Whether the remedy is to ask the claim without what it is assumed under.")
+    ]
     detail: Annotated[str, Doc("What a solver or process said; else empty.")]

@@ -105,11 +105,6 @@ class Answer(Place, OnRoad, Observation):
         LEFT_OUT,
         Doc("What is odd in the recording, what was computed, and which vehicles were left out."),
     ] = ()
-    left_out: Annotated[
-        tuple[str, ...],
-        LEFT_OUT,
-        Doc("Those of the notes that say which vehicles and parts of the file were left out."),
-    ] = ()
     drivers: Annotated[
         tuple[DriverVerdict, ...],
         LEFT_OUT,

@@ -57,7 +57,7 @@ def faults_of(data: Fields, library: Library, formulas: Mapping[str, str]) -> It
         yield f"{data.where}: what it says of own signals is not what they are declared"
     options = data.named_texts("options") if "options" in data.content else {}
     begins = {name: x for name, x in data.content.items() if name == "prevention"}
-    if begins and begins != restriction.told(options):
+    if begins and begins != restriction.told(options, data.text("schema")):
         yield f"{data.where}: what it says of a driver that prevents is not what its options say"
     yield from readers()[data.text("schema")].faults(data, background, formulas)
 

@@ -46,3 +46,4 @@ class Answer:
     roadproof: shared.Version
     map: Annotated[str, Doc("The file.")]
     stretches: tuple[Stretch, ...]
+    left_out: shared.LeftOutParts = ()

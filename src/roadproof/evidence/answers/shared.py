@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Any, Literal, TypeAlias
 
 from roadproof import reasons
 from roadproof.evidence.codec import LEFT_OUT, TIMED, UNCHECKED, Doc, Rule
@@ -11,6 +11,7 @@ from roadproof.library.words import Words
 from roadproof.runtime.records import dataclass
 from roadproof.world.length_error import length_error_of
 from roadproof.world.road import Road
+from roadproof.world.unread import unread_of_road
 
 Formula: TypeAlias = Annotated[
     str, Rule(least=1), Doc("A formula or a claim as text (docs/reference/language.md)."), Shared("formula")
@@ -207,6 +208,13 @@ class Prevention:
         Doc("What begins so: scenarios, or, for coverage, drives between two vehicles."),
     ]
     scenarios: Annotated[tuple[Number, ...], Doc("The scenarios that begin so; all others are as they are.")]
+    drives_by: Annotated[
+        Literal["formula", "model"],
+        Doc(
+            "Which drives count: by the formula of a state those that begin so; by the model those in which "
+            "it, in place of SV, ends so."
+        ),
+    ]
 
 
 KeptPrevention: TypeAlias = Annotated[
@@ -234,19 +242,34 @@ KeptLengthError: TypeAlias = Annotated[
 ]
 
 
+LeftOutParts: TypeAlias = Annotated[
+    tuple[str, ...],
+    UNCHECKED,
+    LEFT_OUT,
+    Doc("Notes on vehicles and on parts of files that were left out, such as of the map of the road."),
+    Shared("left_out"),
+]
+
+
 @dataclass(frozen=True, kw_only=True)
 class OnRoad:
     """Of an answer on a road that the question may name."""
 
     length_error: Annotated[KeptLengthError | None, UNCHECKED, LEFT_OUT] = None
+    left_out: LeftOutParts = ()
 
     @staticmethod
-    def bends(road: Road | None) -> "LengthError | None":
-        """The field of an answer on a road."""
-        found = length_error_of(road)
-        if found is None:
-            return None
-        return LengthError(per_cent=float(100 * found.share), metres=float(found.metres))
+    def of_road(road: Road | None) -> dict[str, Any]:
+        """The fields of an answer on a road."""
+        return {"length_error": bends(road), "left_out": unread_of_road(road)}
+
+
+def bends(road: Road | None) -> LengthError | None:
+    """Return the error of lengths on a road; None where it is straight."""
+    found = length_error_of(road)
+    if found is None:
+        return None
+    return LengthError(per_cent=float(100 * found.share), metres=float(found.metres))
 
 
 @dataclass(frozen=True, kw_only=True)

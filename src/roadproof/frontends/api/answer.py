@@ -18,6 +18,7 @@ from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
 from roadproof.world.length_error import LengthError, length_error_of
 from roadproof.world.road import Road
+from roadproof.world.unread import unread_of_road
 
 if TYPE_CHECKING:
     from roadproof.frontends.api.checking import CheckReport, Solver
@@ -71,6 +72,16 @@ class Answer(Table):
     def road(self) -> Road | None:
         """The road that the question names; None where it names none, or the answer is about all roads."""
         return None
+
+    @property
+    def roads(self) -> tuple[Road, ...]:
+        """The roads that the question names."""
+        return () if self.road is None else (self.road,)
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """The notes on parts of files that were left out, such as of the map of a road."""
+        return tuple(x for road in self.roads for x in unread_of_road(road))
 
     @property
     def length_error(self) -> LengthError | None:

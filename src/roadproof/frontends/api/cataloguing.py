@@ -211,7 +211,8 @@ def catalogue(
     ``gaps``: whether each class of gaps that there is (``coverage``) is to be tested too; ``explore``: also
     how far drives of each class that is tested can go, and which part of that nobody tests. ``roles``,
     ``lanes``, ``start``: whether those are looked at that a test fixes, or "any". ``near``: how far apart
-    tests that say the same may begin, in m and m/s. ``preventable``, ``unpreventable``: as for ``witness``;
+    tests that say the same may begin, in m and m/s. ``strict``: a test of whose files vehicles or parts
+    would be left out has a fault. ``preventable``, ``unpreventable``: as for ``witness``;
     gaps are then a question for ``coverage``. ``drivers``: the driver models that are asked what becomes of
     the scenarios that tests show, all where None. ``out``: a folder for evidence on abstract tests, gaps
     and ranges. Raises ``InputError``, ``TextError``, ``UsageError``.
@@ -232,6 +233,7 @@ def catalogue(
         given.start,
         float(given.near),
         models,
+        given.strict,
     )
     basis = basis_of(replace(wanted, sets=wanted.sets[:1]), given, given.vehicles)
     numbers = wanted.among(given.among) or numbers_of(wanted.specification)

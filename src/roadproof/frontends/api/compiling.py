@@ -22,16 +22,21 @@ from roadproof.runtime.files import hold_folder, write_whole
 from roadproof.runtime.records import dataclass
 from roadproof.semantics.streaming.c_files import FLAGS, CSource, compile_c
 from roadproof.semantics.streaming.functions import StreamMonitor
+from roadproof.world.road import Road
 
 Target: TypeAlias = Literal["c"]
 
 
 @dataclass(frozen=True, repr=False)
 class CompiledMonitors(Table):
-    """Monitors in C, a function for each formula; ``folder``: where the files are, None where in none."""
+    """Monitors in C, a function for each formula; ``folder``: where the files are, None where in none.
+
+    ``road``: that on which relations to lanes are computed, if any.
+    """
 
     source: CSource
     folder: Path | None = None
+    road: Road | None = None
 
     @property
     def files(self) -> Mapping[str, str]:
@@ -94,24 +99,25 @@ def compile(
         raise UsageError(f"name={given.name}: write letters, digits and _, and a letter first")
     if given.lanes and given.road is None:
         raise UsageError("lanes: the lanes of which road? Name it, or leave lanes to the flags of samples")
+    road = None if given.road is None else as_road(given.road, given.strict)
     each = [what] if isinstance(what, int | str) or not isinstance(what, Iterable) else what
     formulas: dict[str, tuple[str, Formula]] = {}
     for k, x in enumerate(home.each(each), 1):
         number, query = home.numbered(x)
         label = _free(_label(number, query, k), formulas)
-        formulas[label] = query.text, _with_values(query, home, given)
+        formulas[label] = query.text, _with_values(query, home, given, road)
     source = compile_c(formulas, positive("dt", given.dt, "s"), given.name, given.memory)
     if out is None:
-        return CompiledMonitors(source)
+        return CompiledMonitors(source, road=road)
     with hold_folder(Path(out)):
         for name, text in source.files.items():
             write_whole(Path(out) / name, text.encode())
-    return CompiledMonitors(source, Path(out))
+    return CompiledMonitors(source, Path(out), road)
 
 
-def _with_values(query: Query, home: Definitions, given: Compile) -> Formula:
-    if given.road is not None:
-        return bind(query.formula, as_road(given.road), dict(given.lanes or {}), home.all_values())
+def _with_values(query: Query, home: Definitions, given: Compile, road: Road | None) -> Formula:
+    if road is not None:
+        return bind(query.formula, road, dict(given.lanes or {}), home.all_values())
     refuse_variables(query.formula)
     return with_values(query.formula, home.all_values())
 

@@ -35,6 +35,7 @@ from roadproof.runtime.executors import Jobs, hands_of
 from roadproof.runtime.files import hold_folder
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
+from roadproof.world.road import Road
 
 ROADS, ELSEWHERE = ("main-2", "main-3"), ("main-3", "merge", "depart")
 COMPLETE = "complete"
@@ -83,6 +84,10 @@ class Coverages(StudyAnswers[Coverage, Kept, kept.Record], BuildResult):
             found += [one.certificate, *(gap.drive for gap in one.gaps)]
         found += [x.drive for x in self.surveyed.needs]
         return tuple(x for x in found if x is not None)
+
+    @property
+    def roads(self) -> tuple[Road, ...]:
+        return tuple(self.study.survey.roads)
 
     @property
     def exit_code(self) -> ExitCode:
@@ -145,8 +150,8 @@ def coverage(
 
     ``wider``: the set that catches all (complete, where it extends the set); ``roads``: where drives are
     looked for; ``needed``: of a set that covers, also a drive for each definition that it needs. ``on``:
-    recordings in which the classes are counted, ``strict``: none without bad vehicles; ``tell`` is told how
-    far that is. ``preventable``,
+    recordings in which the classes are counted; ``strict``: no file of which vehicles or parts would be
+    left out; ``tell`` is told how far that is. ``preventable``,
     ``unpreventable``: the name of a driver model, for drives that begin with a manoeuvre whose collision it
     prevents, or cannot prevent. ``out``: a folder in which
     answers are kept as they come. Raises ``InputError``, ``UsageError``.
@@ -163,7 +168,8 @@ def coverage(
     between = sets_between(home.library, name, wider or COMPLETE)
     if wider is not None and not between:
         raise UsageError(f"--wider {wider} does not extend --set {name}: name a set that extends it")
-    where = tuple(as_road(road) for road in dict.fromkeys(ROADS if given.roads is None else given.roads))
+    named = dict.fromkeys(ROADS if given.roads is None else given.roads)
+    where = tuple(as_road(road, given.strict) for road in named)
     study = Coverage(GapSurvey(basis, between, where, tuple(map(as_road, ELSEWHERE))), given.needed)
     recordings = None if given.on is None else recordings_in(Path(given.on), given.strict)
 

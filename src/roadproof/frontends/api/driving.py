@@ -13,7 +13,7 @@ from roadproof.frontends.settings import recordings as settings
 from roadproof.frontends.settings.keywords import MotionKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.value_types import RoadLike
-from roadproof.library.bind import Number, exact, values_with
+from roadproof.library.bind import Number, exact, telling_values, values_with
 from roadproof.library.roles import cast_of
 from roadproof.library.scenarios import LANE, Scenario, name_of, vehicles_of
 from roadproof.world.drive import Drive, Motion, pieces_of
@@ -93,7 +93,6 @@ def drive(
     judge's reason where it does not hold, ``UsageError``, ``TextError``.
     """
     from roadproof.engines.search.question import assignments, usual_road
-    from roadproof.library.bind import telling_values
 
     home = definitions_of(using)
     for name, moved in vehicles.items():

@@ -1,5 +1,6 @@
 """Roads of maps: what a file has to offer, and a stretch of it."""
 
+from collections.abc import Iterable
 from pathlib import Path
 
 from roadproof.errors import UsageError
@@ -14,6 +15,7 @@ from roadproof.world.maps.overview import MapStretch, all_stretches, describe
 from roadproof.world.maps.selection import read_selection, select
 from roadproof.world.models import load_road
 from roadproof.world.road import Road
+from roadproof.world.unread import unread_note
 
 PICTURES = (".svg", ".png")
 
@@ -26,17 +28,20 @@ def road(name_or_path: str | Path) -> Road:
     return load_road(name_or_path)
 
 
-def stretches(map_file: str | Path, out: str | Path | None = None) -> tuple[MapStretch, ...]:
+def stretches(
+    map_file: str | Path, out: str | Path | None = None, strict: bool = False
+) -> tuple[MapStretch, ...]:
     """The roads of a map in each direction, or the one stretch that is selected after ``#``.
 
-    ``out``: a picture of them, .svg or .png. Raises ``InputError``, ``UsageError``; ``MissingSolverError``
-    for a picture without matplotlib.
+    ``out``: a picture of them, .svg or .png; ``strict``: no part of the map may be left out. Raises
+    ``InputError``, ``UsageError``; ``MissingSolverError`` for a picture without matplotlib.
     """
     path, selection = read_selection(str(map_file))
     if "#" in str(map_file):
         found: tuple[MapStretch, ...] = (describe(str(map_file), "", "", select(path, selection)),)
     else:
         found = all_stretches(path)
+    left_out_of(map_file, found, strict)
     if out is not None:
         kind = Path(out).suffix
         if kind not in PICTURES:
@@ -45,9 +50,19 @@ def stretches(map_file: str | Path, out: str | Path | None = None) -> tuple[MapS
     return found
 
 
+def left_out_of(map_file: str | Path, found: Iterable[MapStretch], strict: bool = False) -> tuple[str, ...]:
+    """The note on parts of the map that were left out; if ``strict``, there may be none.
+
+    Raises ``InputError``.
+    """
+    parts = dict.fromkeys(part for stretch in found for part in stretch.unread)
+    return unread_note(Path(str(map_file).partition("#")[0]), parts, strict)
+
+
 def as_data(map_file: str | Path, found: tuple[MapStretch, ...]) -> JsonObject:
     """The stretches of a map as plain data."""
-    return write(kept.Answer(roadproof=VERSION, map=str(map_file), stretches=tuple(_said(x) for x in found)))
+    said, left_out = tuple(map(_said, found)), left_out_of(map_file, found)
+    return write(kept.Answer(roadproof=VERSION, map=str(map_file), stretches=said, left_out=left_out))
 
 
 def _said(stretch: MapStretch) -> kept.Stretch:

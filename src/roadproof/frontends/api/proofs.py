@@ -161,7 +161,7 @@ class Proofs(QuestionAnswers[ClaimsView], BuildResult):
         claims = (claim_data(x, place, _said(says[x.name]) if x.name in says else None) for x in self.answers)
         data = ClaimsData(
             **heading(SCHEMA, self.library),
-            length_error=ClaimsData.bends(self.road),
+            **ClaimsData.of_road(self.road),
             verdicts=tuple(claims),
             kernel=None if self.kernel is None else self.kernel.kept,
         )
@@ -359,6 +359,7 @@ def _within_limits(asked: ProveQuestion, home: Definitions, engine: Engine, give
             "engine='dense'"
         )
     where = SearchPlace(road=given.road, vehicles=given.vehicles, horizon=given.horizon, dt=given.dt)
+    where = replace(where, strict=given.strict)
     place = replace(setting(home, where), values=dict(home.values))
     within = exists(place, SearchOptions("any", engine))
     basis = replace(asked.basis, values=dict(home.values))

@@ -14,6 +14,7 @@ from roadproof.library.scenarios import numbers_of, roles
 from roadproof.runtime.budget import Effort
 from roadproof.world.models import load_road, load_vehicle
 from roadproof.world.road import Road
+from roadproof.world.unread import unread_of_road
 from roadproof.world.vehicle import Vehicle
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ def setting(using: Definitions, given: SearchPlace) -> "Setting":
     from roadproof.engines.search.question import Setting
 
     return Setting(
-        None if given.road is None else as_road(given.road),
+        None if given.road is None else as_road(given.road, given.strict),
         dict(given.lanes or {}),
         models_of(given.vehicles),
         values=values_with(using.library, using.values),
@@ -60,9 +61,14 @@ def searches_of(
             yield Search(here.specification, query, place, search_options, scenario=scenario)
 
 
-def as_road(road: RoadLike) -> Road:
-    """A road, from its name or file where it is none yet. Raises ``InputError``."""
-    return road if isinstance(road, Road) else load_road(str(road))
+def as_road(road: RoadLike, strict: bool = False) -> Road:
+    """A road, from its name or file where it is none yet; ``strict``: no part of its map may be left out.
+
+    Raises ``InputError``.
+    """
+    found = road if isinstance(road, Road) else load_road(str(road))
+    unread_of_road(found, strict)
+    return found
 
 
 def positive(name: str, value: Number, unit: str) -> Fraction:

@@ -11,6 +11,7 @@ from roadproof.analysis.catalogue.decisions import Decision
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.answers import monitor as kept
 from roadproof.evidence.answers.monitor import Override, Place, Truth
+from roadproof.evidence.answers.shared import bends
 from roadproof.evidence.codec import write
 from roadproof.evidence.drive_file import DriveFile, load_drive
 from roadproof.evidence.heading import heading
@@ -41,8 +42,8 @@ from roadproof.recordings.evaluate.one_trace import (
     read_vehicles,
     refuse_unmeasured,
     sample_drive,
+    with_causes,
 )
-from roadproof.recordings.formats.reliable import left_out_in
 from roadproof.recordings.formats.sources import has_numbers
 from roadproof.recordings.formats.storyboard.drives import read_storyboard_drive
 from roadproof.recordings.formats.table import Frame, columns_of
@@ -50,6 +51,7 @@ from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 from roadproof.world.length_error import LengthError, length_error_of
 from roadproof.world.road import Road
+from roadproof.world.unread import left_out_in, unread_of_road
 
 # A path, a judged drive, a drive file, a trace that was read, or columns by name: arrays, or a frame.
 TraceLike: TypeAlias = str | Path | JudgedDrive | DriveFile | OneTrace | Mapping[str, Any] | Frame
@@ -109,7 +111,7 @@ class MonitorAnswer(Table):
         x = self.observed
         answer = kept.Answer(
             **heading(kept.SCHEMA, self.library),
-            length_error=kept.Answer.bends(self.road),
+            length_error=bends(self.road),
             formula=x.formula,
             view=x.view,
             end=x.convention,
@@ -162,7 +164,8 @@ def trace(columns: "Mapping[str, Any] | Frame", road: RoadLike = "main-2") -> On
     ``a_lon a_lat`` (m/s^2), ``length width`` (m): a row a time and vehicle, in equal steps. Raises
     ``InputError`` with column, row, value and rule.
     """
-    return of_columns(columns_of(columns), as_road(road))
+    known = as_road(road)
+    return replace(of_columns(columns_of(columns), known), notes=unread_of_road(known))
 
 
 @takes(Monitor)
@@ -291,7 +294,10 @@ def _on_trace(
 ) -> MonitorAnswer:
     number, query = home.numbered(what, samples.lanes)
     if not samples.names:
-        roles = cast_of([*samples.lanes], query.vehicles, given.roles or {}, f"{samples.source}: roles")
+        try:
+            roles = cast_of([*samples.lanes], query.vehicles, given.roles or {}, f"{samples.source}: roles")
+        except InputError as error:
+            raise with_causes(error, left_out_in(samples.notes)) from None
         samples = play_samples(samples, roles)
     lanes = _lanes(home, query, number, samples, known, given)
     formula = bind(query.formula, samples.road, lanes, values)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.options import read_hands, write_build_results, write_json
-from roadproof.frontends.cli.progress import Counter, tell_bends, warn
+from roadproof.frontends.cli.progress import Counter, tell_road, warn
 from roadproof.frontends.settings.flags import read_flag, read_keywords
 from roadproof.frontends.settings.groups import Readings
 from roadproof.frontends.settings.option import Settings
@@ -89,5 +89,6 @@ def hand_over(
             print(line)
         for name, said in found.library.freedom.items():
             print(f"{name} is {said}")
-    tell_bends(found.road)
+    for road in found.roads:
+        tell_road(road)
     return found.exit_code

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import read_definitions
 from roadproof.frontends.cli.options import print_answer
-from roadproof.frontends.cli.progress import clear, note, tell_bends, tell_stage
+from roadproof.frontends.cli.progress import clear, note, tell_road, tell_stage
 from roadproof.frontends.settings.flags import read_flag, read_keywords
 from roadproof.frontends.settings.questions import Compare
 from roadproof.runtime.progress import listening
@@ -47,5 +47,5 @@ def run(args: argparse.Namespace) -> int:
         found = compare(args.first, args.second, home, each=show, **read_keywords(args, Compare))
     clear()
     print_answer(found, args.json)
-    tell_bends(found.road)
+    tell_road(found.road)
     return found.exit_code

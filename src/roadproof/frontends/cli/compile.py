@@ -3,6 +3,7 @@
 import argparse
 
 from roadproof.frontends.cli.basis import read_definitions
+from roadproof.frontends.cli.progress import tell_road
 from roadproof.frontends.settings.flags import read_keywords
 from roadproof.frontends.settings.recordings import Compile
 from roadproof.verdict import ExitCode
@@ -31,5 +32,8 @@ def run(args: argparse.Namespace) -> int:
     from roadproof.frontends.api.compiling import compile
 
     home = read_definitions(args, Compile)
-    print(compile(args.formulas, args.to, args.out, home, **read_keywords(args, Compile)))
+    given = read_keywords(args, Compile)
+    found = compile(args.formulas, args.to, args.out, home, **given)
+    print(found)
+    tell_road(found.road)
     return ExitCode.AS_EXPECTED

@@ -67,7 +67,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _tell_notes(out: Path, totals: "Totals") -> None:
     """What is odd in the recordings, what was left out first, on the screen; all of it is in the results."""
-    from roadproof.recordings.formats.reliable import LEFT_OUT
+    from roadproof.world.unread import LEFT_OUT
 
     remarks = [(name, remark) for name, each in totals.notes.items() for remark in each]
     remarks.sort(key=lambda remark: not remark[1].startswith(LEFT_OUT))

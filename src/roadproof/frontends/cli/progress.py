@@ -67,6 +67,15 @@ def warn(line: str) -> None:
     print(line, file=sys.stderr, flush=True)
 
 
+def tell_road(road: "Road | None") -> None:
+    """Say what was left out of the map of a road on which a question was asked, and how far it bends."""
+    from roadproof.world.unread import unread_of_road
+
+    for told in unread_of_road(road):
+        warn(f"note: {told}")
+    tell_bends(road)
+
+
 def tell_bends(road: "Road | None") -> None:
     """Say how far lengths in lanes are from those in s, where a question was asked on a road with bends."""
     from roadproof.world.length_error import told_bends

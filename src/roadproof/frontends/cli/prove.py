@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from roadproof.errors import UsageError
 from roadproof.frontends.cli.basis import in_order, read_definitions, study_keywords
 from roadproof.frontends.cli.options import write_build_results, write_json
-from roadproof.frontends.cli.progress import Counter, clear, tell_bends, tell_stage
+from roadproof.frontends.cli.progress import Counter, clear, tell_road, tell_stage
 from roadproof.frontends.cli.streams import print_at_once
 from roadproof.frontends.settings.questions import Prove
 from roadproof.runtime.progress import listening
@@ -77,7 +77,7 @@ def run(args: argparse.Namespace) -> int:
     write_build_results(args, replace(found, places=_places(args, asked)))
     if args.json:
         write_json(found.as_data(), args.json)
-    tell_bends(found.road)
+    tell_road(found.road)
     return found.exit_code
 
 

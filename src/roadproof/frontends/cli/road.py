@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from roadproof.frontends.cli.options import write_json
+from roadproof.frontends.cli.progress import warn
 from roadproof.frontends.settings.commands import Road
 from roadproof.verdict import ExitCode
 
@@ -37,9 +38,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.frontends.api.maps import as_data, stretches
+    from roadproof.frontends.api.maps import as_data, left_out_of, stretches
 
-    found = stretches(args.map, args.out)
+    found = stretches(args.map, args.out, args.strict)
+    for told in left_out_of(args.map, found):
+        warn(f"note: {told}")
     if args.json:
         write_json(as_data(args.map, found), args.json)
     if args.json != "-":

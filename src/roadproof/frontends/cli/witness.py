@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from roadproof.frontends.cli.basis import in_order, read_definitions, study_keywords
 from roadproof.frontends.cli.options import add_what_arguments, some_or_all, write_build_results, write_json
-from roadproof.frontends.cli.progress import clear, tell_bends, tell_stage
+from roadproof.frontends.cli.progress import clear, tell_road, tell_stage
 from roadproof.frontends.cli.streams import print_at_once
 from roadproof.frontends.settings.questions import Witness
 from roadproof.runtime.progress import listening
@@ -66,5 +66,5 @@ def run(args: argparse.Namespace) -> int:
         print(found.summary)
     if plain:
         print(*found.supposed, sep="\n", end="\n" * bool(found.supposed))
-    tell_bends(found.road)
+    tell_road(found.road)
     return found.exit_code

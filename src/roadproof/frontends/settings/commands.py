@@ -34,6 +34,7 @@ class Road(Answered):
     """Options of ``roadproof road``."""
 
     out: str | Path | None = output(None, "--out FILE", "draw the road to FILE, .svg or .png", read=Path)
+    strict: bool = strict_reading()
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -59,9 +59,9 @@ def pictures_of(what: str = "pictures", command_line_only: bool = False) -> Any:
     return output(True, "--no-pictures", f"draw no {what}", keyword=keyword, rare=True)
 
 
-def strict_reading() -> Any:
-    """``strict``: recordings are read as a whole or not at all."""
-    return option(False, "--strict", "reject a recording with bad vehicles, and leave none out")
+def strict_reading(rare: bool = False) -> Any:
+    """``strict``: files are read as a whole or not at all."""
+    return option(False, "--strict", "reject a file of which vehicles or parts would be left out", rare=rare)
 
 
 def map_road() -> Any:
@@ -228,6 +228,7 @@ class SearchPlace(Models):
         rare=True,
     )
     collisions: bool = search(False, "--allow-collisions", "allow vehicles to overlap", rare=True)
+    strict: bool = strict_reading(rare=True)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -43,6 +43,7 @@ class SearchPlaceKeywords(ModelsKeywords, total=False):
     dt: Number | None
     reach: Number
     collisions: bool
+    strict: bool
 
 
 class TracesKeywords(TypedDict, total=False):
@@ -127,6 +128,7 @@ class ProveKeywords(ModelsKeywords, BudgetKeywords, RunKeywords, total=False):
     horizon: Number
     dt: Number | None
     drive: bool
+    strict: bool
     kernel: Kernel | None
 
 
@@ -224,6 +226,7 @@ class CatalogueKeywords(ModelsKeywords, BudgetKeywords, RunKeywords, PreventionK
     roles: Look
     lanes: Look
     start: Look
+    strict: bool
     near: float
     drivers: Iterable[str] | None
 
@@ -282,5 +285,6 @@ class CompileKeywords(TypedDict, total=False):
     dt: Number
     road: RoadLike | None
     lanes: Mapping[str, str] | None
+    strict: bool
     memory: int
     name: str

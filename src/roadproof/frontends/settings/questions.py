@@ -123,6 +123,7 @@ class Prove(groups.Definitions, groups.Models, groups.Budget, groups.Run, groups
         rare=True,
     )
     drive: bool = search(True, "--no-drive", "search no drive that refutes a claim", rare=True)
+    strict: bool = groups.strict_reading(rare=True)
     kernel: Kernel | None = option(
         None,
         "--kernel",

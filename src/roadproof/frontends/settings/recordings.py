@@ -204,6 +204,7 @@ class Compile(groups.Values):
     lanes: Mapping[str, str] | None = option(
         None, "--lane [L=]LANE", "with --road: lane that L means", read=named("L"), gather=dict
     )
+    strict: bool = groups.strict_reading()
     memory: int = option(
         65_536, "--memory N", "bytes that the state of a monitor may take (default: 65536)", read=whole(1)
     )

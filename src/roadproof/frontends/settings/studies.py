@@ -171,6 +171,7 @@ class Catalogue(
     roles: Look = groups.fixed_or_any("--roles", "choices of roles")
     lanes: Look = groups.fixed_or_any("--lanes", "lanes")
     start: Look = groups.fixed_or_any("--start", "instants")
+    strict: bool = groups.strict_reading()
     near: float = option(
         0.5,
         "--near X",

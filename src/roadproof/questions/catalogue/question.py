@@ -77,7 +77,7 @@ class CatalogueQuestion:
     def tests(self) -> Catalogue:
         """The tests. Raises ``InputError``, ``TextError``."""
         home = self.basis.specification
-        return read_tests(self.request.paths, unrestricted(home), home)
+        return read_tests(self.request, unrestricted(home), home)
 
     @cached_property
     def concrete(self) -> tuple[Concrete, ...]:

@@ -19,8 +19,8 @@ from roadproof.evidence.answers import catalogue_index as kept
 from roadproof.evidence.answers.catalogue_index import Figure
 from roadproof.library.bind import values_with
 from roadproof.questions.question import Place, heading_of
-from roadproof.recordings.formats.reliable import left_out_in
 from roadproof.runtime.records import dataclass
+from roadproof.world.unread import left_out_in, unread_of_road
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,18 @@ class CatalogueView:
             f"made with {', '.join(those)}, and judged with what is asked for: {', '.join(tests)}"
             for those, tests in made.items()
         )
-        return (*self.catalogue.notes, *self._noted(lambda note: True), *others)
+        return (*self.catalogue.notes, *self._noted(lambda note: True), *others, *self._unlike())
+
+    def _unlike(self) -> Iterator[str]:
+        """A note where tests are compared of which some are judged from more instants than others."""
+        freedom = self.request.freedom
+        if {x.dense for x in self.concrete if not x.fault} == {True, False} and not (
+            freedom.lanes and freedom.start
+        ):
+            yield (
+                "drive files are judged from their start in their lane, samples from every instant in "
+                "every lane; --start any --lanes any judges both so"
+            )
 
     @property
     def left_out(self) -> tuple[str, ...]:
@@ -123,9 +134,11 @@ class CatalogueView:
     def _noted(self, wanted: Callable[[str], bool]) -> tuple[str, ...]:
         """The notes on tests that are wanted, each with the tests that it is about."""
         tests: dict[str, list[str]] = {}
-        for x in self.concrete:
-            for note in filter(wanted, x.notes):
-                tests.setdefault(note, []).append(x.entry.id)
+        every = [(x.entry.id, x.notes) for x in self.concrete]
+        every += [(x.id, unread_of_road(x.road)) for x in self.catalogue.entries if isinstance(x, Abstract)]
+        for own_id, notes in every:
+            for note in filter(wanted, notes):
+                tests.setdefault(note, []).append(own_id)
         return tuple(f"{', '.join(names)}: {note}" for note, names in tests.items())
 
     @property

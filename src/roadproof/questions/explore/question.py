@@ -137,7 +137,7 @@ class ExploreQuestion:
         return ExploreData(
             **heading_of(SCHEMA, self.basis),
             **said,
-            length_error=ExploreData.bends(self.road),
+            **ExploreData.of_road(self.road),
             seconds=seconds,
             explored=tuple(explored),
         )

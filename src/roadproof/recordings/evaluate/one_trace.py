@@ -5,7 +5,7 @@ Where a file is one trace, it has for every time one row a vehicle, in equal ste
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence, Sized
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Sized
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import combinations, product
@@ -23,12 +23,10 @@ from roadproof.logic.rewrite import signals_of, with_values
 from roadproof.recordings.evaluate.traces import KIND, by_vehicle, gather_one, refuse_missing
 from roadproof.recordings.formats import openscenario, samples
 from roadproof.recordings.formats.recording import BACKWARDS, Bools, Recording, kind_called, own_numbers
-from roadproof.recordings.formats.reliable import left_out_in
 from roadproof.recordings.formats.source import beside
 from roadproof.recordings.formats.sources import find_source, has_numbers
 from roadproof.recordings.formats.straight import of_road, whole
 from roadproof.recordings.formats.table import Column, Table
-from roadproof.recordings.formats.unread import unread_note
 from roadproof.semantics.exact.robust import MOST_SAMPLES
 from roadproof.semantics.sampled.batch import Array, Batch
 from roadproof.world.drive import Drive, value_at
@@ -36,6 +34,7 @@ from roadproof.world.models import load_recorded_road, load_road
 from roadproof.world.motion import states_at
 from roadproof.world.road import Lanelet, Road
 from roadproof.world.signals import FIXED, RECORDED, SIGNALS, SIZES, SignalName, SizeName
+from roadproof.world.unread import left_out_in, unread_of_road
 
 _PAIR = re.compile(r"(?P<path>.+):(?P<ids>\d{1,9}(?:,\d{1,9}){0,2})")
 
@@ -165,10 +164,14 @@ def _find(recording: Recording, number: int, text: str) -> int:
     place = np.flatnonzero(recording.vehicle_id == number)
     if not len(place):
         known = f"{recording.vehicle_id.min()} to {recording.vehicle_id.max()}"
-        left_out = [f"\n{x}" for x in left_out_in(recording.notes)]
         told = f"recording {recording.name} has no vehicle {number}; ids are {known}"
-        raise InputError(f"{text}: {told}{''.join(left_out)}")
+        raise with_causes(InputError(f"{text}: {told}"), left_out_in(recording.notes))
     return int(place[0])
+
+
+def with_causes(error: InputError, notes: Iterable[str]) -> InputError:
+    """Return an error about a vehicle that is missing with the notes that may say why, a line each."""
+    return InputError("\n".join((str(error), *notes)))
 
 
 def cut_trace(
@@ -273,9 +276,12 @@ def read_samples(path: Path, road: Road | None = None, strict: bool = False) -> 
         known = beside(path, samples.ROAD_ENDING)
         road = load_recorded_road(known[0])[0] if known else load_road(USUAL_ROAD)
     if path.suffix != ".xosc":
-        notes += unread_note(Path((road.map or "").partition("#")[0]), road.unread, strict)
+        notes += unread_of_road(road, strict)
     lists = {name: values.tolist() for name, values in table.columns.items()}
-    made = of_columns(lists, road, str(path))
+    try:
+        made = of_columns(lists, road, str(path))
+    except InputError as error:
+        raise with_causes(error, notes) from None
     doubts = samples.doubts_in(table, of_road(road, samples.DIRECTION, path), computed)
     return replace(made, notes=(*notes, *doubts, *_overlaps(made), *backwards(made)), faults=faults)
 

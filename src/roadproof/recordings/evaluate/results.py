@@ -29,11 +29,11 @@ from roadproof.recordings.evaluate.evaluate import Findings, Trace
 from roadproof.recordings.evaluate.foretelling import LABELS
 from roadproof.recordings.evaluate.matching import Match, PossibleMatch
 from roadproof.recordings.evaluate.questions import Settings
-from roadproof.recordings.formats.reliable import left_out_in
 from roadproof.recordings.formats.repeats import FramePair
 from roadproof.runtime.canonical import digest
 from roadproof.runtime.files import make_folder, whole_file
 from roadproof.runtime.package_data import program
+from roadproof.world.unread import left_out_in
 
 RECORDING_SCHEMA = "roadproof/recording-findings/5"
 MATCH_COLUMNS = tuple(

@@ -23,12 +23,12 @@ from roadproof.recordings.formats.recording import Bools, Floats, Integers, Reco
 from roadproof.recordings.formats.reliable import contradicts_motion, named, reliable
 from roadproof.recordings.formats.repeats import moments_of
 from roadproof.recordings.formats.source import Format, find_files
-from roadproof.recordings.formats.unread import unread_note
 from roadproof.runtime.xml_reader import Element, number_in, read_xml, summary_of
 from roadproof.runtime.xml_reader import unread as unread_parts
 from roadproof.world.maps.commonroad import lanelets_of
 from roadproof.world.maps.harmless import COMMONROAD
 from roadproof.world.maps.network import ZONES_ENDING
+from roadproof.world.unread import unread_note
 
 
 def read_commonroad(path: Path, strict: bool = True, truck_length: float = 7.0) -> Recording:

@@ -19,15 +19,10 @@ from roadproof.reasons import Why
 from roadproof.recordings.formats.clock import Rate
 from roadproof.recordings.formats.plausible import LARGEST_ACCELERATION, LARGEST_SIZE, LARGEST_SPEED
 from roadproof.recordings.formats.recording import Floats
-from roadproof.recordings.formats.reliable import (
-    LEFT_OUT,
-    MOST_LEFT_OUT,
-    left_out_note,
-    named,
-    rate_of_change,
-)
+from roadproof.recordings.formats.reliable import MOST_LEFT_OUT, left_out_note, named, rate_of_change
 from roadproof.runtime.xml_element import text_of
 from roadproof.runtime.xml_reader import Element, number_in
+from roadproof.world.unread import LEFT_OUT
 
 LARGEST_PLACE, LARGEST_ORIENTATION = 1e8, 100.0
 """m, as in all coordinates of maps, and rad, which need not be one turn."""

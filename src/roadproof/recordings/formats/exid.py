@@ -37,11 +37,10 @@ from roadproof.recordings.formats.levelx import (
 )
 from roadproof.recordings.formats.measured_roads import place_traffic
 from roadproof.recordings.formats.recording import Floats, Integers, Recording, with_notes
-from roadproof.recordings.formats.reliable import LEFT_OUT, reliable
+from roadproof.recordings.formats.reliable import reliable
 from roadproof.recordings.formats.source import Files, Format, beside, first_line
 from roadproof.recordings.formats.table import Table
 from roadproof.recordings.formats.tracks import RATE_AT, files_of, find_recordings, read_tracks, usable
-from roadproof.recordings.formats.unread import unread_note
 from roadproof.runtime.xml_reader import Element, by_id, number_in, read_xml
 from roadproof.world.maps.lanelet2 import Bounded, directed, lanelets_among, tag_of
 from roadproof.world.maps.lanelet2 import unread_of as unread_parts
@@ -49,6 +48,7 @@ from roadproof.world.maps.lines import way_along
 from roadproof.world.maps.network import ZONES_ENDING
 from roadproof.world.maps.projections import UtmPoint, utm_of
 from roadproof.world.maps.topology import MeasuredLanelet
+from roadproof.world.unread import LEFT_OUT, unread_note
 
 NO_LANES = frozenset(
     "emergency_lane walkway shared_walkway crosswalk stairs bicycle_lane rail parking".split()  # noqa: SIM905

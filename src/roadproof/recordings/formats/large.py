@@ -44,7 +44,7 @@ from roadproof.recordings.formats.samples import (
     number_vehicles,
     road_of,
     unread_of,
-    unread_of_road,
+    unread_of_named,
     vehicles_of,
 )
 from roadproof.recordings.formats.straight import StraightRoad
@@ -97,7 +97,7 @@ def write_large(
     ``digests`` of what it is made of, in the format called ``form``. Unless it is ``strict``, bad vehicles
     are left out. Raises ``InputError``.
     """
-    lanes, unread = road_of(path, road), unread_of_road(road, strict)
+    lanes, unread = road_of(path, road), unread_of_named(road, strict)
     with tempfile.TemporaryDirectory(dir=folder, prefix=".") as temporary:
         stamp = stamp_of(path)
         survey = _survey(path, strict)

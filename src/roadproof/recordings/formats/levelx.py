@@ -25,7 +25,7 @@ from roadproof.recordings.formats.recording import Floats, Integers
 from roadproof.recordings.formats.source import first_line
 from roadproof.recordings.formats.table import Kind, Table, kinds_of, read_named
 from roadproof.recordings.formats.tracks import cells_of, in_order, match_vehicles, rate_of, vehicles_by_id
-from roadproof.recordings.formats.unread import unread_columns
+from roadproof.world.unread import unread_columns
 
 RECORDING_KINDS = kinds_of(integer="recordingId locationId", number="frameRate xUtmOrigin yUtmOrigin")
 VEHICLE_KINDS = kinds_of(

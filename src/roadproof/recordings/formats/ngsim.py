@@ -34,9 +34,9 @@ from roadproof.recordings.formats.source import Files, Format, find_files, first
 from roadproof.recordings.formats.straight import StraightRoad, of_road, record
 from roadproof.recordings.formats.table import Kind, Table, kinds_of, read_table
 from roadproof.recordings.formats.tracks import Rule, without_bad
-from roadproof.recordings.formats.unread import unread_columns
 from roadproof.world.models import load_recorded_road
 from roadproof.world.signals import RECORDED, SIZES, SignalName, SizeName
+from roadproof.world.unread import unread_columns
 
 RATE = 10
 STEP = 100

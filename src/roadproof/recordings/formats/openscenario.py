@@ -19,7 +19,6 @@ import numpy as np
 
 from roadproof.errors import InputError
 from roadproof.recordings.formats.recording import Floats, Recording
-from roadproof.recordings.formats.reliable import LEFT_OUT
 from roadproof.recordings.formats.samples import DIRECTION, LABEL, recording_of
 from roadproof.recordings.formats.source import Files, Format, with_suffix
 from roadproof.recordings.formats.storyboard.box import Box
@@ -43,6 +42,7 @@ from roadproof.runtime.xml_reader import Element
 from roadproof.semantics.exact.robust import MOST_SAMPLES
 from roadproof.world.road import Road
 from roadproof.world.signals import RECORDED, SIZES
+from roadproof.world.unread import LEFT_OUT
 
 RATE = 25
 """Samples a second."""

@@ -36,9 +36,9 @@ from roadproof.recordings.formats.selected_roads import chart_of, place_on_road
 from roadproof.recordings.formats.source import Files, Format, beside, with_suffix
 from roadproof.recordings.formats.table import CellError
 from roadproof.recordings.formats.tracks import Rule, without_bad
-from roadproof.recordings.formats.unread import unread_note
 from roadproof.runtime.file_kind import other_format
 from roadproof.world.maps.network import ZONES_ENDING
+from roadproof.world.unread import unread_note
 
 ENDING = ".osi"
 SENSOR_VIEW = "_sv_"

@@ -34,12 +34,11 @@ from roadproof.recordings.formats.recording import (
     with_notes,
 )
 from roadproof.world.signals import SignalName
+from roadproof.world.unread import LEFT_OUT, left_out_in
 
 MOST_LEFT_OUT = 0.5
 """Above this share of vehicles that would be left out, a recording is rejected as a whole."""
 SHOWN = 50
-LEFT_OUT = "left out"
-"""How notes on that begin."""
 _REPAIRED: Mapping[SignalName, str] = {
     "a_lon": "accelerations along the road of {} contradict their velocities; they were computed from the "
     "velocities",
@@ -60,11 +59,6 @@ class LeftOut:
 def left_out_note(vehicles: Sequence[object], of: int, reason: Reason) -> str:
     """A note that so many ``of`` vehicles were left out, with the first of them."""
     return f"{LEFT_OUT} {len(vehicles)} of {of} vehicles ({named(vehicles)}): {reason}"
-
-
-def left_out_in(notes: Iterable[str]) -> tuple[str, ...]:
-    """Those of the notes that say which vehicles and parts of files were left out."""
-    return tuple(x for x in notes if x.startswith(LEFT_OUT))
 
 
 def losses_of(recording: Recording) -> list[str]:

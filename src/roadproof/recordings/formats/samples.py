@@ -46,11 +46,11 @@ from roadproof.recordings.formats.table import (
     read_pieces,
     read_table,
 )
-from roadproof.recordings.formats.unread import unread_columns, unread_note
 from roadproof.runtime.file_kind import other_format
 from roadproof.runtime.files import refuse_name
 from roadproof.world.models import load_recorded_road, load_road
 from roadproof.world.signals import RECORDED, SIGNALS, SIZES
+from roadproof.world.unread import unread_columns, unread_of_road
 
 PIECE = 250_000
 """Rows of a large file that are in memory at once."""
@@ -198,14 +198,13 @@ def read_recording(path: Path, strict: bool = True, road: str | None = None) -> 
     Raises ``InputError``. Vehicles that are not called by whole numbers are numbered; ``notes`` tell how.
     """
     columns = read_columns(path)
-    unread = (*unread_of(columns, strict), *unread_of_road(road, strict))
+    unread = (*unread_of(columns, strict), *unread_of_named(road, strict))
     return recording_of(columns, road_of(path, road), path.stem, unread, strict)
 
 
-def unread_of_road(road: str | None, strict: bool) -> tuple[str, ...]:
-    """A note on parts of the map of a road that were not read; refused if ``strict``."""
-    parts = () if road is None else load_road(road).unread
-    return unread_note(Path(str(road).partition("#")[0]), parts, strict)
+def unread_of_named(road: str | None, strict: bool) -> tuple[str, ...]:
+    """The note on parts of the map of a named road that were not read; refused if ``strict``."""
+    return () if road is None else unread_of_road(load_road(road), strict)
 
 
 def road_of(path: Path, road: str | None = None) -> StraightRoad:

@@ -27,7 +27,6 @@ from roadproof.recordings.formats.measured_roads import (
 )
 from roadproof.recordings.formats.recording import Bools, Floats, Integers, Recording, offsets
 from roadproof.recordings.formats.reliable import left_out_note, named
-from roadproof.recordings.formats.unread import unread_note
 from roadproof.world.lanelet_rules import shared_boundaries
 from roadproof.world.maps.lines import even_line
 from roadproof.world.maps.network import MeasuredLane, Network
@@ -36,6 +35,7 @@ from roadproof.world.maps.selection import Selection, Stretch, is_map, read_sele
 from roadproof.world.maps.topology import MeasuredLanelet
 from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.road import Lanelet
+from roadproof.world.unread import unread_note
 
 _SPACING = 2.0
 """Metres between the points of a bound, and of the line that s is measured on."""

@@ -31,7 +31,7 @@ class MapStretch:
 
     ``lanes``: the least and the greatest number side by side. ``radius`` of the sharpest bend (m), None where
     the road is straight. ``refused``: why it cannot be used; then only ``select``, ``name`` and ``length``
-    are known.
+    are known. ``unread``: kinds of parts of the map that were not read and may have an effect.
     """
 
     select: str
@@ -46,6 +46,7 @@ class MapStretch:
     lanelets: tuple[Lanelet, ...] = ()
     line: ReferenceLine | None = None
     refused: str = ""
+    unread: tuple[str, ...] = ()
 
     @property
     def untyped_ramps(self) -> bool:
@@ -98,6 +99,7 @@ def describe(select: str, name: str, direction: str, stretch: Stretch) -> MapStr
         length_error(line, lanelets),
         lanelets,
         line,
+        unread=stretch.unread,
     )
 
 

@@ -134,6 +134,7 @@ def as_settings(request: KeptRequest) -> Catalogue:
         lanes=request.lanes,
         start=request.start,
         near=request.near,
+        strict=request.strict,
         drivers=None if request.drivers == (*MODELS,) else request.drivers,
     )
 

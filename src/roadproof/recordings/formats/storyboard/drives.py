@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import TypeAlias
 
 from roadproof.errors import InputError
-from roadproof.recordings.formats.reliable import LEFT_OUT
 from roadproof.recordings.formats.storyboard.actions import Actor
 from roadproof.recordings.formats.storyboard.box import Box
 from roadproof.recordings.formats.storyboard.conditions import TICKS
@@ -33,6 +32,7 @@ from roadproof.runtime.records import dataclass
 from roadproof.world.drive import Across, Along, Drive, Motion, motion_of
 from roadproof.world.road import Road
 from roadproof.world.signals import STARTING, Kind
+from roadproof.world.unread import LEFT_OUT
 
 DIGITS = 9
 CLOSE = 1e-4

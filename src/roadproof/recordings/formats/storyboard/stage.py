@@ -6,16 +6,15 @@ from dataclasses import replace
 from pathlib import Path
 
 from roadproof.errors import InputError
-from roadproof.recordings.formats.reliable import LEFT_OUT
 from roadproof.recordings.formats.storyboard.box import Box
 from roadproof.recordings.formats.storyboard.document import Document, open_document
 from roadproof.recordings.formats.storyboard.routes import longer, stretch_of
 from roadproof.recordings.formats.storyboard.run import Play, run_storyboard
-from roadproof.recordings.formats.unread import unread_note
 from roadproof.runtime.records import dataclass
 from roadproof.runtime.xml_reader import Element, number_in
 from roadproof.world.models import load_road
 from roadproof.world.road import Road
+from roadproof.world.unread import LEFT_OUT, unread_note
 
 _KINDS = {
     "car": "Car",
