@@ -7,17 +7,20 @@ one scenario holds on it and others do not is one claim.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 
 from roadproof.analysis.basis import Basis
 from roadproof.engines.search.known_drive import recast
 from roadproof.engines.search.question import usual_road
 from roadproof.evidence.answer import Answer, undecided
 from roadproof.evidence.claim import Claim, Exists, claim_of, valid_under
+from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.bind import bind, values_with
 from roadproof.library.compose import both, implication, negation
 from roadproof.library.scenarios import Scenario, vehicles_of
 from roadproof.library.specification import Query, Specification
+from roadproof.logic.formula import And, Formula
 from roadproof.questions.order.kinds import Cast, Kind, Reading, casts_of, name_of, own_cast
 from roadproof.questions.question import Answers, Steps
 from roadproof.reasons import NO_REASON, Reason, Why, joined
@@ -114,11 +117,20 @@ class JudgedDrives:
                 [v for x in (mine, *others) for v in x.vehicles],
             )
             judge, values = LazyJudge.on(file.drive), values_with(basis.library, file.values)
-            bound = (
-                bind(x.query(basis.specification).formula, file.road, file.lanes, values) for x in others
-            )
+            formulas = tuple(x.query(basis.specification).formula for x in others)
+            bound = _all_bound(formulas, file, values)
             self.known[key] = drive, tuple(judge.holds(x) for x in bound)
         return self.known[key][1]
+
+
+def _all_bound(
+    formulas: tuple[Formula, ...], file: DriveFile, values: Mapping[str, Fraction]
+) -> Sequence[Formula]:
+    """Return formulas on the road of a drive: bound together where they stay apart, which is quicker."""
+    together = bind(And(formulas), file.road, file.lanes, values)
+    if isinstance(together, And) and len(together.parts) == len(formulas) > 1:
+        return together.parts
+    return [bind(x, file.road, file.lanes, values) for x in formulas]
 
 
 @dataclass
