@@ -21,6 +21,7 @@ from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.api.drives import drives_asked
 from roadproof.frontends.settings.questions import Witness
+from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.questions.question import walk
 from roadproof.questions.redundancy import Changes, RedundancyQuestion, changes_of

@@ -17,6 +17,10 @@ from roadproof.errors import RoadproofError
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library
 from roadproof.logic.rewrite import parameters_of
+from roadproof.questions.settle import look_up
+from study.asking import Asking
+from study.changes import DRIVER, PAIRS, UNCHANGED, changes_of, unchanged_options
+from study.commands import EVERY
 
 LEAF, NEAR = "text: leaf, which two sets share", "text: near, whose variable is called as a parameter"
 SHORT: dict[str, tuple[str, ...]] = {
