@@ -3,6 +3,7 @@
 import doctest
 import json
 import multiprocessing
+import os
 import subprocess
 import sys
 from importlib import import_module
@@ -13,7 +14,7 @@ import pytest
 
 import roadproof as rp
 from roadproof import _HOMES
-from roadproof.engines.search import compare as comparing
+from roadproof.engines.search.batches import Engines
 from roadproof.errors import MissingSolverError, UsageError
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.kernel import coq
@@ -21,6 +22,7 @@ from roadproof.frontends.api.completing import _free
 from roadproof.frontends.api.kernel import KernelQuestion, write
 from roadproof.frontends.api.restricting import drivers_of
 from roadproof.frontends.cli.main import main
+from roadproof.questions import settle
 from tables import read_table
 
 HEAVY = tuple(read_table(__file__, "heavy"))
@@ -187,7 +189,7 @@ def test_a_catalogue_names_another_set(chosen: str, told: tuple[str, ...]) -> No
     drive = EXAMPLE / "drives" / "braking.json"
     using = rp.load(chosen)
     found = rp.catalogue(drive, among="4", using=using, classes=False, drivers=(), jobs=1)
-    assert found.in_force == told
+    assert found.view.in_force == told
 
 
 # --- What a question is at, told while it is asked; how whoever listens ends it; compare with both at once
@@ -242,47 +244,58 @@ def test_both_directions_are_answered_alike_however_they_are_asked(jobs):
     came: dict[str, str] = {}
     told: list[rp.Stage] = []
     answer = rp.compare(
-        BEFORE, AFTER, jobs=jobs, each=lambda name, x: came.update({name: str(x.verdict)}), stage=told.append
+        BEFORE,
+        AFTER,
+        jobs=jobs,
+        fresh=True,
+        each=lambda name, x: came.update({name: str(x.verdict)}),
+        stage=told.append,
     )
     assert answer.relation == "weaker"
     assert came == {"first implies second": "REFUTED", "second implies first": "PROVED"}
-    assert {x.of for x in told} == {*came}
+    one, other = (f"F[0, {x}] danger(SV, POV)" for x in ("1.2 s", "0.6 s"))
+    assert {x.of for x in told} == {f"{one} and not {other} base", f"{other} and not {one} base"}
     assert answer.check().accepted
 
 
+def is_forward(claim):
+    """Whether a claim is that a drive has the first formula, and not the second."""
+    return claim.query.text.startswith("F[0, 1.2 s]")
+
+
 def test_the_first_answer_is_told_while_the_other_is_still_looked_for(monkeypatch):
-    plain, told = comparing._imply, multiprocessing.get_context("fork").Event()
+    plain, told = Engines.settle, multiprocessing.get_context("fork").Event()
 
-    def wait(question):
-        if question.name == "first implies second":
+    def wait(engines, claim):
+        if is_forward(claim):
             assert told.wait(300)
-        return plain(question)
+        return plain(engines, claim)
 
-    monkeypatch.setattr(comparing, "_imply", wait)
+    monkeypatch.setattr(Engines, "settle", wait)
+    monkeypatch.setattr(settle, "is_fork_unsafe", lambda: False)
     came: list[str] = []
-    rp.compare(BEFORE, AFTER, jobs=2, each=lambda name, _: (came.append(name), told.set()))
+    rp.compare(BEFORE, AFTER, jobs=2, fresh=True, each=lambda name, _: (came.append(name), told.set()))
     assert came == ["second implies first", "first implies second"]
 
 
 def test_a_direction_that_is_lost_or_late_leaves_the_other(monkeypatch):
-    plain = comparing._imply
+    plain = Engines.settle
 
-    def die(question):
-        if question.name == "first implies second":
-            import os
-
+    def die(engines, claim):
+        if is_forward(claim):
             os._exit(7)
-        return plain(question)
+        return plain(engines, claim)
 
-    monkeypatch.setattr(comparing, "_imply", die)
-    answer = rp.compare(BEFORE, AFTER, jobs=2)
-    forward, backward = answer.comparison.directions.values()
+    monkeypatch.setattr(Engines, "settle", die)
+    monkeypatch.setattr(settle, "is_fork_unsafe", lambda: False)
+    answer = rp.compare(BEFORE, AFTER, jobs=2, fresh=True)
+    forward, backward = answer.view.directions.values()
     assert (str(forward.verdict), str(backward.verdict)) == ("UNKNOWN", "PROVED")
     assert "its process ended each time" in forward.reason
-    monkeypatch.setattr(comparing, "_imply", plain)
-    late = rp.compare(BEFORE, AFTER, jobs=1, timeout=1e-6)
-    assert {x.verdict for x in late.comparison.directions.values()} == {rp.Verdict.UNKNOWN}
-    assert all("cut off by the clock" in x.reason for x in late.comparison.directions.values())
+    monkeypatch.setattr(Engines, "settle", plain)
+    late = rp.compare(BEFORE, AFTER, jobs=1, timeout=1e-6, fresh=True)
+    assert {x.verdict for x in late.view.directions.values()} == {rp.Verdict.UNKNOWN}
+    assert all("cut off by the clock" in x.reason for x in late.view.directions.values())
 
 
 def test_the_command_line_tells_each_answer_when_it_is_there(capsys):

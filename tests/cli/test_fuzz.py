@@ -17,7 +17,6 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import pytest
-from roadproof.engines.search.compare import compare
 
 from roadproof.analysis.study import pool
 from roadproof.engines.search import ask
@@ -148,7 +147,6 @@ def replace_everywhere(monkeypatch: pytest.MonkeyPatch, function: object, other:
 def test_no_command_line_is_our_fault(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROADPROOF_TRACEBACK", "1")
     replace_everywhere(monkeypatch, pool.work, begin)
-    replace_everywhere(monkeypatch, compare, begin_at_once)
     replace_everywhere(monkeypatch, ask.answer, begin_at_once)
     replace_everywhere(monkeypatch, serve, begin_at_once)
     files = make_files(tmp_path)

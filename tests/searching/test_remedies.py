@@ -1,23 +1,24 @@
 """Whoever follows the remedy of an UNKNOWN gets no error, and not the same UNKNOWN again."""
 
 import json
+import os
 import re
 from functools import cache
 from random import Random
 
 import pytest
-from roadproof.analysis.claims import ClaimResult
 
 import roadproof as rp
 from roadproof.engines.prove.doubt import NO_REMEDY, Cause, Doubt, Remedy, Stop, doubt_of
+from roadproof.engines.search.batches import Engines
 from roadproof.engines.search.remedy import remedy_of
-from roadproof.frontends.api.proofs import claims_of
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.settings.option import Settings
 from roadproof.frontends.settings.questions import Prove
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.library.motion import split
+from roadproof.questions import settle
 from roadproof.reasons import Why
 from roadproof.runtime.budget import Effort
 
@@ -188,11 +189,12 @@ def test_the_seconds_of_a_doubt_are_those_of_the_clock():
     assert told == [("--timeout", "28"), ("--timeout", "14400")]
 
 
-def test_a_claim_whose_process_ended_is_asked_alone():
-    study = claims_of(rp.load(), ["v_lon(SV) > 9 m/s"], None)
-    [found] = study.doubt(study.tasks[0], Why.WORKERS()).values()
-    assert isinstance(found, ClaimResult)
-    assert found.as_settled().doubt.options == ("--jobs", "1")
+def test_a_claim_whose_process_ended_is_asked_alone(monkeypatch):
+    monkeypatch.setattr(Engines, "settle", lambda self, claim: os._exit(7))
+    monkeypatch.setattr(settle, "is_fork_unsafe", lambda: False)
+    found, _ = rp.prove("v_lon(SV) > 9 m/s", "v_lon(SV) > 8 m/s", jobs=2, fresh=True).as_data()["verdicts"]
+    assert (found["verdict"], found["doubt"]["cause"]) == ("UNKNOWN", "process")
+    assert found["doubt"]["options"] == ["--jobs", "1"]
 
 
 @pytest.mark.parametrize("cause", BY_FORM)

@@ -93,7 +93,7 @@ class Engines:
     def settle(self, claim: Claim) -> tuple[Answer, Cost]:
         """Return the answer to a claim, and what it cost; in doubt where the clock cuts it off."""
         begun = now()
-        with about(claim.text):
+        with about(f"{claim.query.text} {claim.home.set_name}"):
             answer, cost = self._settle(claim)
         return answer, replace(cost, seconds=since(begun))
 

@@ -11,11 +11,11 @@ from roadproof.world.drive import Drive
 
 def shipped_drives() -> Iterator[Drive]:
     """Yield each drive of a shipped answer of ``witness``, once."""
-    seen: set[Drive] = set()
+    seen: list[Drive] = []
     for key, text in archived("witness").items():
         content: Any = json.loads(text)
         if content.get("schema") in SCHEMAS_READ:
             drive = read_drive(content, key).drive
             if drive not in seen:
-                seen.add(drive)
+                seen.append(drive)
                 yield drive

@@ -6,22 +6,24 @@ from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
-from roadproof.analysis.redundancy import Change, ChangeFinding, SharedFindings, _ExaminationJobs, changes_of
 
 from judge.cases import drives
-from roadproof.analysis import redundancy
 from roadproof.analysis.basis import Basis
+from roadproof.engines.search import batches
 from roadproof.engines.search.ask import ask as ask_for_drive
+from roadproof.engines.search.batches import Engines
 from roadproof.engines.search.outcome import Outcome, Search
 from roadproof.engines.solve.smt import ask as ask_solver
+from roadproof.evidence.answer import Answer
 from roadproof.evidence.certificate import refusal
 from roadproof.evidence.judged import judge_file
 from roadproof.frontends.cli.main import main
 from roadproof.library.bind import bind
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
-from roadproof.library.scenarios import Scenario, without_sectors
 from roadproof.library.specification import Query, Specification
+from roadproof.questions import redundancy
+from roadproof.questions.redundancy import Change, ChangeFinding, Changes, RedundancyQuestion, changes_of
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict
@@ -67,41 +69,48 @@ def test_simple_predicates_are_opened_only_when_asked() -> None:
     assert len(changes("F rssViolation(SV,POV)")) == 2
 
 
-def decide(number: int, part: str, value: bool) -> ChangeFinding:
-    """The finding on the first change of ``part`` in a scenario of base."""
-    examining = _ExaminationJobs(BASIS, Scenario(number, "base"))
-    found = changes_of(BASE, examining.query)
-    change = next(x for x in found if x.part == part and x.value is value)
-    return examining._decide(change)
+def decide(number: int, part: str, value: bool, basis: Basis = BASIS) -> ChangeFinding:
+    """The finding on the first change of ``part`` in a scenario of base, its claims asked in turn."""
+    asked = RedundancyQuestion(basis, Changes(among=(number,)))
+    first = next(
+        place for place, x in enumerate(asked.changes(number)) if x.part == part and x.value is value
+    )
+    names, claims = asked.named(number)[first]
+    engines, known = Engines(asked.work), dict[str, Answer]()
+    for name, claim in zip(names, (claims.equal, claims.moving, claims.apart), strict=True):
+        known[name], _ = engines.settle(claim)
+        if redundancy._decides(known[name]):
+            break
+    return asked.view(known).findings[number][first]
 
 
 def test_adjacent_lanes_are_redundant_in_scenario_3() -> None:
     part = "atLane(SV, L) and (some M in adjacentLanes(L): atLane(POV, M))"
     finding = decide(3, part, False)
     assert finding.verdict is Verdict.PROVED
-    assert finding.certificate is not None
-    assert finding.certificate.claim.startswith("scenario_3(SV, POV, L) <-> ")
-    assert refusal(finding.certificate, bundled_library(), ask_solver) is None
+    assert finding.shown is not None
+    certificate = finding.shown.certificate
+    assert certificate is not None
+    assert certificate.claim.startswith("scenario_3(SV, POV, L) <-> ")
+    assert refusal(certificate, bundled_library(), ask_solver) is None
 
 
 def test_what_a_scenario_needs_is_shown_by_a_drive() -> None:
-    found = [x for x in changes("scenario_8(SV,POV,L)") if x.part == "aheadOf(SV, POV)" and not x.value]
-    examining = _ExaminationJobs(BASIS, Scenario(8, "base"))
-    examining._collect()
-    finding = examining._decide(found[0])
+    finding = decide(8, "aheadOf(SV, POV)", False)
     assert finding.verdict is Verdict.REFUTED
-    assert finding.drive is not None
-    assert finding.drive.file.formula == f"scenario_8(SV, POV, L) and not ({found[0].changed.text})"
-    assert judge_file(finding.drive.file, bundled_library()).accepted
+    assert finding.apart is not None
+    assert finding.apart.drive is not None
+    drive = finding.apart.drive.file
+    assert drive.formula == f"scenario_8(SV, POV, L) and not ({finding.change.changed.text})"
+    assert judge_file(drive, bundled_library()).accepted
 
 
 @pytest.fixture
 def few_changes(monkeypatch: pytest.MonkeyPatch) -> None:
     """Only the changes of one part of scenarios 3 and 11, so that a run takes seconds."""
 
-    def few(home: Specification, query: Query, whole: bool = False, stated: bool = False) -> Iterator[Change]:
-        changes = changes_of(home, query, whole, stated)
-        yield from (x for x in changes if x.part.startswith(("sameLane", "aheadOf")))
+    def few(home: Specification, query: Query, whole: bool = False) -> Iterator[Change]:
+        yield from (x for x in changes_of(home, query, whole) if x.part.startswith(("sameLane", "aheadOf")))
 
     monkeypatch.setattr(redundancy, "changes_of", few)
 
@@ -115,7 +124,7 @@ def test_scenarios_that_differ_in_their_road_only_share_drives(
         searched.append(search.query.text)
         return ask_for_drive(search)
 
-    monkeypatch.setattr(redundancy, "ask", counted)
+    monkeypatch.setattr(batches, "ask", counted)
     out = tmp_path / "out"
     line = ["redundancy", "--among", "3,11", "--out", str(out), "--jobs", "1", "--json", "-"]
     assert main(line) == 0
@@ -124,40 +133,25 @@ def test_scenarios_that_differ_in_their_road_only_share_drives(
         x["redundant"] for x in whole if x["scenario"] == 11
     ]
     assert searched
-    assert not any("scenario_11" in x for x in searched)
+    assert not any("scenario_11" in x and "not" in x for x in searched)
     assert main(["check", str(out), "--jobs", "1"]) == 0
     capsys.readouterr()
 
-    (out / "answers/scenario-11.json").unlink()
+    for path in (*out.glob("needed-11-*.json"), *out.glob("redundant-11-*.json")):
+        path.unlink()
     searched.clear()
     assert main(line) == 0
     assert json.loads(capsys.readouterr().out)["verdicts"] == whole
-    assert not searched
-
-
-def test_what_was_looked_for_in_vain_is_not_looked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    (change,) = (x for x in changes("scenario_3(SV,POV,L)") if x.part == "aheadOf(POV, SV)" and not x.value)
-    learned = SharedFindings(vain=frozenset({without_sectors(change.changed.formula)}))
-    monkeypatch.setattr(redundancy, "ask", lambda request: pytest.fail("searched again"))
-    (twin,) = (x for x in changes("scenario_11(SV,POV,L)") if x.part == "aheadOf(POV, SV)" and not x.value)
-    finding = _ExaminationJobs(BASIS, Scenario(11, "base"), learned)._decide(twin)
-    assert finding.verdict is Verdict.REFUTED
-    assert finding.trace is not None
-    assert "another road" in finding.reason
+    assert not any("scenario_11" in x and "not" in x for x in searched)
 
 
 def test_what_motion_makes_redundant_is_proved_for_motion() -> None:
     """SV need not be asked to keep its lane until it or POV1 has left it: one of them leaves first."""
-    part = "laneKeep(SV, L) U not sameLane(SV, POV1, L)"
-    (change,) = (x for x in changes("scenario_2(SV,POV1,POV2,L)") if x.part == part and x.value)
-    finding = _ExaminationJobs(Basis(BASE, proof=10.0), Scenario(2, "base"))._redundant_in_motion(change)
-    assert finding is not None
+    finding = decide(2, "laneKeep(SV, L) U not sameLane(SV, POV1, L)", True, Basis(BASE, proof=10.0))
     assert finding.verdict is Verdict.PROVED
     assert finding.assuming is not None
     assert finding.assuming.text.count(" U not atLane(") == 3
     assert finding.claim.text.count(finding.assuming.text) == 2
-    other = next(x for x in changes("scenario_8(SV,POV,L)") if x.part == "atLane(POV, L)" and not x.value)
-    assert _ExaminationJobs(Basis(BASE), Scenario(8, "base"))._redundant_in_motion(other) is None
 
 
 @settings(deadline=None, derandomize=True)
