@@ -205,7 +205,7 @@ def test_a_no_says_that_there_was_no_jerk_where_a_formula_speaks_of_it() -> None
         assert outcome.verdict is Verdict.NONE_WITHIN
         assert ("accelerations constant between them, so that jerk is 0," in outcome.reason) == told
         assert outcome.limits is not None
-        limits = outcome.limits.as_json()["accelerations"]
+        limits = outcome.limits["accelerations"]
         assert limits == "constant between samples, none after the last" + (", no jerk" if told else "")
     assert rp.witness("F j_lon(SV) = 0", horizon=2, dt=1, jobs=1).verdict is Verdict.WITNESSED
 

@@ -139,7 +139,7 @@ _PROVER = ("z3", "roadproof.engines.prove.prover", "roadproof.engines.prove.coun
         ),
         (
             "prove true --jobs 1",
-            [*_DRAWING, *_OTHERS, "numpy", "cvc5", "cvxpy", "tomllib", "roadproof.semantics.sampled"],
+            [*_DRAWING, *_OTHERS, "numpy", "cvc5", "cvxpy", "roadproof.semantics.sampled"],
         ),
         ("witness 4 --jobs 1", [*_DRAWING, *_OTHERS, *_PROVER, *_SEARCHER]),
         (f"check {PROOF} --jobs 1", [*_DRAWING, *_OTHERS, "numpy", "cvxpy"]),

@@ -308,12 +308,13 @@ READERS = {
     "roadproof.frontends.cli.options": {"--all", "--cluster", "--jobs", "--json", "--shard"},
     "roadproof.frontends.api.studied": {"--among"},
     "roadproof.runtime.executors": {"--jobs"},
-    "roadproof.analysis.study.frame": {"--out", "--shard"},
+    "roadproof.questions.settle": {"--out", "--shard"},
+    "roadproof.questions.store": {"--out"},
     "roadproof.analysis.study.pool": {"--jobs"},
     "roadproof.runtime.process_pool": {"--jobs"},
-    "roadproof.questions.explore.asking": {"--vary", "--steps", "--precision"},
-    # Raised for a catalogue that is asked for, and never for one that is judged again.
-    "roadproof.analysis.catalogue.examination": {"--no-classes"},
+    "roadproof.questions.explore.asking": {
+        *("--vary", "--steps", "--precision", "--greatest", "--least", "--when"),
+    },
     "roadproof.analysis.classify.classes": {"--among"},
     "roadproof.frontends.api.covering": {"--wider"},
     # Names a run of preventable.

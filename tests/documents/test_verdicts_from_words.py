@@ -10,7 +10,6 @@ import pytest
 SOURCE = Path(__file__).parents[2] / "src/roadproof"
 WORDS = {"label", "told", "reason", "claim", "remark", "message"}
 EXCEPTIONS = {
-    "frontends/api/judging_again.py": 1,  # the formula of a claim, without which the answer is rejected
     "recordings/evaluate/experiment.py": 1,  # the words of an error get their place once
     "analysis/catalogue/listing.py": 1,  # a range in a list that a user writes
     "semantics/streaming/c_files.py": 1,  # the identifier of a monitor in C

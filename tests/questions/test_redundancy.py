@@ -9,8 +9,7 @@ from hypothesis import given, settings
 
 from judge.cases import drives
 from roadproof.analysis.basis import Basis
-from roadproof.engines.search import batches
-from roadproof.engines.search.ask import ask as ask_for_drive
+from roadproof.engines.search import ask
 from roadproof.engines.search.batches import Engines
 from roadproof.engines.search.outcome import Outcome, Search
 from roadproof.engines.solve.smt import ask as ask_solver
@@ -119,12 +118,13 @@ def test_scenarios_that_differ_in_their_road_only_share_drives(
     few_changes: None, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     searched: list[str] = []
+    searching = ask.ask
 
     def counted(search: Search) -> Outcome:
         searched.append(search.query.text)
-        return ask_for_drive(search)
+        return searching(search)
 
-    monkeypatch.setattr(batches, "ask", counted)
+    monkeypatch.setattr(ask, "ask", counted)
     out = tmp_path / "out"
     line = ["redundancy", "--among", "3,11", "--out", str(out), "--jobs", "1", "--json", "-"]
     assert main(line) == 0

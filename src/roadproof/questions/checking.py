@@ -146,7 +146,8 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
     specs = tuple(folder / Path(x.name).name for x in question.basis.library.files)
     specs = tuple(x for x in specs if x.is_file())
     beside = {x for x in folder.iterdir() if x.suffix != ".json" and not x.is_dir()} - {*specs}
-    strays = [x for x in folder.rglob("*.json") if x.parent != folder]
+    within = {x.parent for x in folder.rglob(QUESTION)} - {folder}  # folders of their own
+    strays = [x for x in folder.rglob("*.json") if x.parent != folder and within.isdisjoint(x.parents)]
     problems += [Finding(str(path), "", Acceptance.REJECTED, Why.NOT_ITS_ANSWER()) for path in sorted(strays)]
     links = sorted(x for x in folder.iterdir() if x.is_symlink() and x.is_dir())
     problems += [Finding(str(path), "", Acceptance.REJECTED, Why.LINK()) for path in links]

@@ -7,7 +7,6 @@ from typing import Annotated, ClassVar, Final, Literal, TypeAlias
 
 from roadproof.analysis.basis import Basis
 from roadproof.engines.prove.properties import OWN, Task, find_task
-from roadproof.engines.search.refute import beyond_limits
 from roadproof.evidence.answer import Answer, Refutation
 from roadproof.evidence.answer_files import Undecided
 from roadproof.evidence.answers import shared
@@ -152,7 +151,11 @@ class ClaimResult:
         """How the refuting drive leaves the limits of the usual models; '' where there is none, or it keeps
         them, or was looked for within limits of the user's own.
         """
-        return "" if self.drive is None or self.is_bounded else beyond_limits(self.drive)
+        if self.drive is None or self.is_bounded:
+            return ""
+        from roadproof.engines.search.refute import beyond_limits  # here: proofs need no numpy
+
+        return beyond_limits(self.drive)
 
 
 def _within(claim: Claim) -> Exists | None:

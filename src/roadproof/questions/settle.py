@@ -132,7 +132,7 @@ class _Run:
     def _find(self, store: Store, name: str, claim: Claim) -> Answer | None:
         if name in self.known:
             return self.known[name]
-        found = store.find(name, claim, self.say)
+        found = store.look_up(name, claim, self.say)
         if found is None or not store.stands(found[0]):
             return None
         answer, origin = found
@@ -251,7 +251,7 @@ def _settle(job: _Job) -> list[Priced]:
     def answer_to(name: str, claim: Claim) -> Answer:
         if name in job.known:
             return job.known[name]
-        found = None if job.store is None else job.store.find(name, claim)
+        found = None if job.store is None else job.store.look_up(name, claim)
         if found is not None and job.store is not None and job.store.stands(found[0]):
             answer, cost = found[0], NO_COST
         else:

@@ -125,7 +125,7 @@ class Store:
         """The digest of all that an answer depends on."""
         return digest(claim.digest(), self.work, ANSWERS)
 
-    def find(self, name: str, claim: Claim, say: Say | None = None) -> tuple[Answer, Origin | None] | None:
+    def look_up(self, name: str, claim: Claim, say: Say | None = None) -> tuple[Answer, Origin | None] | None:
         """Return the answer to a claim that is known; None where none stands.
 
         It comes with its origin, which is None where the folder has it. ``say`` is told of a file in the

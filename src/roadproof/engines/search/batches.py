@@ -8,13 +8,10 @@ from dataclasses import dataclass, field, replace
 from typing import assert_never
 
 from roadproof.engines.prove.induction import prove_of_scenarios
-from roadproof.engines.search.alone import answer_of, seek, with_trees
-from roadproof.engines.search.ask import ask
 from roadproof.engines.search.impossible import explain
 from roadproof.engines.search.known_drive import KnownDrive, is_same_motion
 from roadproof.engines.search.looking import search_of
 from roadproof.engines.search.question import zones_of
-from roadproof.engines.search.stages import look
 from roadproof.engines.search.valid import settle_valid
 from roadproof.evidence.answer import Answer, Judged, Refutation, undecided
 from roadproof.evidence.certificate import Certificate
@@ -104,8 +101,12 @@ class Engines:
                     alike = self.alike.get(without_sectors(claim.formula), ())
                     return settle_valid(claim, self.work, self.drives, alike)
                 case Exists(trees=True):
+                    from roadproof.engines.search.alone import with_trees  # here: proofs need no numpy
+
                     return with_trees(claim, self.work), NO_COST
                 case Exists() if self.work.alone:
+                    from roadproof.engines.search.alone import seek
+
                     return seek(claim, self.work)
                 case Exists():
                     return self._drive(claim, claim.mode.by), NO_COST
@@ -188,11 +189,16 @@ class Engines:
         Where a known trace has the formula, there is no proof that it never holds.
         """
         if self.work.staged:
+            from roadproof.engines.search.stages import look
+
             return look(claim, search_of(claim, self.work, explain=False))
         wants_proof = self.work.disprove and (not isinstance(claim.mode, Exists) or claim.mode.explain)
         proof = self._clash(claim, 1.0) if wants_proof and not self._has_trace(claim) else None
         if proof is not None:
             return Answer(claim, proof)
+        from roadproof.engines.search.alone import answer_of
+        from roadproof.engines.search.ask import ask
+
         found = ask(search_of(claim, self.work, explain=False))
         is_open = not found.drives and found.verdict is not Verdict.IMPOSSIBLE
         drive = self._across_sectors(claim) if is_open else None
@@ -220,6 +226,8 @@ class Engines:
             return None
         if len(zones_of(claim.formula)) < 2:
             return None
+        from roadproof.engines.search.ask import ask
+
         free = of_parts(claim.query, [without_sectors(claim.formula)])
         found = ask(search_of(replace(claim, formula=free.formula, query=free), self.work, explain=False))
         drives = (self._known(x).elsewhere(claim.query, claim) for x in found.drives)

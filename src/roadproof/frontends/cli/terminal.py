@@ -12,6 +12,7 @@ _COLOURS = {
     Verdict.PROVED: _GREEN,
     Verdict.WITNESSED: _GREEN,
     Verdict.COVERED: _GREEN,
+    Verdict.DERIVED: _GREEN,
     Verdict.REFUTED: _RED,
     Verdict.VACUOUS: _RED,
     Verdict.IMPOSSIBLE: _RED,

@@ -99,7 +99,7 @@ class DriveSearchKeywords(
     pass
 
 
-class CompareKeywords(SearchPlaceKeywords, MethodKeywords, BudgetKeywords, WorkersKeywords, total=False):
+class CompareKeywords(SearchPlaceKeywords, MethodKeywords, BudgetKeywords, RunKeywords, total=False):
     pass
 
 
