@@ -83,6 +83,7 @@ def road_said(road: Road) -> kept.Road:
         adjacent=tuple((x, y) for x, y in beside),
         line=line_said(road.line),
         map=road.map,
+        unread=road.unread,
     )
 
 
@@ -185,7 +186,7 @@ def road_of(said: kept.Road, where: str) -> Road:
         if (one, other) in adjacent or (other, one) in adjacent:
             raise InputError(f"{where}: adjacent=['{one}', '{other}'] is given twice")
         adjacent.append((one, other))
-    return Road(said.name, lanelets, pairs(adjacent), line_of(said.line, where), said.map)
+    return Road(said.name, lanelets, pairs(adjacent), line_of(said.line, where), said.map, said.unread)
 
 
 def _lanelet(said: kept.Lanelet, where: str) -> Lanelet:

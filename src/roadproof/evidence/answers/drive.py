@@ -80,6 +80,9 @@ class Road:
     map: Annotated[str | None, LEFT_OUT, Doc("The map that the road is from, and which stretch of it.")] = (
         None
     )
+    unread: Annotated[
+        tuple[str, ...], Rule(most=1000), LEFT_OUT, Doc("Kinds of parts of the map that were not read.")
+    ] = ()
 
 
 KeptRoad: TypeAlias = Annotated[Road, Shared("road")]
