@@ -19,7 +19,6 @@ from roadproof.evidence.answers.drive import MOST_INSTANTS
 from roadproof.evidence.countermodel import Countermodel, Instant, Loop, read_trace, trace_data
 from roadproof.evidence.derivation import _Derivation, _join
 from roadproof.evidence.finding import NO_EVIDENCE
-from roadproof.evidence.folder import OTHER_LIBRARY
 from roadproof.evidence.heading import heading
 from roadproof.evidence.periodic import judge_periodic, unrolled
 from roadproof.evidence.refutation import fault_of
@@ -28,6 +27,8 @@ from roadproof.library.loading import build_library, bundled_library
 from roadproof.library.specification import Library, Source
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
+from roadproof.questions.checking import OTHER_LIBRARY
+from roadproof.questions.data import QUESTION
 from roadproof.semantics.exact import judge
 from roadproof.semantics.exact.truth import from_switches, interval
 from roadproof.world.road import Lanelet, Road, pairs
@@ -470,8 +471,8 @@ def heads() -> dict[str, Any]:
 
 def test_another_library_is_told_and_no_reason_to_reject(tmp_path: Path) -> None:
     folder = some_proofs(tmp_path / "proofs")
-    index = read(folder / "index.json")
-    write(folder / "index.json", {**index, **heads(), "library": "0" * 16})
+    index = read(folder / QUESTION)
+    write(folder / QUESTION, {**index, **heads(), "library": "0" * 16})
     assert code(folder) == 0
     found = check(folder)
     assert all(OTHER_LIBRARY in x.unchecked for x in found if x.kind != NO_EVIDENCE)
@@ -483,27 +484,27 @@ def test_another_library_is_told_and_no_reason_to_reject(tmp_path: Path) -> None
 )
 def test_a_fingerprint_of_another_kind_is_refused(library: object, tmp_path: Path) -> None:
     folder = some_proofs(tmp_path / "proofs")
-    write(folder / "index.json", {**read(folder / "index.json"), "library": library})
-    assert code(folder) == 3
+    write(folder / QUESTION, {**read(folder / QUESTION), "library": library})
+    assert code(folder) == 10
     assert any("library" in x.reason for x in check(folder))
 
 
 @pytest.mark.parametrize("version", [None, 7, [], {}])
 def test_a_version_of_another_kind_is_refused(version: object, tmp_path: Path) -> None:
     folder = some_proofs(tmp_path / "proofs")
-    write(folder / "index.json", {**read(folder / "index.json"), "roadproof": version})
-    assert code(folder) == 3
+    write(folder / QUESTION, {**read(folder / QUESTION), "roadproof": version})
+    assert code(folder) == 10
 
 
 def test_planted_fingerprints_that_are_not_compared_are_noticed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("roadproof.evidence.folder.library_of", lambda data: bundled_library().fingerprint)
+    monkeypatch.setattr("roadproof.questions.checking.library_of", lambda data: bundled_library().fingerprint)
     with pytest.raises(AssertionError):
         test_another_library_is_told_and_no_reason_to_reject(tmp_path)
 
 
 def test_the_folder_of_prove_says_both(tmp_path: Path) -> None:
     rp.prove("danger(SV,POV) -> danger(SV,POV)", jobs=1).save(tmp_path / "out")
-    index = json.loads((tmp_path / "out" / "index.json").read_text("utf-8"))
+    index = json.loads((tmp_path / "out" / QUESTION).read_text("utf-8"))
     assert {name: index[name] for name in heads()} == heads()

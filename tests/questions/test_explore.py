@@ -409,7 +409,7 @@ def test_a_search_that_is_lost_twice_is_a_doubt(monkeypatch: pytest.MonkeyPatch)
             os.kill(os.getpid(), signal.SIGKILL)
         return look(claim, search)
 
-    monkeypatch.setattr(batches, "look", deadly)
+    monkeypatch.setattr(stages, "look", deadly)
     question = question_of(*TWO, low=1)
     found = question.view(settle(question, hands=2).answers).explored["formula-01-base"]
     assert found.findings[1].verdict is Verdict.UNKNOWN
@@ -423,7 +423,7 @@ def test_an_extreme_whose_search_is_lost_is_a_doubt(monkeypatch: pytest.MonkeyPa
             os.kill(os.getpid(), signal.SIGKILL)
         return look(claim, search)
 
-    monkeypatch.setattr(batches, "look", deadly)
+    monkeypatch.setattr(stages, "look", deadly)
     question = question_of(
         "v_lon(SV) > 20 m/s", "v_lon(SV) > 30 m/s", low=3, high=3, least="v_lon(SV)", precision=30
     )

@@ -13,6 +13,7 @@ from roadproof.evidence.answer import Answer, Judged, assumed_by, read_answer, u
 from roadproof.evidence.claim import HELP, Beside, Claim, Exists, On
 from roadproof.evidence.codec import write
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
+from roadproof.evidence.heading import library_of
 from roadproof.evidence.strict import LARGEST_EVIDENCE, LARGEST_INDEX, Fields, read_json
 from roadproof.evidence.subject import OTHER
 from roadproof.library.motion import statement
@@ -21,6 +22,9 @@ from roadproof.questions.question import Doubted, Linkable, Question, Telling, w
 from roadproof.reasons import NO_REASON, Why
 from roadproof.runtime.records import dataclass
 
+_ANY_VERSION = SCHEMA.rpartition("/")[0] + "/"
+OTHER_LIBRARY = "whether its words meant the same in the other library that its question names"
+
 
 @dataclass(frozen=True)
 class QuestionFolder:
@@ -28,7 +32,8 @@ class QuestionFolder:
 
     ``problems``: files that answer no claim, or not their own. ``others``: files that are no answers, such as
     tables and pictures. ``specs``: the specification files beside the answers. ``missing``: the names of
-    claims without a file.
+    claims without a file; ``refused``: of those whose file cannot be read, or is not theirs.
+    ``is_other_library``: whether the question was asked with other definitions of the library.
     """
 
     folder: Path
@@ -38,6 +43,8 @@ class QuestionFolder:
     problems: tuple[Finding, ...]
     others: tuple[str, ...]
     missing: frozenset[str] = frozenset()
+    refused: frozenset[str] = frozenset()
+    is_other_library: bool = False
 
     @property
     def files(self) -> dict[Path, str]:
@@ -57,7 +64,7 @@ class QuestionFolder:
                 mode.trees or replace(answer.claim, mode=replace(mode, trees=True)) in trees
             )
             helps = name.startswith(HELP) and name not in self.missing
-            if not answer.is_final and not is_shown and not helps:
+            if not answer.is_final and not is_shown and not helps and name not in self.refused:
                 label, text = self.question.label(name), answer.claim.query.text
                 where = str(self.folder / f"{name}.json")
                 without = () if answer.verdict == "UNKNOWN" else ("there is no evidence for it",)
@@ -87,6 +94,7 @@ class QuestionFolder:
             subject=linked.kind,
             name=linked.name,
             set=linked.set or self.question.basis.specification.set_name,
+            unchecked=(*found.unchecked, *(OTHER_LIBRARY,) * self.is_other_library),
         )
         return self.question.tell(name, answer, told) if isinstance(self.question, Telling) else told
 
@@ -104,7 +112,7 @@ def is_question(folder: Path) -> bool:
         content = read_json(path, LARGEST_INDEX)
     except InputError:
         return True  # it is damaged, which reading it says
-    return isinstance(content, dict) and content.get("schema") == SCHEMA
+    return isinstance(content, dict) and str(content.get("schema")).startswith(_ANY_VERSION)
 
 
 def folders_in(paths: Sequence[Path]) -> list[Path]:
@@ -120,6 +128,7 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
     answers: dict[str, Answer] = {}
     problems: list[Finding] = []
     missing: set[str] = set()
+    refused: set[str] = set()
 
     def find(name: str, claim: Claim) -> Answer:
         if name not in answers:
@@ -134,6 +143,7 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
             except InputError as error:
                 fault = Why.TOLD(error)
                 problems.append(Finding(str(folder / f"{name}.json"), "", outcome, fault))
+                refused.add(name)
                 answers[name] = undecided(claim, fault)
         return answers[name]
 
@@ -152,7 +162,18 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
     links = sorted(x for x in folder.iterdir() if x.is_symlink() and x.is_dir())
     problems += [Finding(str(path), "", Acceptance.REJECTED, Why.LINK()) for path in links]
     others = tuple(sorted(x.name for x in beside))
-    return QuestionFolder(folder, question, specs, answers, tuple(problems), others, frozenset(missing))
+    said = library_of(Fields(read_json(folder / QUESTION, LARGEST_INDEX), str(folder / QUESTION)))
+    return QuestionFolder(
+        folder,
+        question,
+        specs,
+        answers,
+        tuple(problems),
+        others,
+        frozenset(missing),
+        frozenset(refused),
+        said != question.basis.library.fingerprint,
+    )
 
 
 def _content(path: Path) -> object:
