@@ -41,7 +41,7 @@ from roadproof.analysis.coverage.found import (
     replaced_by,
     simple_drives,
 )
-from roadproof.analysis.coverage.minimal import simplest
+from roadproof.engines.search.minimal import simplest
 from roadproof.analysis.coverage.settling import ClassGroup
 from roadproof.errors import InputError
 from roadproof.evidence.certificate import to_json

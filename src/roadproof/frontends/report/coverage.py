@@ -5,8 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from roadproof.analysis.coverage.answers import ClassAnswer, Gap, GapTraffic, Survey
-from roadproof.analysis.coverage.found import Need
+from roadproof.analysis.coverage.answers import ClassAnswer, Gap, GapTraffic, Need, Survey
 from roadproof.evidence.answers import coverage as kept
 from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.figures import as_bytes
