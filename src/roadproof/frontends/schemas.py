@@ -73,9 +73,7 @@ TITLES: Mapping[type, str] = {
         "nobody tests"
     ),
     ClassesData: "roadproof classify --json: classes that exclude each other",
-    coverage.Index: (
-        "roadproof coverage --json, and index.json of its folder: which disturbances a set misses"
-    ),
+    coverage.CoverageData: "roadproof coverage --json: which disturbances a set misses",
     SurveyData: "the surveys of contributors, --json: which of some formulas can hold on a drive",
     WitnessData: "roadproof witness --json: drives for scenarios and formulas",
     ExploreData: "roadproof explore --json: for which values there is a drive",

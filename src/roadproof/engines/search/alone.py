@@ -6,7 +6,7 @@ from roadproof.engines.prove.prover import prove
 from roadproof.engines.search.ask import ask, reads_all
 from roadproof.engines.search.constant_motion import steady_drive
 from roadproof.engines.search.dense_candidates import falsifying_drive
-from roadproof.engines.search.looking import search_of
+from roadproof.engines.search.looking import mode_of, search_of
 from roadproof.engines.search.minimal import simplest
 from roadproof.engines.search.none_within import refute
 from roadproof.engines.search.outcome import Outcome, Search
@@ -57,7 +57,8 @@ def seek_simple(claim: Claim, work: Work) -> tuple[Answer, Cost]:
     try:
         answer, cost = seek(claim, work)
     except UsageError as error:  # a grid that is too fine, a comparison too steep
-        return undecided(claim, Why.TOLD(error)), NO_COST
+        road = mode_of(claim).road
+        return undecided(claim, Why.NO_SEARCH("it" if road is None else road.name, error)), NO_COST
     if answer.drive is None:
         return answer, cost
     file = simplest(answer.drive.file, claim.query, claim.home.library)

@@ -94,7 +94,7 @@ class KeptClass(GapClass):
 
 @dataclass(frozen=True, kw_only=True)
 class CountedClass(GapClass):
-    """A class of gaps in an index, which numbers its gaps."""
+    """A class of gaps in a view, which numbers its gaps."""
 
     gaps: Annotated[tuple[Position, ...], Doc("Numbers of its gaps.")]
     in_traffic: Annotated[
@@ -139,7 +139,7 @@ class Traffic:
 
 @dataclass(frozen=True, kw_only=True)
 class Preamble:
-    """What an index says once for all classes."""
+    """What a view says once for all classes."""
 
     set: shared.SetName
     wider: Annotated[Names, UNCHECKED, Doc("Wider sets, from the next to the widest.")]
@@ -149,7 +149,7 @@ class Preamble:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Index(Preamble, shared.Heading):
+class CoverageData(Preamble, shared.Heading):
     """Which disturbances a set misses."""
 
     schema: Literal["roadproof/coverage/2"] = SCHEMA

@@ -17,7 +17,7 @@ from roadproof.runtime.files import write_whole
 from roadproof.verdict import Verdict
 
 
-def as_text(surveyed: Survey, index: kept.Index, name: str, words: Called) -> str:
+def as_text(surveyed: Survey, index: kept.CoverageData, name: str, words: Called) -> str:
     """All that is known of the set ``name``."""
     lines: list[str] = []
     if index.classes:
@@ -87,7 +87,7 @@ def summary(classes: Sequence[ClassAnswer]) -> Iterator[str]:
         yield f"  {who} a drive of {has} classes"
 
 
-def sheet_of(index: kept.Index, names: Mapping[int, str]) -> Sheet[kept.CountedClass]:
+def sheet_of(index: kept.CoverageData, names: Mapping[int, str]) -> Sheet[kept.CountedClass]:
     """An entry for each class of gaps; ``names``: what scenarios are called."""
     gaps = {gap.number: gap for gap in index.gaps}
     return Sheet(
@@ -116,7 +116,7 @@ def sheet_of(index: kept.Index, names: Mapping[int, str]) -> Sheet[kept.CountedC
     )
 
 
-def sheet_of_claims(index: kept.Index) -> Sheet[kept.Claim]:
+def sheet_of_claims(index: kept.CoverageData) -> Sheet[kept.Claim]:
     """An entry for each claim that there is no gap."""
     return Sheet(
         (

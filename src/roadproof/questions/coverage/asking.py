@@ -135,7 +135,10 @@ class GroupAsking:
                         known.append(FoundGap(file, shows.first, shows.classes))
                         return NO_REASON
                     answer = looks
-                reasons.append(Why.NOT_ON(answer.reason or "none", road.name))
+                is_refused = answer.reason.startswith(Why.NO_SEARCH(road.name, ""))
+                reasons.append(
+                    answer.reason if is_refused else Why.NOT_ON(answer.reason or "none", road.name)
+                )
         units = self.claims.basis.effort.units
         return Why.WORK_EACH(joined(reasons), units, self.claims.basis.horizon)
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.coverage.answers import ClassAnswer, Gap, Need, names_of
 from roadproof.evidence.answers import coverage as shown
-from roadproof.evidence.answers.coverage import SCHEMA, Index
+from roadproof.evidence.answers.coverage import SCHEMA, CoverageData
 from roadproof.questions.question import Place, heading_of
 from roadproof.world.road import Road
 from roadproof.world.unread import unread_of_road
@@ -14,7 +14,7 @@ from roadproof.world.unread import unread_of_road
 if TYPE_CHECKING:
     from roadproof.questions.coverage.question import CoverageView
 
-CoverageData = Index
+__all__ = ["SCHEMA", "CoverageData", "coverage_data"]
 
 
 def coverage_data(
