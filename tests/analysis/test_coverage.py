@@ -5,6 +5,7 @@ from fractions import Fraction as F
 from pathlib import Path
 
 import pytest
+from roadproof.analysis.coverage.settling import ClassGroup
 
 from asking import prove
 from roadproof.analysis.basis import Basis, ProofResult
@@ -41,8 +42,7 @@ from roadproof.analysis.coverage.found import (
     replaced_by,
     simple_drives,
 )
-from roadproof.analysis.coverage.minimal import simplest
-from roadproof.analysis.coverage.settling import ClassGroup
+from roadproof.engines.search.minimal import simplest
 from roadproof.errors import InputError
 from roadproof.evidence.certificate import to_json
 from roadproof.evidence.drive_file import DriveFile

@@ -284,7 +284,14 @@ def _drive(claim: Claim, content: object, where: str) -> JudgedDrive:
         )
         ends = f"its horizon={file.horizon} s ends before {mode.apart} s"
         _require(mode.apart is None or file.horizon >= mode.apart, where, ends)
+        _require(mode.like is None or _is_given(mode, file), where, "it is not the drive that is given")
     return JudgedDrive(file, claim.home.library, natural_of(content, where))
+
+
+def _is_given(mode: Exists, file: DriveFile) -> bool:
+    """Return whether a drive has the motions that a claim gives, on its road and in its lanes."""
+    given = mode.like, mode.road, dict(mode.lanes), mode.horizon, mode.collisions
+    return given == (file.drive, file.road, dict(file.lanes), file.horizon, file.overlaps_allowed)
 
 
 def _shows(claim: Claim, file: DriveFile) -> bool:

@@ -9,7 +9,7 @@ a digest is a sound key for answers that are kept. ``text`` is for people: no an
 from collections.abc import Iterable, Mapping
 from dataclasses import field
 from fractions import Fraction
-from typing import Final, Literal, Protocol, TypeAlias
+from typing import Any, Final, Literal, Protocol, TypeAlias, runtime_checkable
 
 from roadproof.evidence.plate import Plate
 from roadproof.library.elaborate import read_claim
@@ -66,7 +66,8 @@ class Exists:
     ``road`` None: the usual road of the formula; ``vehicles``: models by name, "" for all others; ``limits``:
     other limits than theirs; ``dt`` None: the coarsest step that fits. ``unlike``: drives from which it is to
     differ; ``trees``: whether trees are wanted that show that there is none. ``apart``: until when boxes stay
-    apart (s), where that is longer than the horizon. Effort is no part of a claim.
+    apart (s), where that is longer than the horizon. ``like``: the motions that it is to have on ``road``, in
+    ``lanes``, where they are given. Effort is no part of a claim.
     """
 
     road: Road | None = None
@@ -87,6 +88,7 @@ class Exists:
     trees: bool = False
     apart: Fraction | None = None
     by: Means = "search"
+    like: Drive | None = None
 
 
 class Judgement(Protocol):
@@ -106,6 +108,14 @@ class Judge(Protocol):
 
     def __call__(self) -> Judgement:
         """Return what the trace shows."""
+
+
+@runtime_checkable
+class Confirming(Protocol):
+    """A judge that can tell whether something is so without looking for all that is."""
+
+    def confirms(self, shows: Any) -> bool:
+        """Return whether all that is said is so."""
 
 
 @dataclass(frozen=True)

@@ -73,9 +73,7 @@ TITLES: Mapping[type, str] = {
         "nobody tests"
     ),
     ClassesData: "roadproof classify --json: classes that exclude each other",
-    coverage.Index: (
-        "roadproof coverage --json, and index.json of its folder: which disturbances a set misses"
-    ),
+    coverage.CoverageData: "roadproof coverage --json: which disturbances a set misses",
     SurveyData: "the surveys of contributors, --json: which of some formulas can hold on a drive",
     WitnessData: "roadproof witness --json: drives for scenarios and formulas",
     ExploreData: "roadproof explore --json: for which values there is a drive",
@@ -106,7 +104,7 @@ WITHOUT_ASSUMPTION: JsonObject = {
 }
 """Only inductions may stand in a certificate that assumes nothing."""
 DRIVES = (drive.Drive, drive.JerkDrive)
-KEEPING = (coverage, catalogue_index)
+KEEPING = (catalogue_index,)
 """The questions whose answers are kept one by one."""
 RECORDS: Mapping[str, type] = {x.SCHEMA: x.Record for x in KEEPING}
 

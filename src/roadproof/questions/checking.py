@@ -10,7 +10,7 @@ from typing import Any
 
 from roadproof.errors import InputError
 from roadproof.evidence.answer import Answer, Judged, assumed_by, read_answer, undecided
-from roadproof.evidence.claim import HELP, Beside, Claim, Exists, On
+from roadproof.evidence.claim import HELP, Beside, Claim, Confirming, Exists, Judge, Judgement, On
 from roadproof.evidence.codec import write
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
 from roadproof.evidence.heading import library_of
@@ -18,7 +18,7 @@ from roadproof.evidence.strict import LARGEST_EVIDENCE, LARGEST_INDEX, Fields, r
 from roadproof.evidence.subject import OTHER
 from roadproof.library.motion import statement
 from roadproof.questions.data import QUESTION, SCHEMA, read_question
-from roadproof.questions.question import Doubted, Linkable, Question, Telling, walk
+from roadproof.questions.question import Doubted, Doubting, Linkable, Question, Telling, walk
 from roadproof.reasons import NO_REASON, Why
 from roadproof.runtime.records import dataclass
 
@@ -70,7 +70,9 @@ class QuestionFolder:
                 without = () if answer.verdict == "UNKNOWN" else ("there is no evidence for it",)
                 said = Finding(where, NO_EVIDENCE, Acceptance.ACCEPTED, label=label, claim=text)
                 yield replace(said, verdict=str(answer.verdict), unchecked=without)
-        for about, reason in self.question.doubted if isinstance(self.question, Doubted) else ():
+        doubts = [*self.question.doubted] if isinstance(self.question, Doubted) else []
+        doubts += self.question.doubts(self.answers) if isinstance(self.question, Doubting) else []
+        for about, reason in doubts:
             said = Finding(str(self.folder / QUESTION), NO_EVIDENCE, Acceptance.ACCEPTED, reason, label=about)
             yield replace(said, verdict="UNKNOWN")
 
@@ -78,7 +80,7 @@ class QuestionFolder:
         """Return what was found of a file, in the words of the question; a trace is judged again."""
         answer = self.answers[name]
         if isinstance(answer.claim.mode, On) and isinstance(answer.evidence, Judged):
-            same = write(answer.claim.mode.judge()) == write(answer.evidence.shows)
+            same = _is_so(answer.claim.mode.judge, answer.evidence.shows)
             outcome = Acceptance.ACCEPTED if same else Acceptance.REJECTED
             reason = NO_REASON if same else Why.TOLD("the trace shows something else")
             found = replace(found, kind="test", outcome=outcome, reason=reason)
@@ -97,6 +99,12 @@ class QuestionFolder:
             unchecked=(*found.unchecked, *(OTHER_LIBRARY,) * self.is_other_library),
         )
         return self.question.tell(name, answer, told) if isinstance(self.question, Telling) else told
+
+
+def _is_so(judge: Judge, shows: Judgement) -> bool:
+    if isinstance(judge, Confirming):
+        return judge.confirms(shows)
+    return write(judge()) == write(shows)
 
 
 def _wants_trees(claim: Claim) -> bool:

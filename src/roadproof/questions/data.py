@@ -24,6 +24,7 @@ KINDS: Mapping[str, str] = {
     "catalogue": "roadproof.questions.catalogue.question:CatalogueQuestion",
     "classify": "roadproof.questions.classify.question:ClassifyQuestion",
     "compare": "roadproof.questions.compare:CompareQuestion",
+    "coverage": "roadproof.questions.coverage.question:CoverageQuestion",
     "order": "roadproof.questions.order.question:OrderQuestion",
     "explore": "roadproof.questions.explore.question:ExploreQuestion",
     "overlap": "roadproof.questions.overlap:OverlapQuestion",

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from roadproof.evidence.answer import Answer
-from roadproof.questions.question import Answers, Batch, Question, Steps
+from roadproof.questions.question import Answers, Batch, OwnWork, Question, Steps, WorkByName
 from roadproof.runtime.budget import Work
 from roadproof.runtime.records import dataclass
 
@@ -44,10 +44,15 @@ class NestedBatch:
         """The name of the batch with the prefix."""
         return f"{self.prefix}{self.batch.name}"
 
-    @property
-    def work(self) -> Work:
-        """The work that the nested question allows for a claim."""
-        return self.allowed
+    def work_of(self, name: str) -> Work:
+        """Return the work that the nested question allows for a claim."""
+        match self.batch:
+            case WorkByName():
+                return self.batch.work_of(name.removeprefix(self.prefix))
+            case OwnWork():
+                return self.batch.work
+            case _:
+                return self.allowed
 
     def steps(self) -> Steps:
         """Yield each claim, and be sent its answer."""

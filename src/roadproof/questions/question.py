@@ -83,6 +83,14 @@ class OwnWork(Protocol):
 
 
 @runtime_checkable
+class WorkByName(Protocol):
+    """A batch with other work for each claim than its question allows."""
+
+    def work_of(self, name: str) -> Work:
+        """Return the work that is allowed for the claim of a name."""
+
+
+@runtime_checkable
 class Seeded(Protocol):
     """A batch with drives that may serve its claims."""
 
@@ -116,6 +124,14 @@ class Doubted(Protocol):
     @property
     def doubted(self) -> Sequence[tuple[str, Reason]]:
         """What is in doubt beside the claims, and why."""
+
+
+@runtime_checkable
+class Doubting(Protocol):
+    """A question whose answers leave more in doubt than their claims say."""
+
+    def doubts(self, known: Answers) -> Sequence[tuple[str, Reason]]:
+        """Return what is in doubt, and why."""
 
 
 @runtime_checkable

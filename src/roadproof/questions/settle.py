@@ -14,7 +14,7 @@ from roadproof.engines.prove.doubt import Cause, Doubt
 from roadproof.errors import SharedError, UsageError
 from roadproof.evidence.answer import Answer, Evidence, undecided
 from roadproof.evidence.claim import Claim
-from roadproof.questions.question import Answers, Batch, Growing, OwnWork, Question, Seeded, walk
+from roadproof.questions.question import Answers, Batch, Growing, OwnWork, Question, Seeded, WorkByName, walk
 from roadproof.questions.store import Store
 from roadproof.reasons import Reason
 from roadproof.runtime.budget import Work
@@ -122,10 +122,9 @@ class _Run:
 
     def _left_of(self, batch: Batch) -> list[tuple[str, Claim]]:
         """Look up the claims of a batch, and return the first that is not known."""
-        store = _store_of(batch, self.store)
 
         def find(name: str, claim: Claim) -> Answer | None:
-            return self._find(store, name, claim)
+            return self._find(_store_of(batch, self.store, name), name, claim)
 
         return [*walk(batch, find)]
 
@@ -154,7 +153,7 @@ class _Run:
             lost.append(job.batch)
             return []
 
-        jobs = [_Job(x, self._known_of(x), _store_of(x, self.store)) for x in batches]
+        jobs = [_Job(x, self._known_of(x), self.store) for x in batches]
         fresh = is_fork_unsafe()  # given traces can be tables
         with closing(pool.work(_settle, jobs, hands, lose, progress, what, fresh=fresh)) as answered:
             for place, found in answered:
@@ -176,7 +175,7 @@ class _Run:
 
     def _keep(self, job: "_Job", name: str, answer: Answer, cost: Cost) -> None:
         self.costs[name] = cost
-        (job.store or self.store).keep(name, answer)
+        _store_of(job.batch, self.store, name).keep(name, answer)
         self._add(name, answer, cost)
 
     def _known_of(self, batch: Batch) -> dict[str, Answer]:
@@ -195,17 +194,19 @@ class _Run:
             [(name, claim)] = left
 
             def lose(job: "_Job", reason: Reason, asked: Claim = claim, named: str = name) -> list[Priced]:
-                doubt = Doubt(Cause.PROCESS, (), job.work.effort.units, reason).kept
+                doubt = Doubt(Cause.PROCESS, (), job.store_of(named).work.effort.units, reason).kept
                 return [(named, undecided(asked, reason, doubt=doubt).evidence, NO_COST)]
 
-            job = _Job(batch, self._known_of(batch), _store_of(batch, self.store), alone=True)
+            job = _Job(batch, self._known_of(batch), self.store, alone=True)
             with closing(pool.work(_settle, [job, _NOTHING], hands, lose)) as answered:
                 for _, found in answered:
                     self._take(job, found)
 
 
-def _store_of(batch: Batch, store: Store) -> Store:
-    """Return the store with the work that a batch has, where that is another than its question's."""
+def _store_of(batch: Batch, store: Store, name: str) -> Store:
+    """Return the store with the work for a claim, where a batch has another than its question."""
+    if isinstance(batch, WorkByName):
+        return replace(store, work=batch.work_of(name))
     return replace(store, work=batch.work) if isinstance(batch, OwnWork) else store
 
 
@@ -227,36 +228,36 @@ class _Job:
     """
 
     batch: Any
-    known: Mapping[str, Answer] = field(default_factory=dict)
-    store: Store | None = None
+    known: Mapping[str, Answer]
+    store: Store
     alone: bool = False
 
-    @property
-    def work(self) -> Work:
-        """The work that is allowed for a claim."""
-        return Work() if self.store is None else self.store.work
+    def store_of(self, name: str) -> Store:
+        """Return the store with the work that is allowed for a claim."""
+        return _store_of(self.batch, self.store, name)
 
 
-_NOTHING = _Job(_None())
+_NOTHING = _Job(_None(), {}, Store(None, "", Work()))
 
 
 def _settle(job: _Job) -> list[Priced]:
     """Settle what is left of a batch."""
     from roadproof.engines.search.batches import Engines  # here: known answers need no solver
 
-    engines, new = Engines(job.work), list[Priced]()
+    engines, new = Engines(job.store_of("").work), list[Priced]()
     for drive in job.batch.seeds if isinstance(job.batch, Seeded) else ():
         engines.offer(drive)
 
     def answer_to(name: str, claim: Claim) -> Answer:
         if name in job.known:
             return job.known[name]
-        found = None if job.store is None else job.store.look_up(name, claim)
-        if found is not None and job.store is not None and job.store.stands(found[0]):
+        store = job.store_of(name)
+        found = store.look_up(name, claim)
+        if found is not None and store.stands(found[0]):
             answer, cost = found[0], NO_COST
         else:
-            answer, cost = engines.settle(claim)
-            answer = answer if job.store is None else job.store.whole(job.store.exhausted(answer))
+            answer, cost = replace(engines, work=store.work).settle(claim)
+            answer = store.whole(store.exhausted(answer))
         new.append((name, answer.evidence, cost))
         return answer
 

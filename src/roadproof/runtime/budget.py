@@ -73,7 +73,8 @@ class Work:
     is looked for that was looked for in vain, also on other roads; ``disprove``: whether a proof that there
     is no drive is tried before one is looked for. ``staged``: whether natural drives, others, and that there
     is none are looked for one after the other, with the effort for each. ``moves``: whether drives that are
-    known are put on other roads; ``zones``: also on their own with other zones.
+    known are put on other roads; ``zones``: also on their own with other zones. ``simplify``: whether a drive
+    that a search has found is made simpler, and a claim is in doubt for which no search can be set up.
     """
 
     effort: Effort = field(default_factory=Effort)
@@ -87,6 +88,7 @@ class Work:
     staged: bool = False
     moves: bool = True
     zones: bool = False
+    simplify: bool = False
 
 
 @dataclass

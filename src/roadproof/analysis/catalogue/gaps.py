@@ -4,13 +4,13 @@ A gap is a drive from safety into danger on which none of the scenarios between 
 lane and in either role. Its classes say why: each scenario fails for one part alone, or for several.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.coverage.classes import GapClasses, GapSurvey, Part, sectors_of
-from roadproof.analysis.coverage.study import Coverage
+from roadproof.analysis.coverage.answers import ClassAnswer
+from roadproof.analysis.coverage.classes import GapClasses, Part, sectors_of
 from roadproof.drivers.restriction import restriction_of
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
@@ -19,6 +19,8 @@ from roadproof.library.alike import likes_of
 from roadproof.library.bind import bind
 from roadproof.library.specification import Specification
 from roadproof.library.words import called
+from roadproof.questions.coverage.question import CoverageQuestion, gaps_of
+from roadproof.questions.question import Answers
 from roadproof.recordings.evaluate.one_trace import OneTrace
 from roadproof.semantics.sampled.compiled import compile
 from roadproof.world.drive import Drive
@@ -76,9 +78,22 @@ class GapKinds:
                 found[name] = f"as {part.scenario} {scenarios[part.scenario].title}, but not {what}"
         return found
 
-    def study(self) -> Coverage:
-        """For each class a drive or a proof that it is empty, as a study."""
-        return Coverage(GapSurvey(self._basis, roads=tuple(map(load_road, ROADS))))
+    def question(self, names: Collection[str] | None = None) -> CoverageQuestion:
+        """Return the question for a drive of each class, or a proof that it is empty.
+
+        ``names``: the classes that are asked about, each with those of its component; all where None.
+        """
+        asked = CoverageQuestion(self._basis, gaps_of((), tuple(map(load_road, ROADS))))
+        if names is None:
+            return asked
+        parts = {self.parts[name] for name in names}
+        return replace(asked, only=frozenset(x for x, y in asked.claims.groups.items() if parts & {*y.parts}))
+
+    def answers(self, question: CoverageQuestion, known: Answers) -> Mapping[str, ClassAnswer]:
+        """Return what is known of the classes that are asked about, by name."""
+        found = question.class_answers(known)
+        keys = {name: "" if part is None else part.key for name, part in self.parts.items()}
+        return {name: found[key] for name, key in keys.items() if key in found}
 
     def of_drive(self, file: DriveFile, pair: Sequence[str]) -> tuple[str, ...]:
         """The classes of a gap between the two vehicles ``pair`` of a drive."""

@@ -3,21 +3,33 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TypeAlias, TypedDict
+from typing import TypedDict
 
 from roadproof.analysis.basis import ProofResult
-from roadproof.analysis.coverage.classes import GapGroup, Part
-from roadproof.analysis.coverage.found import FoundGap, Need
-from roadproof.analysis.study.evidence_store import EvidenceStore
-from roadproof.errors import InputError
-from roadproof.evidence.answers import coverage as kept
-from roadproof.evidence.answers.coverage import MissedTrace, SetVerdict, Traffic
+from roadproof.analysis.coverage.classes import Part
+from roadproof.evidence.answer import Answer
+from roadproof.evidence.answers.coverage import CountedVerdict, MissedTrace, NeedVerdict, SetVerdict, Traffic
+from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.settled import Settled
-from roadproof.library.elaborate import read_claim
-from roadproof.library.specification import Query, Specification
-from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.library.scenarios import LANE, PAIR
+from roadproof.library.specification import Query
+from roadproof.reasons import Why
 from roadproof.verdict import Verdict
+
+
+@dataclass(frozen=True)
+class Shown:
+    """The answer to a claim, with its name."""
+
+    name: str
+    answer: Answer
+
+    @property
+    def drive(self) -> JudgedDrive:
+        """The drive that answers it."""
+        assert self.answer.drive is not None
+        return self.answer.drive
 
 
 @dataclass(frozen=True)
@@ -30,21 +42,26 @@ class Gap:
     given for whole components.
     """
 
-    drive: JudgedDrive
+    shown: Shown
     first: str
     caught_by: tuple[tuple[str, ...], ...]
     classes: tuple[str, ...]
-    elsewhere: Mapping[str, JudgedDrive] = field(default_factory=dict)
+    elsewhere: Mapping[str, Shown] = field(default_factory=dict)
+
+    @property
+    def drive(self) -> JudgedDrive:
+        """The drive."""
+        return self.shown.drive
 
 
 @dataclass(frozen=True)
-class ClassAnswer(Settled[kept.CountedVerdict]):
+class ClassAnswer(Settled[CountedVerdict]):
     """What came out for one class; ``part`` None is the class for which no single condition is to blame.
 
     WITNESSED with gaps that differ in the wider set that catches them first, ``none_for`` being the sets
-    for which none was found; IMPOSSIBLE with a certificate of ``claim``; UNKNOWN with a reason. Where
-    recordings were looked at, ``in_traffic`` says how often it occurs there, and ``trace`` where first;
-    CROSSCHECK-FAILED where it does although it is proved empty.
+    for which none was found; IMPOSSIBLE with a certificate of ``claim``, the answer of that ``name``; UNKNOWN
+    with a reason. Where recordings were looked at, ``in_traffic`` says how often it occurs there, and
+    ``trace`` where first; CROSSCHECK-FAILED where it does although it is proved empty.
     """
 
     part: Part | None
@@ -53,34 +70,23 @@ class ClassAnswer(Settled[kept.CountedVerdict]):
     none_for: tuple[str, ...] = ()
     in_traffic: int | None = None
     trace: str = ""
+    proof: Shown | None = None
 
 
 Answers = tuple[ClassAnswer, ...]
 
 
-def group_name(group: GapGroup) -> str:
-    """Under which name the answers for a group are kept."""
-    return group.title.replace(" ", "-")
+@dataclass(frozen=True)
+class Need(Settled[NeedVerdict]):
+    """WITNESSED: ``drive`` is missed without the definition, as it is in ``parent``, and caught with it.
 
+    PROVED: the set covers everything without it, too. UNKNOWN: neither was found. The formula of the drive
+    says what is missed with all definitions written out, as no shipped set is the one without the definition.
+    """
 
-def record_of(group: GapGroup, answers: Answers, shelf: EvidenceStore) -> kept.Record:
-    """The answers for a group as they are kept; their evidence goes to the shelf."""
-    stems = (f"{group_name(group)}-{k}" for k in range(len(answers)))
-    classes = tuple(_kept_class(x, stem, shelf) for stem, x in zip(stems, answers, strict=True))
-    return kept.Record(group=group.title, classes=classes)
-
-
-def _kept_class(answer: ClassAnswer, stem: str, shelf: EvidenceStore) -> kept.KeptClass:
-    assert answer.verdict is not Verdict.CROSSCHECK_FAILED  # that is said of recordings alone
-    return kept.KeptClass(
-        **names_of(answer.part),
-        verdict=answer.verdict,
-        gaps=tuple(_kept_gap(gap, f"gap-{stem}-{n}", shelf) for n, gap in enumerate(answer.gaps, 1)),
-        claim="" if answer.claim is None else answer.claim.text,
-        certificate=shelf.certificate(f"empty-{stem}.json", answer.certificate),
-        reason=answer.reason,
-        none_for=answer.none_for,
-    )
+    definition: str
+    parent: str
+    shown: Shown | None = None
 
 
 class ClassNames(TypedDict):
@@ -102,50 +108,10 @@ def names_of(part: Part | None) -> ClassNames:
     }
 
 
-def _kept_gap(gap: Gap, name: str, shelf: EvidenceStore) -> kept.Gap:
-    file = gap.drive.file
-    return kept.Gap(
-        road=file.road.name,
-        formula=file.formula,
-        first=gap.first,
-        caught_by=gap.caught_by,
-        classes=gap.classes,
-        drive=shelf.drive(f"{name}.json", gap.drive),
-        elsewhere={road: shelf.drive(f"{name}-{road}.json", drive) for road, drive in gap.elsewhere.items()},
-    )
-
-
-def answers_in(
-    classes: Sequence[kept.KeptClass], group: GapGroup, specification: Specification, shelf: EvidenceStore
-) -> Answers:
-    """The inverse of ``record_of``, with every drive judged again. Raises ``InputError``."""
-    named = [{name: getattr(x, name) for name in names_of(None)} for x in classes]
-    if named != [names_of(part) for part in group.parts]:
-        raise InputError(f"the classes that are kept of {group.title} are not its own")
-    found = zip(group.parts, classes, strict=True)
-    return tuple(_read_class(part, said, specification, shelf) for part, said in found)
-
-
-def _read_class(
-    part: Part | None, said: kept.KeptClass, specification: Specification, shelf: EvidenceStore
-) -> ClassAnswer:
-    return ClassAnswer(
-        part,
-        verdict=said.verdict,
-        gaps=tuple(_read_gap(gap, shelf) for gap in said.gaps),
-        claim=read_claim(specification, said.claim) if said.claim else None,
-        certificate=shelf.read_certificate(said.certificate),
-        reason=said.reason,
-        none_for=said.none_for,
-    )
-
-
-def _read_gap(said: kept.Gap, shelf: EvidenceStore) -> Gap:
-    drives = {road: shelf.read_drive(file) for road, file in said.elsewhere.items()}
-    drive = shelf.read_drive(said.drive)
-    assert drive is not None
-    there = {road: judged for road, judged in drives.items() if judged is not None}
-    return Gap(drive, said.first, said.caught_by, said.classes, there)
+def in_role(file: DriveFile, turned: bool, lane: str | None) -> DriveFile:
+    """The drive in which L is a lane; ``turned``: with SV and POV in each other's role."""
+    roles = dict(zip(PAIR, PAIR[::-1] if turned else PAIR, strict=True))
+    return replace(file, drive=file.drive.cast(roles), lanes={} if lane is None else {LANE: lane})
 
 
 @dataclass(frozen=True)
@@ -228,6 +194,12 @@ class Survey:
         return verdict_on(self.claims, self.classes, self.traffic)
 
 
+def with_traffic(survey: Survey, traffic: GapTraffic) -> Survey:
+    """Return what is known with how often each class occurs in recordings."""
+    classes = tuple(with_counts(x, traffic) for x in survey.classes)
+    return replace(survey, classes=classes, traffic=traffic)
+
+
 def is_covered(claims: Sequence[ProofResult[Query]]) -> bool:
     """Whether the set is proved to have no gap."""
     return all(claim.verdict is Verdict.PROVED for claim in claims)
@@ -245,56 +217,3 @@ def verdict_on(
     if proved:
         return Verdict.COVERED
     return Verdict.GAPS if any(x.gaps for x in classes) else Verdict.UNKNOWN
-
-
-@dataclass(frozen=True)
-class CoverageClaim:
-    number: int
-    query: Query
-
-
-@dataclass(frozen=True)
-class NeededDefinition:
-    name: str
-
-
-@dataclass(frozen=True)
-class Chunk:
-    """Some of the simple drives, on one of the survey's roads."""
-
-    road: int
-    number: int
-
-
-@dataclass(frozen=True)
-class Component:
-    """A group of classes by name, with gaps to begin with; ``lost``: why there may be too few of these."""
-
-    name: str
-    known: tuple[FoundGap, ...]
-    lost: tuple[Reason, ...] = ()
-
-
-@dataclass(frozen=True)
-class GapScan:
-    """The gaps in some of the simple drives; ``lost``: why it was not looked through."""
-
-    found: tuple[FoundGap, ...]
-    lost: Reason = NO_REASON
-
-
-Piece: TypeAlias = CoverageClaim | NeededDefinition | Chunk | Component
-Kept: TypeAlias = ProofResult[Query] | Need | GapScan | Answers
-
-
-def name_of(piece: Piece) -> str:
-    """Under which name the answer to a piece is known."""
-    match piece:
-        case CoverageClaim(number):
-            return f"covered-{number}"
-        case NeededDefinition(name):
-            return f"needed-{name}"
-        case Chunk(road, number):
-            return f"simple-{road}-{number}"
-        case Component(name):
-            return name

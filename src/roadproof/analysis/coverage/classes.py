@@ -252,20 +252,6 @@ def sets_between(library: Library, narrow: str, wide: str) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True)
-class GapSurvey:
-    """What is asked for: the gaps of a set for two vehicles.
-
-    ``wider``: extensions of the set, each of the one before; ``roads``: where drives are looked for, in
-    this order; ``elsewhere``: roads on which the drives are tried that were found.
-    """
-
-    basis: Basis
-    wider: tuple[str, ...] = ()
-    roads: tuple[Road, ...] = ()
-    elsewhere: tuple[Road, ...] = ()
-
-
-@dataclass(frozen=True)
 class GapGroup:
     """A component with its conditions, which are settled together; None: no single condition to blame."""
 
@@ -296,6 +282,11 @@ class GapClasses:
         self.bound: dict[Road, dict[str, Formula]] = {}
         self.gaps: dict[tuple[int, ...], Query] = {}
         self.near_misses: dict[str, Query] = {}
+
+    @property
+    def every(self) -> list[Part]:
+        """The parts of all scenarios, in every road sector."""
+        return [part for parts in self.by_number.values() for part in parts]
 
     def groups(self) -> list[GapGroup]:
         """All classes, for the scenarios of the first road sector: the others repeat their disturbances."""

@@ -6,10 +6,13 @@ from roadproof.engines.prove.prover import prove
 from roadproof.engines.search.ask import ask, reads_all
 from roadproof.engines.search.constant_motion import steady_drive
 from roadproof.engines.search.dense_candidates import falsifying_drive
-from roadproof.engines.search.looking import search_of
+from roadproof.engines.search.looking import mode_of, search_of
+from roadproof.engines.search.minimal import simplest
 from roadproof.engines.search.none_within import refute
 from roadproof.engines.search.outcome import Outcome, Search
+from roadproof.engines.search.placing import judged_as
 from roadproof.engines.search.refute import sampled_drive
+from roadproof.errors import UsageError
 from roadproof.evidence.answer import Answer, undecided, values_of
 from roadproof.evidence.answer_files import OpenVerdict
 from roadproof.evidence.claim import Claim
@@ -44,6 +47,23 @@ def seek(claim: Claim, work: Work) -> tuple[Answer, Cost]:
     stages = {name: x for name, x in found.seconds.items() if name != "all"}
     cost = Cost(stages=stages, sizes=found.sizes)
     return (Answer(claim, drive) if drive is not None else answer_of(claim, found, found.reason)), cost
+
+
+def seek_simple(claim: Claim, work: Work) -> tuple[Answer, Cost]:
+    """Return what a search comes to, with a simpler drive; in doubt where no search can be set up.
+
+    Raises ``BudgetExceeded``.
+    """
+    try:
+        answer, cost = seek(claim, work)
+    except UsageError as error:  # a grid that is too fine, a comparison too steep
+        road = mode_of(claim).road
+        return undecided(claim, Why.NO_SEARCH("it" if road is None else road.name, error)), NO_COST
+    if answer.drive is None:
+        return answer, cost
+    file = simplest(answer.drive.file, claim.query, claim.home.library)
+    shown = judged_as(file, claim.query, claim.home.library)
+    return (answer if shown is None else Answer(claim, shown)), cost
 
 
 def _decided(claim: Claim, search: Search, work: Work) -> Answer | None:

@@ -9,7 +9,7 @@ from typing import assert_never
 
 from roadproof.engines.prove.induction import prove_of_scenarios
 from roadproof.engines.search.impossible import explain
-from roadproof.engines.search.known_drive import KnownDrive, is_same_motion
+from roadproof.engines.search.known_drive import KnownDrive, given_drive, is_same_motion
 from roadproof.engines.search.looking import search_of
 from roadproof.engines.search.question import zones_of
 from roadproof.engines.search.valid import settle_valid
@@ -32,6 +32,7 @@ from roadproof.runtime.cost import NO_COST, Cost
 from roadproof.runtime.progress import about
 from roadproof.runtime.timing import now, since
 from roadproof.verdict import Verdict
+from roadproof.world.drive import Drive
 
 MOVED = 5
 """So many drives are tried on other roads for a claim that is about no road sector."""
@@ -52,6 +53,8 @@ class Engines:
 
     def learn(self, answer: Answer) -> None:
         """Remember what an answer shows, for later claims."""
+        if self.work.alone:
+            return
         if answer.drive is not None and not self.work.moves:
             self.offer(answer.drive)
         elif answer.drive is not None:
@@ -100,10 +103,18 @@ class Engines:
                 case Valid():
                     alike = self.alike.get(without_sectors(claim.formula), ())
                     return settle_valid(claim, self.work, self.drives, alike)
+                case Exists(like=Drive() as like):
+                    shown = given_drive(claim, claim.mode, like)
+                    found = undecided(claim, Why.NO_DRIVE()) if shown is None else Answer(claim, shown)
+                    return found, NO_COST
                 case Exists(trees=True):
                     from roadproof.engines.search.alone import with_trees  # here: proofs need no numpy
 
                     return with_trees(claim, self.work), NO_COST
+                case Exists() if self.work.simplify:
+                    from roadproof.engines.search.alone import seek_simple
+
+                    return seek_simple(claim, self.work)
                 case Exists() if self.work.alone:
                     from roadproof.engines.search.alone import seek
 

@@ -16,6 +16,7 @@ from roadproof.library.motion import under_limits
 from roadproof.library.specification import Query
 from roadproof.logic.formula import Formula
 from roadproof.semantics.exact.exact import LazyJudge
+from roadproof.world.drive import Drive
 
 
 @dataclass(frozen=True)
@@ -137,6 +138,16 @@ def offered(file: DriveFile, claim: Claim) -> DriveFile:
         formula=claim.query.text,
         values=telling_values(library, claim.formula, values),
         horizon=file.horizon if apart is None else max(file.horizon, apart),
+    )
+
+
+def given_drive(claim: Claim, mode: Exists, drive: Drive) -> JudgedDrive | None:
+    """Return the drive that a claim gives, where it gives it; None where the formula is false there."""
+    home, lanes = claim.home, dict(mode.lanes)
+    assert mode.road is not None
+    file = DriveFile(None, home.set_name, "", mode.horizon, lanes, {}, home.options, mode.road, drive)
+    return judged_as(
+        offered(replace(file, overlaps_allowed=mode.collisions), claim), claim.query, home.library
     )
 
 

@@ -33,7 +33,7 @@ def placed(
     as they are and moved along so that a zone begins or ends under one of the vehicles at time 0;
     with ``roads`` only these, whatever zones they have. ``judge`` of its drive: one who remembers.
     """
-    chosen = _roads(file, zones_of(query.formula)) if roads is None else _with_moved(roads, file.drive)
+    chosen = _roads(file, zones_of(query.formula)) if roads is None else with_moved(roads, file.drive)
     return placed_on(file, query, library, chosen, judge)
 
 
@@ -80,7 +80,8 @@ def _roads(file: DriveFile, zones: frozenset[str]) -> Iterator[Road]:
                 yield from _moved_under(road, file.drive)
 
 
-def _with_moved(roads: Sequence[Road], drive: Drive) -> Iterator[Road]:
+def with_moved(roads: Sequence[Road], drive: Drive) -> Iterator[Road]:
+    """Yield roads as they are, and moved along so that a zone begins or ends under a vehicle at time 0."""
     for road in roads:
         yield road
         yield from _moved_under(road, drive)

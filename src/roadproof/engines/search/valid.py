@@ -3,7 +3,9 @@
 from collections.abc import Iterable
 from dataclasses import replace
 
+from roadproof.drivers.restriction import restriction_of
 from roadproof.engines.prove.doubt import doubt_of
+from roadproof.engines.prove.induction import prove_of_scenarios
 from roadproof.engines.search.known_drive import KnownDrive, against, first_refuting
 from roadproof.engines.search.looking import search_of
 from roadproof.engines.search.remedy import remedy_of
@@ -35,6 +37,8 @@ def settle_valid(
     if shown is not None:
         return Answer(claim, shown), NO_COST
     effort = work.effort if work.seek_drive else work.effort.of(work.proof)
+    if not work.seek_drive and not assumed_by(claim) and restriction_of(claim.home.options) is not None:
+        return _answer(claim, work, Settlement(prove_of_scenarios(claim.home, claim.query, effort))), NO_COST
     found = settle(claim.home, claim.query, effort, seek_drive=work.seek_drive, said=assumed_by(claim))
     return _answer(claim, work, found), Cost(work=found.result.work or None)
 

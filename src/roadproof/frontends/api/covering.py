@@ -1,28 +1,30 @@
 """Which disturbances a spec set misses: proofs that it misses none, or its gaps in classes."""
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import closing
+from dataclasses import replace
 from functools import cached_property, partial
 from pathlib import Path
 from typing import ClassVar, Unpack
 
-from roadproof.analysis.coverage.answers import ClassAnswer, GapTraffic, Kept, Survey
-from roadproof.analysis.coverage.classes import GapSurvey, sets_between
-from roadproof.analysis.coverage.study import Coverage
+from roadproof.analysis.coverage.answers import ClassAnswer, GapTraffic, Survey, with_traffic
+from roadproof.analysis.coverage.classes import sets_between
 from roadproof.analysis.coverage.traffic import count_in_traffic, recordings_in
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.pool import Progress, Say
 from roadproof.drivers.restriction import check_drives
 from roadproof.errors import UsageError
-from roadproof.evidence.answers import coverage as kept
+from roadproof.evidence.answers.coverage import Claim, CountedClass
+from roadproof.evidence.codec import write
 from roadproof.evidence.kinds import Evidence
+from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.definitions import Definitions, definitions_of
+from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import as_road, basis_of
-from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.report import coverage as report
 from roadproof.frontends.report.ci.cases import Case
 from roadproof.frontends.report.ci.questions import coverage_cases
@@ -31,6 +33,9 @@ from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import CoverageKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.library.words import Called, called
+from roadproof.questions.coverage.data import CoverageData
+from roadproof.questions.coverage.question import CoverageQuestion, CoverageView, gaps_of
+from roadproof.questions.views import placing
 from roadproof.runtime.executors import Jobs, hands_of
 from roadproof.runtime.files import hold_folder
 from roadproof.runtime.records import dataclass
@@ -48,22 +53,30 @@ CODES = {
 
 
 @dataclass(frozen=True, repr=False)
-class Coverages(StudyAnswers[Coverage, Kept, kept.Record], BuildResult):
+class Coverages(QuestionAnswers[CoverageView], BuildResult):
     """What a spec set misses; ``traffic``: how often each class of gaps occurs in recordings, if asked."""
 
+    question: CoverageQuestion
     traffic: GapTraffic | None = None
     pieces: ClassVar[str] = "parts of the survey"
     command: ClassVar[str] = "coverage"
 
     @cached_property
+    def view(self) -> CoverageView:
+        found = self.question.view(self.found.answers)
+        return (
+            found if self.traffic is None else replace(found, survey=with_traffic(found.survey, self.traffic))
+        )
+
+    @property
     def surveyed(self) -> Survey:
         """Claims that there is no gap, the classes of gaps, and the definitions that are needed."""
-        return self.study.together(self.found.answers, self.traffic)
+        return self.view.survey
 
     @cached_property
     def words(self) -> Called:
         """What the scenarios are called."""
-        return called(self.study.survey.basis.specification)
+        return called(self.question.basis.specification)
 
     @property
     def verdict(self) -> Verdict:
@@ -87,52 +100,52 @@ class Coverages(StudyAnswers[Coverage, Kept, kept.Record], BuildResult):
 
     @property
     def roads(self) -> tuple[Road, ...]:
-        return tuple(self.study.survey.roads)
+        return self.question.where.roads
 
     @property
     def exit_code(self) -> ExitCode:
         return CODES[self.verdict]
 
+    def _data(self) -> CoverageData:
+        return self.question.data(self.view, placing(self.folder), self.seconds)
+
+    def as_data(self) -> JsonObject:
+        return write(self._data())
+
     def cases(self) -> Iterator[Case]:
-        index = self._index(self.found.records)
-        keys = ["" if x.part is None else x.part.key for x in self.surveyed.classes]
         files = {
-            key: self.folder / str(index.gaps[said.gaps[0] - 1].drive)
-            for key, said in zip(keys, index.classes, strict=True)
-            if self.folder and said.gaps
+            "" if x.part is None else x.part.key: self.folder / f"{x.gaps[0].shown.name}.json"
+            for x in self.surveyed.classes
+            if self.folder and x.gaps
         }
-        return coverage_cases(self.surveyed, self.study.survey.basis.specification, files)
+        return coverage_cases(self.surveyed, self.question.basis.specification, files)
 
     @property
-    def _sheet(self) -> Sheet[kept.CountedClass] | Sheet[kept.Claim]:
+    def _sheet(self) -> Sheet[CountedClass] | Sheet[Claim]:
         """An entry for each class of gaps, and where there is none, for each claim that shows so."""
-        index = self._index(self.found.records)
+        data = self._data()
         names = {number: x.name for number, x in self.words.items()}
-        return report.sheet_of(index, names) if index.classes else report.sheet_of_claims(index)
-
-    def _index(self, records: Mapping[str, kept.Record]) -> kept.Index:
-        return self.study.index(self.surveyed, self.found.answers, records, self.seconds)
+        return report.sheet_of(data, names) if data.classes else report.sheet_of_claims(data)
 
     def each_picture(self) -> Iterator[tuple[str, Picture]]:
         """A picture of each gap."""
-        library = self.study.survey.basis.library
         gaps = ((x, gap) for x in self.surveyed.classes for gap in x.gaps)
-        return ((f"gap-{k}", picture(report.draw_gap(*one, library))) for k, one in enumerate(gaps, 1))
+        return ((f"gap-{k}", picture(report.draw_gap(*one, self.library))) for k, one in enumerate(gaps, 1))
 
     def draw_beside(self, jobs: Jobs = None, progress: Progress | None = None) -> None:
         """A picture of each gap beside its file, where answers were kept in a folder."""
         if self.folder is None:
             return
-        library, kept = self.study.survey.basis.library, self._index(self.found.records).gaps
-        shown = [(x, gap) for x in self.surveyed.classes for gap in x.gaps]
-        pairs = [(*one, self.folder / str(said.drive)) for one, said in zip(shown, kept, strict=True)]
-        draw = partial(report.draw_beside, library)
+        pairs = [
+            (x, gap, self.folder / f"{gap.shown.name}.json") for x in self.surveyed.classes for gap in x.gaps
+        ]
+        draw = partial(report.draw_beside, self.library)
         with closing(pool.work(draw, pairs, jobs, None, progress, "pictures")) as done:
             list(done)
 
     def __str__(self) -> str:
-        name = self.study.survey.basis.specification.set_name
-        return report.as_text(self.surveyed, self._index(self.found.records), name, self.words)
+        name = self.question.basis.specification.set_name
+        return report.as_text(self.surveyed, self._data(), name, self.words)
 
 
 def _name(answer: ClassAnswer) -> str:
@@ -170,14 +183,13 @@ def coverage(
         raise UsageError(f"--wider {wider} does not extend --set {name}: name a set that extends it")
     named = dict.fromkeys(ROADS if given.roads is None else given.roads)
     where = tuple(as_road(road, given.strict) for road in named)
-    study = Coverage(GapSurvey(basis, between, where, tuple(map(as_road, ELSEWHERE))), given.needed)
+    asked = gaps_of(between, where, tuple(map(as_road, ELSEWHERE)), given.needed)
     recordings = None if given.on is None else recordings_in(Path(given.on), given.strict)
-
-    def count() -> dict[str, GapTraffic]:
-        if recordings is None:
-            return {}
-        return {"traffic": count_in_traffic(basis, recordings, tell or (lambda line: None))}
 
     folder = None if given.out is None else Path(given.out)
     with hold_folder(folder, shared=hands_of(given.jobs).shard is not None):
-        return Coverages.asked(study, given, more=count, begun=begun)
+        found = Coverages.settled(CoverageQuestion(basis, asked), given)
+        traffic = None
+        if recordings is not None:
+            traffic = count_in_traffic(basis, recordings, tell or (lambda line: None))
+        return replace(found, traffic=traffic, seconds=time.monotonic() - begun)

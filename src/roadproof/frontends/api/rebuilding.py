@@ -12,6 +12,7 @@ ANSWERS: Mapping[str, str] = {
     "catalogue": "cataloguing:CatalogueAnswer",
     "classify": "classifying:Classifications",
     "compare": "comparing:ComparisonAnswer",
+    "coverage": "covering:Coverages",
     "explore": "exploring:Explorations",
     "order": "studies:Orders",
     "overlap": "studies:Overlaps",

@@ -4,15 +4,13 @@ import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Final, TypeVar
+from typing import Any, Final
 
 from roadproof.drivers.manoeuvres import MANOEUVRES
 from roadproof.errors import UsageError
-from roadproof.evidence.answers import coverage as kept_gaps
+from roadproof.evidence.answers.coverage import CoverageData
 from roadproof.evidence.codec import read
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.folder import INDEX
-from roadproof.evidence.strict import LARGEST_INDEX, read_json
 from roadproof.frontends.api import classifying, covering, drives, preventing, studies
 from roadproof.frontends.api import proofs as proving
 from roadproof.frontends.api.answer import Picture
@@ -23,13 +21,13 @@ from roadproof.frontends.settings.studies import Atlas
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.specification import Library
 from roadproof.questions.classify.data import ClassesData
+from roadproof.questions.data import QUESTION
 from roadproof.questions.order.data import OrderData
 from roadproof.questions.overlap import OverlapData
 from roadproof.questions.preventable.data import PreventableData
 from roadproof.questions.prove import ClaimsData
 from roadproof.questions.redundancy import RedundancyData
 
-T = TypeVar("T")
 TOPICS: Final = ("proofs", "drives", "overlaps", "implications", "redundancy", "gaps", "classes", "plates")
 """What the atlas asks, in the words of ``--topics``."""
 OBJECTIVES: Final = ("smooth", "mild", "severe")
@@ -71,14 +69,14 @@ class Answers:
     order: OrderData | None = None
     diagram: Picture | None = None
     redundancy: RedundancyData | None = None
-    coverage: kept_gaps.Index | None = None
+    coverage: CoverageData | None = None
     classes: ClassesData | None = None
     library: Library | None = None
     plates: dict[str, PreventableData] = field(default_factory=dict)
 
     def source(self, command: str, arguments: str, place: str = "", file: object = None) -> Source:
-        """The source of a statement; ``file``: its evidence in the folder ``place``, or else in its index."""
-        name = f"{EVIDENCE}/{place}/{file if isinstance(file, str) else INDEX}" if place else ""
+        """The source of a statement; ``file``: its evidence in the folder ``place``, or else its question."""
+        name = f"{EVIDENCE}/{place}/{file if isinstance(file, str) else QUESTION}" if place else ""
         words = ["roadproof", command, *arguments.split(), *_flags(self.home, command)]
         return Source(shlex.join(words), name)
 
@@ -138,10 +136,6 @@ class _Questions:
         run = {"jobs": given.jobs, "progress": given.progress, "say": None, "fresh": given.fresh}
         return {"out": self.answers.folder / EVIDENCE / folder, **run}
 
-    def _index(self, kind: type[T], folder: str) -> T:
-        path = self.answers.folder / EVIDENCE / folder / INDEX
-        return read(kind, read_json(path, LARGEST_INDEX), str(path))
-
     def proofs(self) -> None:
         what = () if self.among is None else (self.among,)
         found = proving.prove(*what, using=self.using, **self._keywords("proofs"))
@@ -175,8 +169,8 @@ class _Questions:
         self.answers.redundancy = read(RedundancyData, found.as_data(), "redundancy")
 
     def gaps(self) -> None:
-        covering.coverage(self.answers.home, **self._keywords("coverage"))
-        self.answers.coverage = self._index(kept_gaps.Index, "coverage")
+        found = covering.coverage(self.answers.home, **self._keywords("coverage"))
+        self.answers.coverage = read(CoverageData, found.as_data(), "coverage")
 
     def classes(self) -> None:
         told: Any = {"shares": False, **self._keywords("classes")}

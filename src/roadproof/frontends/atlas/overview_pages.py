@@ -108,7 +108,10 @@ def gap_values(answers: Answers, drawn: Mapping[str, DrivePicture]) -> dict[str,
     assert index is not None, "it is asked only where there are gaps"
     general: Sequence[Statement] = [
         Statement(
-            x.verdict, shown(x.claim), answers.source("coverage", "", "coverage", x.certificate), x.reason
+            x.verdict,
+            shown(x.claim),
+            answers.source("coverage", "", "coverage", _name(x.certificate)),
+            x.reason,
         )
         for x in index.claims
     ]

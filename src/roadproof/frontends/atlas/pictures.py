@@ -80,7 +80,10 @@ def _drives(answers: Answers) -> Iterator[tuple[str, str]]:
             yield f"{EVIDENCE}/classes/{name_in([y.drive])}", f"A drive of class {y.name}: {y.description}"
     for z in () if answers.coverage is None else answers.coverage.gaps:
         if isinstance(z.drive, str):
-            yield f"{EVIDENCE}/coverage/{z.drive}", f"A drive of gap {z.number}, which no scenario describes"
+            yield (
+                f"{EVIDENCE}/coverage/{name_in([z.drive])}",
+                f"A drive of gap {z.number}, which no scenario describes",
+            )
 
 
 def _draw(library: Library, job: _Job) -> DrivePicture:

@@ -239,7 +239,7 @@ def all_gaps(answers: Answers, drawn: Mapping[str, DrivePicture]) -> list[Gap]:
     made = []
     for x in answers.coverage.classes:
         file = files[x.gaps[0]] if x.gaps else x.certificate
-        source = answers.source("coverage", "", "coverage", file)
+        source = answers.source("coverage", "", "coverage", None if file is None else name_in([file]))
         formula, _, home = x.condition.rpartition(" in ")  # such as "aheadOf(SV, POV) in cutIn"
         is_inside = bool(formula) and home.isidentifier()
         condition = f"{shown(formula)} in {shown(home)}" if is_inside else shown(x.condition)

@@ -5,8 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from roadproof.analysis.coverage.answers import ClassAnswer, Gap, GapTraffic, Survey
-from roadproof.analysis.coverage.found import Need
+from roadproof.analysis.coverage.answers import ClassAnswer, Gap, GapTraffic, Need, Survey
 from roadproof.evidence.answers import coverage as kept
 from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.figures import as_bytes
@@ -18,7 +17,7 @@ from roadproof.runtime.files import write_whole
 from roadproof.verdict import Verdict
 
 
-def as_text(surveyed: Survey, index: kept.Index, name: str, words: Called) -> str:
+def as_text(surveyed: Survey, index: kept.CoverageData, name: str, words: Called) -> str:
     """All that is known of the set ``name``."""
     lines: list[str] = []
     if index.classes:
@@ -88,7 +87,7 @@ def summary(classes: Sequence[ClassAnswer]) -> Iterator[str]:
         yield f"  {who} a drive of {has} classes"
 
 
-def sheet_of(index: kept.Index, names: Mapping[int, str]) -> Sheet[kept.CountedClass]:
+def sheet_of(index: kept.CoverageData, names: Mapping[int, str]) -> Sheet[kept.CountedClass]:
     """An entry for each class of gaps; ``names``: what scenarios are called."""
     gaps = {gap.number: gap for gap in index.gaps}
     return Sheet(
@@ -117,7 +116,7 @@ def sheet_of(index: kept.Index, names: Mapping[int, str]) -> Sheet[kept.CountedC
     )
 
 
-def sheet_of_claims(index: kept.Index) -> Sheet[kept.Claim]:
+def sheet_of_claims(index: kept.CoverageData) -> Sheet[kept.Claim]:
     """An entry for each claim that there is no gap."""
     return Sheet(
         (

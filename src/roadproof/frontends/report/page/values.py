@@ -76,7 +76,7 @@ def overlap(result: Result, context: PageContext, words: Words) -> dict[str, obj
 
 def coverage(result: Result, context: PageContext, words: Words) -> dict[str, object]:
     """Classes of gaps: a column for each scenario, a row for each part that is false."""
-    index = read(gaps.Index, result.data, result.name)
+    index = read(gaps.CoverageData, result.data, result.name)
     sheet = sheet_of_classes(index, words)
     cells: dict[tuple[object, object], Linked] = {}
     for k, x in enumerate(index.classes):

@@ -1,0 +1,1 @@
+"""Which disturbances a spec set misses: proofs that it misses none, or its gaps in classes."""
