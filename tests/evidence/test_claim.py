@@ -117,7 +117,7 @@ def test_assumptions_are_part_of_a_claim() -> None:
 
 def test_every_setting_of_a_search_but_values_and_effort_is_part_of_its_claim() -> None:
     names = {x.name for kind in (Setting, SearchOptions) for x in fields(kind)} - {"values", "effort"}
-    assert {x.name for x in fields(Exists)} == names | {"unlike", "trees", "apart", "by"}
+    assert {x.name for x in fields(Exists)} == names | {"unlike", "trees", "apart", "by", "like"}
     home = specification()
     search = Search(home, read_claim(home, TEXT), Setting(horizon=Fraction(5)), SearchOptions("mild"))
     assert search.claim.mode == Exists(horizon=Fraction(5), objective="mild")
