@@ -15,7 +15,7 @@ from roadproof.world.vehicle import Vehicle
 Positive = Annotated[Fraction, Rule(pattern="^[1-9][0-9]{0,39}(/[0-9]{1,40})?$")]
 
 
-_OF_ONE_CLAIM = ("unlike", "trees", "apart", "by")
+_OF_ONE_CLAIM = ("unlike", "trees", "apart", "by", "like")
 
 
 @dataclass(frozen=True, kw_only=True)
