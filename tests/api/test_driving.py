@@ -17,9 +17,9 @@ from exporting.kept import kept, subject
 from exporting.kept import motion as motion_from
 from planting import plant
 from roadproof.analysis.catalogue.reading import is_test
+from roadproof.engines.prove.motion import prove_of_motions
 from roadproof.engines.search import minimal
 from roadproof.engines.search.minimal import simplest
-from roadproof.engines.prove.motion import prove_of_motions
 from roadproof.errors import InputError
 from roadproof.evidence.derivations.prepare import prepare
 from roadproof.evidence.drive_file import DriveFile, drive_data
