@@ -44,9 +44,7 @@ FAST = "v_lon(SV) = 30 m/s and v_lon(SV)^3 > rho*rho*rho*(50 m/s^2)*(50 m/s^2)*(
 """For rho below 0.6 s; elsewhere it is proved for each value."""
 FOLDERS: dict[str, Callable[[Path], object]] = {
     "classify": lambda out: rp.classify("4,8", shares=False, out=out, jobs=1),
-    "coverage": lambda out: rp.coverage(
-        rp.load("ext"), roads=["main-2"], pictures=False, out=out, jobs=1, effort=0.2
-    ),
+    "coverage": lambda out: rp.coverage(rp.load("ext"), roads=["main-2"], out=out, jobs=1, effort=0.2),
     "order": lambda out: rp.order("4", rp.load("base", "extA"), out=out, jobs=1),
     "explore": lambda out: rp.explore(FAST, vary={"rho": (0, 1)}, steps=2, precision=1, out=out, jobs=1),
     "overlap": lambda out: rp.overlap("4,5,8", out=out, jobs=1),
@@ -64,7 +62,7 @@ MOST = 160
 
 @pytest.fixture(scope="module")
 def few_gaps() -> Iterator[None]:
-    """One class of gaps, one claim that there is none, some simple drives two roads: the rest takes minutes."""
+    """One class of gaps, one claim that there is none, two roads: the rest takes minutes."""
     with pytest.MonkeyPatch.context() as patch:
         groups, best = GapClasses.groups, SimpleDrives.best
 
