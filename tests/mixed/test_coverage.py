@@ -40,9 +40,9 @@ from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import LANE, PAIR
 from roadproof.logic import formula as f
 from roadproof.logic.formula import subformulas
-from roadproof.questions.coverage.asking import AGAIN, LOOK, GapRoads, GroupAsking, work_of
+from roadproof.questions.coverage.asking import AGAIN, LOOK, GapRoads, GroupAsking, ask_need, work_of
 from roadproof.questions.coverage.claims import GapClaims
-from roadproof.questions.coverage.looks import Near, NeedJudge, SimpleGap, SimpleGaps, SimpleJudge
+from roadproof.questions.coverage.looks import Near, Needing, NeedJudge, SimpleGap, SimpleGaps, SimpleJudge
 from roadproof.questions.coverage.question import CoverageQuestion, gaps_of
 from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.runtime.budget import Effort, Work
@@ -321,3 +321,19 @@ def test_what_a_forged_judgement_names_is_left_out() -> None:
         gap, asked = answered(made._gap("a", part, found), lambda name, _, x=sent: x)
         assert gap == Why.DRIVE_REJECTED()
         assert [name for name, _ in asked] == ["near-a"]
+
+
+def test_a_definition_is_spare_where_all_is_proved_without_it() -> None:
+    claims = GapClaims(Basis(bundled_library().select("complete")))
+
+    for doubtful, verdict in (("none", V.PROVED), ("spare-cutIn-2", V.UNKNOWN)):
+
+        def sent(name: str, claim: Claim, doubtful: str = doubtful) -> Any:
+            if name.startswith("help-"):
+                return SimpleNamespace(evidence=Judged(Needing(drive=None)))
+            return None if name == doubtful else proof(claim)
+
+        need, asked = answered(ask_need(claims, "cutIn"), sent)
+        assert need.verdict is verdict
+        count = 4 if verdict is V.PROVED else 2
+        assert [x for x, _ in asked] == ["help-needed-cutIn", *(f"spare-cutIn-{k + 1}" for k in range(count))]
