@@ -13,6 +13,8 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from roadproof.analysis.catalogue.formula_facts import FormulaFacts
+from roadproof.analysis.catalogue.meaning import Meanings
 
 import roadproof as rp
 from cli.test_schemas import validator
@@ -22,15 +24,13 @@ from roadproof.analysis.catalogue.asked import Questions, ScenarioQuestion
 from roadproof.analysis.catalogue.completing import complete
 from roadproof.analysis.catalogue.entries import Abstract, Concrete, Freedom
 from roadproof.analysis.catalogue.fact import Fact
-from roadproof.analysis.catalogue.formula_facts import FormulaFacts
 from roadproof.analysis.catalogue.gaps import NO_SINGLE
-from roadproof.analysis.catalogue.meaning import Meanings
 from roadproof.analysis.catalogue.nearest import first_false_part
 from roadproof.analysis.catalogue.ranges import Reach
 from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, show
 from roadproof.analysis.catalogue.traces import courses_of
 from roadproof.analysis.catalogue.why import Course, why_none
-from roadproof.analysis.coverage import classes, found, settling, study
+from roadproof.analysis.coverage import classes, found
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.analysis.coverage.classes import near_miss
 from roadproof.errors import UsageError
@@ -45,6 +45,8 @@ from roadproof.library.bind import bind, values_with
 from roadproof.library.scenarios import Scenario, applied, name_of, vehicles_of
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
+from roadproof.questions.coverage import asking as coverage_asking
+from roadproof.questions.coverage import question as coverage_question
 from roadproof.semantics.exact.exact import DriveJudge, judge
 from roadproof.semantics.exact.signals import DriveSignals
 from roadproof.verdict import Verdict
@@ -109,9 +111,9 @@ def surveyed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Catalog
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(found, "simple_drives", lambda road, car: islice(simple(road, car), 0, None, 60))
         patch.setattr(gaps, "ROADS", ("main-2",))
-        patch.setattr(study, "CHUNKS", 1)
+        patch.setattr(coverage_question, "CHUNKS", 1)
         patch.setattr(classes, "PROOF", 1.0)
-        patch.setattr(settling, "LONG_PROOF", 2.0)
+        patch.setattr(coverage_asking, "LONG_PROOF", 2.0)
         report = folder / "report"
         made = catalogue(CUT_IN, among="4", classes=False, gaps=True, effort=3, jobs=1, out=report)
         made.add_files(False)

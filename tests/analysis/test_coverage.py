@@ -3,9 +3,9 @@
 from dataclasses import replace
 from fractions import Fraction as F
 from pathlib import Path
+from typing import TypeVar
 
 import pytest
-from roadproof.analysis.coverage.settling import ClassGroup
 
 from asking import prove
 from roadproof.analysis.basis import Basis, ProofResult
@@ -15,14 +15,13 @@ from roadproof.analysis.coverage.answers import (
     ClassAnswer,
     GapTrace,
     GapTraffic,
+    Need,
     verdict_on,
     with_counts,
 )
 from roadproof.analysis.coverage.classes import (
-    PROOF,
     GapClasses,
     GapGroup,
-    GapSurvey,
     Part,
     claims_of,
     in_either_role,
@@ -33,16 +32,11 @@ from roadproof.analysis.coverage.classes import (
     sets_between,
     two_vehicle_numbers,
 )
-from roadproof.analysis.coverage.found import (
-    HORIZON,
-    FoundGap,
-    Trials,
-    find_among_simple,
-    find_need,
-    replaced_by,
-    simple_drives,
-)
+from roadproof.analysis.coverage.found import FoundGap, SimpleDrives, Trials, replaced_by
+from roadproof.analysis.coverage.simple_drives import HORIZON, simple_drives
+from roadproof.engines.search.batches import Engines
 from roadproof.engines.search.minimal import simplest
+from roadproof.engines.search.points import Asking
 from roadproof.errors import InputError
 from roadproof.evidence.certificate import to_json
 from roadproof.evidence.drive_file import DriveFile
@@ -52,6 +46,8 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import build_library, bundled_library
 from roadproof.library.specification import Source
 from roadproof.logic.show import text
+from roadproof.questions.coverage.asking import GapRoads, GroupAsking, ask_need, work_of
+from roadproof.questions.coverage.claims import GapClaims
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact.replay import first_breach
 from roadproof.verdict import Verdict
@@ -62,11 +58,28 @@ from roadproof.world.road import Road
 LIBRARY = bundled_library()
 COMPLETE = LIBRARY.select("complete")
 REPLACED = ("aheadOf", "cutIn", "cutOut", "decel", "initialCondition_8")
+T = TypeVar("T")
 STEADY = Piece(None, F(0), F(0))
 
 
 def of_set(name: str) -> Basis:
     return Basis(LIBRARY.select(name))
+
+
+def answered(asking: Asking[T], claims: GapClaims) -> T:
+    """What answers show, each claim settled by itself."""
+    try:
+        name, claim = next(asking)
+        while True:
+            name, claim = asking.send(Engines(work_of(name, claims)).settle(claim)[0])
+    except StopIteration as end:
+        found: T = end.value
+        return found
+
+
+def needed_by(basis: Basis, name: str) -> Need:
+    claims = GapClaims(basis)
+    return answered(ask_need(claims, name), claims)
 
 
 def without(name: str) -> Verdict:
@@ -113,9 +126,9 @@ def test_the_proof_fails_without_a_definition(name: str) -> None:
 
 
 def test_coverage_of_the_main_road_is_proved(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    main_road, *_, sectors = claims_of(COMPLETE)
-    for number, claim in enumerate((main_road, sectors)):
-        covered = of_set("complete").settle(claim, claim, PROOF, "coverage")
+    claims = GapClaims(of_set("complete"))
+    for number, name in enumerate(("covered-1", "covered-4")):
+        covered, _ = Engines(work_of(name, claims)).settle(claims.covered[name])
         assert covered.verdict is Verdict.PROVED
         assert covered.certificate is not None
         (tmp_path / f"{number}.json").write_text(to_json(covered.certificate), "utf-8")
@@ -168,7 +181,7 @@ def test_drives_that_are_missed_without_a_definition(name: str, drive: Drive) ->
 
 def test_a_definition_is_shown_needed() -> None:
     assert sorted(replaced_by(COMPLETE)) == list(REPLACED)
-    need = find_need(of_set("complete"), "cutIn")
+    need = needed_by(of_set("complete"), "cutIn")
     assert need.verdict is Verdict.WITNESSED
     assert need.drive is not None
     assert judge_file(need.drive.file, LIBRARY).accepted
@@ -177,11 +190,12 @@ def test_a_definition_is_shown_needed() -> None:
 
 def test_what_the_clock_cuts_off_is_in_doubt(monkeypatch: pytest.MonkeyPatch) -> None:
     basis = replace(of_set("complete"), effort=Effort(1.0, timeout=0.0001))
-    covered = basis.settle(claims_of(COMPLETE)[0], claims_of(COMPLETE)[0], PROOF, "coverage")
+    claims = GapClaims(basis)
+    covered, _ = Engines(work_of("covered-1", claims)).settle(claims.covered["covered-1"])
     assert covered.verdict is Verdict.UNKNOWN
     assert "cut off by the clock" in covered.reason
     monkeypatch.setattr(needed, "simple_drives", lambda *_: ())
-    assert find_need(basis, "cutIn").verdict is Verdict.UNKNOWN
+    assert needed_by(basis, "cutIn").verdict is Verdict.UNKNOWN
 
 
 def test_a_set_that_extends_nothing_needs_nothing() -> None:
@@ -314,18 +328,19 @@ def test_a_part_left_out_of_the_wrong_scenario_does_not() -> None:
 
 EXT = Basis(LIBRARY.select("ext"), effort=Effort(0.1))
 CLASSES = GapClasses(EXT)
-SURVEY = GapSurvey(EXT, ("complete",), (load_road("main-2"),), (load_road("merge"),))
-TRIALS = Trials(EXT, SURVEY.wider)
+CLAIMS = GapClaims(EXT, ("complete",))
+ROADS = GapRoads((load_road("main-2"),), (load_road("merge"),))
+TRIALS = CLAIMS.trials
 
 
 @pytest.fixture(scope="module")
 def known() -> list[FoundGap]:
     """Gaps of ext from some of the simple drives."""
-    return find_among_simple(load_road("main-2"), 0, 61, CLASSES, TRIALS)
+    return [*SimpleDrives(load_road("main-2"), CLASSES, TRIALS).best(0, 61).values()]
 
 
 def settle(group: GapGroup, known: list[FoundGap] | None = None) -> Answers:
-    return ClassGroup(SURVEY, group, known or [], CLASSES, TRIALS).run()
+    return answered(GroupAsking(CLAIMS, ROADS, group, tuple(known or ()), ()).run(), CLAIMS)
 
 
 def group(name: str) -> GapGroup:
@@ -379,7 +394,7 @@ def test_known_drives_are_evidence_for_a_component_and_its_conditions(known: lis
         assert gap.first == "complete"
         assert part.without.text in gap.drive.file.formula or answer.part is not part
         assert judge_file(gap.drive.file, LIBRARY).accepted
-    placed = answers[0].gaps[0].elsewhere["merge"].file
+    placed = answers[0].gaps[0].elsewhere["merge"].drive.file
     assert "scenario_12" in placed.formula
     assert judge_file(placed, LIBRARY).accepted
     assert whole.component is not None
@@ -401,17 +416,16 @@ def test_roles_exchanged_give_the_same_classes(known: list[FoundGap]) -> None:
 
 def test_where_no_search_is_possible_the_answer_says_so() -> None:
     off_the_grid = replace(EXT, values={"minDanger": F(1, 997)})
-    classes = GapClasses(off_the_grid)
-    survey = replace(SURVEY, basis=off_the_grid, wider=())
-    part = next(x.component for x in classes.groups() if x.title == "behaviourPOV_8")
-    (answer,) = ClassGroup(survey, GapGroup(part), [], classes, Trials(off_the_grid, ())).run()
+    claims = GapClaims(off_the_grid)
+    group = GapGroup(claims.groups["behaviourPOV_8"].component)
+    (answer,) = answered(GroupAsking(claims, ROADS, group, (), ()).run(), claims)
     assert answer.verdict is Verdict.UNKNOWN
     assert "no search on main-2" in answer.reason
 
 
 def test_a_class_that_the_clock_cuts_off_is_in_doubt() -> None:
-    late = replace(EXT, effort=Effort(0.1, timeout=0.0001))
-    every = ClassGroup(replace(SURVEY, basis=late), group("behaviourSV_8"), [], CLASSES, TRIALS).run()
+    late = GapClaims(replace(EXT, effort=Effort(0.1, timeout=0.0001)), ("complete",))
+    every = answered(GroupAsking(late, ROADS, group("behaviourSV_8"), (), ()).run(), late)
     assert {x.verdict for x in every} == {Verdict.UNKNOWN}
     assert all("cut off by the clock" in x.reason for x in every)
 

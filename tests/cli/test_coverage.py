@@ -4,43 +4,47 @@ import json
 import re
 import shutil
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from planting import plant
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.coverage import answers as occurring
-from roadproof.analysis.coverage import study
-from roadproof.analysis.coverage.classes import GapClasses, GapGroup, GapSurvey
-from roadproof.analysis.coverage.found import FoundGap, Trials
-from roadproof.analysis.coverage.study import Coverage
-from roadproof.analysis.study.evidence_store import EvidenceStore
-from roadproof.analysis.study.frame import conduct
+from roadproof.analysis.coverage.classes import GapClasses, GapGroup
+from roadproof.analysis.coverage.found import FoundGap, SimpleDrives
+from roadproof.engines.search.batches import Engines
 from roadproof.errors import UsageError
+from roadproof.evidence.answer import Answer, undecided
+from roadproof.evidence.claim import Claim
 from roadproof.evidence.drive_file import SCHEMA, load_drive
 from roadproof.frontends.api import covering
 from roadproof.frontends.cli.main import main
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.library.specification import Query, Specification
+from roadproof.questions.checking import read_folder
+from roadproof.questions.coverage import claims as coverage_claims
+from roadproof.questions.coverage import question as coverage_question
+from roadproof.questions.coverage.question import CoverageQuestion, gaps_of
+from roadproof.questions.question import walk
+from roadproof.questions.settle import settle
+from roadproof.questions.store import Store
+from roadproof.questions.views import folder_data
+from roadproof.reasons import Why
 from roadproof.verdict import ExitCode, Verdict
 from roadproof.world.models import load_road
-from roadproof.world.road import Road
 from tables import read_table
 
 WANTED = ("behaviourPOV_4", "behaviourSV_8")
 """Components that are asked for here, without their conditions: the rest takes minutes."""
 
 
-def components(*wanted: str) -> property:
-    """In place of ``Coverage.groups``: these components alone."""
-
-    def groups(self: Coverage) -> dict[str, GapGroup]:
-        return {x.title: GapGroup(x.component) for x in self._classes.groups() if x.title in wanted}
-
-    return property(groups)
+def components(*wanted: str) -> Callable[[GapClasses], list[GapGroup]]:
+    """In place of ``GapClasses.groups``: these components alone."""
+    groups = GapClasses.groups
+    return lambda classes: [GapGroup(x.component) for x in groups(classes) if x.title in wanted]
 
 
 def claims(*texts: str) -> Callable[[Specification], tuple[Query, ...]]:
@@ -49,18 +53,19 @@ def claims(*texts: str) -> Callable[[Specification], tuple[Query, ...]]:
 
 
 @pytest.fixture
-def few(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Few classes, some of the simple drives; what comes is the roads they were looked up for."""
-    roads: list[str] = []
-    look_up = study.find_among_simple
+def few(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Few classes, some of the simple drives."""
+    only_some(monkeypatch)
 
-    def some_drives(road: Road, start: int, step: int, classes: GapClasses, trials: Trials) -> list[FoundGap]:
-        roads.append(road.name)
-        return look_up(road, 0, 97, classes, trials) if start == 0 and road.name == "main-2" else []
 
-    monkeypatch.setattr(Coverage, "groups", components(*WANTED))
-    monkeypatch.setattr(study, "find_among_simple", some_drives)
-    return roads
+def only_some(monkeypatch: pytest.MonkeyPatch) -> None:
+    best = SimpleDrives.best
+
+    def some_drives(self: SimpleDrives, start: int, step: int) -> dict[int, FoundGap]:
+        return best(self, 0, 7 * 14) if start == 0 and self.road.name == "main-2" else {}
+
+    monkeypatch.setattr(GapClasses, "groups", components(*WANTED))
+    monkeypatch.setattr(SimpleDrives, "best", some_drives)
 
 
 def run(out: Path, *more: str) -> int:
@@ -68,8 +73,12 @@ def run(out: Path, *more: str) -> int:
     return main(command)
 
 
+def view_of(out: Path) -> Any:
+    return folder_data(out)
+
+
 def test_evidence_in_files_and_going_on(
-    few: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    few: None, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     out = tmp_path / "out"
     assert run(out, "--road", "main-2") == ExitCode.UNEXPECTED
@@ -77,8 +86,8 @@ def test_evidence_in_files_and_going_on(
     assert "scenario 4: deceleration ahead, lane keep, main road\n" in printed
     assert "\nbehaviourPOV_4: POV ahead is slower\n" in printed
     assert "complete: cutIn" in printed
-    data = json.loads((out / "index.json").read_text())
-    assert (data["schema"], data["verdict"], data["wider"]) == ("roadproof/coverage/1", "GAPS", ["complete"])
+    data = view_of(out)
+    assert (data["schema"], data["verdict"], data["wider"]) == ("roadproof/coverage/2", "GAPS", ["complete"])
     by_key = {(x["component"], x["condition"]): x for x in data["classes"]}
     assert by_key["behaviourSV_8", ""]["verdict"] == "IMPOSSIBLE"
     first = by_key["behaviourPOV_4", ""]
@@ -87,23 +96,21 @@ def test_evidence_in_files_and_going_on(
     assert data["gaps"][first["gaps"][0] - 1]["elsewhere"].keys() >= {"main-3", "merge", "depart"}
     assert len(list(out.glob("gap-*.png"))) == len(data["gaps"])
     assert main(["check", str(out), "--jobs", "1"]) == 0
-    few.clear()
+    kept = {path.name: path.read_bytes() for path in out.glob("*.json")}
+    monkeypatch.setattr(Engines, "settle", lambda *_: pytest.fail("asked again"))
     assert run(out, "--road", "main-2", "--no-pictures") == ExitCode.UNEXPECTED
-    again = json.loads((out / "index.json").read_text())
-    assert [x["certificate"] for x in again["classes"]] == [x["certificate"] for x in data["classes"]]
-    kept = {path.stem for path in (out / "answers").iterdir()}
-    assert {name for name in kept if not name.startswith("covered-")} == {*WANTED}
-    assert few == []
+    assert {path.name: path.read_bytes() for path in out.glob("*.json")} == kept
+    assert view_of(out) == data
 
 
 def neither_gap_nor_proof(monkeypatch: pytest.MonkeyPatch, out: Path) -> tuple[int, str]:
     """Exit code and verdict where one of two claims is not proved and the one class asked for is empty."""
     some = ("danger(SV,POV) -> danger(POV,SV)", "F danger(SV,POV) -> scenario_1(SV,POV,L)")
-    monkeypatch.setattr(study, "claims_of", claims(*some))
-    monkeypatch.setattr(Coverage, "groups", components("behaviourSV_8"))
-    monkeypatch.setattr(study, "find_among_simple", lambda *_: [])
+    monkeypatch.setattr(coverage_claims, "claims_of", claims(*some))
+    monkeypatch.setattr(GapClasses, "groups", components("behaviourSV_8"))
+    monkeypatch.setattr(SimpleDrives, "best", lambda *_: {})
     code = run(out, "--no-pictures")
-    data = json.loads((out / "index.json").read_text())
+    data = view_of(out)
     assert data["gaps"] == []
     return code, data["verdict"]
 
@@ -128,7 +135,6 @@ FAULTS = [
     ("verdict_on", "any(x.gaps for x in classes) else Verdict.UNKNOWN", "classes else Verdict.UNKNOWN"),
     ("verdict_on", "for x in classes) else Verdict.UNKNOWN", "for x in classes) else Verdict.COVERED"),
     ("verdict_on", "if proved:", "if not any(x.gaps for x in classes):"),
-    ("is_covered", "all(", "any("),
 ]
 
 
@@ -149,90 +155,90 @@ def test_an_exit_code_that_hides_a_doubt_is_noticed(
     assert neither_gap_nor_proof(monkeypatch, out) != (ExitCode.UNKNOWN, "UNKNOWN")
 
 
-def asked(set_name: str, *wider: str, road: str = "main-2") -> Coverage:
-    return Coverage(GapSurvey(Basis(bundled_library().select(set_name)), wider, (load_road(road),)))
+def asked(set_name: str, *wider: str, road: str = "main-2", needed: bool = False) -> CoverageQuestion:
+    basis = Basis(bundled_library().select(set_name))
+    return CoverageQuestion(basis, gaps_of(wider, [load_road(road)], needed=needed))
 
 
 def test_answers_that_compare_with_other_sets_are_not_taken_over(tmp_path: Path) -> None:
     """Which set is the first to catch a drive is part of an answer, so it depends on the sets compared."""
-    list(EvidenceStore(tmp_path, asked("base", "extA", "ext").question).answers())
-    list(EvidenceStore(tmp_path, asked("base", "extA", "ext", road="main-3").question).answers())
-    with pytest.raises(UsageError, match="another question"):
-        list(EvidenceStore(tmp_path, asked("base", "extA", "ext", "complete").question).answers())
+    first = asked("base", "extA", "ext")
+    Store(tmp_path, "coverage", first.work).open(first)
+    for other in (asked("base", "extA", "ext", road="main-3"), asked("base", "extA", "ext", "complete")):
+        with pytest.raises(UsageError, match="another question"):
+            Store(tmp_path, "coverage", other.work).open(other)
+    same, wider = (asked("base", *x).simple["help-simple-1-1"] for x in (("extA",), ("extA", "ext")))
+    assert same.digest() != wider.digest()
 
 
-def test_what_is_kept_comes_back_as_it_was(few: list[str], tmp_path: Path) -> None:
+def test_what_is_kept_comes_back_as_it_was(few: None, tmp_path: Path) -> None:
     assert run(tmp_path, "--road", "main-2", "--no-pictures") == ExitCode.UNEXPECTED
-    survey = replace(asked("ext", "complete").survey, elsewhere=())
-    found = conduct(Coverage(survey), tmp_path, hands=1).answers
-    witnessed, empty = (found[name] for name in WANTED)
-    assert isinstance(witnessed, tuple)
-    assert isinstance(empty, tuple)
-    assert (witnessed[0].verdict, empty[0].verdict) == (Verdict.WITNESSED, Verdict.IMPOSSIBLE)
-    [gap] = witnessed[0].gaps
-    assert {gap.first, *(x.file.set_name for x in gap.elsewhere.values())} == {"complete", "ext"}
-    assert empty[0].claim is not None
-    assert empty[0].certificate is not None
-    assert empty[0].certificate.claim == empty[0].claim.text
-    index = json.loads((tmp_path / "index.json").read_text())
-    assert gap.drive.as_data() == json.loads((tmp_path / index["gaps"][0]["drive"]).read_text())
+    found = read_folder(tmp_path)
+    assert found.problems == ()
+    witnessed, empty = found.question.view(found.answers).survey.classes
+    assert (witnessed.verdict, empty.verdict) == (Verdict.WITNESSED, Verdict.IMPOSSIBLE)
+    [gap] = witnessed.gaps
+    assert {gap.first, *(x.drive.file.set_name for x in gap.elsewhere.values())} == {"complete", "ext"}
+    assert empty.claim is not None
+    assert empty.certificate is not None
+    assert empty.certificate.claim == empty.claim.text
+    assert gap.drive.as_data() == json.loads((tmp_path / f"{gap.shown.name}.json").read_text())
 
 
 def test_claims_and_needs_are_kept_too(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """A run that was broken off before its index leaves nothing that ``check`` has to reject."""
-    monkeypatch.setattr(study, "replaced_by", lambda _: ("cutIn",))
-    coverage = replace(asked("complete"), needed=True)
-    told = conduct(coverage, tmp_path, hands=1)
-    names = ["covered-1", "covered-2", "covered-3", "covered-4", "needed-cutIn"]
-    assert sorted(path.stem for path in (tmp_path / "answers").iterdir()) == names
+    """A run that was broken off leaves nothing that ``check`` has to reject."""
+    monkeypatch.setattr(coverage_question, "replaced_by", lambda _: ("cutIn",))
+    coverage = asked("complete", needed=True)
+    told = settle(coverage, tmp_path, 1).answers
+    names = ["covered-1", "covered-2", "covered-3", "covered-4", "help-needed-cutIn", "needed-cutIn"]
+    assert sorted(path.stem for path in tmp_path.glob("*.json")) == [*names, "question"]
     assert main(["check", str(tmp_path), "--jobs", "1"]) == 0
-    monkeypatch.setattr(Coverage, "settle", lambda *_: pytest.fail("asked again"))
-    again = conduct(coverage, tmp_path, hands=1)
-    assert again.records == told.records
-    assert coverage.together(again.answers).verdict is Verdict.COVERED
-    [need] = coverage.together(again.answers).needs
-    assert need == told.answers["needed-cutIn"]
+    monkeypatch.setattr(Engines, "settle", lambda *_: pytest.fail("asked again"))
+    survey = coverage.view(settle(coverage, tmp_path, 1).answers).survey
+    assert survey.verdict is Verdict.COVERED
+    [need] = survey.needs
+    assert need.drive is not None
+    assert need.drive.file == told["needed-cutIn"].evidence.file  # type: ignore[union-attr]
 
 
-def test_what_is_lost_is_in_doubt(few: list[str]) -> None:
-    """Whatever job ends its process twice: a claim, a definition, some of the simple drives, a component."""
-    coverage = replace(asked("ext", "complete"), needed=True)
-    answers: dict[str, study.Kept] = {}
-    asked_so_far: list[str] = []
-    while pieces := coverage.pieces(answers):
-        asked_so_far += [type(piece).__name__ for piece in pieces]
-        for piece in pieces:
-            answers |= coverage.doubt(piece, "its process ended each time")
-    assert asked_so_far == [*["CoverageClaim"] * 4, *["Chunk"] * study.CHUNKS, "Component", "Component"]
-    together = coverage.together(answers)
-    assert together.verdict is Verdict.UNKNOWN
-    assert {(x.verdict, x.reason) for x in (*together.claims, *together.classes)} == {
-        (Verdict.UNKNOWN, "its process ended each time")
-    }
-    assert not any(coverage.is_sure(answer) for answer in answers.values())
-    [need] = coverage.doubt(study.NeededDefinition("cutIn"), "its process ended each time").values()
-    assert isinstance(need, study.Need)
+def lost(question: CoverageQuestion, sent: Callable[[str, Claim], Answer | None]) -> dict[str, Answer]:
+    """The answers to all claims: what ``sent`` gives, else a doubt since the process of each ended."""
+    known: dict[str, Answer] = {}
+
+    def find(name: str, claim: Claim) -> Answer:
+        made = sent(name, claim) or undecided(claim, Why.PROCESS("SIGKILL"))
+        return known.setdefault(name, made)
+
+    seen: set[str] = set()
+    while new := [x for x in question.batches(known) if x.name not in seen]:
+        seen |= {x.name for x in new}
+        for batch in new:
+            [*walk(batch, find)]
+    return known
+
+
+def test_what_is_lost_is_in_doubt(few: None) -> None:
+    """Whatever claim ends its process: of coverage, of simple drives, of a component."""
+    question = asked("ext", "complete")
+    known = lost(question, lambda *_: None)
+    assert {x.partition("-")[0] for x in known} == {"covered", "help"}
+    survey = question.view(known).survey
+    assert survey.verdict is Verdict.UNKNOWN
+    assert {x.verdict for x in (*survey.claims, *survey.classes)} == {Verdict.UNKNOWN}
+    assert all("SIGKILL" in x.reason for x in (*survey.claims, *survey.classes))
+    assert all("some of the simple drives were not looked through" in x.reason for x in survey.classes)
+    assert [name for name, _ in question.doubts(known)] == [f"class {name}" for name in WANTED]
+    needing = asked("complete", needed=True)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(CoverageQuestion, "is_covered", lambda *_: True)
+        patch.setattr(coverage_question, "is_covered", lambda *_: True)
+        patch.setattr(coverage_question, "replaced_by", lambda _: ("cutIn",))
+        [need] = needing.view(lost(needing, lambda *_: None)).survey.needs
     assert need.verdict is Verdict.UNKNOWN
 
 
-def test_a_doubt_says_what_was_not_tried(few: list[str]) -> None:
-    coverage = asked("ext")
-    answers: dict[str, study.Kept] = {}
-    for piece in coverage.pieces(answers):
-        answers |= coverage.doubt(piece, "")
-    for piece in coverage.pieces(answers):
-        answers |= coverage.doubt(piece, "its process ended each time")
-    [piece, _] = coverage.pieces(answers)
-    assert isinstance(piece, study.Component)
-    assert piece.lost[0] == "some of the simple drives were not looked through: its process ended each time"
-    doubtful = study.ClassAnswer(None, verdict=Verdict.UNKNOWN, reason="none on main-2")
-    assert study._with_lost(doubtful, piece.lost[:1]).reason == f"none on main-2; {piece.lost[0]}"
-    sure = study.ClassAnswer(None, verdict=Verdict.IMPOSSIBLE)
-    assert study._with_lost(sure, piece.lost) == sure
-
-
 def test_a_folder_with_other_answers_is_left_alone(
-    few: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    few: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "question.json").write_text('{"question": "another"}\n')
     assert run(tmp_path) == ExitCode.USAGE

@@ -15,11 +15,10 @@ from referencing import Registry, Resource
 import roadproof as rp
 from asking import search_for
 from cli.test_coverage import components
-from roadproof.analysis.coverage import study
-from roadproof.analysis.coverage.found import Need
-from roadproof.analysis.coverage.study import Coverage
+from roadproof.analysis.coverage.classes import GapClasses
+from roadproof.analysis.coverage.found import SimpleDrives
 from roadproof.engines.search.none_within import refute
-from roadproof.evidence.drive_file import load_drive, read_drive
+from roadproof.evidence.drive_file import read_drive
 from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.none_within import none_within_data
@@ -28,10 +27,11 @@ from roadproof.frontends.schemas import as_text, schemas
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.library.specification import Query, Specification
+from roadproof.questions.coverage import claims as coverage_claims
+from roadproof.questions.coverage import question as coverage_question
 from roadproof.recordings.formats.write_highd import write_highd
 from roadproof.recordings.simulate.simulate import simulate
 from roadproof.recordings.simulate.traffic import Traffic
-from roadproof.verdict import Verdict
 
 pytestmark = pytest.mark.usefixtures("searched_once")
 
@@ -334,12 +334,8 @@ def of_coverage(run: Run, out: Path, traffic: Path) -> None:
         told = run("coverage", "--set", "ext", *asked, "--on", traffic, "--out", out / "gaps")
         assert {x["verdict"] for x in told["classes"]} == {"WITNESSED"}
         examine(told, folder=out / "gaps")
-        patch.setattr(study, "claims_of", claims("danger(SV,POV) -> danger(SV,POV)"))
-        patch.setattr(study, "replaced_by", lambda _: ("cutIn",))
-        drive = JudgedDrive(load_drive(DRIVE), bundled_library())
-        patch.setattr(
-            study, "find_need", lambda _, name: Need(name, "ext", verdict=Verdict.WITNESSED, drive=drive)
-        )
+        patch.setattr(coverage_claims, "claims_of", claims("danger(SV,POV) -> danger(SV,POV)"))
+        patch.setattr(coverage_question, "replaced_by", lambda _: ("cutIn",))
         told = run("coverage", "--set", "complete", "--needed", *asked, "--out", out / "needs")
         assert told["needs"]
         examine(told, folder=out / "needs")
@@ -347,9 +343,9 @@ def of_coverage(run: Run, out: Path, traffic: Path) -> None:
 
 def few_classes(patch: pytest.MonkeyPatch) -> None:
     """One class, some of the simple drives."""
-    look_up = study.find_among_simple
-    patch.setattr(Coverage, "groups", components("behaviourPOV_4"))
-    patch.setattr(study, "find_among_simple", lambda *x: look_up(x[0], 0, 97, *x[3:]) if x[1] == 0 else [])
+    best = SimpleDrives.best
+    patch.setattr(GapClasses, "groups", components("behaviourPOV_4"))
+    patch.setattr(SimpleDrives, "best", lambda self, start, _: best(self, 0, 98) if start == 0 else {})
 
 
 def claims(text: str) -> Callable[[Specification], tuple[Query, ...]]:

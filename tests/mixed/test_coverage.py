@@ -1,21 +1,22 @@
 """Coverage: what its claims have to say, and classes of gaps of which some are proved, found or in doubt."""
 
 import json
+from collections.abc import Callable
+from dataclasses import replace
+from fractions import Fraction
 from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, TypeVar
 
 import pytest
 
-from roadproof.analysis.basis import Basis, ProofResult
-from roadproof.analysis.coverage import settling
-from roadproof.analysis.coverage.answers import ClassAnswer, GapScan
+from roadproof.analysis.basis import Basis
 from roadproof.analysis.coverage.classes import (
     GapClasses,
     GapGroup,
-    GapSurvey,
     Part,
+    caught,
     claims_of,
     exchanged,
     in_either_role,
@@ -25,29 +26,36 @@ from roadproof.analysis.coverage.classes import (
     sectors_of,
     starts,
 )
-from roadproof.analysis.coverage.found import Need
-from roadproof.analysis.coverage.settling import ClassGroup
-from roadproof.analysis.coverage.study import Coverage, _with_lost
-from roadproof.engines.prove.prover import Result
+from roadproof.analysis.coverage.found import FoundGap, SimpleDrives
+from roadproof.analysis.coverage.simple_drives import simple_drives
+from roadproof.engines.search.batches import Engines
+from roadproof.engines.search.points import Asking
+from roadproof.errors import InputError
+from roadproof.evidence.answer import Judged, answer_data, read_answer, undecided
 from roadproof.evidence.certificate import read_certificate_data
+from roadproof.evidence.claim import Claim
 from roadproof.library.compose import both, either, in_some_lane, negation
+from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import LANE, PAIR
 from roadproof.logic import formula as f
 from roadproof.logic.formula import subformulas
-from roadproof.reasons import Why
-from roadproof.runtime.budget import BudgetExceeded
+from roadproof.questions.coverage.asking import AGAIN, LOOK, GapRoads, GroupAsking, ask_need, work_of
+from roadproof.questions.coverage.claims import GapClaims
+from roadproof.questions.coverage.looks import Near, Needing, NeedJudge, SimpleGap, SimpleGaps, SimpleJudge
+from roadproof.questions.coverage.question import CoverageQuestion, gaps_of
+from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.runtime.budget import Effort, Work
+from roadproof.semantics.exact.replay import first_overlap
 from roadproof.verdict import Verdict
-from roadproof.world.models import load_road
+from roadproof.world.models import load_road, load_vehicle
 
 V = Verdict
 HOME = bundled_library().select()
 SECTORS = sectors_of(HOME)
 PROOF = Path(__file__).parents[2] / "proofs/P4-scenario-03-base.json"
 CERTIFICATE: Any = read_certificate_data(json.loads(PROOF.read_text("utf-8")), "proof")
-PROVED = Result(verdict=V.PROVED, certificate=CERTIFICATE)
-UNKNOWN = Result(verdict=V.UNKNOWN)
-GIVEN: Any = SimpleNamespace(file=SimpleNamespace())
+T = TypeVar("T")
 
 
 def calls(formula: Any) -> set[tuple[str, tuple[str, ...]]]:
@@ -132,148 +140,200 @@ def test_a_gap_that_is_near_in_a_whole_component_only_has_no_single_condition() 
 
 # --- one class ---------------------------------------------------------------------------------------
 
+Sent = Callable[[str, Claim], Any]
 
-def group(
-    monkeypatch: pytest.MonkeyPatch, *results: Any, wider: tuple[str, ...] = ()
-) -> tuple[Any, list[str]]:
-    """What settles a component, with what the prover answers in turn; and all that it is asked."""
-    answers, asked = iter(results), list[str]()
 
-    def prove(basis: Any, query: Any, *_: Any, **__: Any) -> Result:
-        asked.append(query.text)
-        result = next(answers, UNKNOWN)
-        if isinstance(result, Exception):
-            raise result
-        return result
+def asking(wider: tuple[str, ...] = (), lost: tuple[Reason, ...] = ()) -> GroupAsking:
+    """The claims about one component."""
+    claims = GapClaims(Basis(HOME), wider)
+    group = GapGroup(classes().parts[0])
+    return GroupAsking(claims, GapRoads((load_road("main-2"),), ()), group, (), lost)
 
-    monkeypatch.setattr(Basis, "proof_of", prove)
-    component = classes().parts[0]
-    survey = GapSurvey(Basis(HOME), wider, (load_road("main-2"),))
-    trials: Any = SimpleNamespace(first=lambda _: "", smallest=lambda _: ())
-    return ClassGroup(survey, GapGroup(component), [], classes(), trials), asked
+
+def answered(steps: Asking[T], sent: Sent) -> tuple[T, list[tuple[str, Claim]]]:
+    """What answers show, and all claims that are asked with their names."""
+    asked: list[tuple[str, Claim]] = []
+    try:
+        name, claim = next(steps)
+        while True:
+            asked.append((name, claim))
+            name, claim = steps.send(sent(name, claim) or undecided(claim, Why.NO_DRIVE()))
+    except StopIteration as end:
+        return end.value, asked
+
+
+def proof(claim: Claim) -> Any:
+    """An answer with a certificate, of which nothing is checked here."""
+    return SimpleNamespace(certificate=CERTIFICATE, claim=claim, reason=NO_REASON)
 
 
 @pytest.mark.parametrize("no_condition", [False, True])
-def test_a_class_is_empty_where_all_sectors_are_proved_together(
-    no_condition: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    made, asked = group(monkeypatch, PROVED, PROVED)
+def test_a_class_is_empty_where_all_sectors_are_proved_together(no_condition: bool) -> None:
+    made = asking()
     part: Part | None = None if no_condition else made.group.component
-    claims = made._all_are_near() if part is None else made._is_redundant(part)
+    claims = made.claims._all_are_near() if part is None else made.claims._is_redundant(part)
     assert len(claims) == len(SECTORS)
-    answer = made._prove(part, 2.0)
-    assert asked == [claims[0].text, both(*claims).text]
+    answer, asked = answered(made._prove("a", part, LOOK, set()), lambda _, claim: proof(claim))
+    assert [x.text for _, x in asked] == [claims[0].text, both(*claims).text]
+    assert [name for name, _ in asked] == [f"{LOOK}-a-1", "empty-a-1"]
+    assert answer is not None
     assert (answer.verdict, answer.certificate) == (V.IMPOSSIBLE, CERTIFICATE)
+    assert answer.claim is not None
     assert answer.claim.formula == both(*claims).formula
-    lost, _ = group(monkeypatch, PROVED, UNKNOWN)
-    assert lost._prove(part, 2.0) is None
+    failed = set[str]()
+
+    def first_only(name: str, claim: Claim) -> Any:
+        return proof(claim) if name.startswith(LOOK) else None
+
+    lost, _ = answered(made._prove("a", part, LOOK, failed), first_only)
+    assert lost is None
+    assert failed
+    again, asked = answered(made._prove("a", part, AGAIN, failed), lambda _, claim: proof(claim))
+    assert again is None, "what was not proved with as much work is not asked again"
+    assert [name for name, _ in asked] == [f"{AGAIN}-a-{k}" for k, _ in enumerate(failed, 1)]
 
 
-def test_near_misses_that_are_no_gaps_are_so_in_both_roles_and_all_sectors(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    made, _ = group(monkeypatch)
-    claims = made._no_gaps(made.group.component)
+def test_near_misses_that_are_no_gaps_are_so_in_both_roles_and_all_sectors() -> None:
+    made = asking().claims
+    claims = made._no_gaps(classes().parts[0])
     assert len({x.text for x in claims}) == 2 * len(SECTORS)
     near = {*subformulas(made._all_are_near()[0].formula)}
     for part in made._finest(SECTORS[0]):
         assert {part.without.formula, exchanged(part.without).formula} <= near
 
 
-@pytest.mark.parametrize("outcome", ["none", "late", "no search"])
-def test_a_class_of_which_nothing_is_found_is_in_doubt(outcome: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    from roadproof.errors import UsageError
+def test_more_work_is_allowed_after_a_search_and_for_all_sectors() -> None:
+    claims = GapClaims(Basis(HOME, effort=Effort(8.0)))
+    proofs = {x: work_of(f"{x}-a-1", claims).proof for x in (LOOK, AGAIN, "empty", "covered")}
+    assert [*proofs.values()] == [2.0, 30.0, 30.0 * len(SECTORS), 60.0]
+    units = {x: work_of(f"help-{x}-a-1", claims).effort.units for x in ("sought", "wider")}
+    assert units == {"sought": 8.0, "wider": 4.0}
+    every = [work_of(f"{x}-a", claims) for x in ("help-sought", "help-wider", "near", "gap")]
+    assert [x.simplify for x in every] == [True, True, False, False]
+    assert all(x.alone for x in every)
 
-    def ask(_: Any) -> Any:
-        if outcome == "late":
-            raise BudgetExceeded(3.0)
-        if outcome == "no search":
-            raise UsageError("dt is too fine")
-        return SimpleNamespace(drives=(), reason=Why.NO_DRIVE())
 
-    monkeypatch.setattr(settling, "ask", ask)
-    made, _ = group(monkeypatch)
+@pytest.mark.parametrize("told", ["no drive was found", "cut off by the clock", "no search on main-2: fine"])
+def test_a_class_of_which_nothing_is_found_is_in_doubt(told: str) -> None:
+    lost = (Why.NOT_LOOKED_THROUGH("SIGKILL"),)
+    made = asking(lost=lost)
     for part in (made.group.component, None):
-        answer = made._answer(part)
+        steps = made._settle("a", part, (), [])
+        answer, asked = answered(steps, lambda _, claim: undecided(claim, Why.TOLD(told)))
         assert (answer.verdict, answer.gaps, answer.certificate) == (V.UNKNOWN, (), None)
-        assert {"none": "no drive", "late": "--timeout", "no search": "dt is too fine"}[
-            outcome
-        ] in answer.reason
+        assert told in answer.reason
+        assert answer.reason.count("main-2") == 1
+        assert "SIGKILL" in answer.reason
+        words = [name.removeprefix("help-").partition("-")[0] for name, _ in asked]
+        assert [*dict.fromkeys(words)] == ["look", "sought", "again"]
 
 
-def test_what_a_gap_of_a_class_satisfies(monkeypatch: pytest.MonkeyPatch) -> None:
-    made, _ = group(monkeypatch, wider=("extA", "ext"))
-    numbers = SECTORS[0]
-    plain, first, second = (made._query(made.group.component, numbers, x) for x in ("", "extA", "ext"))
+def test_a_claim_asks_for_a_gap_of_the_class() -> None:
+    made = asking(wider=("extA", "ext")).claims
+    numbers, part = SECTORS[0], classes().parts[0]
+    plain, first, second = (made.query(part, numbers, x) for x in ("", "extA", "ext"))
     assert calls(plain.formula) < calls(first.formula)
-    caught = {x: settling.caught(HOME, numbers, x) for x in ("extA", "ext")}
-    assert caught["extA"].formula in subformulas(first.formula)
-    assert negation(caught["extA"]).formula in subformulas(second.formula)
-    assert negation(caught["extA"]).formula not in subformulas(first.formula)
-    alone = made._query(None, numbers)
-    for part in made._finest(numbers):
-        assert negation(near_miss(part)).formula in subformulas(alone.formula)
+    catches = {x: caught(HOME, numbers, x) for x in ("extA", "ext")}
+    assert catches["extA"].formula in subformulas(first.formula)
+    assert negation(catches["extA"]).formula in subformulas(second.formula)
+    assert negation(catches["extA"]).formula not in subformulas(first.formula)
+    alone = made.query(None, numbers)
+    for fine in made._finest(numbers):
+        assert negation(near_miss(fine)).formula in subformulas(alone.formula)
 
 
-# --- answers that are kept -----------------------------------------------------------------------------
+# --- the question --------------------------------------------------------------------------------------
 
 
-def test_only_answers_with_evidence_are_sure() -> None:
-    study = Coverage(GapSurvey(Basis(HOME)))
-    query: Any = SimpleNamespace(text="q")
-    doubt, empty = (ClassAnswer(None, verdict=x) for x in (V.UNKNOWN, V.IMPOSSIBLE))
-    made: list[Any] = [
-        (ProofResult(query, verdict=V.PROVED, certificate=CERTIFICATE), True),
-        (ProofResult(query, verdict=V.UNKNOWN), False),
-        (ProofResult(query, verdict=V.REFUTED), False),
-        (Need("a", "base", verdict=V.UNKNOWN), False),
-        (GapScan(()), False),
-        ((empty,), True),
-        ((doubt,), False),
-        ((empty, doubt), False),
-        ((doubt, empty), False),
-    ]
-    assert [study.is_sure(x) for x, _ in made] == [sure for _, sure in made]
-    assert study.is_sure(Need("a", "base", verdict=V.WITNESSED, drive=GIVEN))
+def known(question: CoverageQuestion, *verdicts: Any) -> Any:
+    names = question.claims.covered
+    return {x: SimpleNamespace(verdict=v) for x, v in zip(names, verdicts, strict=True)}
 
 
 def test_one_claim_in_doubt_leaves_the_classes_to_be_asked() -> None:
-    survey = GapSurvey(Basis(HOME), (), (load_road("main-2"),))
-    study = Coverage(survey, needed=True)
-    names = [f"covered-{k}" for k in range(1, len(study.claims) + 1)]
-    query: Any = SimpleNamespace(text="q")
-
-    def known(*verdicts: Any) -> Any:
-        return {x: ProofResult(query, verdict=v) for x, v in zip(names, verdicts, strict=True)}
-
-    some = known(*[V.PROVED] * (len(names) - 1), V.UNKNOWN)
-    assert len(study.pieces(some)) == 7, "simple drives are looked through"
-    assert study.classes_in(some)(None) is None
-    every = known(*[V.PROVED] * len(names))
-    assert not any(type(x).__name__ == "Chunk" for x in study.pieces(every))
-    empty = study.classes_in(every)(None)
-    assert empty is not None
-    assert empty.verdict is V.IMPOSSIBLE
-    for piece in study.pieces({}):
-        [doubt] = study.doubt(piece, Why.PROCESS("SIGKILL")).values()
-        assert doubt.verdict is V.UNKNOWN  # type: ignore[union-attr]
-    [scan] = study.doubt(study.pieces(some)[0], Why.PROCESS("SIGKILL")).values()
-    assert "SIGKILL" in scan.lost  # type: ignore[union-attr]
+    question = CoverageQuestion(Basis(HOME), gaps_of((), [load_road("main-2")], needed=True))
+    count = len(question.claims.covered)
+    assert [x.name for x in question.batches({})] == [*question.claims.covered]
+    some = known(question, *[V.PROVED] * (count - 1), V.UNKNOWN)
+    asked = [x.name for x in question.batches(some)][count:]
+    assert asked == [f"help-simple-1-{k}" for k in range(1, 8)], "simple drives are looked through"
+    every = known(question, *[V.PROVED] * count)
+    assert len(question.batches(every)) == count
+    assert {x.verdict for x in question.class_answers(every).values()} == {V.IMPOSSIBLE}
+    scanned = some | {x: undecided(y, Why.PROCESS("SIGKILL")) for x, y in question.simple.items()}
+    groups = question.batches(scanned)[count + len(question.simple) :]
+    assert [x.name for x in groups] == question.groups
+    few = replace(question, only=frozenset(question.groups[:2]))
+    assert few.groups == question.groups[:2]
 
 
-def test_drives_that_were_not_looked_through_are_told_of_doubts_only() -> None:
-    lost = (Why.NOT_LOOKED_THROUGH("SIGKILL"),)
-    doubt = ClassAnswer(None, verdict=V.UNKNOWN, reason=Why.NO_DRIVE())
-    assert "SIGKILL" in _with_lost(doubt, lost).reason
-    assert _with_lost(doubt, ()) is doubt
-    empty = ClassAnswer(None, verdict=V.IMPOSSIBLE)
-    assert _with_lost(empty, lost) is empty
+def test_claims_name_wider_sets_roads_and_vehicles() -> None:
+    part, roads = classes().parts[0], [load_road(x) for x in ("main-2", "main-3")]
+    truck = Basis(HOME, vehicles={"POV": load_vehicle("truck")})
+    usual = GapClaims(Basis(HOME))
+    sought = [usual.sought(part, x) for x in roads]
+    sought += [
+        GapClaims(truck).sought(part, roads[0]),
+        GapClaims(Basis(HOME), ("extA",)).sought(part, roads[0], "extA"),
+    ]
+    assert len({x.digest() for x in sought}) == 4
+    judged = [x.judged(NeedJudge(x, "a"), "any") for x in (usual, GapClaims(Basis(HOME), ("extA",)))]
+    judged += [usual.judged(NeedJudge(usual, "a"), "other")]
+    assert len({x.digest() for x in judged}) == 3
 
 
-def test_keys_and_questions_name_wider_sets_and_roads() -> None:
-    roads = {x: load_road(x) for x in ("main-2", "main-3")}
-    usual = Coverage(GapSurvey(Basis(HOME), (), (roads["main-2"],)))
-    wider = Coverage(GapSurvey(Basis(HOME), ("extA",), (roads["main-2"],)))
-    elsewhere = Coverage(GapSurvey(Basis(HOME), (), (roads["main-3"],)))
-    assert len({x.key("covered-1") for x in (usual, wider, elsewhere)}) == 3
-    assert wider.question.fingerprint != usual.question.fingerprint
+def test_a_drive_that_is_given_is_no_other_and_nowhere_else() -> None:
+    """Whatever a claim gives of a drive, a file with something else of it does not answer the claim."""
+    claims, road = GapClaims(Basis(HOME)), load_road("main-2")
+    query = read_claim(HOME, "v_lon(SV) > 0 m/s")
+    apart = (x for x in simple_drives(road, load_vehicle("car")) if first_overlap(x, Fraction(9)) is None)
+    drives = [next(apart), next(apart)]
+
+    def claim(road: Any = road, drive: Any = drives[0], lane: str | None = None, horizon: int = 9) -> Claim:
+        return claims.given(query, road, drive, lane, Fraction(horizon))
+
+    answer, _ = Engines(Work()).settle(claim())
+    data = answer_data(answer)
+    assert answer.verdict is V.WITNESSED
+    assert read_answer(claim(), data, "gap.json").verdict is V.WITNESSED
+    others = (claim(road=load_road("main-3")), claim(drive=drives[1]), claim(horizon=8), claim(lane="main-1"))
+    for other in others:
+        with pytest.raises(InputError, match="it is not the drive that is given"):
+            read_answer(other, data, "gap.json")
+
+
+def test_what_a_forged_judgement_names_is_left_out() -> None:
+    """Numbers of no drive, scenarios of no class and places that are not tried ask for nothing."""
+    claims, road = GapClaims(Basis(HOME)), load_road("main-2")
+    judge = SimpleJudge(claims, road, 0, 7)
+    forged = SimpleGaps(gaps=tuple(SimpleGap(number=k, first="", classes=()) for k in (-1, 10**6)))
+    assert [*judge.found(forged)] == []
+    assert not judge.confirms(forged)
+    assert judge.confirms(SimpleGaps(gaps=()))
+    twice = SimpleGap(number=7, first="", classes=())
+    assert not judge.confirms(SimpleGaps(gaps=(twice, twice)))
+    made, part = asking(), classes().parts[0]
+    drive = next(iter(simple_drives(road, load_vehicle("car"))))
+    found = FoundGap(SimpleDrives(road, claims.classes, claims.trials).file(drive), "", (part.key,))
+    for scenario, lane in ((99, "main-1"), (None, None), (part.scenario, "nowhere")):
+        near = Near(scenario=scenario, turned=False, lane=lane, caught_by=(), elsewhere=())
+        sent: Any = SimpleNamespace(evidence=Judged(near))
+        gap, asked = answered(made._gap("a", part, found), lambda name, _, x=sent: x)
+        assert gap == Why.DRIVE_REJECTED()
+        assert [name for name, _ in asked] == ["near-a"]
+
+
+def test_a_definition_is_spare_where_all_is_proved_without_it() -> None:
+    claims = GapClaims(Basis(bundled_library().select("complete")))
+
+    for doubtful, verdict in (("none", V.PROVED), ("spare-cutIn-2", V.UNKNOWN)):
+
+        def sent(name: str, claim: Claim, doubtful: str = doubtful) -> Any:
+            if name.startswith("help-"):
+                return SimpleNamespace(evidence=Judged(Needing(drive=None)))
+            return None if name == doubtful else proof(claim)
+
+        need, asked = answered(ask_need(claims, "cutIn"), sent)
+        assert need.verdict is verdict
+        count = 4 if verdict is V.PROVED else 2
+        assert [x for x, _ in asked] == ["help-needed-cutIn", *(f"spare-cutIn-{k + 1}" for k in range(count))]

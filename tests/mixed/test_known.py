@@ -211,17 +211,14 @@ def test_a_digest_changes_with_all_that_an_answer_depends_on(other: Any) -> None
 def studies(basis: Basis) -> dict[str, Any]:
     from roadproof.analysis.classify.classes import plan_of
     from roadproof.analysis.classify.divide import Dividing
-    from roadproof.analysis.coverage.classes import GapSurvey
-    from roadproof.analysis.coverage.study import Coverage
 
     home = basis.specification
     return {
-        "coverage": Coverage(GapSurvey(basis)),
         "division": Dividing(basis, plan_of(home, (3, 4))),
     }
 
 
-@pytest.mark.parametrize("name", ["coverage", "division"])
+@pytest.mark.parametrize("name", ["division"])
 def test_answers_for_one_model_are_none_for_another(name: str) -> None:
     truck = Basis(LIBRARY.select(), vehicles={"POV": load_vehicle("truck")})
     car = Basis(LIBRARY.select(), vehicles={"POV": CAR})

@@ -12,7 +12,10 @@ import pytest
 
 import roadproof as rp
 from api.doors import IMPOSSIBLE, MINE, SLOW
+from roadproof.analysis.coverage.classes import GapClasses, GapGroup
+from roadproof.analysis.coverage.found import FoundGap, SimpleDrives
 from roadproof.frontends.api.checking import check
+from roadproof.library.elaborate import read_claim
 from roadproof.questions.checking import read_folder
 from roadproof.questions.data import QUESTION
 from roadproof.verdict import ExitCode
@@ -41,6 +44,7 @@ FAST = "v_lon(SV) = 30 m/s and v_lon(SV)^3 > rho*rho*rho*(50 m/s^2)*(50 m/s^2)*(
 """For rho below 0.6 s; elsewhere it is proved for each value."""
 FOLDERS: dict[str, Callable[[Path], object]] = {
     "classify": lambda out: rp.classify("4,8", shares=False, out=out, jobs=1),
+    "coverage": lambda out: rp.coverage(rp.load("ext"), roads=["main-2"], out=out, jobs=1, effort=0.2),
     "order": lambda out: rp.order("4", rp.load("base", "extA"), out=out, jobs=1),
     "explore": lambda out: rp.explore(FAST, vary={"rho": (0, 1)}, steps=2, precision=1, out=out, jobs=1),
     "overlap": lambda out: rp.overlap("4,5,8", out=out, jobs=1),
@@ -56,8 +60,31 @@ MOST = 160
 """Fields of a folder that are changed, as many of each file; of more there is a sample."""
 
 
+@pytest.fixture(scope="module")
+def few_gaps() -> Iterator[None]:
+    """One class of gaps, one claim that there is none, two roads: the rest takes minutes."""
+    with pytest.MonkeyPatch.context() as patch:
+        groups, best = GapClasses.groups, SimpleDrives.best
+
+        def few(classes: GapClasses) -> list[GapGroup]:
+            return [GapGroup(x.component) for x in groups(classes) if x.title == "behaviourPOV_4"]
+
+        def some(drives: SimpleDrives, start: int, step: int) -> dict[int, FoundGap]:
+            return best(drives, 0, 98 * step)
+
+        patch.setattr(GapClasses, "groups", few)
+        patch.setattr(SimpleDrives, "best", some)
+        patch.setattr("roadproof.questions.coverage.question.CHUNKS", 1)
+        patch.setattr("roadproof.frontends.api.covering.ELSEWHERE", ("merge",))
+        patch.setattr(
+            "roadproof.questions.coverage.claims.claims_of",
+            lambda home: (read_claim(home, "danger(SV,POV) -> v_lon(SV) > 0 m/s"),),
+        )
+        yield
+
+
 @pytest.fixture(scope="module", params=FOLDERS)
-def folder(request: pytest.FixtureRequest) -> Path:
+def folder(request: pytest.FixtureRequest, few_gaps: None) -> Path:
     def make(home: Path) -> None:
         FOLDERS[request.param](home / "answers")
         for path in (home / "answers").iterdir():

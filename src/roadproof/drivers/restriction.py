@@ -73,7 +73,7 @@ def restriction_of(options: Mapping[str, str]) -> Restriction | None:
     return next((x for x in EVERY if x.options.items() <= options.items()), None)
 
 
-_BY_FORMULA = ("roadproof/explore/1", "roadproof/coverage/1")
+_BY_FORMULA = ("roadproof/explore/2", "roadproof/coverage/2")
 """Answers whose drives are restricted by the formula of a state alone."""
 
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from roadproof.analysis.coverage.answers import Answers, ClassAnswer, Gap, Need, Shown, in_role
-from roadproof.analysis.coverage.classes import Part
+from roadproof.analysis.coverage.classes import GapGroup, Part
 from roadproof.analysis.coverage.found import FoundGap, numbered, parent_of, roads_of_need
 from roadproof.analysis.coverage.simple_drives import HORIZON
 from roadproof.engines.search.placing import with_moved
@@ -12,7 +12,7 @@ from roadproof.engines.search.points import Asking
 from roadproof.evidence.answer import Judged
 from roadproof.evidence.claim import HELP, valid_under
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.questions.coverage.claims import GapClaims
+from roadproof.questions.coverage.claims import GapClaims, group_name
 from roadproof.questions.coverage.looks import Looks, LooksJudge, Near, NearJudge, Needing, NeedJudge, Placed
 from roadproof.reasons import NO_REASON, Reason, Why, joined
 from roadproof.runtime.budget import Work
@@ -40,16 +40,21 @@ class GroupAsking:
 
     claims: GapClaims
     where: GapRoads
-    name: str
+    group: GapGroup
     found: tuple[FoundGap, ...]
     lost: tuple[Reason, ...]
+
+    @property
+    def name(self) -> str:
+        """How the names of its claims go on after the word for what is asked."""
+        return group_name(self.group)
 
     def run(self) -> Asking[Answers]:
         """Ask; return the answers in the order of the parts.
 
         Conditions come first: a gap for one is one for its component.
         """
-        known, group = [*self.found], self.claims.groups[self.name]
+        known, group = [*self.found], self.group
         conditions: list[ClassAnswer] = []
         for k, part in enumerate(group.conditions, 1):
             conditions.append((yield from self._settle(f"{self.name}-{k}", part, (), known)))

@@ -5,7 +5,7 @@ else the simple drives are looked through, and gaps among them are what the clas
 """
 
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from functools import cached_property
 from typing import Annotated, ClassVar
 
@@ -15,11 +15,12 @@ from roadproof.analysis.coverage.answers import ClassAnswer, Need, Survey, is_co
 from roadproof.analysis.coverage.classes import sets_between
 from roadproof.analysis.coverage.found import FoundGap, replaced_by
 from roadproof.errors import InputError
-from roadproof.evidence.answer import Judged
+from roadproof.evidence.answer import Answer, Judged
 from roadproof.evidence.answers.drive import KeptRoad
-from roadproof.evidence.claim import HELP, Claim
+from roadproof.evidence.claim import HELP, Claim, On
 from roadproof.evidence.codec import Doc, read
 from roadproof.evidence.drive_file import road_of, road_said
+from roadproof.evidence.finding import Finding
 from roadproof.library.specification import Query
 from roadproof.questions.coverage.asking import PROOF, GapRoads, GroupAsking, ask_need, work_of
 from roadproof.questions.coverage.claims import GapClaims
@@ -143,9 +144,10 @@ class CoverageQuestion:
                 found += judge.found(answer.evidence.shows)
             else:
                 lost.append(Why.NOT_LOOKED_THROUGH(answer.reason))
-        keys = {part.key for part in self.claims.groups[group].parts if part is not None}
+        classes = self.claims.groups[group]
+        keys = {part.key for part in classes.parts if part is not None}
         mine = tuple(x for x in found if not keys or keys & {*x.classes})
-        return GroupAsking(self.claims, self.where, group, mine, tuple(lost))
+        return GroupAsking(self.claims, self.where, classes, mine, tuple(lost))
 
     def is_covered(self, known: Answers) -> bool:
         """Return whether it is proved that there is no gap."""
@@ -164,7 +166,15 @@ class CoverageQuestion:
         parts, rest = self.claims.groups[stem].parts, name.partition(f"-{stem}-")[2].partition("-")[0]
         part = parts[int(rest)] if rest.isdecimal() and int(rest) < len(parts) else None
         words = ["no single condition"] if part is None else [part.component, part.condition]
-        return f"class {', '.join(x for x in words if x)}"
+        told = f"class {', '.join(x for x in words if x)}"
+        return f"on the way to {told}" if name.startswith(HELP) else told
+
+    def tell(self, name: str, answer: Answer, found: Finding) -> Finding:
+        """Return what was found, with what a judge was asked in place of a claim."""
+        if not isinstance(answer.claim.mode, On):
+            return found
+        word = name.removeprefix(HELP).partition("-")[0]
+        return replace(found, claim=_JUDGED.get(word, found.claim))
 
     # --- what answers show together ---------------------------------------------------------------
 
@@ -208,6 +218,15 @@ class CoverageQuestion:
     def data(self, view: CoverageView, place: Place, seconds: float) -> CoverageData:
         """Return the view as ``--json`` prints it."""
         return coverage_data(self.basis, self.asked.wider, view, place, seconds, self.where.roads)
+
+
+_JUDGED = {
+    "simple": "gaps among some of the simple drives",
+    "needed": "whether a simple drive is missed without it",
+    "looks": "of which classes a drive is, and what catches it",
+    "near": "in which scenario a drive is a gap, and what catches it",
+}
+"""What judges are asked, by how the names of their claims begin."""
 
 
 def gaps_of(
