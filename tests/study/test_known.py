@@ -182,10 +182,14 @@ def test_a_known_drive_that_is_refused_is_computed_again(monkeypatch: pytest.Mon
     assert origins(drive()) == ("cache",)
 
 
-def test_a_known_trace_that_is_refused_is_computed_again(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_shipped_trace_that_is_refused_is_computed_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     claims, using = ("careless(SV) -> v_lon(SV) > 40 m/s",), rp.load(specs=[RULE])
     for known_here in ((), ("cache",)):
-        assert origins(rp.prove(*claims, using=using, jobs=1, drive=False)) == known_here
+        found = rp.prove(*claims, using=using, jobs=1, drive=False)
+        assert origins(found) == known_here
+    archives.ship(tmp_path / "shipped/known", "prove", contents(found))
     monkeypatch.setattr("roadproof.evidence.answer.fault_of", lambda *_: "rejected")
     again = rp.prove(*claims, using=using, jobs=1, drive=False)
     assert origins(again) == ()
