@@ -21,7 +21,6 @@ from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, show
 from roadproof.analysis.catalogue.tested import figures
 from roadproof.analysis.classify.cells import Cell
 from roadproof.analysis.classify.classes import Classes, plan_of
-from roadproof.analysis.classify.divide import Division, divide
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile, drive_data, load_drive
 from roadproof.frontends.api.cataloguing import CatalogueAnswer, catalogue
@@ -32,6 +31,7 @@ from roadproof.frontends.settings.groups import Budget
 from roadproof.library.bind import bind
 from roadproof.library.scenarios import Scenario, applied, name_of, vehicles_of
 from roadproof.library.specification import Query
+from roadproof.questions.classify.division import Division, divide
 from roadproof.recordings.export.registry import FORMATS
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.exact import judge

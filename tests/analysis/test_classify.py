@@ -11,6 +11,7 @@ from fractions import Fraction
 from functools import cache
 from itertools import combinations, product
 from pathlib import Path
+from typing import Any, TypeVar
 
 import pytest
 from hypothesis import given, settings
@@ -19,16 +20,26 @@ from hypothesis import strategies as st
 from asking import prove
 from monitoring.cases import random_traffic
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.classify import divide as dividing
-from roadproof.analysis.classify.cells import Axis, Cell, Outline, outline, query_of, refine, whole_cell
+from roadproof.analysis.classify import simulated
+from roadproof.analysis.classify.cells import (
+    Asked,
+    Axis,
+    Cell,
+    Outline,
+    outline,
+    query_of,
+    refine,
+    whole_cell,
+)
 from roadproof.analysis.classify.classes import Classes, plan_of, what_axis, where_axis
-from roadproof.analysis.classify.divide import divide
 from roadproof.analysis.classify.drives import find_examples, patched, with_zones
 from roadproof.analysis.classify.shares import Shares, count_shares
-from roadproof.analysis.classify.simulated import SimulatedShares
+from roadproof.analysis.classify.simulated import shares_key, shares_of, shares_text, simulated_shares
 from roadproof.analysis.classify.text import claims_of, with_classes, write_classes
-from roadproof.analysis.study.evidence_store import EvidenceStore
+from roadproof.engines.search import batches
+from roadproof.engines.search.batches import Engines
 from roadproof.errors import InputError, UsageError
+from roadproof.evidence.claim import Claim
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import judge_file
 from roadproof.frontends.cli.main import main
@@ -39,12 +50,15 @@ from roadproof.library.scenarios import components
 from roadproof.library.specification import Query, Source, Specification
 from roadproof.library.words import spans
 from roadproof.logic.rewrite import with_values, without_names
+from roadproof.questions.classify.division import divide
 from roadproof.questions.classify.question import question_of
 from roadproof.questions.settle import settle
 from roadproof.questions.views import folder_data
 from roadproof.recordings.simulate.simulate import simulate
 from roadproof.recordings.simulate.traffic import Traffic
-from roadproof.runtime.budget import BudgetExceeded, Effort
+from roadproof.runtime.archives import SWITCH, remember
+from roadproof.runtime.budget import BudgetExceeded, Effort, Work
+from roadproof.runtime.version import ANSWERS
 from roadproof.semantics.sampled import compile
 from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive, Motion, Piece
@@ -55,11 +69,38 @@ QUICK = Basis(BASE, proof=1.0)
 OVERLAPPING = {(1, 5), (3, 6), (4, 8), (4, 6, 8), (6, 8)}
 
 
+T = TypeVar("T")
+
+
+def proving(asking: Asked[T], units: float = 1.0) -> T:
+    """What claims show that are asked one by one, with so much work for each."""
+    engines = Engines(Work(proof=units))
+    try:
+        _, claim = next(asking)
+        while True:
+            _, claim = asking.send(engines.settle(claim)[0])
+    except StopIteration as end:
+        shown: T = end.value
+        return shown
+
+
+def outlined(axis: Axis, units: float = 1.0) -> Outline:
+    found = proving(outline(axis, BASE, "axis"), units)
+    assert isinstance(found, Outline)
+    return found
+
+
+def refined(axis: Axis, holds: tuple[int, ...], others: tuple[int, ...], units: float = 2.0) -> Cell:
+    cell, reason = proving(refine(axis, BASE, "cell", holds, others), units)
+    assert not reason
+    return cell
+
+
 @cache
 def outlines(numbers: tuple[int, ...]) -> list[Outline]:
     """The outline of each group of scenarios of base; they are of one road sector."""
     plan = plan_of(BASE, numbers)
-    return [outline(what_axis(plan, group, BASE), QUICK) for group in plan.groups]
+    return [outlined(what_axis(plan, group, BASE)) for group in plan.groups]
 
 
 @cache
@@ -120,11 +161,10 @@ def truth(query: Query, values: tuple[bool, ...]) -> bool:
 @given(st.lists(FORMULAS, min_size=1, max_size=4))
 def test_cells_are_those_of_the_truth_table(rows: list[str]) -> None:
     axis = Axis((), dict(enumerate(map(read, rows), 1)), {})
-    basis = Basis(BASE, proof=5.0)
-    found = outline(axis, basis)
+    found = outlined(axis, 5.0)
     table = {values: rows_that_hold(axis, values) for values in product((True, False), repeat=len(ATOMS))}
     assert {holds for holds, _ in found.cells} == set(table.values()) - {()}
-    cells = [refine(axis, basis, holds, others) for holds, others in found.cells]
+    cells = [refined(axis, holds, others) for holds, others in found.cells]
     for values, holds in table.items():
         assert [cell.holds for cell in cells if truth(query_of(axis, cell), values)] == (
             [holds] if holds else []
@@ -146,12 +186,11 @@ def test_rows_that_follow_are_not_said_and_not_denied() -> None:
     rows = {1: "G v_lon(SV) > 0", 2: "v_lon(SV) > 0", 3: "(v_lon(SV) > 0 and a_lon(SV) > 0)"}
     faster = read("a_lon(SV) > 0")
     axis = Axis((), {number: read(row) for number, row in rows.items()}, {3: (faster,)})
-    basis = Basis(BASE, proof=5.0)
-    found = outline(axis, basis)
+    found = outlined(axis, 5.0)
     assert [holds for holds, _ in found.cells] == [(1, 2), (1, 2, 3), (2,), (2, 3)]
     never = read("G v_lon(SV) > 0 and not v_lon(SV) > 0 and not (v_lon(SV) > 0 and a_lon(SV) > 0)")
     assert never.formula in [query.formula for query in found.empty]
-    cells = {holds: refine(axis, basis, holds, others) for holds, others in found.cells}
+    cells = {holds: refined(axis, holds, others) for holds, others in found.cells}
     assert cells[1, 2] == Cell((1, 2), (1,), (faster,))
     assert cells[1, 2, 3] == Cell((1, 2, 3), (1, 3), ())
     assert cells[2,].said == (2,)
@@ -319,12 +358,16 @@ def test_a_cell_in_doubt_is_said_in_full_and_the_run_is_in_doubt(
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    def one_fails(axis: Axis, basis: Basis, holds: tuple[int, ...], others: tuple[int, ...]) -> Cell:
-        if holds == (4,):
-            fault()
-        return refine(axis, basis, holds, others)
+    axis = what_axis(plan_of(BASE, (4, 8)), plan_of(BASE, (4, 8)).groups[0], BASE)
+    _, first = next(refine(axis, BASE, "class_4", (4,), (8,)))
+    settle_valid = batches.settle_valid
 
-    monkeypatch.setattr(dividing, "refine", one_fails)
+    def one_fails(claim: Claim, *more: Any) -> Any:
+        if claim.text == first.text:
+            fault()
+        return settle_valid(claim, *more)
+
+    monkeypatch.setattr(batches, "settle_valid", one_fails)
     line = ["classify", "--among", "4,8", "--no-shares", "--no-pictures", "--jobs", "2"]
     assert main([*line, "--out", str(tmp_path)]) == 20
     printed = capsys.readouterr().out
@@ -358,7 +401,7 @@ def test_an_outline_in_doubt_makes_no_classes_and_leaves_the_folder_alone(
     out = tmp_path / "out"
     shutil.copytree(written, out)
     before = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
-    monkeypatch.setattr(dividing, "outline", fault)
+    monkeypatch.setattr(batches, "settle_valid", fault)
     line = ["classify", "--no-pictures", "--jobs", "2", "--out", str(out)]
     # Of one axis alone there is no job that could be lost.
     assert main([*line, "--among", "4,8" if fault is late else "1-8"]) == 20
@@ -369,7 +412,7 @@ def test_an_outline_in_doubt_makes_no_classes_and_leaves_the_folder_alone(
 
 def test_lost_drives_are_doubts(monkeypatch: pytest.MonkeyPatch) -> None:
     basis = Basis(BASE)
-    question = question_of(basis, (4, 8), divide(basis, plan_of(BASE, (4, 8)), 1))
+    question = question_of(basis, divide(basis, plan_of(BASE, (4, 8)), 1))
     monkeypatch.setattr("roadproof.engines.search.batches.ask", die)
     found = question.view(settle(question, hands=2).answers)
     assert {(x.verdict, x.drive) for x in found.examples} == {(Verdict.UNKNOWN, None)}
@@ -471,9 +514,9 @@ def test_classes_of_all_scenarios_are_products(main_road: Classes) -> None:
 def test_claims_about_places_are_proved_and_a_fault_is_refuted() -> None:
     plan = plan_of(BASE, (4, 12, 20))
     (group,) = plan.groups
-    happens = outline(what_axis(plan, group, BASE), QUICK)
+    happens = outlined(what_axis(plan, group, BASE))
     axis = where_axis(plan, BASE)
-    places = tuple(refine(axis, QUICK, *cell) for cell in outline(axis, QUICK).cells)
+    places = tuple(refined(axis, *cell) for cell in outlined(axis).cells)
     classes = Classes(plan, ((Cell((4,), (4,), ()),),), places)
     assert [holds for holds, _ in happens.cells] == [(4,)]
     assert len(classes.all()) == len(places) == 7
@@ -492,7 +535,7 @@ def test_claims_about_places_are_proved_and_a_fault_is_refuted() -> None:
 def test_places_of_three_vehicles_alone_are_of_any_group() -> None:
     """Their definitions take SV and any group, so they are not said of POV1 and POV2."""
     division = divide(QUICK, plan_of(BASE, (2, 10, 18)), 1)
-    study = question_of(QUICK, (2, 10, 18), division)
+    study = question_of(QUICK, division)
     assert len(study.classes.all()) == 7
     assert ":= roadSector_2(SV, POV) and not roadSector_10(SV, POV)" in study.text.replace("\n  ", " ")
 
@@ -615,12 +658,44 @@ def test_simulated_traffic_lies_in_exactly_one_class(main_road: Classes) -> None
     assert wrong != text
     assert count_shares(main_road, with_classes(wrong, BASE), values, [recording]).broken
 
-    study = SimulatedShares(Basis(with_classes(text, BASE)), main_road)
-    shelf = EvidenceStore(None, study.question)
-    told = replace(shares, source=study.source)
-    assert study.recall(study.record("shares", told, shelf), shelf) == ("shares", told)
-    other = SimulatedShares(Basis(with_classes(wrong, BASE)), main_road)
-    assert study.key("shares") != other.key("shares")
+    told = shares_of(shares_text(shares))
+    assert replace(told, source="") == shares
+    keys = [shares_key(Basis(with_classes(x, BASE)), main_road) for x in (text, wrong, text)]
+    assert keys[0] == keys[2] != keys[1]
+
+
+def test_simulated_shares_are_known_the_second_time(
+    main_road: Classes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Not where they contradict what is proved, with --fresh, or where a kept text is none of shares."""
+    monkeypatch.setenv(SWITCH, "on")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setattr(simulated, "simulate", lambda *_: None)
+    basis = Basis(with_classes(write_classes(main_road, BASE), BASE))
+    counted = list[int]()
+    broken = list[str]()
+
+    def count(*_: object, source: str) -> Shares:
+        counted.append(1)
+        return Shares(["01"], 3, 2, Counter(a=2, b=1), Counter(a=1), Counter({2: 3}), broken, source=source)
+
+    monkeypatch.setattr(simulated, "count_shares", count)
+    first = simulated_shares(basis, main_road)
+    assert simulated_shares(basis, main_road) == first
+    assert len(counted) == 1
+    assert simulated_shares(basis, main_road, fresh=True) == first
+    assert len(counted) == 2
+    monkeypatch.setattr(simulated, "ANSWERS", "9.9.9")
+    broken.append("recording 01: two classes")
+    assert simulated_shares(basis, main_road).broken == simulated_shares(basis, main_road).broken == broken
+    assert len(counted) == 4
+    remember(shares_key(basis, main_road), "{}")
+    simulated_shares(basis, main_road)
+    assert len(counted) == 5
+    monkeypatch.setenv(SWITCH, "off")
+    monkeypatch.setattr(simulated, "ANSWERS", ANSWERS)
+    simulated_shares(basis, main_road)
+    assert len(counted) == 6
 
 
 # --- mistakes -----------------------------------------------------------------------------------
@@ -654,7 +729,8 @@ def test_a_scenario_of_ones_own_is_divided_too() -> None:
     )
     specification = build_library([Source("mine", mine)], bundled_library()).select("base")
     plan = plan_of(specification, (4, 25))
-    found = outline(what_axis(plan, plan.groups[0], specification), Basis(specification, proof=1.0))
+    found = proving(outline(what_axis(plan, plan.groups[0], specification), specification, "axis"))
+    assert isinstance(found, Outline)
     assert found.cells == (((4, 25), ()), ((25,), (4,)))
 
 

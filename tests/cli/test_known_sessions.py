@@ -13,10 +13,10 @@ import pytest
 
 from console import files_of, sessions_of
 from roadproof.analysis.study import known
-from roadproof.analysis.study.known import SWITCH
 from roadproof.frontends.cli.main import main
 from roadproof.questions.store import Store
 from roadproof.runtime import archives
+from roadproof.runtime.archives import SWITCH
 
 BOOK = Path(__file__).parent / "book"
 ASKING = ("prove", "witness", "overlap", "explore", "coverage")

@@ -12,7 +12,7 @@ import pytest
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.study import known
-from roadproof.analysis.study.known import SWITCH, KnownAnswer, KnownAnswers, told
+from roadproof.analysis.study.known import KnownAnswer, KnownAnswers, told
 from roadproof.frontends.api.definitions import load
 from roadproof.frontends.api.proofs import claims_of
 from roadproof.library.elaborate import read_claim
@@ -23,6 +23,7 @@ from roadproof.questions.question import walk
 from roadproof.questions.redundancy import RedundancyQuestion
 from roadproof.questions.settle import look_up, settle
 from roadproof.runtime import package_data
+from roadproof.runtime.archives import SWITCH
 from roadproof.runtime.budget import Effort
 from roadproof.world.models import load_road, load_vehicle
 
@@ -206,26 +207,6 @@ def test_a_digest_changes_with_all_that_an_answer_depends_on(other: Any) -> None
     assert key(HERE) == key(Basis(LIBRARY.select()))
     assert key(other()) != key(HERE)
     assert key(HERE) != key(HERE, "scenario_3(SV,POV,L)")
-
-
-def studies(basis: Basis) -> dict[str, Any]:
-    from roadproof.analysis.classify.classes import plan_of
-    from roadproof.analysis.classify.divide import Dividing
-
-    home = basis.specification
-    return {
-        "division": Dividing(basis, plan_of(home, (3, 4))),
-    }
-
-
-@pytest.mark.parametrize("name", ["division"])
-def test_answers_for_one_model_are_none_for_another(name: str) -> None:
-    truck = Basis(LIBRARY.select(), vehicles={"POV": load_vehicle("truck")})
-    car = Basis(LIBRARY.select(), vehicles={"POV": CAR})
-    questions = [studies(x)[name].question.fingerprint for x in (HERE, truck, car)]
-    assert len({*questions}) == 3
-    both = [studies(x)[name].question for x in (HERE, truck)]
-    assert len({KnownAnswers.to(x.schema, x.said, x.more).asked for x in both}) == 2
 
 
 def test_a_claim_for_one_model_is_none_for_another() -> None:

@@ -1,6 +1,7 @@
 """Studies of which some parts are decided and some are not: changes, searches, classes."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -11,22 +12,24 @@ import pytest
 
 import roadproof as rp
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.classify.classes import plan_of
-from roadproof.analysis.classify.divide import CellAnswer, CellTask, Dividing, Undivided, _division, divide
+from roadproof.analysis.classify.cells import whole_cell
 from roadproof.engines.search import placing
 from roadproof.evidence.answer import Answer, Refutation, undecided
 from roadproof.evidence.certificate import read_certificate_data
 from roadproof.evidence.claim import Claim
+from roadproof.evidence.codec import write
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.api.drives import drives_asked
 from roadproof.frontends.settings.questions import Witness
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
-from roadproof.questions.question import walk
+from roadproof.questions.classify.division import DivisionQuestion, ToDivide
+from roadproof.questions.question import OwnWork, walk
 from roadproof.questions.redundancy import Changes, RedundancyQuestion, changes_of
 from roadproof.questions.store import Store
-from roadproof.reasons import Why
+from roadproof.reasons import Reason, Why
+from roadproof.runtime.budget import Work
 from roadproof.verdict import Verdict
 
 ROOT = Path(__file__).parents[2]
@@ -178,27 +181,70 @@ def test_a_drive_of_another_formula_is_of_no_scenario(monkeypatch: pytest.Monkey
 # --- a division of which a part is in doubt ------------------------------------------------------------
 
 
-def test_a_division_in_doubt_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    from roadproof.analysis.classify.cells import Cell, Outline
+DIVISION = DivisionQuestion(BASIS, ToDivide(scenarios=(4, 8)))
+AXIS = [*(f"axis-0-any-{x}" for x in ("4", "8", "4_8")), *(f"axis-0-only-{x}" for x in ("4", "8"))]
+IN_DOUBT = Why.TOLD("no proof was found")
 
-    plan = plan_of(HOME, (3, 4))
-    study = Dividing(BASIS, plan)
-    cells = [Cell((3,), (3,), ()), Cell((4,), (4,), ())]
-    outline = Outline((((3,), ()), ((4,), ())), ())
-    tasks = [CellTask(plan.what(x.holds), 0, x.holds, ()) for x in cells]
-    late = Why.CLOCK(3.0)
-    told = [CellAnswer(cells[0]), CellAnswer(cells[1], late)]
-    made = _division(plan, [outline], tasks, told)
-    assert [(x.about, x.reason) for x in made.doubts] == [
-        (f"whether there is a shorter text for {tasks[1].name}", late)
-    ]
-    assert [study.is_sure(x) for x in (outline, Undivided(late), *told)] == [True, False, True, False]
-    lost = study.doubt(tasks[1], late)[tasks[1].name]
-    assert isinstance(lost, CellAnswer)
-    assert lost.reason == late
-    answers = {"axis-0": Undivided(late)}
-    monkeypatch.setattr("roadproof.analysis.classify.divide.conduct", lambda *_, **__: of(answers=answers))
-    cut = divide(BASIS, plan)
-    assert cut.cut_off
-    assert [x.reason for x in cut.doubts] == [late]
-    assert cut.classes.all() == ()
+
+def doubted(reasons: Mapping[str, Reason], question: DivisionQuestion = DIVISION) -> dict[str, Answer]:
+    """Doubts about all claims that a division asks; with other reasons, by name."""
+    answers: dict[str, Answer] = {}
+
+    def find(name: str, claim: Claim) -> Answer:
+        return answers.setdefault(name, undecided(claim, reasons.get(name, IN_DOUBT)))
+
+    for _ in range(2):
+        for batch in question.batches(answers):
+            [*walk(batch, find)]
+    return answers
+
+
+def test_a_division_asks_for_short_texts_of_the_cells_that_it_knows() -> None:
+    assert [x.name for x in DIVISION.batches({})] == ["axis-0"]
+    answers = doubted({})
+    assert [x.name for x in DIVISION.batches(answers)] == ["axis-0", "class_4", "class_4_8", "class_8"]
+    assert [*answers][:5] == AXIS
+    assert {*answers} > {"class_4-denies-8", "class_4-part-8-1", "class_4_8-holds-4", "class_8-denies-4"}
+    found = DIVISION.view(answers)
+    assert [x.holds for x in found.classes.what[0]] == [(4,), (4, 8), (8,)]
+    assert (found.doubts, found.cut_off, found.data.scenarios) == ((), False, (4, 8))
+    assert DivisionQuestion.of(BASIS, write(DIVISION.asked), "here") == DIVISION
+
+
+def test_a_division_in_any_words_asks_which_cells_there_are_alone() -> None:
+    quick = replace(DIVISION, asked=ToDivide(scenarios=(4, 8), in_few_words=False))
+    assert [*doubted({}, quick)] == AXIS
+    assert quick.view(doubted({}, quick)).classes == DIVISION.view(doubted({})).classes
+
+
+def test_claims_of_a_division_have_work_of_their_own() -> None:
+    axis, cell, *_ = DIVISION.batches(doubted({}))
+    assert not isinstance(axis, OwnWork)
+    assert isinstance(cell, OwnWork)
+    assert (DIVISION.work.proof, cell.work.proof) == (BASIS.proof, 2.0)
+
+
+@pytest.mark.parametrize(("reason", "stays"), [(Why.WORK(3.0), True), (Why.CLOCK(3.0), False)])
+def test_a_proof_that_was_not_found_is_sought_once_with_the_same_work(reason: Reason, stays: bool) -> None:
+    """One that the clock has cut off is sought again."""
+    [(_, claim)] = walk(DIVISION.batches({})[0], lambda *_: None)
+    store = Store(None, DIVISION.kind, DIVISION.work)
+    answer = store.exhausted(undecided(claim, reason))
+    assert store.stands(answer) is stays
+    assert not Store(None, DIVISION.kind, Work(proof=9.0, staged=True)).stands(answer)
+
+
+@pytest.mark.parametrize("late", [Why.CLOCK(3.0), Why.PROCESS("signal 9")])
+def test_a_division_in_doubt_says_so(late: Reason) -> None:
+    made = DIVISION.view(doubted({"class_4-denies-8": late}))
+    about = "whether there is a shorter text for class_4"
+    assert [(x.about, x.reason) for x in made.doubts] == [(about, late)]
+    assert made.classes.what[0][0] == whole_cell(DIVISION.axes["axis-0"].axis, (4,), (8,))
+    for name in AXIS:
+        answers = doubted({name: late})
+        assert [x.name for x in DIVISION.batches(answers)] == ["axis-0"]
+        cut = DIVISION.view(answers)
+        assert cut.cut_off
+        assert [(x.about, x.reason) for x in cut.doubts] == [("which classes there are", late)]
+        assert cut.classes.all() == ()
+        assert (cut.data.groups, cut.data.doubts) == ((), cut.doubts)

@@ -14,12 +14,10 @@ from pathlib import Path
 from typing import Any
 
 from roadproof.analysis.study.frame import known_answer
-from roadproof.analysis.study.known import SWITCH, KnownAnswers
-from roadproof.evidence.answer import answer_data
+from roadproof.analysis.study.known import KnownAnswers
 from roadproof.frontends.api.questioned import QuestionAnswers
-from roadproof.questions.store import Store
-from roadproof.runtime.archives import archived, ship
-from shipping.questions import QUESTIONS, Asked
+from roadproof.runtime.archives import SWITCH, archived, ship
+from shipping.questions import QUESTIONS, Texts, texts_of
 
 FOLDER = Path(__file__).parents[2] / "proofs/known"
 CLOCK = "cut off by the clock"
@@ -39,6 +37,8 @@ def main() -> int:
         begun = time.monotonic()
         found = ask(jobs=args.jobs)
         if isinstance(found, QuestionAnswers):
+            found = texts_of(found.question, found.found.answers)
+        if isinstance(found, Texts):
             wrong += _put(found, args.check, f"{name}:", begun)
             continue
         answers = answers_of(found)
@@ -55,13 +55,10 @@ def main() -> int:
     return 1 if wrong else 0
 
 
-def _put(found: QuestionAnswers[Any], check: bool, told: str, begun: float) -> int:
+def _put(found: Texts, check: bool, told: str, begun: float) -> int:
     """Add the answers to a question to those of its kind, or compare them; the number that differ."""
-    question = found.question
-    store = Store(None, question.kind, question.work)
-    final = (x for x in found.found.answers.values() if x.is_final)
-    answers = {store.key(x.claim): json.dumps(answer_data(x)) for x in final}
-    there = archived(question.kind)
+    answers = found.texts
+    there = archived(found.kind)
     wrong = [key for key, text in answers.items() if there.get(key) != text] if check else []
     if check:
         print(
@@ -69,7 +66,7 @@ def _put(found: QuestionAnswers[Any], check: bool, told: str, begun: float) -> i
             flush=True,
         )
     else:
-        path = ship(FOLDER, question.kind, {**there, **answers})
+        path = ship(FOLDER, found.kind, {**there, **answers})
         size = path.stat().st_size
         print(
             f"{told} {len(answers)} answers, {path.name} has {size} bytes, {time.monotonic() - begun:.0f} s",
@@ -78,13 +75,13 @@ def _put(found: QuestionAnswers[Any], check: bool, told: str, begun: float) -> i
     return len(wrong)
 
 
-def archive_of(found: Asked) -> KnownAnswers:
+def archive_of(found: Any) -> KnownAnswers:
     """Where the answers to a question are."""
     question = found.study.question
     return KnownAnswers.to(question.schema, question.said, question.more)
 
 
-def answers_of(found: Asked) -> dict[str, dict[str, Any]]:
+def answers_of(found: Any) -> dict[str, dict[str, Any]]:
     """The answers by name and key, without those that the clock of this machine cut off."""
     made: dict[str, dict[str, Any]] = {}
     for name in found.study.wanted(found.found.answers):

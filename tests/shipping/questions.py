@@ -1,54 +1,82 @@
 """The questions whose answers come with roadproof, each with its default settings."""
 
+import json
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import roadproof as rp
-from roadproof.analysis.classify.classes import plan_of
-from roadproof.analysis.classify.divide import Dividing
-from roadproof.analysis.classify.divide import divide as divide_plan
-from roadproof.analysis.classify.simulated import SimulatedShares
-from roadproof.analysis.study.frame import Study, StudyResult, conduct
+from roadproof.analysis.classify.simulated import shares_key, shares_text, simulated_shares
+from roadproof.evidence.answer import Answer, answer_data
+from roadproof.evidence.claim import Claim
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.settings.studies import Classify
 from roadproof.library.scenarios import numbers_of
+from roadproof.questions.classify.division import DivisionQuestion, ToDivide
 from roadproof.questions.classify.question import question_of
+from roadproof.questions.question import Answers, Batch, OwnWork, Question, walk
+from roadproof.questions.settle import settle
+from roadproof.questions.store import Store
 
 SETS = ("base", "extA", "ext")
 MANOEUVRES = ("cut-in", "cut-out", "deceleration")
 
 
 @dataclass(frozen=True)
-class Asked:
-    """A study with its answers, as all answers of the API have them."""
+class Texts:
+    """What is shipped for a kind of question: a text for each key."""
 
-    study: Study[Any, Any, Any]
-    found: StudyResult[Any, Any]
+    kind: str
+    texts: Mapping[str, str]
 
 
 Ask = Callable[..., Any]
 
 
-def _dividing() -> Dividing:
+def _dividing() -> DivisionQuestion:
     home, given = rp.load(), Classify.of({})
     basis = basis_of(home, given, given.vehicles)
-    return Dividing(basis, plan_of(home.alone, numbers_of(home.alone)))
+    return DivisionQuestion(basis, ToDivide(scenarios=tuple(numbers_of(home.alone))))
 
 
-def divide(jobs: int | None = None) -> Asked:
-    """The cells of the classes, which ``classify`` and ``catalogue`` begin with."""
-    study = _dividing()
-    return Asked(study, conduct(study, hands=jobs))
+def texts_of(question: Question[Any], answers: Answers) -> Texts:
+    """The answers to a question that stand for ever."""
+    store = Store(None, question.kind, question.work)
+    batches = question.batches(answers)
+    own = {name: x.work for x in batches if isinstance(x, OwnWork) for name, _ in _claims(x, answers)}
+    final = ((name, x) for name, x in answers.items() if x.is_final)
+    texts = {
+        replace(store, work=own.get(name, question.work)).key(x.claim): json.dumps(answer_data(x))
+        for name, x in final
+    }
+    return Texts(question.kind, texts)
 
 
-def count_shares(jobs: int | None = None) -> Asked:
+def _claims(batch: Batch, answers: Answers) -> list[tuple[str, Claim]]:
+    """The claims of a batch, as far as there are answers."""
+    found: list[tuple[str, Claim]] = []
+
+    def find(name: str, claim: Claim) -> Answer | None:
+        found.append((name, claim))
+        return answers.get(name)
+
+    [*walk(batch, find)]
+    return found
+
+
+def divide(jobs: int | None = None) -> Texts:
+    """The proofs for the cells of the classes, which ``classify`` and ``catalogue`` begin with."""
+    question = _dividing()
+    return texts_of(question, settle(question, hands=jobs).answers)
+
+
+def count_shares(jobs: int | None = None) -> Texts:
     """The shares of the classes in a simulated recording."""
-    asked = _dividing()
-    division = divide_plan(asked.basis, asked.plan, jobs)
-    made = question_of(asked.basis, asked.plan.numbers, division)
-    study = SimulatedShares(made.basis, made.classes)
-    return Asked(study, conduct(study, hands=1))
+    question = _dividing()
+    made = question_of(question.basis, question.view(settle(question, hands=jobs).answers))
+    shares = simulated_shares(made.basis, made.classes)
+    assert not shares.broken
+    return Texts("shares", {shares_key(made.basis, made.classes): shares_text(shares)})
 
 
 def _questions() -> Mapping[str, Ask]:

@@ -12,12 +12,12 @@ import pytest
 import roadproof as rp
 from api.doors import without_seconds
 from roadproof.analysis.study import known
-from roadproof.analysis.study.known import SWITCH
 from roadproof.errors import RoadproofError
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library
 from roadproof.logic.rewrite import parameters_of
 from roadproof.questions.settle import look_up
+from roadproof.runtime.archives import SWITCH
 from study.asking import Asking
 from study.changes import DRIVER, PAIRS, UNCHANGED, changes_of, unchanged_options
 from study.commands import EVERY
@@ -167,7 +167,7 @@ def test_another_version_has_no_answer_to_any_question(name: str) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("roadproof.frontends.api.questioned.settle", ask)
         patch.setattr("roadproof.frontends.api.studied.conduct", ask)
-        patch.setattr("roadproof.analysis.classify.divide.conduct", ask)
+        patch.setattr("roadproof.questions.classify.division.settle", ask)
         with pytest.raises(Asked):
             EVERY[name][0](Asking(), False)
         patch.setattr("roadproof.questions.store.ANSWERS", "9.9.9")

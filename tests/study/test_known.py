@@ -11,9 +11,10 @@ import pytest
 
 import roadproof as rp
 from api.doors import MINE
-from roadproof.analysis.study.known import SWITCH
 from roadproof.errors import InputError
-from roadproof.evidence.answer import answer_data
+from roadproof.evidence import answer
+from roadproof.evidence.answer import Refutation, answer_data
+from roadproof.evidence.countermodel import Countermodel
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import Ruling, judge_file
 from roadproof.frontends.api.questioned import QuestionAnswers
@@ -22,6 +23,7 @@ from roadproof.library.specification import Library
 from roadproof.questions.store import Store
 from roadproof.reasons import Why
 from roadproof.runtime import archives
+from roadproof.runtime.archives import SWITCH
 from roadproof.verdict import Verdict
 from shipping.__main__ import FOLDER
 from shipping.questions import QUESTIONS
@@ -180,10 +182,14 @@ def test_a_known_drive_that_is_refused_is_computed_again(monkeypatch: pytest.Mon
     assert origins(drive()) == ("cache",)
 
 
-def test_a_known_trace_that_is_refused_is_computed_again(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_shipped_trace_that_is_refused_is_computed_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     claims, using = ("careless(SV) -> v_lon(SV) > 40 m/s",), rp.load(specs=[RULE])
     for known_here in ((), ("cache",)):
-        assert origins(rp.prove(*claims, using=using, jobs=1, drive=False)) == known_here
+        found = rp.prove(*claims, using=using, jobs=1, drive=False)
+        assert origins(found) == known_here
+    archives.ship(tmp_path / "shipped/known", "prove", contents(found))
     monkeypatch.setattr("roadproof.evidence.answer.fault_of", lambda *_: "rejected")
     again = rp.prove(*claims, using=using, jobs=1, drive=False)
     assert origins(again) == ()
@@ -251,6 +257,43 @@ def test_an_answer_under_the_key_of_another_does_not_count(home: Path, tmp_path:
     [content] = contents(other).values()
     archives.ship(tmp_path / "shipped/known", "overlap", {key: content})
     assert origins(pair()) == ()
+
+
+def test_a_known_trace_is_judged_once_by_each_program(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What an earlier run kept it has judged; what is shipped is judged when it is met first."""
+    judged: list[int] = []
+    judge = answer.fault_of
+
+    def counted(trace: Countermodel, *more: Any) -> str | None:
+        judged.append(1)
+        return judge(trace, *more)
+
+    def asked() -> tuple[tuple[str, ...], int]:
+        judged.clear()
+        found = rp.prove("v_lon(SV) > 20 m/s -> v_lon(SV) > 30 m/s", drive=False, jobs=1)
+        return origins(found), len(judged)
+
+    found = rp.prove("v_lon(SV) > 20 m/s -> v_lon(SV) > 30 m/s", drive=False, jobs=1)
+    assert [type(x.evidence) for x in found.found.answers.values()] == [Refutation]
+    monkeypatch.setattr(answer, "fault_of", counted)
+    assert asked() == (("cache",), 0)
+    texts = contents(found)
+    archives.ship(tmp_path / "shipped/known", "prove", texts)
+    assert asked() == (("shipped",), 1)
+    assert asked() == (("shipped",), 0)
+    monkeypatch.setattr(archives, "program", lambda: "another program")
+    assert asked() == (("shipped",), 1)
+    [(key, text)] = texts.items()
+    data = json.loads(text)
+    for instant in data["trace"]["instants"]:
+        instant["values"] = dict.fromkeys(instant["values"], "0")
+    archives.ship(tmp_path / "shipped/known", "prove", {key: json.dumps(data)})
+    for _ in range(2):
+        known, times = asked()
+        assert known == ()
+        assert times
 
 
 def test_known_evidence_equals_the_computed(home: Path) -> None:

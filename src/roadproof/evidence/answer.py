@@ -225,17 +225,19 @@ def answer_data(answer: Answer) -> JsonObject:
             return write(file)
 
 
-def read_answer(claim: Claim, content: object, where: str) -> Answer:
+def read_answer(claim: Claim, content: object, where: str, is_judged: bool = False) -> Answer:
     """Return the answer to a claim that a file holds.
 
     Drives and traces are judged; of a certificate the claim is compared, and ``certificate.rule`` checks the
-    proof. Raises ``InputError`` where the file is about another claim, or shows nothing.
+    proof. ``is_judged``: this program has judged the trace of these bytes for this claim before.
+    Raises ``InputError`` where the file is about another claim, or shows nothing.
     """
     schema = Fields(content, where).text("schema")
     try:
         if schema not in _READERS:
             raise InputError(f"{where}: schema='{schema[:60]}' is none of {', '.join(_READERS)}")
-        return Answer(claim, _READERS[schema](claim, content, where))
+        reader = _trace if is_judged and schema == REFUTATION else _READERS[schema]
+        return Answer(claim, reader(claim, content, where))
     except ValueError as error:
         raise InputError(f"{where}: {error}") from None
     except InputError:
@@ -310,15 +312,21 @@ def sought_by(claim: Claim) -> Formula:
     return claim.formula
 
 
-def _refutation(claim: Claim, content: object, where: str) -> Refutation:
+def _trace(claim: Claim, content: object, where: str) -> Refutation:
+    """Return a trace that is not judged."""
     file = read(RefutationFile, content, where)
     _require_about(claim, file, where)
     trace = read_trace(file.trace, where)
     values_with(claim.home.library, trace.parameters)
-    query = under_limits(claim.home, claim.query, assumed_by(claim))
-    fault = fault_of(trace, query.formula, claim.home.library.bounds)
-    _require(fault is None, where, f"its trace does not refute the claim: {fault}")
     return Refutation(trace, file.drive_sought)
+
+
+def _refutation(claim: Claim, content: object, where: str) -> Refutation:
+    shown = _trace(claim, content, where)
+    query = under_limits(claim.home, claim.query, assumed_by(claim))
+    fault = fault_of(shown.trace, query.formula, claim.home.library.bounds)
+    _require(fault is None, where, f"its trace does not refute the claim: {fault}")
+    return shown
 
 
 def _none_within(claim: Claim, content: object, where: str) -> NoneWithinFile:

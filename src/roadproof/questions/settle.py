@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from roadproof.analysis.study import pool
-from roadproof.analysis.study.known import Origin, is_off
 from roadproof.analysis.study.known import told as told_known
 from roadproof.analysis.study.pool import Progress, Say
 from roadproof.engines.prove.doubt import Cause, Doubt
@@ -17,6 +16,7 @@ from roadproof.evidence.claim import Claim
 from roadproof.questions.question import Answers, Batch, Growing, OwnWork, Question, Seeded, WorkByName, walk
 from roadproof.questions.store import Store
 from roadproof.reasons import Reason
+from roadproof.runtime.archives import Origin, is_off
 from roadproof.runtime.budget import Work
 from roadproof.runtime.cost import NO_COST, Cost
 from roadproof.runtime.executors import Jobs, Shard, hands_of, is_fork_unsafe

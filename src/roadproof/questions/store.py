@@ -5,7 +5,6 @@ the archive a file stands under the digest of its claim, of the work that was al
 """
 
 import json
-import lzma
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
@@ -13,7 +12,6 @@ from pathlib import Path
 from typing import Any
 
 from roadproof.analysis.study.evidence_store import keep_specifications
-from roadproof.analysis.study.known import Origin
 from roadproof.analysis.study.pool import Say
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.answer import SCHEMAS, Answer, Refutation, answer_data, read_answer
@@ -24,16 +22,14 @@ from roadproof.evidence.strict import LARGEST_EVIDENCE, LARGEST_INDEX, Fields, r
 from roadproof.questions.data import QUESTION, basis_data, question_data, read_question
 from roadproof.questions.question import Answers, Growing, Question, Replacing
 from roadproof.reasons import Why
-from roadproof.runtime.archives import archived
+from roadproof.runtime.archives import CACHE, JUDGED, Origin, recall, remember
 from roadproof.runtime.budget import Work
-from roadproof.runtime.cache import keep_bytes, kept_bytes, make_room
+from roadproof.runtime.cache import make_room
 from roadproof.runtime.canonical import digest
 from roadproof.runtime.files import make_folder, write_json
 from roadproof.runtime.package_data import program
 from roadproof.runtime.records import dataclass
 from roadproof.runtime.version import ANSWERS
-
-CACHE = "answers"
 
 
 @dataclass(frozen=True)
@@ -139,10 +135,12 @@ class Store:
             except InputError as error:
                 if say is not None:
                     say(f"a stored answer is invalid and is computed again: {error}")
-        known = self._known(claim) if self.reads_known else None
+        known = recall(self.kind, self.key(claim)) if self.reads_known else None
         if known is not None:
             with suppress(InputError):
-                return read_answer(claim, known[0], "a known answer"), known[1]
+                answer = read_answer(claim, json.loads(known.text), "a known answer", known.is_judged)
+                known.note_judged()
+                return answer, known.origin
         return None
 
     def _require_enough(self, answer: Answer, path: Path) -> None:
@@ -150,13 +148,6 @@ class Store:
         shown = answer.evidence
         if isinstance(shown, Refutation) and self.work.seek_drive and not shown.drive_sought:
             raise InputError(f"{path} is a trace, and no drive was looked for")
-
-    def _known(self, claim: Claim) -> tuple[object, Origin] | None:
-        key = self.key(claim)
-        if key in archived(self.kind):
-            return json.loads(archived(self.kind)[key]), "shipped"
-        data = kept_bytes(CACHE, digest(key, program()))
-        return None if data is None else (json.loads(lzma.decompress(data)), "cache")
 
     def whole(self, answer: Answer) -> Answer:
         """Return an answer as files have it: a certificate with its tableau, if one is found."""
@@ -170,13 +161,14 @@ class Store:
 
     def keep(self, name: str, answer: Answer, is_new: bool = True) -> None:
         """Write an answer into the folder, and into the cache where it is new and stands."""
+        if self.folder is None and not is_new:
+            return
         data = answer_data(answer if is_new else self.whole(answer))
         if self.folder is not None:
             self.require_folder()
             write_json(self.folder / f"{name}.json", data)
         if is_new and self.reads_known and self.stands(answer):
-            key = digest(self.key(answer.claim), program())
-            keep_bytes(CACHE, key, lzma.compress(json.dumps(data).encode(), preset=0))
+            remember(self.key(answer.claim), json.dumps(data))
 
     def leave_only(self, answers: Answers, say: Say | None = None) -> None:
         """Remove answers to claims that are asked no more, since others were answered; ``say`` is told."""
@@ -199,7 +191,8 @@ class Store:
 
     def make_room(self) -> None:
         """Keep the cache within its bounds."""
-        make_room(CACHE)
+        for folder in (CACHE, JUDGED):
+            make_room(folder)
 
 
 def keep_all(folder: Path, question: Question[Any], answers: Answers) -> None:

@@ -11,13 +11,14 @@ from typing import Any, Generic, Protocol, TypeVar, runtime_checkable
 
 from roadproof.analysis.study import pool
 from roadproof.analysis.study.evidence_store import EvidenceStore, EvidenceTexts, Question
-from roadproof.analysis.study.known import KnownAnswer, KnownAnswers, Origin, is_off
+from roadproof.analysis.study.known import KnownAnswer, KnownAnswers
 from roadproof.analysis.study.known import told as told_known
 from roadproof.analysis.study.pool import Progress
 from roadproof.errors import InputError, SharedError, UsageError
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.strict import JsonObject
 from roadproof.reasons import NO_REASON, Reason
+from roadproof.runtime.archives import Origin, is_off
 from roadproof.runtime.executors import Jobs, Shard, hands_of
 from roadproof.runtime.records import dataclass
 

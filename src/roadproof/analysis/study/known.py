@@ -7,14 +7,13 @@ makes only those answers unknown that depend on it. ``roadproof check`` reads no
 
 import json
 import lzma
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from typing import Literal
 
 from roadproof.errors import InputError
 from roadproof.evidence.strict import Fields, JsonObject
+from roadproof.runtime.archives import CACHE, JUDGED, Origin, is_off
 from roadproof.runtime.cache import keep_bytes, kept_bytes, make_room
 from roadproof.runtime.canonical import digest
 from roadproof.runtime.files import write_whole
@@ -23,9 +22,6 @@ from roadproof.runtime.records import dataclass
 from roadproof.runtime.version import ANSWERS, VERSION
 
 SCHEMA = "roadproof/known/1"
-SWITCH = "ROADPROOF_KNOWN"
-CACHE, JUDGED = "answers", "judged"
-Origin = Literal["shipped", "cache"]
 
 
 @dataclass(frozen=True)
@@ -123,11 +119,6 @@ def shipped_answers(kind: str) -> Iterator[KnownAnswer]:
     for archive in sorted((shipped("proofs") / "known").glob(f"{kind}-*.json.xz")):
         for content in _read(archive).values():
             yield KnownAnswer.of(content, "shipped")
-
-
-def is_off() -> bool:
-    """Whether no answer is known and none is kept."""
-    return os.environ.get(SWITCH) == "off"
 
 
 def _digest(*parts: object) -> str:

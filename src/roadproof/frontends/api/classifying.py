@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import ClassVar, Unpack
 
 from roadproof.analysis.classify.classes import plan_of
-from roadproof.analysis.classify.divide import divide
 from roadproof.analysis.classify.shares import Shares, count_shares
 from roadproof.analysis.classify.simulated import simulated_shares
 from roadproof.analysis.classify.text import claims_text
@@ -28,6 +27,7 @@ from roadproof.frontends.settings.option import takes
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.words import Called, called
 from roadproof.questions.classify.data import ClassData, ClassesData, counted
+from roadproof.questions.classify.division import divide
 from roadproof.questions.classify.question import ClassesView, ClassifyQuestion, question_of
 from roadproof.questions.classify.shares import SHARES, shares_table
 from roadproof.questions.views import placing
@@ -134,7 +134,7 @@ def classify(
         make_folder(folder)
     sources = () if given.on is None else find_sources(Path(given.on), given.strict)
     division = divide(basis, plan, given.jobs, given.progress, fresh=given.fresh)
-    question = question_of(basis, plan.numbers, division)
+    question = question_of(basis, division)
     if division.cut_off:
         folder = None  # what earlier runs have found stays
     counts = None

@@ -17,7 +17,6 @@ from roadproof.analysis.catalogue.showing import ConcreteAnswer
 from roadproof.analysis.catalogue.sides import has_sides
 from roadproof.analysis.catalogue.tested import CLASSES, SCENARIOS, kind_of, targets_of, tested
 from roadproof.analysis.classify.classes import Classes, plan_of
-from roadproof.analysis.classify.divide import divide
 from roadproof.drivers.restriction import restriction_of, unrestricted
 from roadproof.errors import InputError, RoadproofError, UsageError
 from roadproof.evidence.answer import Answer, Judged
@@ -30,6 +29,7 @@ from roadproof.questions.catalogue.abstract import PairBatch, TestBatch
 from roadproof.questions.catalogue.concrete import ConcreteBatch
 from roadproof.questions.catalogue.sides import SidesBatch
 from roadproof.questions.catalogue.view import CatalogueView
+from roadproof.questions.classify.division import divide
 from roadproof.questions.question import Answers, Batch, Place, seen, walk
 from roadproof.runtime.budget import Work
 from roadproof.runtime.records import dataclass

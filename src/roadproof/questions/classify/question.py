@@ -12,7 +12,6 @@ from typing import ClassVar
 from roadproof.analysis.basis import Basis, ProofResult
 from roadproof.analysis.classify.cells import Cell
 from roadproof.analysis.classify.classes import SET_NAME, Class, Classes, plan_within
-from roadproof.analysis.classify.divide import Division
 from roadproof.analysis.classify.drives import MOST_FAILURES, Example, roads_of
 from roadproof.analysis.classify.text import ClassClaim, claims_of, with_classes, write_classes
 from roadproof.errors import InputError
@@ -30,9 +29,9 @@ from roadproof.questions.classify.data import (
     ClassData,
     ClassesData,
     Divided,
-    DividedGroup,
     Doubt,
 )
+from roadproof.questions.classify.division import Division
 from roadproof.questions.question import Answers, Place, Steps, heading_of
 from roadproof.reasons import NO_REASON, Reason, Why, joined
 from roadproof.runtime.budget import Work
@@ -271,27 +270,12 @@ class ClaimBatch:
             yield name, self.question.claim(name)
 
 
-def question_of(basis: Basis, numbers: Sequence[int], division: Division) -> ClassifyQuestion:
+def question_of(basis: Basis, division: Division) -> ClassifyQuestion:
     """Return the question that a division of scenarios of ``basis`` leaves. Raises ``InputError``."""
     if division.cut_off:
-        return ClassifyQuestion(basis, Divided(scenarios=tuple(numbers), doubts=division.doubts))
-    classes = division.classes
-    groups = tuple(
-        DividedGroup(
-            vehicles=group.vehicles,
-            cells=tuple(cell.holds for cell in cells),
-            empty=tuple(x.text for x in division.empty.get(group.vehicles, ())),
-        )
-        for group, cells in zip(classes.plan.groups, classes.what, strict=True)
-    )
-    asked = Divided(
-        scenarios=tuple(numbers),
-        groups=groups,
-        places=tuple(cell.holds for cell in classes.where),
-        doubts=division.doubts,
-    )
-    home = with_classes(write_classes(classes, basis.specification), basis.specification)
-    return ClassifyQuestion(replace(basis, specification=home, sets=()), asked)
+        return ClassifyQuestion(basis, division.data)
+    home = with_classes(write_classes(division.classes, basis.specification), basis.specification)
+    return ClassifyQuestion(replace(basis, specification=home, sets=()), division.data)
 
 
 def _cell(holds: Sequence[int]) -> Cell:
