@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.analysis.study.pool import work
+from roadproof.runtime.pool import work
 from roadproof.errors import InputError, LostError, UsageError
 from roadproof.runtime import dask_executor
 from roadproof.runtime.executors import Cluster, Executor

@@ -18,7 +18,7 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.analysis.study import pool
+from roadproof.runtime import pool
 from roadproof.engines.search import ask
 from roadproof.errors import RoadproofError
 from roadproof.frontends.cli.help import command_parser

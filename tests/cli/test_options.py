@@ -310,7 +310,7 @@ READERS = {
     "roadproof.runtime.executors": {"--jobs"},
     "roadproof.questions.settle": {"--out", "--shard"},
     "roadproof.questions.store": {"--out"},
-    "roadproof.analysis.study.pool": {"--jobs"},
+    "roadproof.runtime.pool": {"--jobs"},
     "roadproof.runtime.process_pool": {"--jobs"},
     "roadproof.questions.explore.asking": {
         *("--vary", "--steps", "--precision", "--greatest", "--least", "--when"),

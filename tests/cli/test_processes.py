@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.analysis.study.pool import in_order, work
+from roadproof.runtime.pool import in_order, work
 from roadproof.engines.prove.properties import choose, template_properties
 from roadproof.engines.search.batches import Engines
 from roadproof.errors import InputError, LostError, MissingSolverError, TextError
@@ -34,7 +34,7 @@ HANGS = 60.0
 _BUSY = """
 import os, sys
 from roadproof.frontends.cli import main
-from roadproof.analysis.study.pool import work
+from roadproof.runtime.pool import work
 from roadproof.engines.solve.smt import Session
 
 HARD = '(declare-const x Int)(declare-const y Int)(declare-const z Int)' \\

@@ -146,7 +146,7 @@ def test_the_claims_of_a_lost_batch_are_asked_alone(monkeypatch: pytest.MonkeyPa
         for place, x in enumerate(jobs):
             yield place, lost(x, Why.PROCESS("SIGKILL"))
 
-    monkeypatch.setattr("roadproof.analysis.study.pool.work", work)
+    monkeypatch.setattr("roadproof.runtime.pool.work", work)
     found = settle(question, hands=1, fresh=True).answers
     assert len(found) == len(question.pairs)
     assert {x.verdict for x in found.values()} == {V.UNKNOWN}

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from roadproof.analysis.study.pool import in_order, work
+from roadproof.runtime.pool import in_order, work
 from roadproof.errors import InputError, LostError, UsageError
 from roadproof.reasons import Reason, Why
 from roadproof.runtime import dask_executor, executors, process_pool, worker

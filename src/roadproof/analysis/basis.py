@@ -1,22 +1,19 @@
 """What analyses of scenarios rest on: definitions, values of parameters, and how hard is searched."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import field
 from fractions import Fraction
 from typing import TYPE_CHECKING, Generic, TypeVar
 
-from roadproof.analysis.study.evidence_store import readings
-from roadproof.engines.prove.induction import prove_of_scenarios
-from roadproof.engines.prove.prover import Result, SharedPremise
 from roadproof.evidence.claim import Claim, Exists, claim_of
 from roadproof.evidence.settled import Settled
+from roadproof.evidence.specifications import specification_names
 from roadproof.evidence.strict import JsonObject
 from roadproof.library.bind import values_with
 from roadproof.library.specification import Library, Query, Specification
-from roadproof.runtime.budget import BudgetExceeded, Effort, Work
-from roadproof.runtime.canonical import digest
+from roadproof.runtime.budget import Effort, Work
 from roadproof.runtime.records import dataclass
-from roadproof.verdict import ProofVerdict, Verdict
+from roadproof.verdict import ProofVerdict
 from roadproof.world.road import Road
 from roadproof.world.vehicle import Vehicle
 
@@ -54,11 +51,6 @@ class Basis:
     vehicles: Mapping[str, Vehicle] = field(default_factory=dict)
 
     @property
-    def limits(self) -> dict[str, str]:
-        """Limits of searches on which answers depend besides what an index says, but for the effort."""
-        return {"limits": digest(self.vehicles, self.horizon, self.objective)}
-
-    @property
     def library(self) -> Library:
         return self.specification.library
 
@@ -77,27 +69,16 @@ class Basis:
         return values_with(self.library, self.values)
 
     def said(self) -> JsonObject:
-        """What an index says of all its answers: readings, values of parameters, specification files."""
+        """Return what a view says of all its answers: readings, values of parameters, specification files."""
         values = sorted((name, str(value)) for name, value in self.all_values().items())
-        return readings(self.specification, parameters=dict(values))
+        files = specification_names(self.library)
+        return {"options": dict(self.specification.options), "parameters": dict(values), "specs": [*files]}
 
     def claim(self, query: Query) -> Claim:
         """The claim that there is a drive on which ``query`` holds, within the limits of this basis."""
         vehicles = {name: x for name, x in self.vehicles.items() if not name or name in query.vehicles}
         mode = Exists(vehicles=vehicles, horizon=self.horizon, objective=self.objective)
         return claim_of(self.specification, query, mode, self.values)
-
-    def key(self, queries: Iterable[Query], *more: object) -> str:
-        """A digest of all that an answer depends on: the claims of ``queries``, limits, and ``more``.
-
-        ``more``: plain data (``runtime.canonical``) beside the claims. Raises ``ValueError`` without queries,
-        since an answer about nothing would be an answer to every question.
-        """
-        claims = [self.claim(x).digest() for x in queries]
-        if not claims:
-            raise ValueError("a key needs the claims that the answer is about")
-        limits = self.horizon, self.objective, self.vehicles, self.effort, self.proof
-        return digest(claims, limits, self.specification.options, self.set_names, more)
 
     def search(
         self, query: Query, road: Road | None = None, effort: Effort | None = None, explain: bool = False
@@ -110,28 +91,3 @@ class Basis:
         setting = Setting(road=road, vehicles=vehicles, values=self.values, horizon=self.horizon)
         search_options = SearchOptions(self.objective, effort=effort or self.effort, explain=explain)
         return Search(self.specification, query, setting, search_options)
-
-    def proof_of(
-        self, query: Query, units: float | None = None, label: str = "", shared: SharedPremise | None = None
-    ) -> Result:
-        """The verdict on a claim with ``units`` of work (None: ``proof``). Raises ``BudgetExceeded``.
-
-        ``shared``: of claims with a premise that a drive satisfies, what is known of it.
-        """
-        effort = self.effort.of(self.proof if units is None else units)
-        return prove_of_scenarios(self.specification, query, effort, shared).called(label)
-
-    def settle(self, claim: Asked, query: Query, units: float, label: str) -> ProofResult[Asked]:
-        """The verdict on ``claim``, which ``query`` says; in doubt where the clock cuts the proof off."""
-        try:
-            result = self.proof_of(query, units, label)
-        except BudgetExceeded as late:
-            return ProofResult(claim, verdict=Verdict.UNKNOWN, reason=late.reason, seconds=late.seconds)
-        assert result.verdict is not Verdict.PROVED_BOUNDED
-        return ProofResult(
-            claim,
-            verdict=result.verdict,
-            reason=result.reason,
-            certificate=result.certificate,
-            seconds=result.seconds,
-        )

@@ -4,12 +4,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
+from typing import TypeAlias
 
 from roadproof.errors import InputError, MissingSolverError, RoadproofError
 from roadproof.evidence import certificate, drive_file, none_within
 from roadproof.evidence.answer_files import JUDGED, REFUTATION, RefutationFile
 from roadproof.evidence.answers.proofs import misnamed, shown
-from roadproof.evidence.answers.reader import FindLabel
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.codec import read
 from roadproof.evidence.drive_file import DriveFile
@@ -35,6 +35,8 @@ from roadproof.semantics.exact.exact import Judgement
 from roadproof.semantics.exact.replay import first_overlap
 from roadproof.verdict import Verdict
 
+FindLabel: TypeAlias = Callable[[str, str], "tuple[str, str, int | None] | None"]
+"""Property, part and scenario of a claim in a set, where it is a template property."""
 SCHEMAS = (certificate.SCHEMA, *drive_file.SCHEMAS_READ, none_within.SCHEMA)
 """The files of evidence that are checked alone."""
 _TEMPLATE = ("P", "C")  # what labels of template properties begin with, before a digit

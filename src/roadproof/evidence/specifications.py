@@ -7,10 +7,11 @@ but change nothing that is there. One that does change something has to be named
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from roadproof.errors import InputError
+from roadproof.errors import InputError, UsageError
 from roadproof.evidence.strict import Fields
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library, on_request, read_specification
+from roadproof.runtime.files import write_whole
 
 
 def read_beside(data: Fields | None, folder: Path, given: Sequence[Path]) -> tuple[Library, tuple[Path, ...]]:
@@ -39,6 +40,27 @@ def read_beside(data: Fields | None, folder: Path, given: Sequence[Path]) -> tup
     above = load_library((*given, *paths))
     _check_adds_only(load_library((*given, *asked)), above, paths)
     return above, paths
+
+
+def specification_names(library: Library) -> list[str]:
+    """Return the names of the users' specification files, as ``check`` looks for them beside the evidence.
+
+    Raises ``UsageError`` where two files have the same name.
+    """
+    names = [Path(source.name).name for source in library.files]
+    if len(set(names)) < len(names):
+        paths = ", ".join(source.name for source in library.files)
+        raise UsageError(f"two files of --spec have the same name: {paths}")
+    return names
+
+
+def keep_specifications(folder: Path, library: Library) -> None:
+    """Write copies of the users' specification files into a folder of evidence: ``check`` reads them there.
+
+    Raises ``UsageError`` where two files have the same name.
+    """
+    for name, source in zip(specification_names(library), library.files, strict=True):
+        write_whole(folder / name, source.text.encode("utf-8"))
 
 
 def _check_adds_only(below: Library, above: Library, paths: Sequence[Path]) -> None:

@@ -3,9 +3,8 @@
 import json
 import sys
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal, get_args
+from typing import get_args
 
 from roadproof.evidence.answer_files import RefutationFile, Undecided
 from roadproof.evidence.answers import (
@@ -28,15 +27,11 @@ from roadproof.evidence.answers import (
     traffic,
     tree,
 )
-from roadproof.evidence.answers.reader import KeptFile
-from roadproof.evidence.codec import Doc, Rule, fields_of, notes_of
+from roadproof.evidence.codec import fields_of, notes_of
 from roadproof.evidence.json_schema import (
     COMMON,
     DRAFT,
-    ObjectSchema,
     Shared,
-    joined_schema,
-    kinds_in,
     schema_of,
     shared_schemas,
     tagged_schema,
@@ -68,10 +63,7 @@ TITLES: Mapping[type, str] = {
     traffic.Answer: (
         "results.json of roadproof evaluate, and its --json: dangers in recordings, and what matches them"
     ),
-    catalogue_index.Index: (
-        "roadproof catalogue --json, and index.json of its folder: what tests show and mean, and what "
-        "nobody tests"
-    ),
+    catalogue_index.Index: ("roadproof catalogue --json: what tests show and mean, and what nobody tests"),
     ClassesData: "roadproof classify --json: classes that exclude each other",
     coverage.CoverageData: "roadproof coverage --json: which disturbances a set misses",
     SurveyData: "the surveys of contributors, --json: which of some formulas can hold on a drive",
@@ -104,9 +96,6 @@ WITHOUT_ASSUMPTION: JsonObject = {
 }
 """Only inductions may stand in a certificate that assumes nothing."""
 DRIVES = (drive.Drive, drive.JerkDrive)
-KEEPING = (catalogue_index,)
-"""The questions whose answers are kept one by one."""
-RECORDS: Mapping[str, type] = {x.SCHEMA: x.Record for x in KEEPING}
 
 
 def shared_types() -> JsonObject:
@@ -120,7 +109,7 @@ def schemas() -> Iterator[tuple[str, JsonObject]]:
     for kind, title in TITLES.items():
         [schema] = get_args(next(x.type for x in fields_of(kind) if x.name == "schema"))
         name = file_of(schema)
-        yield name, schema_of(kind, RECORDS.get(schema, kind), name, title)
+        yield name, schema_of(kind, kind, name, title)
     title = "A proof for all time that a second program can check"
     made = schema_of(certificate.Certificate, certificate.Certificate, "certificate.json", title)
     yield "certificate.json", {**made, **WITHOUT_ASSUMPTION}
@@ -129,42 +118,8 @@ def schemas() -> Iterator[tuple[str, JsonObject]]:
     title = "That no drive within limits satisfies a formula, with trees that a second program can check"
     made = schema_of(none_within.NoneWithin, none_within.NoneWithin, "none-within.json", title)
     yield "none-within.json", made
-    yield "answer.json", kept_answers("answer.json")
-    yield "question.json", questions("question.json")
     title, those = "What several kinds of answers share", shared_schemas(shared_types())
     yield COMMON, {"$schema": DRAFT, "$id": COMMON, "title": title, "$defs": those}
-
-
-@dataclass(frozen=True, kw_only=True)
-class Question:
-    """What the answers of a folder are answers to."""
-
-    schema: Literal["roadproof/journal/1"]
-    question: Annotated[
-        str,
-        Rule(pattern="^[0-9a-f]{16}$"),
-        Doc(
-            "Fingerprint of the question, the library and the version: a run goes on in a folder where it is "
-            "its own."
-        ),
-    ]
-
-
-def kept_answers(name: str) -> JsonObject:
-    """The schema of kept answers."""
-    every = [(x.SCHEMA, kind) for x in KEEPING for kind in kinds_in(x.Record, file_of(x.SCHEMA))]
-    kinds = {" ".join((schema.split("/")[1], *kind.required)): kind for schema, kind in every}
-    return joined_schema(name, "answers/NAME.json: one answer that a run has kept", KeptFile, kinds)
-
-
-def questions(name: str) -> JsonObject:
-    """The schema of what was asked; ``said`` is what the index says once for all answers."""
-    kinds = {}
-    for schema, preamble in ((x.SCHEMA, x.Preamble) for x in KEEPING):
-        [said] = kinds_in(preamble, file_of(schema))
-        kinds[schema] = ObjectSchema(("of", "said"), {"of": {"const": schema}, "said": said.json})
-    title = "question.json: what the answers of a folder are answers to"
-    return joined_schema(name, title, Question, kinds)
 
 
 def file_of(schema: str) -> str:

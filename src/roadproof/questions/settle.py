@@ -6,9 +6,6 @@ from dataclasses import field, replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from roadproof.analysis.study import pool
-from roadproof.analysis.study.known import told as told_known
-from roadproof.analysis.study.pool import Progress, Say
 from roadproof.engines.prove.doubt import Cause, Doubt
 from roadproof.errors import SharedError, UsageError
 from roadproof.evidence.answer import Answer, Evidence, undecided
@@ -16,10 +13,12 @@ from roadproof.evidence.claim import Claim
 from roadproof.questions.question import Answers, Batch, Growing, OwnWork, Question, Seeded, WorkByName, walk
 from roadproof.questions.store import Store
 from roadproof.reasons import Reason
-from roadproof.runtime.archives import Origin, is_off
+from roadproof.runtime import pool
+from roadproof.runtime.archives import Origin, is_off, origins_in_words
 from roadproof.runtime.budget import Work
 from roadproof.runtime.cost import NO_COST, Cost
 from roadproof.runtime.executors import Jobs, Shard, hands_of, is_fork_unsafe
+from roadproof.runtime.pool import Progress, Say
 from roadproof.runtime.records import dataclass
 
 Priced: TypeAlias = tuple[str, Evidence, Cost]
@@ -62,8 +61,9 @@ def settle(
     first = [batch.name for batch in question.batches({})]
     dealt = first if shard is None else shard.among(first)
     batches = run.open_batches()
-    for line in told_known([*run.origins.values()], len(run.known) + len(batches)) if say else ():
-        say(line) if say else None
+    line = origins_in_words([*run.origins.values()], len(run.known) + len(batches))
+    if line and say is not None:
+        say(line)
     while batches:
         ours = [
             x for x in batches if shard is None or (x.name in dealt if x.name in first else shard.has(x.name))

@@ -11,13 +11,12 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from roadproof.analysis.study.evidence_store import keep_specifications
-from roadproof.analysis.study.pool import Say
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.answer import SCHEMAS, Answer, Refutation, answer_data, read_answer
 from roadproof.evidence.answer_files import Undecided
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.heading import library_of
+from roadproof.evidence.specifications import keep_specifications
 from roadproof.evidence.strict import LARGEST_EVIDENCE, LARGEST_INDEX, Fields, read_json
 from roadproof.questions.data import QUESTION, basis_data, question_data, read_question
 from roadproof.questions.question import Answers, Growing, Question, Replacing
@@ -28,6 +27,7 @@ from roadproof.runtime.cache import make_room
 from roadproof.runtime.canonical import digest
 from roadproof.runtime.files import make_folder, write_json
 from roadproof.runtime.package_data import program
+from roadproof.runtime.pool import Say
 from roadproof.runtime.records import dataclass
 from roadproof.runtime.version import ANSWERS
 

@@ -7,7 +7,7 @@ program alone.
 import hashlib
 import lzma
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Literal, TypeAlias
@@ -17,10 +17,22 @@ from roadproof.runtime.canonical import digest
 from roadproof.runtime.files import write_whole
 from roadproof.runtime.package_data import program, shipped
 from roadproof.runtime.records import dataclass
+from roadproof.runtime.version import VERSION
 
 SWITCH = "ROADPROOF_KNOWN"
 CACHE, JUDGED = "answers", "judged"
 Origin: TypeAlias = Literal["shipped", "cache"]
+
+
+def origins_in_words(origins: Sequence[Origin], total: int) -> str:
+    """Return a line that says how many answers of ``total`` were known; empty where none was."""
+    if not origins:
+        return ""
+    of_release = origins.count("shipped")
+    earlier = len(origins) - of_release
+    parts = [f"{of_release} shipped with roadproof {VERSION}"] if of_release else []
+    parts += [f"{earlier} of earlier runs"] if earlier else []
+    return f"{len(origins)} of {total} answers were known: {', '.join(parts)}; --fresh computes them again"
 
 
 def is_off() -> bool:

@@ -11,9 +11,7 @@ from pathlib import Path
 from roadproof.drivers.manoeuvres import MANOEUVRES
 from roadproof.errors import InputError
 from roadproof.evidence.codec import read
-from roadproof.evidence.folder import INDEX
-from roadproof.evidence.journal import HEAD
-from roadproof.evidence.strict import LARGEST_INDEX, Fields, read_json
+from roadproof.evidence.strict import Fields
 from roadproof.library.scenarios import EVERY_SCENARIO
 from roadproof.questions.checking import is_question
 from roadproof.questions.preventable.data import PreventableData
@@ -130,21 +128,13 @@ class _Given:
     def read(folder: Path, home: Path) -> "_Given":
         """What a folder has. Raises ``InputError`` where it has no answers."""
         path = Path(os.path.relpath(folder, home)).as_posix()
-        if is_question(folder):
-            content = folder_data(folder)
-        elif (folder / INDEX).is_file():
-            content = Fields(read_json(folder / INDEX, LARGEST_INDEX), str(folder / INDEX)).content
-        elif (folder / HEAD).is_file():
-            raise InputError(f"{folder} has no {INDEX}: its run has not ended; run it again")
-        else:
-            content = {}
-        if content:
-            data = Fields(content, str(folder))
-            kind = [*data.text("schema").split("/"), ""][1]
-            if kind == "preventable":
-                return _of_plates(path, read(PreventableData, data.content, str(folder)))
-            return _of_answer(path, kind, data)
-        raise InputError(f"{folder} has no answers: name a folder that a command has written with --out")
+        if not is_question(folder):
+            raise InputError(f"{folder} has no answers: name a folder that a command has written with --out")
+        data = Fields(folder_data(folder), str(folder))
+        kind = [*data.text("schema").split("/"), ""][1]
+        if kind == "preventable":
+            return _of_plates(path, read(PreventableData, data.content, str(folder)))
+        return _of_answer(path, kind, data)
 
 
 def _of_answer(path: str, kind: str, data: Fields) -> _Given:

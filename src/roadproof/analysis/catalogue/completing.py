@@ -15,8 +15,6 @@ from roadproof.analysis.classify.classes import Class
 from roadproof.analysis.classify.drives import Example, find_examples
 from roadproof.analysis.classify.text import with_classes, write_classes
 from roadproof.analysis.coverage.answers import ClassAnswer
-from roadproof.analysis.study import pool
-from roadproof.analysis.study.pool import Progress
 from roadproof.engines.search.ask import answer
 from roadproof.engines.search.initial_conditions import CLEARLY
 from roadproof.engines.search.placing import judged_as
@@ -29,8 +27,10 @@ from roadproof.library.elaborate import read_claim, read_term
 from roadproof.library.scenarios import Scenario, applied, name_of, number_in
 from roadproof.library.specification import Query, Specification
 from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.runtime import pool
 from roadproof.runtime.budget import BudgetExceeded
 from roadproof.runtime.executors import Jobs
+from roadproof.runtime.pool import Progress
 from roadproof.world.units import unit_text
 
 Begins: TypeAlias = Mapping[str, float]

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from itertools import product
 
 from roadproof.analysis.classify.cells import Axis, Cell
-from roadproof.analysis.study.evidence_store import specification_names
 from roadproof.errors import InputError, TextError, UsageError
+from roadproof.evidence.specifications import specification_names
 from roadproof.library import scenarios as s
 from roadproof.library.alike import likes_of
 from roadproof.library.elaborate import apply_definition, walk_of

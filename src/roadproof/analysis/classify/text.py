@@ -7,8 +7,8 @@ from textwrap import wrap
 
 from roadproof.analysis.classify.cells import Cell, query_of
 from roadproof.analysis.classify.classes import FILE_NAME, SET_NAME, Classes, Group, what_axis, where_axis
-from roadproof.analysis.study.evidence_store import specification_names
 from roadproof.errors import InputError
+from roadproof.evidence.specifications import specification_names
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import build_library
 from roadproof.library.scenarios import name_of

@@ -8,12 +8,10 @@ from pathlib import Path
 
 from roadproof.errors import RoadproofError
 from roadproof.evidence.answers.catalogue_index import SCHEMA as CATALOGUE
-from roadproof.evidence.answers.entry import read_evidence
 from roadproof.evidence.answers.trace import LinkedEvidence
 from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.files import read_evidence
 from roadproof.evidence.finding import Finding
-from roadproof.evidence.folder import INDEX
-from roadproof.evidence.journal import HEAD
 from roadproof.evidence.specifications import read_beside
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, JsonObject, read_json
 from roadproof.library.bind import default_values
@@ -24,6 +22,8 @@ from roadproof.library.specification import Library, Specification, on_request
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import without_names
+from roadproof.questions.checking import is_question
+from roadproof.questions.data import QUESTION
 from roadproof.questions.views import folder_data
 from roadproof.runtime.files import read_limited
 
@@ -60,9 +60,8 @@ class CheckedEvidence:
 
     @property
     def path(self) -> Path:
-        """The file of the evidence, or of the index that it is in."""
-        path = Path(self.finding.where)
-        return path if path.exists() else Path(self.finding.where.partition(f"{INDEX}, ")[0] or path)
+        """The file of the evidence."""
+        return Path(self.finding.where)
 
     @property
     def is_drive(self) -> bool:
@@ -113,7 +112,7 @@ class _Reader:
         path = Path(finding.where)
         library = self._library(path)
         remark = self._remark(finding)
-        if not path.is_file() or path.name in (INDEX, HEAD) or finding.kind == "test":
+        if not path.is_file() or path.name == QUESTION or finding.kind == "test":
             specification = self._in_set_of(finding, library)
             meaning, values = _meaning(specification, finding.claim), self._values(finding)
             return CheckedEvidence(finding, specification, meaning, values, remark=remark)
@@ -137,7 +136,7 @@ class _Reader:
 
     def _library(self, path: Path) -> Library:
         """The definitions of the nearest folder of an answer above a file."""
-        folder = next((x for x in path.parents if (x / INDEX).is_file() or (x / HEAD).is_file()), None)
+        folder = next((x for x in path.parents if is_question(x)), None)
         if folder not in self.libraries:
             assert folder is not None
             try:
@@ -187,13 +186,10 @@ def _meaning(specification: Specification, claim: str) -> Meaning | None:
         return None
 
 
-def _said(folder: Path) -> Fields | None:
-    """What an index, or the head of kept answers, says once for all. Raises ``InputError``."""
-    if (folder / INDEX).is_file():
-        return Fields(read_json(folder / INDEX, LARGEST_INDEX), str(folder / INDEX))
-    head = Fields(read_json(folder / HEAD), str(folder / HEAD))
-    said = next((head.mapping(x) for x in ("basis", "said") if head.has(x)), None)
-    return None if said is None else Fields(said, str(folder / HEAD))
+def _said(folder: Path) -> Fields:
+    """What the question of a folder rests on. Raises ``InputError``."""
+    head = Fields(read_json(folder / QUESTION, LARGEST_INDEX), str(folder / QUESTION))
+    return Fields(head.mapping("basis"), head.where)
 
 
 def _parameters(said: Fields | None) -> Mapping[str, Fraction]:

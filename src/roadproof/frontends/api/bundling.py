@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Literal, TypeAlias, Unpack
 
 from roadproof.analysis.assurance.case import Kind
 from roadproof.analysis.requirements.fingerprints import lock_path
-from roadproof.analysis.study.pool import Progress
 from roadproof.errors import InputError, MissingSolverError, UsageError
 from roadproof.evidence.answers.bundle import Argument, Manifest, Package
 from roadproof.evidence.answers.catalogue_index import SCHEMA as CATALOGUE
@@ -31,6 +30,7 @@ from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Bundle as Options
 from roadproof.runtime import pins as packages
 from roadproof.runtime.files import refuse_name, utf8, whole_file
+from roadproof.runtime.pool import Progress
 from roadproof.runtime.records import dataclass
 from roadproof.runtime.version import VERSION
 from roadproof.verdict import ExitCode

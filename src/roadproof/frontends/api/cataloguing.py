@@ -11,7 +11,6 @@ from roadproof.analysis.catalogue.entries import Catalogue, Concrete, Request
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
 from roadproof.analysis.catalogue.tested import SCENARIOS, Targets, kind_of
 from roadproof.analysis.catalogue.traces import Courses, courses_of, of_drive
-from roadproof.analysis.study.pool import Progress
 from roadproof.drivers.models import MODELS
 from roadproof.errors import UsageError
 from roadproof.evidence.answers import catalogue_index as kept
@@ -20,10 +19,10 @@ from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.completing import CompletionAnswer, write_completions
 from roadproof.frontends.api.definitions import Definitions, definitions_of
+from roadproof.frontends.api.pictures import drawn
 from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import basis_of, one_of
-from roadproof.frontends.api.studied import drawn
 from roadproof.frontends.report import catalogue as report
 from roadproof.frontends.report.catalogue_drives import DrivePicture, draw_tests
 from roadproof.frontends.report.ci.cases import Case
@@ -37,6 +36,7 @@ from roadproof.library.scenarios import number_in, numbers_of
 from roadproof.questions.catalogue.question import AskedTests, CatalogueQuestion
 from roadproof.questions.catalogue.view import CatalogueView
 from roadproof.runtime.executors import Jobs
+from roadproof.runtime.pool import Progress
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
 

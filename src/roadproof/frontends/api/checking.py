@@ -9,7 +9,6 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias, Unpack
 
-from roadproof.analysis.study import pool
 from roadproof.engines.prove.properties import find_label
 from roadproof.engines.solve.smt import Satisfiability as SolverAnswer
 from roadproof.engines.solve.smt import ask
@@ -17,8 +16,8 @@ from roadproof.errors import RoadproofError, UsageError
 from roadproof.evidence.answers import check as kept
 from roadproof.evidence.checking import Checker
 from roadproof.evidence.codec import write
+from roadproof.evidence.files import files_of
 from roadproof.evidence.finding import Acceptance, Finding, OtherVerdict, exit_code, summary
-from roadproof.evidence.folder import Survey, conclude, survey
 from roadproof.evidence.heading import heading
 from roadproof.evidence.none_within import Derived, NoneWithinFile
 from roadproof.evidence.strict import JsonObject
@@ -37,6 +36,7 @@ from roadproof.library.words import called_by, legend
 from roadproof.questions.checking import QuestionFolder, folders_in, read_folder
 from roadproof.questions.data import QUESTION
 from roadproof.reasons import Reason, Why
+from roadproof.runtime import pool
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.cache import keep_bytes, kept_bytes, make_room
 from roadproof.runtime.executors import Jobs
@@ -162,52 +162,60 @@ def _check(paths: Sequence[str | Path], asked: Check, takes_over: bool) -> Check
         find(asked.kernel)
     named = tuple(Path(x) for x in asked.specs)
     library = load_library(named)
-    given_paths = [Path(x) for x in paths]
-    folders = folders_in(given_paths)
-    answered_in, damaged = _read_folders(folders, named)
-    surveyed = survey(given_paths, named, find_label, folders)
-    given = [*surveyed.files.items(), *((file, (*named, *x.specs)) for x in answered_in for file in x.files)]
-    traces = () if asked.kernel is None else _traces(surveyed, named)
-    answered, ruled = (
-        (None, {}) if asked.kernel is None else _put_to_kernel(asked.kernel, given, traces, asked)
-    )
+    there = _Evidence.read([Path(x) for x in paths], named)
+    given = there.given
+    answered, ruled = (None, {}) if asked.kernel is None else _put_to_kernel(asked.kernel, given, asked)
     work = [_Job(path, beside, ruled.get(str(path)), takes_over) for path, beside in given]
     judge = partial(_examine, asked.solver, work_of(asked))
     answers = pool.in_order(pool.work(judge, work, asked.jobs, _doubt, asked.progress, "files"))
     found = {path: finding for (path, _), finding in zip(given, answers, strict=True)}
-    beside = tuple(path for told in surveyed.told for path in told.specs)
-    beside += tuple(path for x in answered_in for path in x.specs)
-    alone = {path: finding for path, finding in found.items() if path in surveyed.files}
-    findings = [*damaged, *conclude(surveyed, alone, ruled)]
+    beside = tuple(path for x in there.folders for path in x.specs)
+    findings = [*there.problems, *(found[file] for file in there.alone)]
     left: dict[str, tuple[str, ...]] = {}
-    for x in answered_in:
+    for x in there.folders:
         findings += [*(x.finding(name, found[file]) for file, name in x.files.items()), *x.undecided]
         findings += x.problems
         tables, others = _tables(x)
         findings += tables
         if others:
             left[str(x.folder)] = others
-    for told in surveyed.told:
-        if unchecked := tuple(told.not_checked):
-            left[str(told.folder)] = unchecked
     make_room(CHECKED)
     solver = asked.kernel or asked.solver
     return CheckReport(tuple(findings), solver, library, beside, answered, left, asked.strict)
 
 
-def _read_folders(
-    folders: Sequence[Path], specs: tuple[Path, ...]
-) -> tuple[list[QuestionFolder], list[Finding]]:
-    """The answers of folders; a finding for each whose question cannot be read."""
-    found: list[QuestionFolder] = []
-    damaged: list[Finding] = []
-    for folder in folders:
-        try:
-            found.append(read_folder(folder, specs))
-        except RoadproofError as error:
-            where = str(folder / QUESTION)
-            damaged.append(Finding(where, "", Acceptance.REJECTED, Why.TOLD(error)))
-    return found, damaged
+@dataclass(frozen=True)
+class _Evidence:
+    """What is in files and folders: ``folders`` of answers, and files ``alone``, read with ``specs``.
+
+    ``problems``: links, and folders whose question cannot be read.
+    """
+
+    folders: tuple[QuestionFolder, ...]
+    alone: tuple[Path, ...]
+    problems: tuple[Finding, ...]
+    specs: tuple[Path, ...]
+
+    @staticmethod
+    def read(paths: Sequence[Path], specs: tuple[Path, ...]) -> "_Evidence":
+        """Raises ``InputError`` for a path that is not there or holds nothing."""
+        places = folders_in(paths)
+        folders: list[QuestionFolder] = []
+        damaged: list[Finding] = []
+        for place in places:
+            try:
+                folders.append(read_folder(place, specs))
+            except RoadproofError as error:
+                where = str(place / QUESTION)
+                damaged.append(Finding(where, "", Acceptance.REJECTED, Why.TOLD(error)))
+        alone, links = files_of(paths, places)
+        return _Evidence(tuple(folders), tuple(alone), (*damaged, *links), specs)
+
+    @property
+    def given(self) -> _Given:
+        """Every file, with the specification files that it is read with."""
+        alone = [(file, self.specs) for file in self.alone]
+        return [*alone, *((file, (*self.specs, *x.specs)) for x in self.folders for file in x.files)]
 
 
 def _tables(found: QuestionFolder) -> tuple[list[Finding], tuple[str, ...]]:
@@ -224,14 +232,13 @@ def _tables(found: QuestionFolder) -> tuple[list[Finding], tuple[str, ...]]:
 
 
 def _put_to_kernel(
-    kernel: Kernel, given: _Given, traces: Sequence[tuple[str, "KernelQuestion"]], asked: Check
+    kernel: Kernel, given: _Given, asked: Check
 ) -> tuple["KernelAnswer", dict[str, OtherVerdict]]:
-    """What a kernel says of all files and traces, and of each by its path or where it stands."""
+    """What a kernel says of all files, and of each by its path."""
     from roadproof.frontends.api.kernel import names_of, put, ruled
 
-    answered = put([*_asked(given), *(x for _, x in traces)], asked.jobs, asked.progress, kernel)
+    answered = put(_asked(given), asked.jobs, asked.progress, kernel)
     names = [(str(path), name) for path, name in names_of(path for path, _ in given).items()]
-    names += [(where, x.name) for where, x in traces]
     said = answered.rulings
     return answered, {path: ruled(said[name]) for path, name in names if name in said}
 
@@ -259,30 +266,11 @@ def write_sources(
     from roadproof.frontends.api.kernel import write as write_all
 
     named = tuple(Path(x) for x in specs)
-    surveyed = survey([Path(x) for x in paths], named, find_label)
-    given = list(surveyed.files.items())
-    traces = _traces(surveyed, named)
-    questions = [*_asked(given), *(x for _, x in traces)]
+    given = _Evidence.read([Path(x) for x in paths], named).given
+    questions = _asked(given)
     reasons = write_all(questions, Path(folder), jobs, kernel)
     by_name = {name: path for path, name in names_of(path for path, _ in given).items()}
-    by_name |= {x.name: Path(where) for where, x in traces}
     return Sources(len(questions) - len(reasons), {by_name[x]: reason for x, reason in reasons.items()})
-
-
-def _traces(surveyed: Survey, specs: tuple[Path, ...]) -> list[tuple[str, "KernelQuestion"]]:
-    """The traces that indexes and journals hold, with where they stand."""
-    from roadproof.evidence.kernel.trace import Refutation
-    from roadproof.frontends.api.kernel import KernelQuestion
-
-    found: list[tuple[str, KernelQuestion]] = []
-    for told in surveyed.told:
-        for entry in told.entries:
-            if entry.shows == "counterexample" and entry.file is None and entry.claim is not None:
-                common = entry.common
-                content = (entry.claim, common.set_name, common.options, entry.assuming, entry.trace)
-                asked, home = Refutation(*content, entry.where), (*specs, *told.specs)
-                found.append((entry.where, KernelQuestion(f"trace_{len(found) + 1}_of_index", asked, home)))
-    return found
 
 
 def _asked(given: _Given) -> list["KernelQuestion"]:

@@ -15,10 +15,10 @@ from roadproof.evidence.codec import write
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Among, Definitions, definitions_of
+from roadproof.frontends.api.pictures import drawn
 from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import basis_of
-from roadproof.frontends.api.studied import drawn
 from roadproof.frontends.report import classify as report
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings import studies as settings

@@ -11,9 +11,9 @@ from roadproof.evidence import answer as answers
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
+from roadproof.frontends.api.pictures import drive_pictures
 from roadproof.frontends.api.questioned import QuestionAnswers, evidence_of
 from roadproof.frontends.api.settings import setting, work_of
-from roadproof.frontends.api.studied import drive_pictures
 from roadproof.frontends.report import compare as compare_report
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.keywords import CompareKeywords

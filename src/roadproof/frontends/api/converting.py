@@ -4,14 +4,14 @@ from collections.abc import Mapping
 from contextlib import closing
 from pathlib import Path
 
-from roadproof.analysis.study import pool
-from roadproof.analysis.study.pool import Progress
 from roadproof.errors import InputError
 from roadproof.recordings.formats.converted import FORMAT, HEAD, SAMPLES, samples_in, write_converted
 from roadproof.recordings.formats.large import is_large, write_large
 from roadproof.recordings.formats.source import RecordingSource
 from roadproof.recordings.formats.sources import CSV, PARQUET, find_sources
+from roadproof.runtime import pool
 from roadproof.runtime.files import hold_folder
+from roadproof.runtime.pool import Progress
 from roadproof.runtime.records import dataclass
 
 

@@ -11,8 +11,6 @@ from typing import ClassVar, Unpack
 from roadproof.analysis.coverage.answers import ClassAnswer, GapTraffic, Survey, with_traffic
 from roadproof.analysis.coverage.classes import sets_between
 from roadproof.analysis.coverage.traffic import count_in_traffic, recordings_in
-from roadproof.analysis.study import pool
-from roadproof.analysis.study.pool import Progress, Say
 from roadproof.drivers.restriction import check_drives
 from roadproof.errors import UsageError
 from roadproof.evidence.answers.coverage import Claim, CountedClass
@@ -36,8 +34,10 @@ from roadproof.library.words import Called, called
 from roadproof.questions.coverage.data import CoverageData
 from roadproof.questions.coverage.question import CoverageQuestion, CoverageView, gaps_of
 from roadproof.questions.views import placing
+from roadproof.runtime import pool
 from roadproof.runtime.executors import Jobs, hands_of
 from roadproof.runtime.files import hold_folder
+from roadproof.runtime.pool import Progress, Say
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
 from roadproof.world.road import Road

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import ClassVar, Unpack
 
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.study import pool
 from roadproof.engines.search.question import SearchOptions, Setting, exists, pose
 from roadproof.errors import UsageError
 from roadproof.evidence import answer as answers
@@ -20,10 +19,10 @@ from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
+from roadproof.frontends.api.pictures import drive_pictures
 from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import searches_of, setting, work_of
-from roadproof.frontends.api.studied import drive_pictures
 from roadproof.frontends.report.animation import ENDINGS
 from roadproof.frontends.report.ci.cases import Case
 from roadproof.frontends.report.ci.questions import search_cases
@@ -44,6 +43,7 @@ from roadproof.questions.witness import (
     WitnessView,
     name_of,
 )
+from roadproof.runtime import pool
 from roadproof.runtime.cost import NO_COST, Cost, sum_of
 from roadproof.runtime.files import make_folder, write_whole
 from roadproof.runtime.progress import Listener, listening

@@ -13,7 +13,8 @@ from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
 from roadproof.frontends.api.phrases import Term
-from roadproof.frontends.api.questioned import QuestionAnswers, drawn
+from roadproof.frontends.api.pictures import drawn
+from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import basis_of, searches_of, setting
 from roadproof.frontends.report import explore as report

@@ -7,8 +7,6 @@ from dataclasses import field
 from functools import partial
 from pathlib import Path
 
-from roadproof.analysis.study import pool
-from roadproof.analysis.study.pool import Progress
 from roadproof.errors import RoadproofError
 from roadproof.evidence import drive_file
 from roadproof.evidence.answer_files import REFUTATION, RefutationFile
@@ -35,9 +33,11 @@ from roadproof.frontends.settings.value_types import KernelName
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library
 from roadproof.reasons import NO_REASON, Reason
+from roadproof.runtime import pool
 from roadproof.runtime.executors import Jobs
 from roadproof.runtime.files import make_folder, write_whole
 from roadproof.runtime.package_data import shipped
+from roadproof.runtime.pool import Progress
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 

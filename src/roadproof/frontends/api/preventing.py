@@ -15,9 +15,9 @@ from roadproof.evidence.kernel.coq import ready
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.definitions import Definitions, load
+from roadproof.frontends.api.pictures import drawn, drive_pictures
 from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.settings import basis_of
-from roadproof.frontends.api.studied import drawn, drive_pictures
 from roadproof.frontends.report import preventable as report
 from roadproof.frontends.report.ci.cases import Case
 from roadproof.frontends.report.ci.questions import plate_cases

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Self, Unpack
 
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.study.pool import Progress
 from roadproof.engines.prove.properties import OWN, Task, choose, template_properties
 from roadproof.errors import UsageError
 from roadproof.evidence import answer as answers
@@ -20,9 +19,9 @@ from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
+from roadproof.frontends.api.pictures import drive_pictures
 from roadproof.frontends.api.questioned import QuestionAnswers, evidence_of
 from roadproof.frontends.api.settings import models_of, setting, work_of
-from roadproof.frontends.api.studied import drive_pictures
 from roadproof.frontends.report import claims as claims_text
 from roadproof.frontends.report.ci.cases import Case, Location
 from roadproof.frontends.report.ci.questions import claim_cases
@@ -48,6 +47,7 @@ from roadproof.questions.prove import (
 from roadproof.runtime.cost import NO_COST, Cost
 from roadproof.runtime.executors import Jobs, hands_of
 from roadproof.runtime.files import hold_folder
+from roadproof.runtime.pool import Progress
 from roadproof.runtime.progress import Listener, listening
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ClaimVerdict, ExitCode, Verdict, claim_verdict, exit_code

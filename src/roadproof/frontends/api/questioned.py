@@ -12,7 +12,6 @@ from roadproof.evidence.answer_files import Undecided
 from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
 from roadproof.frontends.api.answer import Answer
-from roadproof.frontends.api.studied import drawn as drawn
 from roadproof.frontends.settings.groups import Run
 from roadproof.library.specification import Library
 from roadproof.questions.question import Question

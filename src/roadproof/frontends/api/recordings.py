@@ -8,7 +8,6 @@ from fractions import Fraction
 from pathlib import Path
 from typing import ClassVar, Unpack
 
-from roadproof.analysis.study.pool import Say
 from roadproof.drivers.models import DRIVERS
 from roadproof.errors import UsageError
 from roadproof.evidence.strict import JsonObject
@@ -51,6 +50,7 @@ from roadproof.recordings.formats.sources import find_sources
 from roadproof.recordings.formats.table import Frame, frame_of
 from roadproof.runtime.executors import hands_of
 from roadproof.runtime.files import hold_folder
+from roadproof.runtime.pool import Say
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
 

@@ -6,7 +6,6 @@ from typing import Unpack
 
 from roadproof.errors import RoadproofError, UsageError
 from roadproof.evidence.finding import Acceptance, Finding
-from roadproof.evidence.folder import INDEX
 from roadproof.frontends.api.checking import CheckReport, take_over
 from roadproof.frontends.report.page.page_context import PageContext
 from roadproof.frontends.report.page.results import Result, read_results
@@ -21,6 +20,7 @@ from roadproof.library.loading import load_library
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.specification import Library
 from roadproof.library.words import words_of
+from roadproof.questions.data import QUESTION
 from roadproof.runtime.files import utf8, whole_file
 from roadproof.runtime.records import dataclass
 from roadproof.runtime.version import VERSION
@@ -85,8 +85,7 @@ def page(*results: str | Path, out: str | Path, **options: Unpack[PageKeywords])
         checked = take_over(*given.checkable, **told)
     library = load_library((*named, *(checked.specs if checked else ())))
     findings = () if checked is None else checked.findings
-    inside = {x.where: x for x in findings if x.kind == "index"}
-    book = PageContext(library, _by_file(findings), inside, _rejected(findings))
+    book = PageContext(library, _by_file(findings), _rejected(findings))
     wanted = {path.resolve() for path in given.evidence}
     alone = [x for x in findings if Path(x.where).is_file() and Path(x.where).resolve() in wanted]
     sections = sorted(
@@ -120,10 +119,10 @@ def _made(checked: CheckReport | None, library: Library) -> Iterator[tuple[str, 
 
 
 def _rejected(findings: Sequence[Finding]) -> dict[str, list[str]]:
-    """What is not accepted of each index itself, or not decided, in words."""
+    """Return what is not accepted of each question itself, in words, by its path."""
     found: dict[str, list[str]] = {}
     for x in findings:
-        if x.outcome is not Acceptance.ACCEPTED and Path(x.where).name == INDEX:
+        if x.outcome is not Acceptance.ACCEPTED and Path(x.where).name == QUESTION:
             found.setdefault(x.where, []).append(f"{x.label}: {x.reason}" if x.label else x.reason)
     return found
 

@@ -5,7 +5,6 @@ from functools import partial
 from pathlib import Path
 from typing import Unpack
 
-from roadproof.analysis.study import pool
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
@@ -21,6 +20,7 @@ from roadproof.recordings.simulate.planting import PLANTED_COLUMNS, Truth, lane_
 from roadproof.recordings.simulate.simulate import markings_of
 from roadproof.recordings.simulate.simulate import simulate as simulate_one
 from roadproof.recordings.simulate.traffic import Traffic, road_of
+from roadproof.runtime import pool
 from roadproof.runtime.files import write_whole
 from roadproof.runtime.records import dataclass
 

@@ -11,7 +11,6 @@ from roadproof.analysis.assurance.limits import BOUNDED, DIGEST, Limit, limits_o
 from roadproof.analysis.assurance.states import State
 from roadproof.errors import MissingSolverError, RoadproofError
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
-from roadproof.evidence.folder import INDEX
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, Json, read_json
 from roadproof.frontends.api.checking import take_over
 from roadproof.frontends.settings.keywords import CheckKeywords
@@ -180,10 +179,8 @@ def whole_verdict(path: Path, select: Sequence[str] = ()) -> tuple[str, str]:
 
 
 def _answer_in(path: Path) -> Json:
-    """An answer: a file, the index of a folder, or what the answers of a folder show together."""
-    if path.is_dir() and is_question(path):
-        return folder_data(path)
-    return read_json(path / INDEX if path.is_dir() else path, LARGEST_INDEX)
+    """An answer: a file, or what the answers of a folder show together."""
+    return folder_data(path) if is_question(path) else read_json(path, LARGEST_INDEX)
 
 
 def _is_selected(names: Sequence[str], select: Sequence[str]) -> bool:
@@ -193,9 +190,7 @@ def _is_selected(names: Sequence[str], select: Sequence[str]) -> bool:
 def _files(path: Path, accepted: Sequence[Finding], evidence: Evidence) -> list[Path]:
     """The files of evidence of accepted findings, and the answers of the folder that state limits."""
     files = [Path(x.where) for x in accepted if Path(x.where).suffix == ".json"]
-    answers = [] if evidence.select or not path.is_dir() else sorted(path.glob("answers/*.json"))
-    index = [path / INDEX] if path.is_dir() else [path]
-    return [*dict.fromkeys(x for x in (*files, *index, *answers) if x.is_file())]
+    return [*dict.fromkeys(x for x in (*files, path) if x.is_file())]
 
 
 def digest_of(path: Path) -> str:

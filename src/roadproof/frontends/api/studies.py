@@ -9,10 +9,10 @@ from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Among, Definitions, definitions_of, load
+from roadproof.frontends.api.pictures import drawn
 from roadproof.frontends.api.questioned import QuestionAnswers, evidence_of
 from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import basis_of, positive
-from roadproof.frontends.api.studied import drawn
 from roadproof.frontends.report import order as order_report
 from roadproof.frontends.report import overlap as overlap_report
 from roadproof.frontends.report import redundancy as redundancy_report

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from roadproof.analysis.study import pool
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.frontends.atlas.answers import EVIDENCE, OBJECTIVES, Answers, name_in
@@ -15,6 +14,7 @@ from roadproof.frontends.report.drive_data import Span, strips_of
 from roadproof.frontends.report.miniature import miniature, small_scene
 from roadproof.frontends.settings.studies import Atlas
 from roadproof.library.specification import Library
+from roadproof.runtime import pool
 from roadproof.verdict import Verdict
 
 MOST_STRIPS, DEEPEST = 14, 2

@@ -16,7 +16,6 @@ from roadproof.frontends.settings.option import Settings
 if TYPE_CHECKING:
     from roadproof.frontends.api.definitions import Definitions
     from roadproof.frontends.api.questioned import QuestionAnswers
-    from roadproof.frontends.api.studied import StudyAnswers
 
 A = TypeVar("A")
 
@@ -74,7 +73,7 @@ def in_order(names: Iterable[str], show: Callable[[str, A], None]) -> Callable[[
 
 def hand_over(
     args: argparse.Namespace,
-    found: "StudyAnswers[Any, Any, Any] | QuestionAnswers[Any]",
+    found: "QuestionAnswers[Any]",
     pictures: bool = False,
 ) -> int:
     """JSON, what is written to be looked at, and the text of an answer; its exit code."""

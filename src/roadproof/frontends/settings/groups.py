@@ -22,11 +22,11 @@ from roadproof.runtime.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from roadproof.analysis.study.pool import Progress, Say
     from roadproof.evidence.claim import Engine
     from roadproof.frontends.settings.value_types import RoadLike, Vehicles
     from roadproof.library.bind import Number
     from roadproof.runtime.executors import Jobs
+    from roadproof.runtime.pool import Progress, Say
     from roadproof.semantics.sampled.answers import Convention
 
 

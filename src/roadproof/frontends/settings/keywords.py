@@ -8,7 +8,6 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
-    from roadproof.analysis.study.pool import Progress, Say
     from roadproof.evidence.answers.catalogue_index import Look
     from roadproof.evidence.answers.monitor import View
     from roadproof.evidence.claim import Engine, Objective
@@ -28,6 +27,7 @@ if TYPE_CHECKING:
     from roadproof.library.bind import Number
     from roadproof.recordings.simulate.traffic import Ramp
     from roadproof.runtime.executors import Jobs
+    from roadproof.runtime.pool import Progress, Say
     from roadproof.semantics.sampled.answers import Convention
     from roadproof.world.signals import Kind
 

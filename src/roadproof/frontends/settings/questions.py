@@ -14,13 +14,13 @@ from roadproof.runtime.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from roadproof.analysis.study.pool import Progress
     from roadproof.evidence.claim import Objective
     from roadproof.frontends.api.checking import Kernel, Solver
     from roadproof.frontends.api.definitions import What
     from roadproof.frontends.api.phrases import Term
     from roadproof.frontends.settings.value_types import Assumed, Expected, ProofEngine, RoadLike, Vehicles
     from roadproof.library.bind import Number
+    from roadproof.runtime.pool import Progress
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -24,7 +24,6 @@ from roadproof.runtime.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from roadproof.analysis.study.pool import Say
     from roadproof.evidence.answers.monitor import View
     from roadproof.evidence.drive_file import DriveFile
     from roadproof.evidence.judged import JudgedDrive
@@ -32,6 +31,7 @@ if TYPE_CHECKING:
     from roadproof.frontends.settings.value_types import RoadLike
     from roadproof.library.bind import Number
     from roadproof.recordings.simulate.traffic import Ramp
+    from roadproof.runtime.pool import Say
     from roadproof.world.signals import Kind
 
 

@@ -22,7 +22,6 @@ from roadproof.analysis.classify.cells import (
     whole_cell,
 )
 from roadproof.analysis.classify.classes import Classes, Plan, plan_of, what_axis, where_axis
-from roadproof.analysis.study.pool import Progress
 from roadproof.evidence.codec import Doc, read
 from roadproof.library.specification import Query
 from roadproof.questions.classify.data import Divided, DividedGroup, Doubt, Numbers
@@ -31,6 +30,7 @@ from roadproof.questions.settle import settle
 from roadproof.reasons import NO_REASON, Reason
 from roadproof.runtime.budget import Work
 from roadproof.runtime.executors import Jobs
+from roadproof.runtime.pool import Progress
 
 REFINING = 2.0  # units of work for a proof that something follows
 

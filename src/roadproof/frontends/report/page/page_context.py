@@ -68,13 +68,11 @@ class DriveCard:
 class PageContext:
     """``documents`` of the viewer, in the order in which drives are met; ``findings`` of evidence by file.
 
-    ``inside``: findings on evidence inside an index, by the place that they name. ``rejected``: what is wrong
-    with an index itself, by its path.
+    ``rejected``: what is wrong with a question itself, by its path.
     """
 
     library: Library
     findings: Mapping[Path, Finding] = field(default_factory=dict)
-    inside: Mapping[str, Finding] = field(default_factory=dict)
     rejected: Mapping[str, Sequence[str]] = field(default_factory=dict)
     documents: list[Document] = field(default_factory=list)
 

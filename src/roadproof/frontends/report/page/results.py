@@ -1,4 +1,4 @@
-"""Which results are in files and folders: answers of ``--json``, folders with an index, evidence alone."""
+"""Which results are in files and folders: answers of ``--json``, folders of answers, evidence alone."""
 
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
@@ -6,10 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
 
-from roadproof.analysis.study.evidence_store import INDEX
 from roadproof.errors import InputError
 from roadproof.evidence.checking import SCHEMAS
-from roadproof.evidence.journal import ANSWERS, HEAD
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, Json, read_json
 from roadproof.questions.checking import is_question, read_folder
 from roadproof.questions.classify.question import ClassifyQuestion
@@ -51,7 +49,7 @@ class Given:
 
     @property
     def checkable(self) -> tuple[Path, ...]:
-        """What ``check`` reads: folders with an index of evidence, and files alone."""
+        """What ``check`` reads: folders of answers, and files alone."""
         folders = [x.folder for x in self.results if x.folder is not None and x.kind != "traffic-results"]
         return (*dict.fromkeys(folders), *self.evidence)
 
@@ -79,8 +77,8 @@ def read_results(paths: Sequence[Path], given: Sequence[Path] = ()) -> Given:
             if schema in SCHEMAS:
                 evidence.append(file)
             else:
-                here = file.parent if file.name in (INDEX, TRAFFIC) else _beside(file)
-                name = file.parent.name if file.name in (INDEX, TRAFFIC) else file.stem
+                here = file.parent if file.name == TRAFFIC else _beside(file)
+                name = file.parent.name if file.name == TRAFFIC else file.stem
                 results.append(Result(name or str(file), schema, data, here, len(results), digest))
     return Given(tuple(results), tuple(dict.fromkeys(evidence)))
 
@@ -98,21 +96,17 @@ def _answered(folder: Path, given: Sequence[Path], number: int) -> Result:
 def _beside(file: Path) -> Path | None:
     """The folder in which the evidence of an answer of ``--json`` lies."""
     folder = file.with_name(f"{file.stem}-evidence")
-    return folder if (folder / INDEX).is_file() or is_question(folder) else None
+    return folder if is_question(folder) else None
 
 
 def _in_folder(folder: Path) -> Iterator[Path]:
-    """The index of a folder, or its results; without these the evidence in it, and in the folders in it."""
-    if is_question(folder):
-        yield folder / QUESTION
+    """The question of a folder, or its results; without these the evidence in it and below."""
+    whole = folder / QUESTION if is_question(folder) else folder / TRAFFIC
+    if whole.is_file():
+        yield whole
         return
-    whole = [folder / name for name in (INDEX, TRAFFIC) if (folder / name).is_file()]
-    if whole:
-        yield from whole
-        return
-    kept = (folder / HEAD).is_file()
     for path in sorted(folder.iterdir()):
-        if path.is_symlink() or (kept and path.name in (HEAD, ANSWERS)):
+        if path.is_symlink():
             continue
         if path.is_dir():
             yield from _in_folder(path)

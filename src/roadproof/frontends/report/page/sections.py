@@ -17,6 +17,7 @@ from roadproof.frontends.report.preventable import page_plates
 from roadproof.frontends.report.trace import counted
 from roadproof.library.words import spans
 from roadproof.questions.compare import ComparisonData
+from roadproof.questions.data import QUESTION
 
 Values: TypeAlias = Mapping[str, object]
 _HEADING = ("schema", "roadproof", "library", "seconds", "options", "parameters", "specs", "view")
@@ -33,7 +34,7 @@ class Section(NamedTuple):
 def section(result: Result, context: PageContext, words: Words) -> Section:
     """A result of any kind as HTML; ``words`` are what scenarios are called. Raises ``InputError``."""
     kind = _KINDS.get(result.kind, _Kind(result.kind, "", "plain", _plain))
-    rejected = () if result.folder is None else context.rejected.get(str(result.folder / "index.json"), ())
+    rejected = () if result.folder is None else context.rejected.get(str(result.folder / QUESTION), ())
     frame = {"title": kind.title, "question": kind.question, "set": result.data.get("set")}
     known = {number: x for number, x in words.items() if x}
     try:
