@@ -1,7 +1,7 @@
 """JSON Schemas of answers, derived from their definitions (``evidence.codec``)."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import is_dataclass, replace
+from dataclasses import is_dataclass
 from enum import StrEnum
 from fractions import Fraction
 from types import NoneType, UnionType
@@ -39,14 +39,9 @@ class Plain:
 
 @dataclass(frozen=True)
 class Other:
-    """A file of evidence is named, or stands here itself: the schema of the evidence."""
+    """A file of evidence is named, or stands here itself: the schemas of which it has one."""
 
-    schema: str
-
-
-@dataclass(frozen=True)
-class File:
-    """A file beside the index is named, or none."""
+    schemas: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -62,14 +57,12 @@ class ObjectSchema:
 
     required: tuple[str, ...]
     properties: JsonObject
-    title: str = ""
     description: str = ""
 
     @property
     def json(self) -> JsonObject:
         """As a schema stands in JSON."""
         return {
-            **({"title": self.title} if self.title else {}),
             "type": "object",
             **_told(self.description),
             "required": [*self.required],
@@ -77,16 +70,10 @@ class ObjectSchema:
             "properties": self.properties,
         }
 
-    def with_those_of(self, other: "ObjectSchema", title: str) -> "ObjectSchema":
-        """The properties of this one, then those of another."""
-        properties = self.properties | other.properties
-        return ObjectSchema((*self.required, *other.required), properties, title, other.description)
 
-
-def schema_of(kind: type, record: type, name: str, title: str) -> JsonObject:
-    """The schema of an answer, which the file ``name`` holds, with what a kept answer is made of."""
-    every = (x for top in (kind, record) for x in _definitions(top, set()))
-    below = {x.__name__: x for x in every if x not in (kind, record)}
+def schema_of(kind: type, name: str, title: str) -> JsonObject:
+    """The schema of an answer, which the file ``name`` holds."""
+    below = {x.__name__: x for x in _definitions(kind, set()) if x is not kind}
     definitions: JsonObject = {_called(x): _object(below[x]) for x in sorted(below)}
     made: JsonObject = {"$schema": DRAFT, "$id": name, "title": title, **_object(kind)}
     return made | ({"$defs": definitions} if below else {})
@@ -103,36 +90,6 @@ def tagged_schema(kinds: tuple[type, ...], name: str, title: str) -> JsonObject:
         "properties": {"schema": {"enum": words}},
         "oneOf": [_plain(kind) for kind in kinds],
         "$defs": {called: _object(below[called]) for called in sorted(below)},
-    }
-
-
-def joined_schema(name: str, title: str, beside: type, kinds: Mapping[str, ObjectSchema]) -> JsonObject:
-    """The schema of a file that holds an object of one of several kinds, with the fields of ``beside`` too.
-
-    ``kinds``: the schema of each, by its title.
-    """
-    [first] = _alternatives(beside)
-    every: list[Json] = [first.with_those_of(x, word).json for word, x in kinds.items()]
-    version: JsonObject = {key: x for key, x in first.properties.items() if key == "schema"}
-    head: JsonObject = {"properties": version} if version else {}
-    return {"$schema": DRAFT, "$id": name, "title": title, **head, "oneOf": every}
-
-
-def kinds_in(kind: type, file: str) -> list[ObjectSchema]:
-    """The schemas of the kinds of a definition, for another file than ``file``, which defines it."""
-    moved = ((x, _moved(x.properties, file)) for x in _alternatives(kind))
-    return [replace(x, properties=properties) for x, properties in moved if isinstance(properties, dict)]
-
-
-def _moved(content: Json, file: str) -> Json:
-    """A schema with references as they are written in another file."""
-    if isinstance(content, list):
-        return [_moved(x, file) for x in content]
-    if not isinstance(content, dict):
-        return content
-    return {
-        key: f"{file}{x}" if key == "$ref" and isinstance(x, str) and x.startswith("#") else _moved(x, file)
-        for key, x in content.items()
     }
 
 
@@ -234,11 +191,10 @@ def _inline(kind: object, made: JsonObject) -> JsonObject:
                 made |= _facets(note, made.get("type"))
             case Whole(schema):
                 made = {"$ref": schema, **made}
-            case File():
-                made = {"anyOf": [{"type": "null"}, {"$ref": f"{COMMON}#/$defs/file"}], **made}
-            case Other(schema):
+            case Other(schemas):
                 file: Json = {"$ref": "#/$defs/file"}
-                made = {"anyOf": [{"type": "null"}, file, {"$ref": schema}], **made}
+                each: list[Json] = [{"$ref": x} for x in schemas]
+                made = {"anyOf": [{"type": "null"}, file, *each], **made}
     return made
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import get_args
 
-from roadproof.evidence.answer_files import RefutationFile, Undecided
+from roadproof.evidence.answer_files import JudgedFile, RefutationFile, Undecided
 from roadproof.evidence.answers import (
     assurance,
     bundle,
@@ -73,6 +73,7 @@ TITLES: Mapping[type, str] = {
     OverlapData: "roadproof overlap --json: which scenarios hold together",
     QuestionFile: "question.json: a question, from which its claims are listed",
     Undecided: "NAME.json in a folder of answers: why a claim is undecided",
+    JudgedFile: "NAME.json in a folder of answers: what a given trace shows",
     RefutationFile: "NAME.json in a folder of answers: a trace on which a claim is false",
     PreventableData: (
         "roadproof preventable --json: from which initial values a driver prevents a collision"
@@ -109,14 +110,14 @@ def schemas() -> Iterator[tuple[str, JsonObject]]:
     for kind, title in TITLES.items():
         [schema] = get_args(next(x.type for x in fields_of(kind) if x.name == "schema"))
         name = file_of(schema)
-        yield name, schema_of(kind, kind, name, title)
+        yield name, schema_of(kind, name, title)
     title = "A proof for all time that a second program can check"
-    made = schema_of(certificate.Certificate, certificate.Certificate, "certificate.json", title)
+    made = schema_of(certificate.Certificate, "certificate.json", title)
     yield "certificate.json", {**made, **WITHOUT_ASSUMPTION}
     title = "A judged drive, with all that is needed to judge it again"
     yield "drive.json", tagged_schema(DRIVES, "drive.json", title)
     title = "That no drive within limits satisfies a formula, with trees that a second program can check"
-    made = schema_of(none_within.NoneWithin, none_within.NoneWithin, "none-within.json", title)
+    made = schema_of(none_within.NoneWithin, "none-within.json", title)
     yield "none-within.json", made
     title, those = "What several kinds of answers share", shared_schemas(shared_types())
     yield COMMON, {"$schema": DRAFT, "$id": COMMON, "title": title, "$defs": those}

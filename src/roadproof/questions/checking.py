@@ -150,7 +150,9 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
                 answers[name] = _read(claim, content, str(path))
             except InputError as error:
                 fault = Why.TOLD(error)
-                problems.append(Finding(str(folder / f"{name}.json"), "", outcome, fault))
+                where = str(folder / f"{name}.json")
+                told = Why.TOLD(str(error).removeprefix(where).lstrip(": "))
+                problems.append(Finding(where, "", outcome, told))
                 refused.add(name)
                 answers[name] = undecided(claim, fault)
         return answers[name]

@@ -62,7 +62,7 @@ class CheckReport(Table, BuildResult):
 
     ``solver`` is who was asked about certificates. ``specs``: specification files that lie beside the
     evidence, and were read on top of it. ``kernel``: what Coq needed and stands on, where it was asked.
-    ``not_checked``: by folder, the fields of its index and the files in it that nothing is compared with.
+    ``not_checked``: by folder, the files in it that nothing is compared with.
     ``strict``: whether answers without evidence make the exit code 20.
     """
 
