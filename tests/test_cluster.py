@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.runtime.pool import work
 from roadproof.errors import InputError, LostError, UsageError
 from roadproof.runtime import dask_executor
 from roadproof.runtime.executors import Cluster, Executor
+from roadproof.runtime.pool import work
 from roadproof.runtime.worker import is_worker
 
 pytest.importorskip("distributed", reason="dask is not installed: pip install distributed")

@@ -15,7 +15,6 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.runtime.pool import in_order, work
 from roadproof.engines.prove.properties import choose, template_properties
 from roadproof.engines.search.batches import Engines
 from roadproof.errors import InputError, LostError, MissingSolverError, TextError
@@ -26,6 +25,7 @@ from roadproof.frontends.cli.main import main
 from roadproof.runtime import process_pool
 from roadproof.runtime.cost import Cost
 from roadproof.runtime.executors import LostJob
+from roadproof.runtime.pool import in_order, work
 from roadproof.runtime.process_pool import answers_of
 
 HANGS = 60.0

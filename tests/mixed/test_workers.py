@@ -9,12 +9,12 @@ from typing import Any
 
 import pytest
 
-from roadproof.runtime.pool import in_order, work
 from roadproof.errors import InputError, LostError, UsageError
 from roadproof.reasons import Reason, Why
 from roadproof.runtime import dask_executor, executors, process_pool, worker
 from roadproof.runtime.budget import Budget, BudgetExceeded, Effort
 from roadproof.runtime.executors import Cluster, Executor, LostJob, Shard, answers_of, try_again
+from roadproof.runtime.pool import in_order, work
 from roadproof.runtime.process_pool import answers_of as in_processes
 from roadproof.runtime.progress import Stage, begin, listening
 from roadproof.runtime.worker import ended_by

@@ -1,7 +1,7 @@
 """JSON Schemas of answers, derived from their definitions (``evidence.codec``)."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import is_dataclass, replace
+from dataclasses import is_dataclass
 from enum import StrEnum
 from fractions import Fraction
 from types import NoneType, UnionType
@@ -56,37 +56,9 @@ class Whole:
     schema: str
 
 
-@dataclass(frozen=True)
-class ObjectSchema:
-    """The schema of an object that has these properties and no others; ``required`` are always there."""
-
-    required: tuple[str, ...]
-    properties: JsonObject
-    title: str = ""
-    description: str = ""
-
-    @property
-    def json(self) -> JsonObject:
-        """As a schema stands in JSON."""
-        return {
-            **({"title": self.title} if self.title else {}),
-            "type": "object",
-            **_told(self.description),
-            "required": [*self.required],
-            "additionalProperties": False,
-            "properties": self.properties,
-        }
-
-    def with_those_of(self, other: "ObjectSchema", title: str) -> "ObjectSchema":
-        """The properties of this one, then those of another."""
-        properties = self.properties | other.properties
-        return ObjectSchema((*self.required, *other.required), properties, title, other.description)
-
-
-def schema_of(kind: type, record: type, name: str, title: str) -> JsonObject:
-    """The schema of an answer, which the file ``name`` holds, with what a kept answer is made of."""
-    every = (x for top in (kind, record) for x in _definitions(top, set()))
-    below = {x.__name__: x for x in every if x not in (kind, record)}
+def schema_of(kind: type, name: str, title: str) -> JsonObject:
+    """Return the schema of a file ``name`` that a definition describes."""
+    below = {x.__name__: x for x in _definitions(kind, set()) if x is not kind}
     definitions: JsonObject = {_called(x): _object(below[x]) for x in sorted(below)}
     made: JsonObject = {"$schema": DRAFT, "$id": name, "title": title, **_object(kind)}
     return made | ({"$defs": definitions} if below else {})
@@ -103,36 +75,6 @@ def tagged_schema(kinds: tuple[type, ...], name: str, title: str) -> JsonObject:
         "properties": {"schema": {"enum": words}},
         "oneOf": [_plain(kind) for kind in kinds],
         "$defs": {called: _object(below[called]) for called in sorted(below)},
-    }
-
-
-def joined_schema(name: str, title: str, beside: type, kinds: Mapping[str, ObjectSchema]) -> JsonObject:
-    """The schema of a file that holds an object of one of several kinds, with the fields of ``beside`` too.
-
-    ``kinds``: the schema of each, by its title.
-    """
-    [first] = _alternatives(beside)
-    every: list[Json] = [first.with_those_of(x, word).json for word, x in kinds.items()]
-    version: JsonObject = {key: x for key, x in first.properties.items() if key == "schema"}
-    head: JsonObject = {"properties": version} if version else {}
-    return {"$schema": DRAFT, "$id": name, "title": title, **head, "oneOf": every}
-
-
-def kinds_in(kind: type, file: str) -> list[ObjectSchema]:
-    """The schemas of the kinds of a definition, for another file than ``file``, which defines it."""
-    moved = ((x, _moved(x.properties, file)) for x in _alternatives(kind))
-    return [replace(x, properties=properties) for x, properties in moved if isinstance(properties, dict)]
-
-
-def _moved(content: Json, file: str) -> Json:
-    """A schema with references as they are written in another file."""
-    if isinstance(content, list):
-        return [_moved(x, file) for x in content]
-    if not isinstance(content, dict):
-        return content
-    return {
-        key: f"{file}{x}" if key == "$ref" and isinstance(x, str) and x.startswith("#") else _moved(x, file)
-        for key, x in content.items()
     }
 
 
@@ -176,24 +118,16 @@ def _definitions(kind: object, seen: set[object]) -> Iterator[type]:
 
 
 def _object(kind: type) -> JsonObject:
-    """The schema of a definition; where it is one of several kinds, of any of these."""
-    several = [x.json for x in _alternatives(kind)]
-    return several[0] if len(several) == 1 else {**_told(kind.__doc__ or ""), "oneOf": [*several]}
-
-
-def _alternatives(kind: type) -> list[ObjectSchema]:
-    """The schemas of the kinds of a definition, which ``ALTERNATIVES`` tells by their fields."""
+    """The schema of a definition: an object that has its fields and no others."""
     every = fields_of(kind)
-    required = tuple(x.key for x in every if x.is_written and not x.has(LACKING))
-    kinds: tuple[tuple[str, ...], ...] = getattr(kind, "ALTERNATIVES", ())
-    return [
-        ObjectSchema(
-            needed,
-            {x.key: _of_field(x) for x in every if not kinds or x.key in needed},
-            description="" if kinds else kind.__doc__ or "",
-        )
-        for needed in kinds or (required,)
-    ]
+    required: list[Json] = [x.key for x in every if x.is_written and not x.has(LACKING)]
+    return {
+        "type": "object",
+        **_told(kind.__doc__ or ""),
+        "required": required,
+        "additionalProperties": False,
+        "properties": {x.key: _of_field(x) for x in every},
+    }
 
 
 def _told(text: str) -> JsonObject:

@@ -109,14 +109,14 @@ def schemas() -> Iterator[tuple[str, JsonObject]]:
     for kind, title in TITLES.items():
         [schema] = get_args(next(x.type for x in fields_of(kind) if x.name == "schema"))
         name = file_of(schema)
-        yield name, schema_of(kind, kind, name, title)
+        yield name, schema_of(kind, name, title)
     title = "A proof for all time that a second program can check"
-    made = schema_of(certificate.Certificate, certificate.Certificate, "certificate.json", title)
+    made = schema_of(certificate.Certificate, "certificate.json", title)
     yield "certificate.json", {**made, **WITHOUT_ASSUMPTION}
     title = "A judged drive, with all that is needed to judge it again"
     yield "drive.json", tagged_schema(DRIVES, "drive.json", title)
     title = "That no drive within limits satisfies a formula, with trees that a second program can check"
-    made = schema_of(none_within.NoneWithin, none_within.NoneWithin, "none-within.json", title)
+    made = schema_of(none_within.NoneWithin, "none-within.json", title)
     yield "none-within.json", made
     title, those = "What several kinds of answers share", shared_schemas(shared_types())
     yield COMMON, {"$schema": DRAFT, "$id": COMMON, "title": title, "$defs": those}
