@@ -45,15 +45,15 @@ def test_values_are_no_templates_and_too_few_are_refused() -> None:
 
 
 def test_reasons_are_joined_without_those_that_are_empty() -> None:
-    one, other = Why.PROOF_LOST(), Why.NO_DRIVE()
-    assert joined((NO_REASON, one)).kind is Why.PROOF_LOST
+    one, other = Why.NO_STATE(), Why.NO_DRIVE()
+    assert joined((NO_REASON, one)).kind is Why.NO_STATE
     assert joined((one, NO_REASON, other, one)) == f"{one}; {other}; {one}"
     assert joined(()) == ""
     assert not joined(())
 
 
 def test_json_has_the_words_alone() -> None:
-    finding = Finding("a.json", "drive", Acceptance.REJECTED, Why.TWIN("b.json"))
+    finding = Finding("a.json", "drive", Acceptance.REJECTED, Why.LINK())
     data = write(finding)
     assert type(data["reason"]) is str
     again = read(Finding, data, "here")

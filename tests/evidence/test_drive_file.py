@@ -251,7 +251,6 @@ def test_nesting_up_to_the_limit_is_read() -> None:
         ("items", "ab"),
         ("mapping", []),
         ("texts", ["a", 1]),
-        ("named_texts", {"a": True}),
         ("rational", 1),
         ("rational", "1.5"),
         ("rational", "\u0663"),

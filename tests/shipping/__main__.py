@@ -15,6 +15,7 @@ from typing import Any
 
 from roadproof.analysis.study.frame import known_answer
 from roadproof.analysis.study.known import KnownAnswers
+
 from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.runtime.archives import SWITCH, archived, ship
 from shipping.questions import QUESTIONS, Texts, texts_of

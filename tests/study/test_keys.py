@@ -8,10 +8,10 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from roadproof.analysis.study import known
 
 import roadproof as rp
 from api.doors import without_seconds
-from roadproof.analysis.study import known
 from roadproof.errors import RoadproofError
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Library

@@ -80,8 +80,6 @@ class Mark:
     name: str
 
 
-UNCHECKED = Mark("unchecked")
-"""``check`` compares the field with nothing, and lists it."""
 LEFT_OUT = Mark("left out")
 """The field is left out where it has its default."""
 TIMED = Mark("timed")

@@ -8,7 +8,6 @@ from roadproof.evidence.strict import Fields
 from roadproof.library.specification import Library
 from roadproof.runtime.version import VERSION
 
-HEADING = ("schema", "roadproof", "library", "signals", "prevention")
 _FINGERPRINT = re.compile("[0-9a-f]{16}")
 
 

@@ -51,28 +51,8 @@ class Whole:
     schema: str
 
 
-@dataclass(frozen=True)
-class ObjectSchema:
-    """The schema of an object that has these properties and no others; ``required`` are always there."""
-
-    required: tuple[str, ...]
-    properties: JsonObject
-    description: str = ""
-
-    @property
-    def json(self) -> JsonObject:
-        """As a schema stands in JSON."""
-        return {
-            "type": "object",
-            **_told(self.description),
-            "required": [*self.required],
-            "additionalProperties": False,
-            "properties": self.properties,
-        }
-
-
 def schema_of(kind: type, name: str, title: str) -> JsonObject:
-    """The schema of an answer, which the file ``name`` holds."""
+    """Return the schema of a file ``name`` that a definition describes."""
     below = {x.__name__: x for x in _definitions(kind, set()) if x is not kind}
     definitions: JsonObject = {_called(x): _object(below[x]) for x in sorted(below)}
     made: JsonObject = {"$schema": DRAFT, "$id": name, "title": title, **_object(kind)}
@@ -133,24 +113,16 @@ def _definitions(kind: object, seen: set[object]) -> Iterator[type]:
 
 
 def _object(kind: type) -> JsonObject:
-    """The schema of a definition; where it is one of several kinds, of any of these."""
-    several = [x.json for x in _alternatives(kind)]
-    return several[0] if len(several) == 1 else {**_told(kind.__doc__ or ""), "oneOf": [*several]}
-
-
-def _alternatives(kind: type) -> list[ObjectSchema]:
-    """The schemas of the kinds of a definition, which ``ALTERNATIVES`` tells by their fields."""
+    """The schema of a definition: an object that has its fields and no others."""
     every = fields_of(kind)
-    required = tuple(x.key for x in every if x.is_written and not x.has(LACKING))
-    kinds: tuple[tuple[str, ...], ...] = getattr(kind, "ALTERNATIVES", ())
-    return [
-        ObjectSchema(
-            needed,
-            {x.key: _of_field(x) for x in every if not kinds or x.key in needed},
-            description="" if kinds else kind.__doc__ or "",
-        )
-        for needed in kinds or (required,)
-    ]
+    required: list[Json] = [x.key for x in every if x.is_written and not x.has(LACKING)]
+    return {
+        "type": "object",
+        **_told(kind.__doc__ or ""),
+        "required": required,
+        "additionalProperties": False,
+        "properties": {x.key: _of_field(x) for x in every},
+    }
 
 
 def _told(text: str) -> JsonObject:

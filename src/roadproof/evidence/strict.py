@@ -141,10 +141,6 @@ class Fields:
             raise InputError(f"{self.where}: '{field}' is no object")
         return value
 
-    def named_texts(self, field: str) -> dict[str, str]:
-        """An object whose values are texts."""
-        return {k: text(v, f"{self.where}, {field}.{k}") for k, v in self.mapping(field).items()}
-
     def items(self, field: str) -> list[Json]:
         value = self.get(field)
         if not isinstance(value, list):

@@ -58,32 +58,6 @@ def walk_of(specification: Specification) -> Elaborator:
     return walk
 
 
-class StatedQuery(Query):
-    """A query whose text is known to be right, and is read when more than the text is asked for."""
-
-    _home: Specification
-
-    def __init__(self, specification: Specification, text: str) -> None:
-        self.__dict__.update(written=text, _home=specification)
-
-    def __getattr__(self, name: str) -> object:
-        if name not in ("claim", "formula", "vehicles", "lanes"):
-            raise AttributeError(name)
-        read = read_claim(self._home, self.written)
-        self.__dict__.update(vars(read))
-        object.__setattr__(self, "__class__", Query)  # from now on it is like any other
-        return vars(read)[name]
-
-    def __eq__(self, other: object) -> bool:
-        self.formula, getattr(other, "formula", None)
-        return Query.__eq__(self, other)
-
-    __hash__ = Query.__hash__
-
-    def __reduce__(self) -> tuple[type[Query], tuple[object, ...]]:
-        return Query, (self.claim, self.formula, self.vehicles, self.lanes, self.written)
-
-
 def mistakes_in(
     specification: Specification,
     claim: syntax.Claim,

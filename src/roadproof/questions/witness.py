@@ -15,7 +15,7 @@ from roadproof.evidence.answer_files import Undecided
 from roadproof.evidence.answers import shared
 from roadproof.evidence.certificate import Certificate, certificate_data
 from roadproof.evidence.claim import Claim, Exists, claim_of
-from roadproof.evidence.codec import LEFT_OUT, TIMED, UNCHECKED, Doc, Rule, read
+from roadproof.evidence.codec import LEFT_OUT, TIMED, Doc, Rule, read
 from roadproof.evidence.json_schema import Whole
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.alike import like_of
@@ -350,13 +350,11 @@ def name_of(number: int, scenario: int | None, set_name: str) -> str:
 
 Stages: TypeAlias = Annotated[
     Mapping[str, shared.Seconds],
-    UNCHECKED,
     TIMED,
     Doc("By stage of the search, and all together, in s. Files of evidence leave it out."),
 ]
 Sizes: TypeAlias = Annotated[
     Mapping[str, Annotated[int, Rule(minimum=0)]],
-    UNCHECKED,
     Doc("Of the last problem that was solved: columns, rows, nodes, inequalities."),
 ]
 

@@ -78,11 +78,6 @@ def in_order(answers: Generator[tuple[int, Answer], None, None]) -> Generator[An
         answers.close()
 
 
-def are_forked(jobs: Sequence[object], hands: Jobs) -> bool:
-    """Whether jobs are done in processes that are copies of this one. Raises ``UsageError``."""
-    return hands_of(hands).cluster is None and count_workers(jobs, hands) > 1
-
-
 def count_workers(jobs: Sequence[object], hands: Jobs) -> int:
     """How many processes here the jobs are given. Raises ``UsageError`` where none would be left."""
     return min(hands_of(hands).processes or os.cpu_count() or 1, len(jobs))

@@ -283,19 +283,3 @@ class Index(Preamble, shared.Heading):
     notes: tuple[str, ...]
     left_out: shared.LeftOutParts = ()
     seconds: shared.Seconds = 0.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class Record:
-    """A kept answer: facts about a test or a target, or an answer about gaps."""
-
-    name: Annotated[
-        str,
-        Rule(pattern="^(test-[0-9a-f]{12}|gaps-.+)$"),
-        Doc(
-            "Made of the ids of one test, of two, or of a class and a number of its start; or of what is "
-            "asked about gaps."
-        ),
-    ]
-    facts: tuple[KeptFact, ...]
-    gaps: coverage.Record | None

@@ -1,10 +1,10 @@
 """Classes of gaps, and claims that there are none, as plain data."""
 
 from collections.abc import Mapping
-from typing import Annotated, ClassVar, Final, Literal, TypeAlias
+from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers import shared
-from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
+from roadproof.evidence.codec import LEFT_OUT, Doc, Rule
 from roadproof.reasons import NO_REASON
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ProofVerdict, Verdict
@@ -37,13 +37,11 @@ class Gap:
 
     road: Road
     formula: shared.Formula
-    first: Annotated[
-        str, UNCHECKED, Doc("The first of the wider sets that catches it; empty where none does.")
-    ]
+    first: Annotated[str, Doc("The first of the wider sets that catches it; empty where none does.")]
     caught_by: Annotated[
-        tuple[Names, ...], UNCHECKED, Doc("The smallest choices of definitions of that set which catch it.")
+        tuple[Names, ...], Doc("The smallest choices of definitions of that set which catch it.")
     ]
-    classes: Annotated[Names, UNCHECKED, Doc("The parts for which it is a near miss.")]
+    classes: Annotated[Names, Doc("The parts for which it is a near miss.")]
     drive: shared.KeptDrive = None
     elsewhere: Annotated[
         Mapping[str, shared.KeptDrive], Doc("The same motions as gaps on other roads, by road.")
@@ -54,7 +52,7 @@ class Gap:
 class OrderedEntry:
     """What has a place among all of its kind."""
 
-    number: Annotated[Position, UNCHECKED, Doc("Its place among all gaps.")]
+    number: Annotated[Position, Doc("Its place among all gaps.")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,27 +64,24 @@ class NumberedGap(Gap, OrderedEntry):
 class GapClass:
     """A class of gaps, by what of a scenario is false."""
 
-    scenario: Annotated[shared.OneScenario, UNCHECKED]
+    scenario: shared.OneScenario
     component: Annotated[
         str,
-        UNCHECKED,
         Doc("The definition of the scenario that is false; empty where no single condition is to blame."),
     ]
-    description: Annotated[str, UNCHECKED, Doc("The component in words.")]
-    condition: Annotated[str, UNCHECKED, Doc("The condition of the component; empty where it is the whole.")]
+    description: Annotated[str, Doc("The component in words.")]
+    condition: Annotated[str, Doc("The condition of the component; empty where it is the whole.")]
     verdict: CountedVerdict
     gaps: tuple[Gap | int, ...]
     claim: Annotated[str, Doc("Of an IMPOSSIBLE: that the class is empty.")] = ""
     certificate: shared.KeptCertificate = None
     reason: shared.Reason = NO_REASON
-    none_for: Annotated[
-        Names, UNCHECKED, Doc("Wider sets for which no gap was found that they catch first.")
-    ] = ()
+    none_for: Annotated[Names, Doc("Wider sets for which no gap was found that they catch first.")] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
 class KeptClass(GapClass):
-    """A class of gaps in a kept answer, which holds its gaps."""
+    """A class of gaps with its gaps."""
 
     verdict: ClassVerdict
     gaps: Annotated[tuple[Gap, ...], Doc("Its gaps.")]
@@ -98,11 +93,9 @@ class CountedClass(GapClass):
 
     gaps: Annotated[tuple[Position, ...], Doc("Numbers of its gaps.")]
     in_traffic: Annotated[
-        shared.Count | None, UNCHECKED, LEFT_OUT, Doc("With --on: disturbances of the class in recordings.")
+        shared.Count | None, LEFT_OUT, Doc("With --on: disturbances of the class in recordings.")
     ] = None
-    trace: Annotated[
-        str, Rule(least=1), UNCHECKED, LEFT_OUT, Doc("With --on: where the first of these is.")
-    ] = ""
+    trace: Annotated[str, Rule(least=1), LEFT_OUT, Doc("With --on: where the first of these is.")] = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -142,7 +135,7 @@ class Preamble:
     """What a view says once for all classes."""
 
     set: shared.SetName
-    wider: Annotated[Names, UNCHECKED, Doc("Wider sets, from the next to the widest.")]
+    wider: Annotated[Names, Doc("Wider sets, from the next to the widest.")]
     options: shared.Options
     parameters: shared.Parameters
     specs: shared.Specifications
@@ -162,17 +155,6 @@ class CoverageData(Preamble, shared.Heading):
         tuple[Need, ...],
         Doc("With --needed, of a set that covers: a drive for each definition that it needs."),
     ] = ()
-    traffic: Annotated[Traffic | None, UNCHECKED, Doc("With --on: what recordings hold.")] = None
+    traffic: Annotated[Traffic | None, Doc("With --on: what recordings hold.")] = None
     left_out: shared.LeftOutParts = ()
     seconds: shared.Seconds = 0.0
-
-
-@dataclass(frozen=True, kw_only=True)
-class Record:
-    """A kept answer: to a claim, on a definition, or on the classes of a component."""
-
-    ALTERNATIVES: ClassVar = (("claim",), ("need",), ("group", "classes"))
-    claim: Annotated[Claim | None, LEFT_OUT] = None
-    need: Annotated[Need | None, LEFT_OUT] = None
-    group: Annotated[str | None, LEFT_OUT, Doc("The component that the classes are of.")] = None
-    classes: Annotated[tuple[KeptClass, ...], LEFT_OUT] = ()

@@ -1,11 +1,6 @@
 """What claims are called in findings."""
 
 
-def unchecked_of(verdict: str) -> tuple[str, ...]:
-    """What a verdict says beyond what its evidence shows."""
-    return ("that its premise never holds",) if verdict == "VACUOUS" else ()
-
-
 def shown(label: tuple[str, str, int | None] | None, set_name: str) -> str:
     """A label as text: ``P1 scenario 1 base``."""
     name, part, scenario = label or ("", "", None)

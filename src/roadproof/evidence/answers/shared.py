@@ -5,7 +5,7 @@ from fractions import Fraction
 from typing import Annotated, Any, Literal, TypeAlias
 
 from roadproof import reasons
-from roadproof.evidence.codec import LEFT_OUT, TIMED, UNCHECKED, Doc, Rule
+from roadproof.evidence.codec import LEFT_OUT, TIMED, Doc, Rule
 from roadproof.evidence.json_schema import Other, Plain, Shared
 from roadproof.library.words import Words
 from roadproof.runtime.records import dataclass
@@ -66,7 +66,6 @@ Rational: TypeAlias = Annotated[
 Seconds: TypeAlias = Annotated[
     float,
     Rule(minimum=0),
-    UNCHECKED,
     TIMED,
     Doc("How long it took, in s; differs from run to run. Files of evidence leave it out."),
     Shared("seconds"),
@@ -104,7 +103,6 @@ KeptKernel: TypeAlias = Annotated[
 ]
 Reason: TypeAlias = Annotated[
     reasons.Reason,
-    UNCHECKED,
     Doc("Why it is in doubt, or a note on it, in words; empty where there is nothing to say."),
     Shared("reason"),
 ]
@@ -250,7 +248,6 @@ KeptLengthError: TypeAlias = Annotated[
 
 LeftOutParts: TypeAlias = Annotated[
     tuple[str, ...],
-    UNCHECKED,
     LEFT_OUT,
     Doc("Notes on vehicles and on parts of files that were left out, such as of the map of the road."),
     Shared("left_out"),
@@ -261,7 +258,7 @@ LeftOutParts: TypeAlias = Annotated[
 class OnRoad:
     """Of an answer on a road that the question may name."""
 
-    length_error: Annotated[KeptLengthError | None, UNCHECKED, LEFT_OUT] = None
+    length_error: Annotated[KeptLengthError | None, LEFT_OUT] = None
     left_out: LeftOutParts = ()
 
     @staticmethod

@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers import shared
-from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Key, Rule
+from roadproof.evidence.codec import LEFT_OUT, Doc, Key, Rule
 from roadproof.reasons import NO_REASON
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ProofVerdict, Verdict
@@ -20,7 +20,7 @@ Numbers: TypeAlias = Annotated[tuple[shared.Number, ...], Doc("Numbers of scenar
 class Doubt:
     """What would be known of the division if a job had not been lost, or cut off by the clock."""
 
-    about: Annotated[str, UNCHECKED, Doc("What is in doubt.")]
+    about: Annotated[str, Doc("What is in doubt.")]
     reason: shared.Reason
 
 
@@ -123,7 +123,7 @@ class ClassesData(shared.Heading):
     ] = ""
     classes: tuple[ClassData, ...]
     claims: tuple[ClassClaimData, ...]
-    shares: Annotated[SharesData | None, UNCHECKED, Doc("What was counted; null with --no-shares.")] = None
+    shares: Annotated[SharesData | None, Doc("What was counted; null with --no-shares.")] = None
     doubts: Annotated[
         tuple[Doubt, ...], Rule(least=1), LEFT_OUT, Doc("About the division; left out where there is none.")
     ] = ()

@@ -8,7 +8,7 @@ from roadproof.drivers.lines import Side
 from roadproof.drivers.manoeuvres import ManoeuvreName
 from roadproof.drivers.models import ModelName
 from roadproof.evidence.answers import shared
-from roadproof.evidence.codec import LEFT_OUT, UNCHECKED, Doc, Rule
+from roadproof.evidence.codec import LEFT_OUT, Doc, Rule
 from roadproof.evidence.plate import Line, Range
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ClaimVerdict, Verdict
@@ -109,7 +109,7 @@ class LemmaData:
     """A lemma that the formula of a model is its boundary."""
 
     name: Name
-    title: Annotated[str, Rule(least=1), UNCHECKED, Doc("What it says, in words.")]
+    title: Annotated[str, Rule(least=1), Doc("What it says, in words.")]
     claim: shared.Formula
     assuming: shared.Assuming
     verdict: ClaimVerdict
