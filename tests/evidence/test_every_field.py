@@ -54,7 +54,7 @@ def _shown(file: Path) -> tuple[object, ...]:
     road = said["road"]["name"] if "road" in said else ""
     starts = {name: {**x, "pieces": 0} for name, x in said.get("vehicles", {}).items()}
     claim = said.get("claim", said.get("formula"))
-    return claim, said["set"], said.get("assuming"), said.get("parameters"), road, starts
+    return claim, said.get("set"), said.get("assuming"), said.get("parameters"), road, starts
 
 
 @pytest.mark.parametrize("kind", MAKE)
