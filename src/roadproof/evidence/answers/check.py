@@ -13,7 +13,7 @@ SCHEMA: Final = "roadproof/check/2"
 
 @dataclass(frozen=True, kw_only=True)
 class ClaimFinding(Finding):
-    """One claim of a file or of an index."""
+    """One claim of a file."""
 
     accepted: bool
 
@@ -32,5 +32,5 @@ class Answer(PlainHeading):
     findings: tuple[ClaimFinding, ...]
     not_checked: Annotated[
         Mapping[str, tuple[str, ...]],
-        Doc("By folder, the fields of its index and the files in it that nothing is compared with."),
+        Doc("By folder, the files in it that nothing is compared with."),
     ]

@@ -14,7 +14,7 @@ SUMMARY = "check certificates and drive files again, independently"
 
 EXAMPLES = """\
 examples:
-  roadproof check proofs/                          every claim of a folder, with its index
+  roadproof check proofs/                          every claim of a folder
   roadproof check proofs/ --solver cvc5            ask another solver
   roadproof check drives/scenario-04-base.json     judge a drive again, exactly
   roadproof check proofs/ --kernel coq             certificates and drives are put to Coq, and to no solver
@@ -27,15 +27,16 @@ examples:
 A certificate is accepted when two things hold: the claim and the certificate's instances, read with the
 present library, give the stored query; and the solver answers unsat to it. A drive file is accepted when
 its formula holds on its drive, judged exactly in dense time. A NONE-WITHIN is accepted when its tree refutes
-the question, which is encoded again in exact numbers. The index of a folder is a part of the evidence: each
-entry must equal its file, and each file must have an entry; so must kept answers (answers/*.json). If an
-index names specification files beside it, such as classes.spec, they are added to the library, unless they
-would change its definitions.
+the question, which is encoded again in exact numbers. Of a folder that a command has written with --out, the
+question (question.json) lists the claims again: each file must answer its own, and no file may answer none.
+If a question names specification files beside it, such as classes.spec, they are added to the library,
+unless they would change its definitions.
 
-A line for each claim lists the checked and unchecked parts; unchecked fields of an index and unchecked files
-follow below. Exit codes: 10 if something is rejected; 20 if the solver did not decide, or no evidence was
-accepted; 3 if a file is damaged or needs definitions that are missing. For pipelines: with --strict also 20
-if an answer has no evidence, such as UNKNOWN or NONE-WITHIN.
+A line for each claim lists the checked and unchecked parts. Files that nothing is compared with follow, and
+what the accepted answers of a folder show together, such as the verdict of coverage. Exit codes: 10 if
+something is rejected; 20 if the solver did not decide, or no evidence was accepted; 3 if a file is damaged or
+needs definitions that are missing. For pipelines: with --strict also 20 if an answer has no evidence, such as
+UNKNOWN or NONE-WITHIN.
 """
 OPTIONS = Check
 _THERE = {
