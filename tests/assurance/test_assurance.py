@@ -16,6 +16,7 @@ from roadproof.analysis.assurance.template import fill_template
 from roadproof.errors import InputError
 from roadproof.frontends.api.solutions import whole_verdict
 from roadproof.frontends.cli.main import main
+from roadproof.questions.views import folder_data
 
 ROOT = Path(__file__).parents[2]
 CLAIMS = ("false -> danger(SV,POV)", "v_lon(SV) > 2 m/s -> v_lon(SV) > 3 m/s")
@@ -107,13 +108,13 @@ def test_a_damaged_certificate_breaks_the_case_up_to_the_top(
         assert path.name in told
 
 
-def test_a_file_that_is_gone_or_no_json_breaks_the_case(case: Path) -> None:
+def test_a_case_does_not_hold_where_a_file_is_gone_or_no_json(case: Path) -> None:
     certificates(case)[0].write_text("{", "utf-8")
     found = rp.assurance(case, jobs=1)
-    assert (found.state, found.exit_code) == (State.BROKEN, 10)
+    assert (found.state, found.exit_code) == (State.BROKEN, 3)
     certificates(case)[0].unlink()
     found = rp.assurance(case, jobs=1)
-    assert (found.state, found.exit_code) == (State.BROKEN, 10)
+    assert (found.state, found.exit_code) == (State.UNDECIDED, 20)
     (case.parent / "review.txt").unlink()
     assert "review.txt does not exist" in rp.assurance(case, jobs=1).reasons("Sn2")[0]
 
@@ -244,7 +245,7 @@ def answered(home: Path) -> dict[str, tuple[Path, str]]:
     rp.witness("1", "F v_lon(SV) > 20 m/s", out=home / "witness", pictures=False, jobs=1)
     rp.overlap(among="1-3", out=home / "overlap", jobs=1)
     rp.catalogue(drives, among="1,4", classes=False, drivers=(), out=home / "catalogue", jobs=1)
-    count = len(json.loads((home / "index" / "index.json").read_text("utf-8"))["claims"])
+    count = len(folder_data(home / "index")["verdicts"])
     told = {
         "index": f"{count} claims of template properties P2, P4 hold",
         "witness": "2 formulas can happen",
@@ -312,6 +313,6 @@ def test_the_example_claims_what_the_template_does() -> None:
 def test_the_verdict_of_a_whole_answer(
     index: dict[str, object], select: tuple[str, ...], expected: tuple[str, str], tmp_path: Path
 ) -> None:
-    (tmp_path / "index.json").write_text(json.dumps(index), "utf-8")
-    assert whole_verdict(tmp_path, select) == expected
+    (tmp_path / "answer.json").write_text(json.dumps(index), "utf-8")
+    assert whole_verdict(tmp_path / "answer.json", select) == expected
     assert whole_verdict(tmp_path / "missing") == ("", "")

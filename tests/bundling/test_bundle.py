@@ -64,7 +64,7 @@ def contents(path: Path) -> dict[str, bytes]:
 def test_it_has_evidence_definitions_packages_page_and_script(home: Path) -> None:
     found = rp.bundle("proofs", "report", specs=["own.spec"], out="safety.tar.gz")
     inside = contents(home / "safety.tar.gz")
-    assert {"proofs/index.json", "report/index.json", "own.spec", "tests/braking.json"} <= {*inside}
+    assert {"proofs/question.json", "report/question.json", "own.spec", "tests/braking.json"} <= {*inside}
     assert inside["requirements.txt"].decode().splitlines() == [
         f"roadproof==1.0 --hash=sha256:{hashlib.sha256(b'a wheel').hexdigest()}",
         f"cvc5==1.3.0 --hash=sha256:{'0' * 64}",
@@ -95,8 +95,8 @@ def test_the_same_content_is_the_same_bundle(
 
 
 def test_evidence_that_is_rejected_is_told(home: Path) -> None:
-    index = home / "proofs" / "index.json"
-    index.write_text(index.read_text("utf-8").replace("< 4 m/s", "< 2 m/s"), "utf-8")
+    [proof] = (home / "proofs").glob("claim-*.json")
+    proof.write_text(proof.read_text("utf-8").replace("< 4 m/s", "< 2 m/s"), "utf-8")
     assert main(["bundle", "proofs", "--spec", "own.spec", "-o", "x.tar.gz"]) == ExitCode.UNEXPECTED
     assert b"-eq 10 ]" in contents(home / "x.tar.gz")["check.sh"]
 

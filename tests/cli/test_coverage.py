@@ -364,7 +364,7 @@ def test_comparisons_come_with_evidence(capsys, tmp_path, arguments, relation):
     assert data["relation"] == relation
     for direction in (data["forward"], data["backward"]):
         assert (direction["certificate"] is None) != (direction["drive"] is None)
-    assert len(list(folder.iterdir())) == 2
+    assert len([x for x in folder.iterdir() if x.name != "question.json"]) == 2
     assert witness(capsys, "check", str(folder))[0] == 0
 
 

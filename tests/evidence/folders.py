@@ -3,28 +3,14 @@
 import json
 import shutil
 from collections.abc import Iterator
-from contextlib import contextmanager
 from copy import deepcopy
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-import pytest
-
-from roadproof.engines.prove.properties import find_label
 from roadproof.engines.solve import smt
-from roadproof.errors import RoadproofError
-from roadproof.evidence import folder as folder_module
-from roadproof.evidence import journal
-from roadproof.evidence.answers.entry import read_evidence
-from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.checking import Checker
-from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.finding import Finding, exit_code
-from roadproof.evidence.folder import Survey, conclude, survey
-from roadproof.evidence.journal import HEAD, seal_of
 from roadproof.frontends.api.checking import check as check_all
-from roadproof.library.loading import load_library
 from roadproof.questions.data import QUESTION, read_question
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.package_data import shipped
@@ -38,45 +24,9 @@ def answer(script: str) -> str:
     return smt.ask(script, meter=Effort(20).meter())
 
 
-@cache
-def _finding(path: Path, content: bytes, specs: tuple[Path, ...]) -> Finding:
-    return Checker(load_library(specs), answer, find_label).check(path)
-
-
 def check(*paths: Path, specs: tuple[Path, ...] = ()) -> list[Finding]:
     """The findings, as ``roadproof check`` prints them."""
     return list(check_all(*paths, specs=specs, jobs=1).findings)
-
-
-def surveyed(*paths: Path, specs: tuple[Path, ...] = ()) -> Survey:
-    """What is in files and folders; evidence that did not change is not read again."""
-    with read_once():
-        return survey(paths, specs, find_label)
-
-
-def conclusions(surveyed: Survey) -> list[Finding]:
-    """The findings about files and folders that were surveyed; what did not change is not checked again."""
-    found = {path: _finding(path, path.read_bytes(), those) for path, those in surveyed.files.items()}
-    with read_once():
-        return list(conclude(surveyed, found))
-
-
-@cache
-def _evidence(path: Path, content: bytes) -> Certificate | DriveFile:
-    return read_evidence(path)
-
-
-def evidence(path: Path) -> Certificate | DriveFile:
-    """As ``read_evidence``, which reads a file again when its content is another."""
-    return _evidence(path, path.read_bytes()) if path.is_file() else read_evidence(path)
-
-
-@contextmanager
-def read_once() -> Iterator[None]:
-    with pytest.MonkeyPatch.context() as patch:
-        for module in (folder_module, journal):
-            patch.setattr(module, "read_evidence", evidence)
-        yield
 
 
 def code(*paths: Path) -> int:
@@ -168,13 +118,3 @@ def changes(data: Any, at: Place) -> Iterator[tuple[str, Any]]:
         place = place[key]
     del place[last]
     yield "removed", changed
-
-
-def reseal(answer: Path) -> None:
-    """Write the seal of a kept answer anew, as anybody can, over the evidence files that it names and has."""
-    folder, record = answer.parent.parent, read(answer)
-    try:
-        record["seal"] = seal_of(record, read(folder / HEAD)["question"], folder)
-    except (RoadproofError, TypeError, KeyError, OSError):
-        record["seal"] = "none"  # it names evidence that is not there
-    write(answer, record)

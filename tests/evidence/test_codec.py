@@ -34,7 +34,7 @@ class Sample:
 
 
 GOOD: Mapping[str, Any] = {"span": [0, None], "both": [1, 2], "counts": {"4": 1}, "names": ["a", "b"]}
-CODEC_SCHEMA = Draft202012Validator(schema_of(Sample, Sample, "sample.json", "a sample"))
+CODEC_SCHEMA = Draft202012Validator(schema_of(Sample, "sample.json", "a sample"))
 
 
 def test_what_is_read_is_written_again() -> None:

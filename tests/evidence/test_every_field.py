@@ -1,10 +1,8 @@
-"""Every field of every index and kept answer, changed alone: ``check`` rejects it, or lists the field."""
+"""Folders of evidence with foreign files, other fields and damage: ``check`` rejects what shows no claim."""
 
 import json
 import shutil
-from collections.abc import Callable, Iterator
-from copy import deepcopy
-from itertools import combinations
+from collections.abc import Callable
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -12,168 +10,24 @@ from typing import Any
 import pytest
 
 import roadproof as rp
+from evidence.folders import changes as folder_changes
 from evidence.folders import (
-    Place,
     check,
     code,
-    conclusions,
     places,
     read,
-    reseal,
     some_proofs,
-    surveyed,
     write,
 )
-from evidence.folders import changes as folder_changes
 from evidence.kinds import MAKE, copy_of
 from roadproof.engines.prove.properties import find_label, name_of_claim
 from roadproof.errors import InputError
 from roadproof.evidence.checking import Checker
 from roadproof.evidence.finding import Acceptance
 from roadproof.library.loading import bundled_library
-from roadproof.questions.data import KINDS as QUESTIONS
 from roadproof.questions.data import QUESTION
 from roadproof.runtime.package_data import shipped
 from roadproof.verdict import ExitCode
-
-# Without an index; and tests/analysis/test_catalogue_again.py changes that of a catalogue, beside its tests.
-OLD = [kind for kind in MAKE if {"proofs": "prove"}.get(kind, kind) not in QUESTIONS]
-"""Kinds of folders with an index; tests/questions/test_forgery.py forges the others."""
-INDEXED = [kind for kind in OLD if kind != "catalogue"]
-# Changes that leave what is said as true as it was, and why.
-EQUIVALENT = {
-    ("proofs", "claims[].part"): "the number of a claim of a user's, whose text is beside it",
-    ("proofs", "claim.part"): "the same",
-    ("witness", "outcome.parameters"): "of a proof, which is about all values",
-}
-
-
-def leaves(content: Any, at: Place = ()) -> Iterator[Place]:
-    """The places of all values that hold no others; of every list itself, the first entry and the last."""
-    if isinstance(content, dict) and content:
-        for key, value in content.items():
-            yield from leaves(value, (*at, key))
-    elif isinstance(content, list) and content:
-        yield at
-        for k in sorted({0, len(content) - 1}):
-            yield from leaves(content[k], (*at, k))
-    else:
-        yield at
-
-
-def path_of(at: Place) -> str:
-    """``explored[].values[].at[]``"""
-    return "".join("[]" if isinstance(key, int) else f".{key}" for key in at).removeprefix(".")
-
-
-def another(value: Any) -> Any:
-    match value:
-        case bool():
-            return not value
-        case int() | float():
-            return value + 1
-        case str():
-            return value + "1" if not value or value[-1].isdigit() else f"{value} and x"
-        case list():
-            return value[1:] or ["x"]
-        case dict():
-            return {"x": "1"}
-    return "x"
-
-
-def changes(content: Any) -> Iterator[tuple[str, Any]]:
-    """The content with each of its values changed alone, and the path of that value."""
-    for at in leaves(content):
-        changed = deepcopy(content)
-        place = changed
-        for key in at[:-1]:
-            place = place[key]
-        place[at[-1]] = another(place[at[-1]])
-        yield path_of(at), changed
-
-
-def is_listed(path: str, said: tuple[str, ...]) -> bool:
-    return any(path == x or path.startswith((f"{x}.", f"{x}[")) for x in said)
-
-
-def is_equivalent(kind: str, path: str) -> bool:
-    return any(kind == known and is_listed(path, (field,)) for known, field in EQUIVALENT)
-
-
-def not_checked(folder: Path) -> tuple[str, ...]:
-    return surveyed(folder).told[0].not_checked
-
-
-def is_accepted(folder: Path) -> bool:
-    return all(x.outcome is Acceptance.ACCEPTED for x in check(folder))
-
-
-def is_silent(folder: Path, field: str) -> bool:
-    """Whether the folder is accepted, and ``field`` is not listed as unchecked."""
-    said = surveyed(folder)
-    if is_listed(field, said.told[0].not_checked):
-        return False
-    return all(x.outcome is Acceptance.ACCEPTED for x in conclusions(said))
-
-
-@pytest.mark.parametrize("kind", INDEXED)
-def test_no_field_is_changed_in_silence(kind: str, tmp_path: Path) -> None:
-    folder = copy_of(kind, tmp_path)
-    shutil.rmtree(folder / "answers")  # kept answers would tell that the index was changed
-    (folder / "question.json").unlink()
-    whole = read(folder / "index.json")
-    assert is_accepted(folder)
-    said = not_checked(folder)
-    accepted: list[str] = []
-    tried = 0
-    for path, changed in changes(whole):
-        if is_listed(path, said):
-            continue
-        write(folder / "index.json", changed)
-        tried += 1
-        if is_silent(folder, path):
-            accepted.append(path)
-    assert tried > 10
-    assert not (left := [x for x in accepted if not is_equivalent(kind, x)]), "\n".join(left)
-
-
-@pytest.mark.parametrize("beside", ["with the index", "without"])
-@pytest.mark.parametrize("kind", OLD)
-def test_no_field_of_a_kept_answer_is_changed_in_silence(kind: str, beside: str, tmp_path: Path) -> None:
-    folder = copy_of(kind, tmp_path)
-    if beside == "without":
-        (folder / "index.json").unlink(missing_ok=True)
-    assert is_accepted(folder)
-    said = not_checked(folder)
-    accepted: list[str] = []
-    tried = 0
-    for path in (folder / "question.json", *chosen(folder / "answers")):
-        whole = read(path)
-        for field, changed in changes(whole):
-            if field == "seal" or is_listed(field, said):
-                continue
-            write(path, changed)
-            for answer in (folder / "answers").iterdir() if path.name == "question.json" else [path]:
-                reseal(answer)
-            tried += 1
-            if is_silent(folder, field):
-                accepted.append(f"{path.name}: {field}")
-        write(path, whole)
-        for answer in (folder / "answers").iterdir():
-            reseal(answer)
-    assert tried > 3
-    left = sorted(x for x in {*accepted} if not is_equivalent(kind, x.partition(": ")[2]))
-    assert not left, "\n".join(left)
-
-
-def chosen(answers: Path) -> list[Path]:
-    """An answer of each shape."""
-    found = {str([*changed_paths(read(x))]): x for x in sorted(answers.iterdir())}
-    return [*found.values()]
-
-
-def changed_paths(content: Any) -> list[str]:
-    return sorted({path_of(x) for x in leaves(content)})
 
 
 def test_check_lists_what_it_does_not_check(tmp_path: Path) -> None:
@@ -186,88 +40,12 @@ def test_check_lists_what_it_does_not_check(tmp_path: Path) -> None:
     assert json.loads(json.dumps(checked.as_data()))["not_checked"][str(tmp_path)][-1] == "notes.txt"
 
 
-# --- Evidence of one entry put under another one, of every kind of index: ``check`` rejects the folder
-
-MOST = 24  # pairs of entries of one kind
-EVIDENCE = ("certificate", "drive", "evidence", "trace")
-SAID = ("claim", "formula", "verdict", "premise", "conclusion", "gaps", "core")
-"""What an entry says of its evidence, which an attacker exchanges with it."""
-KINDS = [kind for kind in OLD if kind not in ("witness", "gaps")]  # these are in the second test
-
-
-def holders(content: Any, at: Place = ()) -> Iterator[Place]:
-    """The places of all objects that name evidence."""
-    if isinstance(content, dict):
-        if any(content.get(key) for key in EVIDENCE):
-            yield at
-        for key, value in content.items():
-            yield from holders(value, (*at, key))
-    elif isinstance(content, list):
-        for k, value in enumerate(content):
-            yield from holders(value, (*at, k))
-
-
-def at_place(content: Any, place: Place) -> Any:
-    for key in place:
-        content = content[key]
-    return content
-
-
-def exchanged(whole: Any, one: Place, other: Place, keys: tuple[str, ...]) -> Any | None:
-    """The index with these fields of two entries exchanged; None where that changes nothing."""
-    changed = deepcopy(whole)
-    first, second = at_place(changed, one), at_place(changed, other)
-    for key in keys:
-        values = first.pop(key, None), second.pop(key, None)
-        for entry, value in zip((second, first), values, strict=True):
-            if value is not None or key in at_place(whole, one):
-                entry[key] = value
-    return None if changed == whole else changed
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_evidence_of_another_entry_is_rejected(kind: str, tmp_path: Path) -> None:
-    folder = copy_of(kind, tmp_path)
-    shutil.rmtree(
-        folder / "answers", ignore_errors=True
-    )  # kept answers would tell that the index was changed
-    (folder / "question.json").unlink(missing_ok=True)
-    whole = read(folder / "index.json")
-    assert {x.outcome for x in check(folder)} == {Acceptance.ACCEPTED}
-    places = [*holders(whole)]
-    pairs = [(a, b) for a, b in combinations(places, 2) if a[: len(b)] != b and b[: len(a)] != a]
-    Random(kind).shuffle(pairs)
-    tried, accepted = 0, []
-    for one, other in pairs[: MOST if kind != "catalogue" else MOST // 4]:
-        for keys in (EVIDENCE, (*EVIDENCE, *SAID)):
-            changed = exchanged(whole, one, other, keys)
-            mine, theirs = at_place(whole, one), at_place(whole, other)
-            if changed is None or _alike(mine, theirs) or (keys != EVIDENCE and _are_numbered(mine, theirs)):
-                continue
-            write(folder / "index.json", changed)
-            tried += 1
-            found = check(folder) if kind != "catalogue" else rp.check(folder, jobs=1).findings
-            if all(x.outcome is Acceptance.ACCEPTED for x in found):
-                accepted.append((one, other, keys == EVIDENCE))
-    assert tried >= 1
-    assert accepted == []
-
-
-def _alike(one: dict[str, Any], other: dict[str, Any]) -> bool:
-    """Whether two entries say the same, so that the evidence of each is that of the other."""
-    said = [{x: entry.get(x) for x in ("claim", "formula")} for entry in (one, other)]
-    return said[0] == said[1] and any(said[0].values())
-
-
-def _are_numbered(one: dict[str, Any], other: dict[str, Any]) -> bool:
-    """Whether two claims have nothing but a running number beside what they say and its evidence."""
-    return one.get("property") == other.get("property") == "claim" and one["set"] == other["set"]
+# --- Evidence of one folder put in another: ``check`` rejects the folder
 
 
 def files_of(folder: Path) -> list[Path]:
     """The certificates and drive files of a folder."""
-    found = (x for x in sorted(folder.rglob("*.json")) if x.parent.name != "answers")
-    return [x for x in found if x.name not in ("index.json", "question.json")]
+    return [x for x in sorted(folder.rglob("*.json")) if x.name != QUESTION]
 
 
 def _shown(file: Path) -> tuple[object, ...]:
@@ -276,16 +54,13 @@ def _shown(file: Path) -> tuple[object, ...]:
     road = said["road"]["name"] if "road" in said else ""
     starts = {name: {**x, "pieces": 0} for name, x in said.get("vehicles", {}).items()}
     claim = said.get("claim", said.get("formula"))
-    return claim, said["set"], said.get("assuming"), said.get("parameters"), road, starts
+    return claim, said.get("set"), said.get("assuming"), said.get("parameters"), road, starts
 
 
 @pytest.mark.parametrize("kind", MAKE)
-def test_evidence_of_any_index_under_an_entry_of_another_is_rejected(kind: str, tmp_path: Path) -> None:
-    """The files of an entry are those of an entry of each of the other kinds, and of its own kind."""
+def test_evidence_of_any_folder_under_a_claim_of_another_is_rejected(kind: str, tmp_path: Path) -> None:
+    """The file of a claim is that of a claim of each of the other kinds, and of its own kind."""
     folder = copy_of(kind, tmp_path / "this")
-    if (folder / "index.json").exists():
-        shutil.rmtree(folder / "answers", ignore_errors=True)
-        (folder / "question.json").unlink(missing_ok=True)
     assert {x.outcome for x in check(folder)} == {Acceptance.ACCEPTED}
     chance, accepted = Random(kind), []
     for other in MAKE:
@@ -295,10 +70,7 @@ def test_evidence_of_any_index_under_an_entry_of_another_is_rejected(kind: str, 
         for mine, foreign in chance.sample(pairs, min(len(pairs), 2 if other == kind else 1)):
             before = mine.read_bytes()
             mine.write_bytes(foreign.read_bytes())
-            for answer in folder.glob("answers/*.json"):
-                reseal(answer)
-            found = check(folder) if kind != "catalogue" else rp.check(folder, jobs=1).findings
-            if all(x.outcome is Acceptance.ACCEPTED for x in found):
+            if all(x.outcome is Acceptance.ACCEPTED for x in check(folder)):
                 accepted.append((mine.name, other, foreign.name))
             mine.write_bytes(before)
     assert accepted == []
@@ -317,13 +89,13 @@ def test_the_folder_is_accepted_and_names_each_claim(folder: Path) -> None:
     assert {x.outcome for x in findings} == {Acceptance.ACCEPTED}
     told = [(x.verdict, x.label) for x in findings]
     assert told == [
-        ("PROVED", "P1 scenario 4 base"),
         ("PROVED", "P2 base"),
         ("PROVED", "P9 base"),
-        ("REFUTED", "C4 scenario 4 base"),
         ("REFUTED", "C5 base"),
+        ("PROVED", "P1 scenario 4 base"),
+        ("REFUTED", "C4 scenario 4 base"),
     ]
-    assert str(findings[0]) == ("PROVED    P1 scenario 4 base  scenario_4(SV,POV,L) -> dangerArises(SV,POV)")
+    assert str(findings[3]) == ("PROVED    P1 scenario 4 base  scenario_4(SV,POV,L) -> dangerArises(SV,POV)")
 
 
 # Changes that are accepted, since what comes out is evidence of the same claim: by file, place and change

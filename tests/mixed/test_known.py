@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from roadproof.analysis.study.known import KnownAnswer, KnownAnswers, told
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.study import known
-from roadproof.analysis.study.known import KnownAnswer, KnownAnswers, told
 from roadproof.frontends.api.definitions import load
 from roadproof.frontends.api.proofs import claims_of
 from roadproof.library.elaborate import read_claim
@@ -237,6 +237,7 @@ def test_a_later_piece_is_in_exactly_one_share(of: int) -> None:
     from types import SimpleNamespace
 
     from roadproof.analysis.study.frame import _share
+
     from roadproof.runtime.executors import Shard
 
     study: Any = SimpleNamespace(pieces=lambda known: ["a", "b", "c"], doubt=lambda x, reason: {x: None})

@@ -39,14 +39,9 @@ class Plain:
 
 @dataclass(frozen=True)
 class Other:
-    """A file of evidence is named, or stands here itself: the schema of the evidence."""
+    """A file of evidence is named, or stands here itself: the schemas of which it has one."""
 
-    schema: str
-
-
-@dataclass(frozen=True)
-class File:
-    """A file beside the index is named, or none."""
+    schemas: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -168,11 +163,10 @@ def _inline(kind: object, made: JsonObject) -> JsonObject:
                 made |= _facets(note, made.get("type"))
             case Whole(schema):
                 made = {"$ref": schema, **made}
-            case File():
-                made = {"anyOf": [{"type": "null"}, {"$ref": f"{COMMON}#/$defs/file"}], **made}
-            case Other(schema):
+            case Other(schemas):
                 file: Json = {"$ref": "#/$defs/file"}
-                made = {"anyOf": [{"type": "null"}, file, {"$ref": schema}], **made}
+                each: list[Json] = [{"$ref": x} for x in schemas]
+                made = {"anyOf": [{"type": "null"}, file, *each], **made}
     return made
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import get_args
 
-from roadproof.evidence.answer_files import RefutationFile, Undecided
+from roadproof.evidence.answer_files import JudgedFile, RefutationFile, Undecided
 from roadproof.evidence.answers import (
     assurance,
     bundle,
@@ -73,6 +73,7 @@ TITLES: Mapping[type, str] = {
     OverlapData: "roadproof overlap --json: which scenarios hold together",
     QuestionFile: "question.json: a question, from which its claims are listed",
     Undecided: "NAME.json in a folder of answers: why a claim is undecided",
+    JudgedFile: "NAME.json in a folder of answers: what a given trace shows",
     RefutationFile: "NAME.json in a folder of answers: a trace on which a claim is false",
     PreventableData: (
         "roadproof preventable --json: from which initial values a driver prevents a collision"

@@ -150,7 +150,9 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
                 answers[name] = _read(claim, content, str(path))
             except InputError as error:
                 fault = Why.TOLD(error)
-                problems.append(Finding(str(folder / f"{name}.json"), "", outcome, fault))
+                where = str(folder / f"{name}.json")
+                told = Why.TOLD(str(error).removeprefix(where).lstrip(": "))
+                problems.append(Finding(where, "", outcome, told))
                 refused.add(name)
                 answers[name] = undecided(claim, fault)
         return answers[name]
@@ -196,4 +198,6 @@ def _content(path: Path) -> object:
 def _read(claim: Claim, content: object, where: str) -> Answer:
     if content is None:
         return undecided(claim, Why.TOLD("the folder has no answer to it"))
+    if isinstance(claim.mode, On) and isinstance(content, dict) and "asked" in content:
+        content = {**content, "asked": claim.mode.asked}  # its trace is judged again, whatever it was asked
     return read_answer(claim, content, where)

@@ -344,7 +344,7 @@ class PairData:
     core: Annotated[tuple[str, ...], Doc("Parts that clash, of all cores.")]
     cores: Annotated[tuple[Clash, ...], Doc("For each way in which the two can meet, parts that clash.")]
     evidence: Annotated[
-        tuple[shared.KeptFile, ...],
+        tuple[shared.KeptEvidence, ...],
         Doc("A drive; or for each way in which the two can meet, a certificate that its core clashes."),
     ]
     reason: shared.Reason = NO_REASON

@@ -374,7 +374,7 @@ class FindingData:
         str, Doc("Of motion: that a vehicle which leaves L has a first moment outside it; else empty.")
     ]
     claim: Annotated[shared.Formula, Doc("What the evidence is about; that nothing changes in doubt.")]
-    evidence: Annotated[object, Doc("A certificate, a drive or a trace; null in doubt.")]
+    evidence: Annotated[shared.KeptEvidence, Doc("A certificate, a drive or a trace; null in doubt.")]
     reason: shared.Reason = NO_REASON
 
 

@@ -13,9 +13,9 @@ from roadproof.errors import InputError
 from roadproof.evidence.codec import read
 from roadproof.evidence.strict import Fields
 from roadproof.library.scenarios import EVERY_SCENARIO
-from roadproof.questions.checking import is_question
+from roadproof.questions.checking import is_question, read_folder
 from roadproof.questions.preventable.data import PreventableData
-from roadproof.questions.views import folder_data
+from roadproof.questions.views import view_data
 from roadproof.world.units import UNITS
 
 TEMPLATES = ("catalogue-coverage",)
@@ -130,18 +130,19 @@ class _Given:
         path = Path(os.path.relpath(folder, home)).as_posix()
         if not is_question(folder):
             raise InputError(f"{folder} has no answers: name a folder that a command has written with --out")
-        data = Fields(folder_data(folder), str(folder))
+        found = read_folder(folder)
+        data = Fields(view_data(found.question, found.answers, Path()), str(folder))
         kind = [*data.text("schema").split("/"), ""][1]
         if kind == "preventable":
             return _of_plates(path, read(PreventableData, data.content, str(folder)))
-        return _of_answer(path, kind, data)
+        return _of_answer(path, kind, data, len(found.files) + len([*found.undecided]))
 
 
-def _of_answer(path: str, kind: str, data: Fields) -> _Given:
-    """The parts of a whole answer, which its goal names."""
+def _of_answer(path: str, kind: str, data: Fields, entries: int) -> _Given:
+    """The parts of a whole answer, which its goal names; ``entries``: how many lines ``check`` has for it."""
     match kind:
         case "coverage":
-            return _Given(path, kind, {"set": data.text("set")}, entries=len(data.items("claims")))
+            return _Given(path, kind, {"set": data.text("set")}, entries=entries)
         case "verdicts":
             names = [str(x["property"]) for x in data.items("verdicts") if isinstance(x, dict)]
             own = [x for x in names if fnmatchcase(x, _PROPERTIES)]
@@ -156,21 +157,16 @@ def _of_answer(path: str, kind: str, data: Fields) -> _Given:
         case "witness":
             numbers = [x.get("scenario") for x in data.items("verdicts") if isinstance(x, dict)]
             word = "scenario" if all(x is not None for x in numbers) else "formula"
-            return _Given(path, kind, {"drives": _number(len(numbers), word)}, entries=len(numbers))
+            return _Given(path, kind, {"drives": _number(len(numbers), word)}, entries=entries)
         case "overlap":
             pairs = len(data.items("verdicts"))
-            return _Given(
-                path, kind, {"set": data.text("set"), "pairs": _number(pairs, "pair")}, entries=pairs
-            )
+            words = {"set": data.text("set"), "pairs": _number(pairs, "pair")}
+            return _Given(path, kind, words, entries=entries)
         case "catalogue":
             names = [str(x["name"]) for x in data.items("targets") if isinstance(x, dict)]
             count = sum(fnmatchcase(x, EVERY_SCENARIO) for x in names)
-            return _Given(
-                path,
-                kind,
-                {"set": data.text("set"), "targets": _number(count, "scenario")},
-                entries=len(data.items("tests")) + 1,
-            )
+            words = {"set": data.text("set"), "targets": _number(count, "scenario")}
+            return _Given(path, kind, words, entries=entries)
     return _Given(path, kind, {})
 
 

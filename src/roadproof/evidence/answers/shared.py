@@ -108,15 +108,21 @@ Reason: TypeAlias = Annotated[
 ]
 KeptCertificate: TypeAlias = Annotated[
     object,
-    Other("certificate.json"),
+    Other(("certificate.json",)),
     Doc("A certificate: its file where evidence goes to a folder, else itself; null where there is none."),
     Shared("kept_certificate"),
 ]
 KeptDrive: TypeAlias = Annotated[
     object,
-    Other("drive.json"),
+    Other(("drive.json",)),
     Doc("A judged drive: its file where evidence goes to a folder, else itself; null where there is none."),
     Shared("kept_drive"),
+]
+KeptEvidence: TypeAlias = Annotated[
+    object,
+    Other(("certificate.json", "drive.json", "refutation.json")),
+    Doc("A certificate, drive or refuting trace: its file, or itself without a folder; null where none is."),
+    Shared("kept_evidence"),
 ]
 
 

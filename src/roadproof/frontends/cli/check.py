@@ -27,10 +27,10 @@ examples:
 A certificate is accepted when two things hold: the claim and the certificate's instances, read with the
 present library, give the stored query; and the solver answers unsat to it. A drive file is accepted when
 its formula holds on its drive, judged exactly in dense time. A NONE-WITHIN is accepted when its tree refutes
-the question, which is encoded again in exact numbers. Of a folder that a command has written with --out, the
-question (question.json) lists the claims again: each file must answer its own, and no file may answer none.
-If a question names specification files beside it, such as classes.spec, they are added to the library,
-unless they would change its definitions.
+the question, which is encoded again in exact numbers. In a folder of answers the claims are listed again
+from question.json, and NAME.json must answer the claim of that name; other JSON files are rejected, and a
+claim without a file is UNKNOWN. If question.json names specification files beside it, such as classes.spec,
+they are added to the library, unless they would change its definitions.
 
 A line for each claim lists the checked and unchecked parts. Files that nothing is compared with follow, and
 what the accepted answers of a folder show together, such as the verdict of coverage. Exit codes: 10 if

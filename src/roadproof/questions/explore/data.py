@@ -89,7 +89,7 @@ class FindingData:
     formula: shared.Formula
     reason: shared.Reason = NO_REASON
     number: Annotated[int | None, Doc("Tells drives apart; null where there is none.")] = None
-    evidence: Annotated[shared.KeptFile | None, Doc("A drive or a certificate; null in doubt.")] = None
+    evidence: Annotated[shared.KeptEvidence, Doc("A drive or a certificate; null in doubt.")] = None
     assuming: Annotated[shared.Assuming, LEFT_OUT] = ()
 
 
