@@ -10,9 +10,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from roadproof.analysis.study import known
 
 from console import files_of, sessions_of
-from roadproof.analysis.study import known
 from roadproof.frontends.cli.main import main
 from roadproof.questions.store import Store
 from roadproof.runtime import archives

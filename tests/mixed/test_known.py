@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from roadproof.analysis.study import known
 from roadproof.analysis.study.known import KnownAnswer, KnownAnswers, told
 
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.study import known
 from roadproof.frontends.api.definitions import load
 from roadproof.frontends.api.proofs import claims_of
 from roadproof.library.elaborate import read_claim

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import roadproof as rp
@@ -14,8 +14,8 @@ from roadproof.frontends.settings.studies import Classify
 from roadproof.library.scenarios import numbers_of
 from roadproof.questions.classify.division import DivisionQuestion, ToDivide
 from roadproof.questions.classify.question import question_of
-from roadproof.questions.question import Answers, Batch, OwnWork, Question, walk
-from roadproof.questions.settle import settle
+from roadproof.questions.question import Answers, Batch, Question, walk
+from roadproof.questions.settle import settle, store_of
 from roadproof.questions.store import Store
 
 SETS = ("base", "extA", "ext")
@@ -42,26 +42,17 @@ def _dividing() -> DivisionQuestion:
 def texts_of(question: Question[Any], answers: Answers) -> Texts:
     """The answers to a question that stand for ever."""
     store = Store(None, question.kind, question.work)
-    batches = question.batches(answers)
-    own = {name: x.work for x in batches if isinstance(x, OwnWork) for name, _ in _claims(x, answers)}
-    final = ((name, x) for name, x in answers.items() if x.is_final)
-    texts = {
-        replace(store, work=own.get(name, question.work)).key(x.claim): json.dumps(answer_data(x))
-        for name, x in final
-    }
+    texts: dict[str, str] = {}
+    for batch in question.batches(answers):
+
+        def find(name: str, claim: Claim, batch: Batch = batch) -> Answer | None:
+            found = answers.get(name)
+            if found is not None and found.is_final:
+                texts[store_of(batch, store, name).key(claim)] = json.dumps(answer_data(found))
+            return found
+
+        [*walk(batch, find)]
     return Texts(question.kind, texts)
-
-
-def _claims(batch: Batch, answers: Answers) -> list[tuple[str, Claim]]:
-    """The claims of a batch, as far as there are answers."""
-    found: list[tuple[str, Claim]] = []
-
-    def find(name: str, claim: Claim) -> Answer | None:
-        found.append((name, claim))
-        return answers.get(name)
-
-    [*walk(batch, find)]
-    return found
 
 
 def divide(jobs: int | None = None) -> Texts:

@@ -124,7 +124,7 @@ class _Run:
         """Look up the claims of a batch, and return the first that is not known."""
 
         def find(name: str, claim: Claim) -> Answer | None:
-            return self._find(_store_of(batch, self.store, name), name, claim)
+            return self._find(store_of(batch, self.store, name), name, claim)
 
         return [*walk(batch, find)]
 
@@ -175,7 +175,7 @@ class _Run:
 
     def _keep(self, job: "_Job", name: str, answer: Answer, cost: Cost) -> None:
         self.costs[name] = cost
-        _store_of(job.batch, self.store, name).keep(name, answer)
+        store_of(job.batch, self.store, name).keep(name, answer)
         self._add(name, answer, cost)
 
     def _known_of(self, batch: Batch) -> dict[str, Answer]:
@@ -203,7 +203,7 @@ class _Run:
                     self._take(job, found)
 
 
-def _store_of(batch: Batch, store: Store, name: str) -> Store:
+def store_of(batch: Batch, store: Store, name: str) -> Store:
     """Return the store with the work for a claim, where a batch has another than its question."""
     if isinstance(batch, WorkByName):
         return replace(store, work=batch.work_of(name))
@@ -234,7 +234,7 @@ class _Job:
 
     def store_of(self, name: str) -> Store:
         """Return the store with the work that is allowed for a claim."""
-        return _store_of(self.batch, self.store, name)
+        return store_of(self.batch, self.store, name)
 
 
 _NOTHING = _Job(_None(), {}, Store(None, "", Work()))

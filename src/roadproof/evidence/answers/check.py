@@ -13,7 +13,7 @@ SCHEMA: Final = "roadproof/check/2"
 
 @dataclass(frozen=True, kw_only=True)
 class ClaimFinding(Finding):
-    """One claim of a file or of an index."""
+    """One claim of a file."""
 
     accepted: bool
 

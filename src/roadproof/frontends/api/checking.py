@@ -7,12 +7,13 @@ from dataclasses import field, replace
 from functools import partial
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias, Unpack
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeAlias, Unpack
 
 from roadproof.engines.prove.properties import find_label
 from roadproof.engines.solve.smt import Satisfiability as SolverAnswer
 from roadproof.engines.solve.smt import ask
 from roadproof.errors import RoadproofError, UsageError
+from roadproof.evidence.answer import undecided
 from roadproof.evidence.answers import check as kept
 from roadproof.evidence.checking import Checker
 from roadproof.evidence.codec import write
@@ -46,12 +47,15 @@ from roadproof.verdict import ExitCode
 
 if TYPE_CHECKING:
     from roadproof.frontends.api.kernel import KernelAnswer, KernelQuestion
+    from roadproof.frontends.api.questioned import QuestionAnswers
 
 Solver: TypeAlias = Literal["z3", "cvc5"]
 Kernel: TypeAlias = KernelName
 _Given: TypeAlias = Sequence[tuple[Path, tuple[Path, ...]]]
 
 
+LISTS = ("prove", "witness")
+"""The kinds of questions whose views are lists of their claims."""
 CHECKED = "checked"
 """The folder of the cache with findings on files that were accepted."""
 
@@ -62,8 +66,9 @@ class CheckReport(Table, BuildResult):
 
     ``solver`` is who was asked about certificates. ``specs``: specification files that lie beside the
     evidence, and were read on top of it. ``kernel``: what Coq needed and stands on, where it was asked.
-    ``not_checked``: by folder, the files in it that nothing is compared with.
-    ``strict``: whether answers without evidence make the exit code 20.
+    ``not_checked``: by folder, the files in it that nothing is compared with. ``views``: by folder, what its
+    accepted answers show together, where that is more than the claims. ``strict``: whether answers without
+    evidence make the exit code 20.
     """
 
     findings: tuple[Finding, ...]
@@ -72,6 +77,7 @@ class CheckReport(Table, BuildResult):
     specs: tuple[Path, ...] = ()
     kernel: "KernelAnswer | None" = None
     not_checked: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    views: Mapping[str, "QuestionAnswers[Any]"] = field(default_factory=dict)
     strict: bool = False
     command: ClassVar[str] = "check"
 
@@ -129,7 +135,10 @@ class CheckReport(Table, BuildResult):
         kernel = [] if self.kernel is None else [str(self.kernel)]
         lines += [f"not checked in {folder}: {', '.join(x)}" for folder, x in self.not_checked.items()]
         asked = "the extracted program" if self.solver == "extracted" else self.solver
-        return "\n".join([*lines, summary(self.findings, asked), *kernel])
+        shown = [
+            f"{folder}: {x.question.kind}, from what is accepted\n{x}" for folder, x in self.views.items()
+        ]
+        return "\n".join([*lines, summary(self.findings, asked), *kernel, *shown])
 
 
 @takes(Check)
@@ -172,16 +181,19 @@ def _check(paths: Sequence[str | Path], asked: Check, takes_over: bool) -> Check
     beside = tuple(path for x in there.folders for path in x.specs)
     findings = [*there.problems, *(found[file] for file in there.alone)]
     left: dict[str, tuple[str, ...]] = {}
+    views: dict[str, QuestionAnswers[Any]] = {}
     for x in there.folders:
-        findings += [*(x.finding(name, found[file]) for file, name in x.files.items()), *x.undecided]
-        findings += x.problems
+        shown = {name: x.finding(name, found[file]) for file, name in x.files.items()}
+        findings += [*shown.values(), *x.undecided, *x.problems]
+        if x.question.kind not in LISTS:
+            views[str(x.folder)] = _accepted_view(x, shown)
         tables, others = _tables(x)
         findings += tables
         if others:
             left[str(x.folder)] = others
     make_room(CHECKED)
     solver = asked.kernel or asked.solver
-    return CheckReport(tuple(findings), solver, library, beside, answered, left, asked.strict)
+    return CheckReport(tuple(findings), solver, library, beside, answered, left, views, asked.strict)
 
 
 @dataclass(frozen=True)
@@ -216,6 +228,15 @@ class _Evidence:
         """Every file, with the specification files that it is read with."""
         alone = [(file, self.specs) for file in self.alone]
         return [*alone, *((file, (*self.specs, *x.specs)) for x in self.folders for file in x.files)]
+
+
+def _accepted_view(found: QuestionFolder, shown: Mapping[str, Finding]) -> "QuestionAnswers[Any]":
+    """The answers of a folder, those in doubt whose evidence is not accepted."""
+    from roadproof.frontends.api.rebuilding import rebuilt  # which takes long to import
+
+    refused = {n: x.reason for n, x in shown.items() if x.outcome is not Acceptance.ACCEPTED}
+    doubted = {name: undecided(found.answers[name].claim, reason) for name, reason in refused.items()}
+    return rebuilt(replace(found, answers={**found.answers, **doubted}))
 
 
 def _tables(found: QuestionFolder) -> tuple[list[Finding], tuple[str, ...]]:

@@ -32,10 +32,11 @@ from question.json, and NAME.json must answer the claim of that name; other JSON
 claim without a file is UNKNOWN. If question.json names specification files beside it, such as classes.spec,
 they are added to the library, unless they would change its definitions.
 
-A line for each claim lists the checked and unchecked parts; unchecked files follow below. Exit
-codes: 10 if something is rejected; 20 if the solver did not decide, or no evidence was accepted; 3 if a file
-is damaged or needs definitions that are missing. For pipelines: with --strict also 20 if an answer has no
-evidence, such as UNKNOWN or NONE-WITHIN.
+A line for each claim lists the checked and unchecked parts. Files that nothing is compared with follow, and
+what the accepted answers of a folder show together, such as the verdict of coverage. Exit codes: 10 if
+something is rejected; 20 if the solver did not decide, or no evidence was accepted; 3 if a file is damaged or
+needs definitions that are missing. For pipelines: with --strict also 20 if an answer has no evidence, such as
+UNKNOWN or NONE-WITHIN.
 """
 OPTIONS = Check
 _THERE = {
