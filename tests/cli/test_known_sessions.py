@@ -10,7 +10,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from roadproof.analysis.study import known
 
 from console import files_of, sessions_of
 from roadproof.frontends.cli.main import main
@@ -80,7 +79,6 @@ def test_known_answers_say_the_same(
         (tmp_path / name).write_text(text, "utf-8")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    known._read.cache_clear()
     archives.archived.cache_clear()
     said = []
     for switch in ("off", "on", "on"):

@@ -16,7 +16,7 @@ import roadproof
 from roadproof.frontends.api.answer import Answer
 from roadproof.frontends.api.definitions import Definitions
 from roadproof.frontends.api.phrases import Phrase
-from roadproof.frontends.api.studied import StudyAnswers
+from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.cli.help import command_parser
 from roadproof.frontends.cli.overview import COMMANDS, jobs
 from roadproof.library.loading import bundled_library
@@ -239,7 +239,7 @@ def _question(name: str, function: Callable[..., object]) -> str:
     if not isclass(answer) or answer is Phrase or answer is Definitions:
         return ""
     about = (getdoc(function) or "").partition("\n\n")[0].replace("``", "`")
-    every = _members(StudyAnswers) if issubclass(answer, Answer) else set()
+    every = _members(QuestionAnswers) if issubclass(answer, Answer) else set()
     members = sorted(x for x in _members(answer) - every if x[0] != "_")
     shown = ", ".join(map(_code, members))
     return f"| [{name}](#roadproof.{name}) | {_cell(about)} | `{answer.__name__}` | {shown} |"

@@ -23,9 +23,9 @@ from roadproof.frontends.api.covering import CODES
 from roadproof.frontends.api.drives import Witnesses
 from roadproof.frontends.api.preventing import Plates
 from roadproof.frontends.api.proofs import Proofs
+from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.recordings import Evaluation
 from roadproof.frontends.api.reporting import Page
-from roadproof.frontends.api.studied import StudyAnswers
 from roadproof.frontends.api.studies import Orders, Overlaps
 from roadproof.frontends.api.traces import MonitorAnswer
 from roadproof.questions.explore.values import Boundary, ExplorationResult
@@ -85,7 +85,7 @@ def test_pairs_and_other_studies() -> None:
     for mixed in mixtures([*codes]):
         expected = gravest([codes[x] for x in mixed])
         assert code_of(Overlaps, pairs=[of(verdict=x) for x in mixed]) == expected
-        assert code_of(StudyAnswers, verdicts=dict(enumerate(mixed))) == expected
+        assert code_of(QuestionAnswers, verdicts=dict(enumerate(mixed))) == expected
 
 
 def test_implications_in_doubt_are_unknown() -> None:

@@ -16,12 +16,10 @@ import pytest
 
 import roadproof as rp
 from api.doors import FALSE, SYMMETRIC
-from roadproof.analysis.study.evidence_store import EvidenceStore, Question, inside, specification_names
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.claim import Exists
+from roadproof.evidence.specifications import specification_names
 from roadproof.frontends.api.proofs import claims_of
-from roadproof.library.loading import build_library, bundled_library
-from roadproof.library.specification import Source
 from roadproof.questions.checking import read_folder
 from roadproof.questions.data import QUESTION as QUESTION_FILE
 from roadproof.questions.store import Store
@@ -147,46 +145,6 @@ def test_who_is_about_to_end_holds_no_folder(
         assert files._holder_lives(handle) is lives
     finally:
         os.close(handle)
-
-
-# --- answers of this question and of others -----------------------------------------------------------
-
-LIBRARY = bundled_library()
-QUESTION = Question("roadproof/coverage/1", {"options": {}, "specs": []}, {"vehicles": "car"}, LIBRARY)
-OTHERS = {
-    "another model": replace(QUESTION, more={"vehicles": "truck"}),
-    "no model": replace(QUESTION, more={}),
-    "what some depend on": replace(QUESTION, of_some={"cc_delay": "1"}),
-    "another set": replace(QUESTION, said={**QUESTION.said, "set": "ext"}),
-    "another analysis": replace(QUESTION, schema="roadproof/classify/1"),
-    "another library": replace(
-        QUESTION, library=build_library([Source("m", "def danger(a, b: vehicle) := true")], LIBRARY)
-    ),
-}
-
-
-@pytest.mark.parametrize("other", OTHERS.values(), ids=OTHERS.keys())
-def test_a_folder_of_another_question_is_refused(other: Question, tmp_path: Path) -> None:
-    assert other.fingerprint != QUESTION.fingerprint
-    EvidenceStore(tmp_path, QUESTION)
-    assert [*EvidenceStore(tmp_path, QUESTION).answers()] == []
-    with pytest.raises(UsageError, match="holds the answers to another question"):
-        [*EvidenceStore(tmp_path, other).answers()]
-
-
-def test_the_readings_of_a_driver_make_another_question() -> None:
-    """What begins so that is asked about is said at the head of every answer."""
-    given = {"options": {"prevention": "unpreventable", "prevention_model": "careful"}}
-    told = replace(QUESTION, said={**QUESTION.said, **given})
-    assert told.options == given["options"]
-    assert told.fingerprint != QUESTION.fingerprint
-
-
-def test_paths_of_other_folders_stay_as_they_are(tmp_path: Path) -> None:
-    folder = tmp_path / "out"
-    beside = f"{tmp_path}/out-2/drive.json"
-    data = {"drive": f"{folder}/drives/a.json", "other": beside, "list": [str(folder), 3]}
-    assert inside(data, folder) == {"drive": "drives/a.json", "other": beside, "list": [str(folder), 3]}
 
 
 def test_two_specification_files_of_one_name_are_refused(tmp_path: Path) -> None:

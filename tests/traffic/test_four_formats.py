@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.study.known import shipped_answers
 from roadproof.evidence.drive_file import SCHEMAS_READ
 from roadproof.recordings.formats.table import polars_module
+from roadproof.runtime.archives import archived
 from roadproof.verdict import ExitCode
 
 BASE = Path(__file__).parents[2] / "examples" / "traffic" / "drives" / "scenario-01-base.json"
@@ -20,13 +20,12 @@ BASE = Path(__file__).parents[2] / "examples" / "traffic" / "drives" / "scenario
 def drives() -> Iterator[tuple[str, str]]:
     """A shipped drive of each scenario, by name."""
     seen: set[object] = set()
-    for answer in shipped_answers("witness"):
-        for text in answer.files.values():
-            content = json.loads(text)
-            known = content.get("schema") in SCHEMAS_READ and content.get("set") == "base"
-            if known and content.get("scenario") is not None and content["scenario"] not in seen:
-                seen.add(content["scenario"])
-                yield f"{content['scenario']}", text
+    for text in archived("witness").values():
+        content = json.loads(text)
+        known = content.get("schema") in SCHEMAS_READ and content.get("set") == "base"
+        if known and content.get("scenario") is not None and content["scenario"] not in seen:
+            seen.add(content["scenario"])
+            yield f"{content['scenario']}", text
 
 
 SHIPPED = dict(drives())
