@@ -306,7 +306,6 @@ SOURCE = Path(roadproof.__file__).parent
 # What is raised for an option is raised only by commands that have it: these read it, or what it made.
 READERS = {
     "roadproof.frontends.cli.options": {"--all", "--cluster", "--jobs", "--json", "--shard"},
-    "roadproof.frontends.api.studied": {"--among"},
     "roadproof.runtime.executors": {"--jobs"},
     "roadproof.questions.settle": {"--out", "--shard"},
     "roadproof.questions.store": {"--out"},

@@ -147,9 +147,6 @@ def test_who_is_about_to_end_holds_no_folder(
         os.close(handle)
 
 
-# --- answers of this question and of others -----------------------------------------------------------
-
-
 def test_two_specification_files_of_one_name_are_refused(tmp_path: Path) -> None:
     paths = [tmp_path / name / "mine.spec" for name in ("a", "b")]
     for k, path in enumerate(paths):

@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import Any
 
 import roadproof as rp
-from roadproof.frontends.api.studied import StudyAnswers
+from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.settings import questions, recordings, studies
 from roadproof.frontends.settings.option import Settings
 from study.asking import Asking
 
-Answers = StudyAnswers[Any, Any, Any]
+Answers = QuestionAnswers[Any]
 Ask = Callable[[Asking, bool], Any]
 
 CLAIMS = (

@@ -5,17 +5,16 @@ No engine is asked: each question is stopped before its study is conducted.
 
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 import roadproof as rp
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.study import known
-from roadproof.analysis.study.known import KnownAnswers
-from roadproof.errors import InputError
 from roadproof.evidence.answer import Answer, undecided
 from roadproof.evidence.claim import Claim
+from roadproof.library.scenarios import Scenario, applied
 from roadproof.questions.classify.division import DivisionQuestion, ToDivide
 from roadproof.questions.coverage.claims import GapClaims
 from roadproof.questions.coverage.looks import NeedJudge
@@ -23,9 +22,9 @@ from roadproof.questions.question import OwnWork, walk
 from roadproof.questions.settle import Settled
 from roadproof.questions.store import Store
 from roadproof.reasons import Why
-from roadproof.runtime.archives import archived
+from roadproof.runtime import archives
+from roadproof.runtime.archives import SWITCH, archived
 from roadproof.runtime.budget import Effort, Work
-from shipping.__main__ import FOLDER
 from shipping.questions import QUESTIONS
 from study.asking import Asking
 from study.changes import MORE, changes_of
@@ -80,7 +79,6 @@ def study_of(name: str, asking: Asking) -> Any:
         raise Stopped
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("roadproof.frontends.api.studied.conduct", stop)
         patch.setattr("roadproof.frontends.api.questioned.settle", stop)
         patch.setattr("roadproof.questions.classify.division.settle", nothing_known)
         with pytest.raises(Stopped):
@@ -91,8 +89,6 @@ def study_of(name: str, asking: Asking) -> Any:
 def keys_of(name: str, asking: Asking) -> dict[str, str]:
     """The key of each answer that the question wants; no archive is divided by anything else here."""
     study = study_of(name, asking)
-    if not hasattr(study, "batches"):
-        return {x: study.key(x) for x in study.wanted({})}
     return first_keys(study)
 
 
@@ -193,17 +189,13 @@ def test_gaps_depend_on_definitions_of_wider_sets() -> None:
     assert key(Asking().edited("v_lon(a) > 5 m/s", "v_lon(a) > 6 m/s")) != key(Asking())
 
 
-def test_the_program_and_the_version_are_part_of_keys(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = KnownAnswers("overlap", "0")
-    before = asked._cached("a", "key")
-    monkeypatch.setattr(known, "program", lambda: "another program")
-    assert asked._cached("a", "key") != before
-
-
-def test_a_key_about_nothing_is_refused() -> None:
-    home = rp.load().specification
-    with pytest.raises(ValueError, match="needs the claims"):
-        Basis(home).key([])
+def test_the_program_is_part_of_keys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(SWITCH, "on")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    archives.remember("key", "{}")
+    assert archives.recall("overlap", "key") is not None
+    monkeypatch.setattr(archives, "program", lambda: "another program")
+    assert archives.recall("overlap", "key") is None
 
 
 @pytest.mark.parametrize(
@@ -211,13 +203,13 @@ def test_a_key_about_nothing_is_refused() -> None:
     [{"horizon": 5}, {"effort": Effort(1)}, {"proof": 1.0}, {"objective": "mild"}, {"values": {"rho": 1}}],
 )
 def test_limits_of_a_basis_are_part_of_its_keys(more: Mapping[str, Any]) -> None:
-    from roadproof.library.scenarios import Scenario, applied
-
     basis = Basis(rp.load().specification)
     query = applied(basis.specification, Scenario(4, "base"))
-    assert replace(basis, **more).key([query]) != basis.key([query])
-    with pytest.raises((InputError, TypeError)):
-        basis.key([query], object())
+
+    def key(about: Basis) -> str:
+        return Store(None, "overlap", about.work).key(about.claim(query))
+
+    assert key(replace(basis, **more)) != key(basis)
 
 
 SHIPPED = [x for x in QUESTIONS if x not in ("classify", "shares of classes")]
@@ -233,20 +225,13 @@ def test_shipped_archives_have_the_keys_of_their_questions(name: str) -> None:
         raise Stopped
 
     with pytest.MonkeyPatch.context() as patch:
-        for place in ("roadproof.frontends.api.studied.conduct", "roadproof.frontends.api.questioned.settle"):
-            patch.setattr(place, stop)
+        patch.setattr("roadproof.frontends.api.questioned.settle", stop)
         patch.setattr("shipping.questions.settle", stop)
         with pytest.raises(Stopped):
             QUESTIONS[name](jobs=1)
     [study] = found
-    if hasattr(study, "batches"):
-        there: Mapping[str, object] = archived(study.kind)
-        wanted = {*first_keys(study).values()}
-    else:
-        question = study.question
-        place = KnownAnswers.to(question.schema, question.said, question.more)
-        there = place.read(FOLDER)
-        wanted = {place.entry(x, study.key(x)) for x in study.wanted({})}
+    there = archived(study.kind)
+    wanted = {*first_keys(study).values()}
     assert not there or wanted <= {*there}
     assert there or name not in ALWAYS_SHIPPED
 

@@ -58,16 +58,13 @@ def settle(
     store = Store(folder, question.kind, work, reads_known=not fresh and not is_off())
     store.open(question, say)
     run = _Run(question, store, each or _nobody, say)
-    first = [batch.name for batch in question.batches({})]
-    dealt = first if shard is None else shard.among(first)
+    is_ours = share_of(shard, [batch.name for batch in question.batches({})])
     batches = run.open_batches()
     line = origins_in_words([*run.origins.values()], len(run.known) + len(batches))
     if line and say is not None:
         say(line)
     while batches:
-        ours = [
-            x for x in batches if shard is None or (x.name in dealt if x.name in first else shard.has(x.name))
-        ]
+        ours = [x for x in batches if is_ours(x.name)]
         if not ours:
             raise SharedError(_told(shard, run.known, len(batches), what))
         run.ask(ours, hands, progress, what)
@@ -77,6 +74,18 @@ def settle(
         store.leave_only(run.known, say)
     store.make_room()
     return Settled(run.known, run.origins, run.costs)
+
+
+def share_of(shard: Shard | None, first: Sequence[str]) -> Callable[[str], bool]:
+    """Return a function that says whether a batch of a name is one of a shard's.
+
+    Batches that are asked ``first`` are dealt out in turn, so shards differ by one at most. Later ones go by
+    their names, whatever each of the runs knows by then.
+    """
+    if shard is None:
+        return lambda _: True
+    dealt = {*shard.among(first)}
+    return lambda name: name in dealt if name in first else shard.has(name)
 
 
 def _told(shard: Shard | None, known: Answers, left: int, what: str) -> str:

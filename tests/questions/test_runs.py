@@ -1,22 +1,18 @@
-"""A long question of numbers: pieces that rest on others, doubts, and processes that die."""
+"""Runs that divide a question among them, and folders of answers that they go on in."""
 
 import json
-import os
 import shutil
-import signal
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import pytest
 
 import roadproof as rp
 from questions.heard import Asked
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.study.evidence_store import EvidenceStore, Question
-from roadproof.analysis.study.frame import Unprepared, conduct
 from roadproof.engines.search.batches import Engines
 from roadproof.errors import InputError, SharedError, UsageError
 from roadproof.evidence.answer import answer_data, undecided
@@ -32,133 +28,6 @@ from roadproof.reasons import Why
 from roadproof.runtime.executors import Cluster, Executor, Shard
 from roadproof.runtime.files import hold_folder
 from sharing import made_once
-
-
-@dataclass(frozen=True)
-class Square:
-    """A number as it is kept."""
-
-    value: int | None
-
-
-@dataclass(frozen=True)
-class Sums(Unprepared):
-    """For each number the sum of its neighbours' squares, of which the squares are asked first.
-
-    ``dying``: the number whose process dies; ``slow``: one that is in doubt at first.
-    """
-
-    record_type: ClassVar[type[Square]] = Square
-    numbers: tuple[int, ...]
-    dying: int | None = None
-    slow: int | None = None
-
-    @property
-    def question(self) -> Question:
-        return Question("numbers", {}, {}, bundled_library())
-
-    def pieces(self, known: Mapping[str, int | None]) -> Sequence[tuple[str, Any]]:
-        squares = [("square", n) for n in self.numbers if f"square-{n}" not in known]
-        again = [("again", n) for n in self.numbers if known.get(f"square-{n}", 0) is None and n == self.slow]
-        if squares or again:
-            return squares or again
-        return [
-            ("sum", (n, known.get(f"square-{n - 1}"), known.get(f"square-{n + 1}")))
-            for n in self.numbers
-            if f"sum-{n}" not in known
-        ]
-
-    def settle(self, piece: tuple[str, Any]) -> dict[str, int | None]:
-        match piece:
-            case ("square", n):
-                if n == self.dying:
-                    os.kill(os.getpid(), signal.SIGKILL)
-                return {f"square-{n}": None if n == self.slow else n * n}
-            case ("again", n):
-                return {f"square-{n}": n * n}
-            case (_, (n, left, right)):
-                return {f"sum-{n}": (left or 0) + (right or 0)}
-        raise AssertionError(piece)
-
-    def doubt(self, piece: tuple[str, Any], reason: str) -> dict[str, int | None]:
-        assert "ended each time" in reason
-        return {f"square-{piece[1]}": None}
-
-    def is_sure(self, answer: int | None) -> bool:
-        return answer is not None
-
-    def record(self, name: str, answer: int | None, shelf: EvidenceStore) -> Square:
-        return Square(answer)
-
-    def recall(self, record: Square, shelf: EvidenceStore) -> tuple[str, int | None]:
-        raise AssertionError("nothing is kept")
-
-
-def sums(study: Sums, processes: int) -> dict[str, int | None]:
-    answers = conduct(study, hands=processes).answers
-    return {name: value for name, value in answers.items() if name.startswith("sum")}
-
-
-@pytest.mark.parametrize("processes", [1, 3])
-def test_later_pieces_rest_on_earlier_answers(processes: int) -> None:
-    assert sums(Sums((1, 2, 3, 4)), processes) == {"sum-1": 4, "sum-2": 10, "sum-3": 20, "sum-4": 9}
-
-
-def test_a_doubt_is_asked_again_under_its_name() -> None:
-    assert sums(Sums((1, 2, 3), slow=2), 2) == {"sum-1": 4, "sum-2": 10, "sum-3": 4}
-
-
-def test_a_piece_whose_process_dies_is_a_doubt_and_the_others_stand() -> None:
-    found = conduct(Sums((1, 2, 3), dying=2), hands=2)
-    assert found.answers["square-2"] is None
-    assert found.answers["sum-1"] == 0
-    assert found.answers["sum-2"] == 10
-    assert found.as_data(found.records["square-3"]) == {"value": 9}
-
-
-@dataclass(frozen=True)
-class Pairs(Sums):
-    """The same with the squares of two numbers in a piece."""
-
-    def pieces(self, known: Mapping[str, int | None]) -> Sequence[tuple[int, ...]]:
-        left = [n for n in self.numbers if f"square-{n}" not in known]
-        return [tuple(left[k : k + 2]) for k in range(0, len(left), 2)]
-
-    def settle(self, piece: tuple[int, ...]) -> dict[str, int | None]:
-        return {name: x for n in piece for name, x in super(Pairs, self).settle(("square", n)).items()}
-
-    def doubt(self, piece: tuple[int, ...], reason: str) -> dict[str, int | None]:
-        return {f"square-{n}": None for n in piece}
-
-    def parts(self, piece: tuple[int, ...]) -> Sequence[tuple[int, ...]]:
-        return [(n,) for n in piece]
-
-
-@pytest.mark.parametrize("dying", [1, 4, 5])
-def test_of_a_group_whose_process_dies_only_one_is_a_doubt(dying: int) -> None:
-    answers = conduct(Pairs((1, 2, 3, 4, 5), dying=dying), hands=2).answers
-    assert answers == {f"square-{n}": None if n == dying else n * n for n in (1, 2, 3, 4, 5)}
-
-
-def test_progress_is_told() -> None:
-    told: list[tuple[int, int, str]] = []
-    conduct(
-        Sums((1, 2)),
-        hands=2,
-        progress=lambda *x: told.append(x),
-        what="numbers",  # type: ignore[arg-type]
-    )
-    assert told == [(0, 2, "numbers"), (1, 2, "numbers"), (2, 2, "numbers")] * 2
-
-
-def test_no_processes_are_too_few() -> None:
-    with pytest.raises(UsageError, match="greater than 0"):
-        conduct(Sums((1, 2)), hands=0)
-
-
-def test_nothing_to_ask_is_nothing_found() -> None:
-    assert conduct(replace(Sums(()))).answers == {}
-
 
 # --- Runs that divide a question without talking to each other: nothing is lost, and nothing is asked twice
 
@@ -187,7 +56,7 @@ def test_each_piece_is_in_one_share(of: int) -> None:
 
 
 def test_shares_make_up_the_whole(asked: Asked, tmp_path: Path) -> None:
-    whole, folder = settle(QUESTION, hands=1), tmp_path / "out"
+    whole, folder = settle(QUESTION, tmp_path / "whole", 1), tmp_path / "out"
     assert len(asked.since()) == 7
     shares = []
     for number in (2, 1, 2):
