@@ -248,7 +248,8 @@ def test_drives_that_were_found_and_that_were_not() -> None:
     query = read_claim(home, "danger(SV,POV)")
     verdicts = (Verdict.WITNESSED, Verdict.IMPOSSIBLE, Verdict.NONE_WITHIN, UNKNOWN)
     fields: dict[str, Any] = {"query": query, "scenario": None, "set_name": "base", "reason": NO_REASON}
-    searches = [(answer(**fields, verdict=x, seconds={}), home, None) for x in verdicts]
+    of = {"cost": answer(seconds=0.0), "task": answer(specification=home)}
+    searches = [(answer(**fields, **of, verdict=x), None) for x in verdicts]
     assert [x.state for x in search_cases(searches)] == ["passed", "failed", "failed", "undecided"]
 
 

@@ -94,7 +94,7 @@ def test_implications_in_doubt_are_unknown() -> None:
         missing=[("2", "1", (0,))],
         doubts=[of(above="1", below="3"), of(above="3", below="1")],
     )
-    verdicts = Orders.verdicts.fget(of(order=order))  # type: ignore[attr-defined]
+    verdicts = Orders.verdicts.fget(of(view=order))  # type: ignore[attr-defined]
     assert verdicts == {
         "1 -> 2": V.PROVED,
         "2 -> 1": V.REFUTED,

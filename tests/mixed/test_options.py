@@ -162,9 +162,9 @@ def test_claims_of_a_file_are_asked_beside_those_of_the_line(
 def test_properties_of_all_values_are_not_asked_at_one(asked: Asked) -> None:
     [every] = question("prove", asked)
     [at_one] = question("prove --param rho=1/2", asked)
-    assert any(x.of_all_values for x in every.tasks)
+    assert any(x.task.of_all_values for x in every.tasks)
     assert at_one.tasks
-    assert not any(x.of_all_values for x in at_one.tasks)
+    assert not any(x.task.of_all_values for x in at_one.tasks)
 
 
 @pytest.mark.parametrize("text", ["dx0=5", "dx0", "5:6", "dV0=5:6", "dx0=6:5"])
