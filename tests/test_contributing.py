@@ -105,7 +105,7 @@ NOTE = (
     '    note: str = option("", "--note TEXT", help="print TEXT first", group="output", keyword=False)\n\n\n'
 )
 IN_OTHERS = {
-    "compare": ('folder_for("certificates and drive files", command_line_only=True)\n', "4 4"),
+    "compare": ('folder_for("certificates and drive files")\n', "4 4"),
     "explore": ("pictures_of(command_line_only=True)\n", "4 --vary minSafe=0:1 --steps 2"),
 }
 """By question: how the last line of its options ends, and what is asked."""

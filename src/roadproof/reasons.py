@@ -99,7 +99,7 @@ class Why(StrEnum):
     NO_DRIVE_ELSEWHERE = "no drive was found for the same in other places"
     SEARCH_FOUND_NONE = "a search found none"
     NONE_APART = "no drive was found that begins {:g} or more from all others"
-    NONE_AHEAD = "no drive was found with {:g} units of work, {} s ahead"
+    NONE_AHEAD = "no drive was found, {} s ahead"
     ON_ROAD = "{} (road {}, {:g} units of work)"
     NO_SEARCH = "no search on {}: {}"
     NOT_ON = "{} on {}"

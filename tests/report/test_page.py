@@ -85,7 +85,8 @@ def test_proofs_and_drives_with_what_was_found_of_them(tmp_path, drives):
     seen = body_of(text)
     assert '5 claims: <span class="count">3 <span class="verdict-word proof">✓ PROVED</span>' in seen
     assert "scenario_4(SV,POV,L) -&gt; dangerArises(SV,POV)" in seen
-    assert "1 of 1 accepted by z3 and the exact judge" in seen
+    assert "6 of 6 accepted by z3 and the exact judge" in seen
+    assert '<p class="faint">dense, unbounded time; declared parameters; boxes apart for ever; not' in seen
     assert (found.results, found.drives, found.exit_code) == (2, 2, 0)
     assert len(re.findall(r'<script type="application/gzip" id="document-\d+">', text)) == 2
     assert not re.search(r"""(?:src|href|action)\s*=\s*["']?\s*(?:https?:|//)""", text)
@@ -135,13 +136,13 @@ SAID = {"options": {HOSTILE: CLOSED}, "parameters": {HOSTILE: "1"}, "specs": [HO
 def hostile_overlap() -> dict:
     said = {"set": HOSTILE, "lanes": "same", "roles": "any", "start": "same", **SAID}
     said |= {"view": "dense", "seconds": 1}
-    pair = {"set_a": HOSTILE, "set_b": CLOSED, "formula": HOSTILE, "reason": CLOSED, "certificate": HOSTILE}
-    pair |= {"drive": None, "cores": [{"formula": CLOSED, "parts": [HOSTILE]}]}
+    pair = {"set_a": HOSTILE, "set_b": CLOSED, "formula": HOSTILE, "reason": CLOSED, "evidence": [HOSTILE]}
+    pair |= {"cores": [{"formula": CLOSED, "parts": [HOSTILE]}]}
     verdicts = [
         {"a": 1, "b": 5, "verdict": "UNKNOWN", "core": [HOSTILE], **pair},
         {"a": 1, "b": 4, "verdict": "IMPOSSIBLE", "core": [CLOSED], **pair},
     ]
-    return {"schema": "roadproof/overlap/1", **HEADED, **said, "verdicts": verdicts}
+    return {"schema": "roadproof/overlap/2", **HEADED, **said, "verdicts": verdicts}
 
 
 def hostile_classes() -> dict:
@@ -255,11 +256,17 @@ def hostile_answers(drive: dict) -> dict[str, dict]:
     claim = {"property": HOSTILE, "part": CLOSED, "scenario": None, "set": HOSTILE, "claim": HOSTILE}
     claim |= {"assuming": [CLOSED], "expected": "PROVED", "verdict": "PROVED", "refuted_by": None}
     claim |= {"beyond_limits": None, "view": "dense", "seconds": 1, "reason": HOSTILE, "assumptions": []}
-    claim |= {"premises": [CLOSED], "certificate": HOSTILE, "counterexample": None}
+    claim |= {"premises": [CLOSED], "evidence": HOSTILE, "counterexample": None}
     direction = {"claim": HOSTILE, "verdict": "UNKNOWN", "reason": CLOSED, "certificate": None, "drive": None}
     implied = {"from": "1@base", "to": "3@base", "claim": HOSTILE, "certificate": CLOSED}
     change = {"scenario": 1, "where": [CLOSED], "part": HOSTILE, "as": True, "changed": HOSTILE}
-    change |= {"redundant": None, "verdict": "UNKNOWN", "assuming": HOSTILE, "claim": CLOSED}
+    change |= {
+        "redundant": None,
+        "verdict": "UNKNOWN",
+        "assuming": HOSTILE,
+        "claim": CLOSED,
+        "evidence": None,
+    }
     return {
         "overlap": hostile_overlap(),
         "witness": {"verdicts": [outcome(HOSTILE, named) | {"reason": CLOSED, "road": HOSTILE}]},
@@ -295,7 +302,7 @@ def hostile_plates(drive: dict) -> dict:
     ends = [{"near": 1, "exact": HOSTILE}, {"near": 2.5, "exact": CLOSED}]
     lines = [{"at": "0", "unpreventable": []}, {"at": "1/2", "unpreventable": [ends]}]
     shown = {"side": "preventable", "at": {HOSTILE: "1"}, "verdict": "WITNESSED", "formula": HOSTILE}
-    shown |= {"scenario": CLOSED, "reason": CLOSED, "evidence": drive}
+    shown |= {"scenario": CLOSED, "reason": CLOSED, "drive": drive}
     plate = {"name": HOSTILE, "model": "careful", "fixed": {HOSTILE: "1"}, "verdict": "UNKNOWN"}
     plate |= {"stepped": HOSTILE, "motion": CLOSED, "reason": HOSTILE}
     lemma = {"name": HOSTILE, "title": CLOSED, "claim": HOSTILE, "verdict": "PROVED", "assuming": [CLOSED]}
@@ -337,7 +344,8 @@ def explored(drive: dict) -> dict:
     }
 
 
-VERSIONS = {"compare": 2, "explore": 2, "monitor": 2, "traffic-results": 5}
+SECOND = ("classify", "compare", "coverage", "explore", "monitor", "order", "overlap", "redundancy")
+VERSIONS = {**dict.fromkeys(SECOND, 2), "traffic-results": 5}
 """Of the schemas of answers that are not the first."""
 
 
@@ -373,8 +381,8 @@ def test_a_hostile_text_stays_text_in_every_section(tmp_path, drives):
         ("{", "is no JSON"),
         ("[]", ""),
         ('{"schema": "other/1"}', "its schema does not begin with roadproof/"),
-        ('{"schema": "roadproof/overlap/1", "verdicts": [{"a": []}]}', "'roadproof' is missing"),
-        ('{"schema": "roadproof/classify/1", "classes": 3}', "'roadproof' is missing"),
+        ('{"schema": "roadproof/overlap/2", "verdicts": [{"a": []}]}', "'roadproof' is missing"),
+        ('{"schema": "roadproof/classify/2", "classes": 3}', "'roadproof' is missing"),
         ('{"schema": "roadproof/traffic-results/5", "table": 3}', "'roadproof' is missing"),
         ('{"schema": "roadproof/catalogue/1", "tests": 3}', "'roadproof' is missing"),
     ],
@@ -416,7 +424,7 @@ def opened(page: Path, more: str = "") -> tuple[str, str]:
 def test_a_browser_opens_it_without_a_word_and_asks_nobody(tmp_path, drives):
     """A policy of the page forbids every request, and the browser complains of each that is tried."""
     overlap = hostile_overlap() | {"set": "base"}
-    overlap["verdicts"][0] |= {"verdict": "WITNESSED", "drive": drive_in(drives)}
+    overlap["verdicts"][0] |= {"verdict": "WITNESSED", "evidence": [drive_in(drives)]}
     (tmp_path / "overlap.json").write_text(json.dumps(overlap), "utf-8")
     _, text = made(tmp_path / "overlap.json", drives, out=tmp_path / "page.html")
     document, said = opened(tmp_path / "page.html", "#pair-0-0")

@@ -15,16 +15,18 @@ from roadproof.frontends.report.page.summary import overview
 
 
 def claims_of(*names: str, **verdicts: str) -> dict:
-    """An index of template properties without evidence; ``verdicts`` other than the expected, by property."""
+    """Answers about template properties, without evidence; ``verdicts`` other than expected, by property."""
+    plain = {"assuming": [], "beyond_limits": None, "view": "dense", "seconds": 1, "reason": ""}
+    plain |= {"refuted_by": None, "assumptions": [], "premises": [], "evidence": None, "counterexample": None}
     claims = [
         {
-            **{"property": x.id, "part": x.part, "scenario": x.scenario, "set": x.set_name},
-            **{"claim": x.claim, "verdict": verdicts.get(x.id, x.expected), "evidence": None},
+            **{"property": x.id, "part": x.part, "scenario": x.scenario, "set": x.set_name, **plain},
+            **{"claim": x.claim, "expected": x.expected, "verdict": verdicts.get(x.id, x.expected)},
         }
         for x in template_properties()
         if x.id in names
     ]
-    return {"schema": "roadproof/index/1", **HEADED, "options": {}, "specs": [], "claims": claims}
+    return {"schema": "roadproof/verdicts/1", **HEADED, "verdicts": claims}
 
 
 def written(folder: Path, **answers: dict) -> list[Path]:
@@ -114,7 +116,7 @@ def test_drives_are_a_gallery_of_moving_pictures(tmp_path):
     seen = body_of(text)
     assert found.drives == 1
     [card] = re.findall(
-        r'<article class="place card" id="drive-0" data-document="0">.*?</article>', seen, re.DOTALL
+        r'<article class="place card" id="sought-0-0" data-document="0">.*?</article>', seen, re.DOTALL
     )
     assert '<button type="button" class="open" aria-expanded="false"><svg' in card
     assert "@keyframes m0" in text

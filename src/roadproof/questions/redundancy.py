@@ -28,7 +28,7 @@ from roadproof.logic.restore import as_syntax
 from roadproof.logic.show import text
 from roadproof.logic.syntax import Claim as Written
 from roadproof.questions.question import Answers, Place, Steps, heading_of
-from roadproof.reasons import NO_REASON, Reason, joined
+from roadproof.reasons import NO_REASON, Reason, Why, joined
 from roadproof.runtime.budget import Work
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
@@ -171,9 +171,12 @@ class ChangeFinding:
             return NO_REASON
         if self.apart is None:
             return NO_REASON if self.equal is None else self.equal.reason
+        mode, apart = self.apart.claim.mode, self.apart.reason
+        if apart == Why.NONE_FOUND() and isinstance(mode, Exists):
+            apart = Why.NONE_AHEAD(mode.horizon)
         if self.shown is not None or self.equal is None:
-            return self.apart.reason
-        return joined((self.apart.reason, self.equal.reason))
+            return apart
+        return joined((apart, self.equal.reason))
 
 
 def _decides(answer: Answer) -> bool:

@@ -18,6 +18,7 @@ from roadproof.evidence.claim import Claim
 from roadproof.evidence.heading import library_of
 from roadproof.evidence.specifications import keep_specifications
 from roadproof.evidence.strict import LARGEST_EVIDENCE, LARGEST_INDEX, Fields, read_json
+from roadproof.library.specification import Specification
 from roadproof.questions.data import QUESTION, basis_data, question_data, read_question
 from roadproof.questions.question import Answers, Growing, Question, Replacing
 from roadproof.reasons import Why
@@ -138,7 +139,8 @@ class Store:
         known = recall(self.kind, self.key(claim)) if self.reads_known else None
         if known is not None:
             with suppress(InputError):
-                answer = read_answer(claim, json.loads(known.text), "a known answer", known.is_judged)
+                content = _said_in(claim.home, json.loads(known.text))
+                answer = read_answer(claim, content, "a known answer", known.is_judged)
                 known.note_judged()
                 return answer, known.origin
         return None
@@ -193,6 +195,17 @@ class Store:
         """Keep the cache within its bounds."""
         for folder in (CACHE, JUDGED):
             make_room(folder)
+
+
+def _said_in(home: Specification, content: Any) -> Any:
+    """Return a known file as it is written where a claim is read: one formula may be in several spec sets."""
+    if not isinstance(content, dict) or "set" not in content:
+        return content
+    said = {**content, "set": home.set_name}
+    if "options" in said:
+        return {**said, "options": dict(home.options)}
+    values = said.get("parameters", {})
+    return {**said, "parameters": values | {x: y for x, y in home.options.items() if x in values}}
 
 
 def keep_all(folder: Path, question: Question[Any], answers: Answers) -> None:

@@ -1,6 +1,6 @@
 """What a page shows once and refers to: drives with their viewers, and what was found of evidence."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -111,6 +111,13 @@ class PageContext:
         here = folder.resolve()
         wrong = (path for path, x in self.findings.items() if x.outcome is not Acceptance.ACCEPTED)
         return sum(path.parent == here for path in wrong)
+
+    def drives_of(self, folder: Path | None, claim: str) -> Iterator[Finding]:
+        """What was found of the drives of a folder that are about a claim, by the names of their files."""
+        here = None if folder is None else folder.resolve()
+        for path, found in sorted(self.findings.items(), key=lambda x: (len(x[0].name), x[0])):
+            if path.parent == here and found.claim == claim and found.kind == "drive":
+                yield found
 
     def finding(self, folder: Path | None, name: object) -> Finding | None:
         """What was found of a file of evidence that an answer names."""

@@ -45,10 +45,14 @@ def drives_alone(findings: Sequence[Finding], context: PageContext) -> list[Driv
 def witnessed(result: Result, context: PageContext, words: Words) -> dict[str, object]:
     """The drives of ``witness --json`` as cards; ``without``: the verdicts that have none."""
     answer = read(WitnessData, result.data, result.name)
+    checked = {
+        x: map(notes, context.drives_of(result.folder, x)) for x in {y.formula for y in answer.verdicts}
+    }
     cards = [
-        DriveCard(context.drive(drive), x.verdict, x.formula, f"sought-{result.id}-{k}{f'-{n}' * (n > 0)}")
+        DriveCard(context.drive(drive), x.verdict, x.formula, place, next(checked[x.formula], ""))
         for k, x in enumerate(answer.verdicts)
         for n, drive in enumerate(x.drives)
+        for place in [f"sought-{result.id}-{k}{f'-{n}' * (n > 0)}"]
         if isinstance(drive, Mapping)
     ]
     without = [(f"sought-{result.id}-{k}", x) for k, x in enumerate(answer.verdicts) if not x.drives]
