@@ -166,7 +166,8 @@ def _check(paths: Sequence[str | Path], asked: Check, takes_over: bool) -> Check
     folders = folders_in(given_paths)
     answered_in, damaged = _read_folders(folders, named)
     surveyed = survey(given_paths, named, find_label, folders)
-    given = [*surveyed.files.items(), *((file, (*named, *x.specs)) for x in answered_in for file in x.files)]
+    answered_files = [(x, file, name) for x in answered_in for file, name in x.files.items()]
+    given = [*surveyed.files.items(), *((y, (*named, *x.specs_of(name))) for x, y, name in answered_files)]
     traces = () if asked.kernel is None else _traces(surveyed, named)
     answered, ruled = (
         (None, {}) if asked.kernel is None else _put_to_kernel(asked.kernel, given, traces, asked)
