@@ -10,18 +10,21 @@ from typing import Any
 from xml.etree import ElementTree as xml
 
 import pytest
-from roadproof.analysis.catalogue.meaning import Fact
 
 import roadproof as rp
-from roadproof.analysis.catalogue import examination, formula_facts, meaning, showing, tested
+from roadproof.analysis.catalogue import showing, tested
 from roadproof.analysis.catalogue.asked import NOWHERE, Questions, Row
 from roadproof.analysis.catalogue.entries import Abstract, Concrete, Freedom
+from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.reading import read_catalogue
 from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, show
 from roadproof.analysis.catalogue.tested import figures
 from roadproof.analysis.classify.cells import Cell
 from roadproof.analysis.classify.classes import Classes, plan_of
+from roadproof.engines.search.batches import Engines
 from roadproof.errors import InputError
+from roadproof.evidence.answer import Answer, undecided
+from roadproof.evidence.claim import Claim
 from roadproof.evidence.drive_file import DriveFile, drive_data, load_drive
 from roadproof.frontends.api.cataloguing import CatalogueAnswer, catalogue
 from roadproof.frontends.api.settings import basis_of
@@ -32,7 +35,9 @@ from roadproof.library.bind import bind
 from roadproof.library.scenarios import Scenario, applied, name_of, vehicles_of
 from roadproof.library.specification import Query
 from roadproof.questions.classify.division import Division, divide
+from roadproof.reasons import Why
 from roadproof.recordings.export.registry import FORMATS
+from roadproof.runtime.cost import NO_COST, Cost
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.exact import judge
 
@@ -250,7 +255,7 @@ def ask(*paths: Path, **more: Any) -> CatalogueAnswer:
 def test_what_is_missing_is_made_and_then_nothing_is_missing(
     few: Path, tmp_path: Path, division: Division, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(examination, "divide", lambda *_, **__: division)
+    monkeypatch.setattr("roadproof.questions.catalogue.question.divide", lambda *_, **__: division)
     missing = {"class_3_6", "class_6", "class_7", "scenario_7", "class_2", "scenario_2"}
     found = ask(few)
     assert {*found.missing} == missing
@@ -359,7 +364,7 @@ def meant(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("abstract")
     (folder / "catalogue.toml").write_text(ABSTRACT, "utf-8")
     found = catalogue(folder, among="3-4", classes=False, drivers=(), jobs=1, out=folder / "report")
-    relations = {(x.test, x.other): x.relation for x in tested.all_facts(found.found.answers)}
+    relations = {(x.test, x.other): x.relation for x in found.view.facts}
     assert relations == {
         ("wide", ""): "runs",
         ("wide", "scenario_3"): "excludes",
@@ -383,42 +388,18 @@ def meant(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_answers_about_formulas_are_kept_and_checked(meant: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert main(["check", str(meant / "report"), "--jobs", "1"]) == 0
-    monkeypatch.setattr(formula_facts, "answer", lambda search: pytest.fail("it is kept"))
+    monkeypatch.setattr(Engines, "settle", lambda *_: pytest.fail("it is kept"))
     again = catalogue(meant, among="3-4", classes=False, drivers=(), jobs=1, out=meant / "report")
-    assert len(again.evidence) == 11
-
-
-@pytest.mark.parametrize(
-    "forged",
-    [
-        {"relation": "excludes"},
-        {"other": "scenario_3"},
-        {"premise": "true"},
-        {"conclusion": "scenario_3(SV, POV, L)"},
-        {"formula": "scenario_4(SV, POV, L) -> scenario_3(SV, POV, L)"},
-        {"verdict": "WITNESSED"},
-    ],
-    ids=lambda x: next(iter(x)),
-)
-def test_forged_facts_are_refused(forged: Mapping[str, str], meant: Path, tmp_path: Path) -> None:
-    folder = tmp_path / "report"
-    shutil.copytree(meant / "report", folder)
-    shutil.rmtree(folder / "answers")
-    (folder / "question.json").unlink()
-    index = json.loads((folder / "index.json").read_text("utf-8"))
-    fact = next(x for x in index["facts"] if (x["test"], x["other"]) == ("wide", "scenario_4"))
-    fact.update(forged)
-    (folder / "index.json").write_text(json.dumps(index), "utf-8")
-    assert main(["check", str(folder), "--jobs", "1"]) in (3, 10)
+    assert len(again.evidence) == 12  # one test does not imply another
 
 
 def test_a_doubt_is_a_doubt(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     (tmp_path / "catalogue.toml").write_text("[[test]]\nid='x'\nformula='scenario_4(SV,POV,L)'\n", "utf-8")
 
-    def lost(study: meaning.Meanings, piece: Any) -> dict[str, meaning.Facts]:
-        return study.doubt(piece, "its process was ended")
+    def lost(engines: Engines, claim: Claim, proposed: object) -> tuple[Answer, Cost]:
+        return undecided(claim, Why.TOLD("its process was ended")), NO_COST
 
-    monkeypatch.setattr(meaning.Meanings, "settle", lost)
+    monkeypatch.setattr(Engines, "settle", lost)
     found = catalogue(tmp_path, among="4", classes=False, jobs=1)
     assert found.exit_code == 20
     assert "whether it can be run is in doubt: its process was ended" in str(found)

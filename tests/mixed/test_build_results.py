@@ -243,14 +243,13 @@ def test_drives_that_were_found_and_that_were_not() -> None:
     from roadproof.frontends.report.ci.questions import search_cases
     from roadproof.library.elaborate import read_claim
     from roadproof.library.loading import bundled_library
-    from roadproof.runtime.cost import NO_COST
 
     home = bundled_library().select()
     query = read_claim(home, "danger(SV,POV)")
     verdicts = (Verdict.WITNESSED, Verdict.IMPOSSIBLE, Verdict.NONE_WITHIN, UNKNOWN)
     fields: dict[str, Any] = {"query": query, "scenario": None, "set_name": "base", "reason": NO_REASON}
-    fields |= {"task": answer(specification=home), "cost": NO_COST}
-    searches = [(answer(**fields, verdict=x), None) for x in verdicts]
+    of = {"cost": answer(seconds=0.0), "task": answer(specification=home)}
+    searches = [(answer(**fields, **of, verdict=x), None) for x in verdicts]
     assert [x.state for x in search_cases(searches)] == ["passed", "failed", "failed", "undecided"]
 
 
@@ -274,7 +273,6 @@ def test_claims_and_classes_of_coverage() -> None:
     from roadproof.frontends.report.ci.questions import coverage_cases
     from roadproof.library.elaborate import read_claim
     from roadproof.library.loading import bundled_library
-    from roadproof.runtime.cost import NO_COST
 
     home = bundled_library().select()
     query = read_claim(home, "danger(SV,POV)")

@@ -11,7 +11,9 @@ from typing import Any, TypeVar
 
 import pytest
 
-from roadproof.analysis.basis import Basis
+from roadproof.analysis.basis import Basis, ProofResult
+from roadproof.analysis.catalogue.gaps import gap_kinds
+from roadproof.analysis.coverage.answers import ClassAnswer, Survey
 from roadproof.analysis.coverage.classes import (
     GapClasses,
     GapGroup,
@@ -259,12 +261,29 @@ def test_one_claim_in_doubt_leaves_the_classes_to_be_asked() -> None:
     assert asked == [f"help-simple-1-{k}" for k in range(1, 8)], "simple drives are looked through"
     every = known(question, *[V.PROVED] * count)
     assert len(question.batches(every)) == count
-    assert {x.verdict for x in question.class_answers(every).values()} == {V.IMPOSSIBLE}
     scanned = some | {x: undecided(y, Why.PROCESS("SIGKILL")) for x, y in question.simple.items()}
     groups = question.batches(scanned)[count + len(question.simple) :]
     assert [x.name for x in groups] == question.groups
     few = replace(question, only=frozenset(question.groups[:2]))
     assert few.groups == question.groups[:2]
+
+
+def test_classes_of_gaps_by_name_are_asked_about_by_component_and_all_empty_where_there_is_no_gap() -> None:
+    kinds = gap_kinds(Basis(HOME), range(1, 9))
+    every, few = kinds.question(()), kinds.question({*kinds.parts} - {"gap_behaviourSV_1"})
+    assert few.groups == ["behaviourSV_1"]
+    assert few.groups != every.groups == [*every.claims.groups]
+    assert kinds.question(kinds.parts).groups == []
+    assert few.claims.home is HOME
+    assert few.claims.classes.numbers == (1, 3, 4, 5, 6, 7, 8)  # 2 is between three vehicles
+    [part] = few.claims.groups["behaviourSV_1"].parts
+    found = ClassAnswer(part, verdict=V.UNKNOWN)
+    one, two = (ProofResult(read_claim(HOME, "true"), verdict=x) for x in (V.PROVED, V.UNKNOWN))
+    some = kinds.answers(Survey((one, two), (found,), ()))
+    assert {name: x for name, x in some.items() if x is not None} == {"gap_behaviourSV_1": found}
+    assert some.keys() == kinds.parts.keys()
+    none = kinds.answers(Survey((one, one), (), ()))
+    assert {name: x and x.verdict for name, x in none.items()} == dict.fromkeys(kinds.parts, V.IMPOSSIBLE)
 
 
 def test_claims_name_wider_sets_roads_and_vehicles() -> None:

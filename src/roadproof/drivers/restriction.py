@@ -14,7 +14,14 @@ from roadproof.errors import InputError, UsageError
 from roadproof.library.elaborate import elaborate
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import initial_condition_name
-from roadproof.library.specification import Library, Query, Source, Specification, on_request
+from roadproof.library.specification import (
+    Library,
+    Query,
+    Source,
+    Specification,
+    on_request,
+    read_specification,
+)
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula, subformulas
 from roadproof.logic.parse import parse_library
@@ -171,9 +178,9 @@ def check_drives(options: Mapping[str, str]) -> None:
 
 def files_for(given: Sequence[Source]) -> list[Path | Source]:
     """The specification files that a restriction needs, with those that are given on top."""
-    needed = [on_request()[name] for name in (models.DRIVERS, models.PREVENTION)]
-    mine = {str(path) for path in needed}
-    return [*needed, *(x for x in given if x.name not in mine)]
+    needed = [read_specification(on_request()[name]) for name in (models.DRIVERS, models.PREVENTION)]
+    mine = {x.text for x in needed}
+    return [*needed, *(x for x in given if x.text not in mine)]
 
 
 def names_for(given: Sequence[Path]) -> list[Path]:

@@ -51,6 +51,15 @@ class QuestionFolder:
         """The files with evidence, each with the name of its claim."""
         return {self.folder / f"{name}.json": name for name, x in self.answers.items() if x.is_final}
 
+    def specs_of(self, name: str) -> tuple[Path, ...]:
+        """Return the specification files that the evidence for a claim is read with.
+
+        Those that come with roadproof and that only this claim needs are first.
+        """
+        texts = {x.text for x in self.question.basis.library.files}
+        more = (x for x in self.answers[name].claim.home.library.files if x.text not in texts)
+        return (*(Path(x.name) for x in more), *self.specs)
+
     @property
     def undecided(self) -> Iterator[Finding]:
         """A finding for each claim without evidence.

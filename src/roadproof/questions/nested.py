@@ -4,14 +4,27 @@ from collections.abc import Sequence
 from typing import Any
 
 from roadproof.evidence.answer import Answer
-from roadproof.questions.question import Answers, Batch, OwnWork, Question, Steps, WorkByName
+from roadproof.evidence.claim import HELP
+from roadproof.evidence.finding import Finding
+from roadproof.questions.question import (
+    Answers,
+    Batch,
+    Doubting,
+    OwnWork,
+    Place,
+    Question,
+    Steps,
+    Telling,
+    WorkByName,
+)
+from roadproof.reasons import Reason
 from roadproof.runtime.budget import Work
 from roadproof.runtime.records import dataclass
 
 
 @dataclass(frozen=True)
 class Nested:
-    """A question whose claims have names that begin with ``prefix``."""
+    """A question whose claims have names with ``prefix``: before all, but for the word of what only helps."""
 
     prefix: str
     question: Question[Any]
@@ -24,11 +37,40 @@ class Nested:
 
     def own(self, known: Answers) -> dict[str, Answer]:
         """Return the answers to its own claims, by their own names."""
-        return {n.removeprefix(self.prefix): x for n, x in known.items() if n.startswith(self.prefix)}
+        return {own_name(self.prefix, n): x for n, x in known.items() if self.has(n)}
+
+    def has(self, name: str) -> bool:
+        """Return whether the claim of a name is one of its own."""
+        return name.removeprefix(HELP).startswith(self.prefix)
 
     def label(self, name: str) -> str:
         """Return what one of its claims is about."""
-        return self.question.label(name.removeprefix(self.prefix))
+        return self.question.label(own_name(self.prefix, name))
+
+    def place(self, place: Place) -> Place:
+        """Return where evidence is, by its own names."""
+        return lambda name, answer: place(full_name(self.prefix, name), answer)
+
+    def tell(self, name: str, answer: Answer, found: Finding) -> Finding:
+        """Return what was found of one of its answers, with what it shows."""
+        asked = self.question
+        return asked.tell(own_name(self.prefix, name), answer, found) if isinstance(asked, Telling) else found
+
+    def doubts(self, known: Answers) -> Sequence[tuple[str, Reason]]:
+        """Return what its answers leave in doubt, given what is known of the whole question."""
+        return self.question.doubts(self.own(known)) if isinstance(self.question, Doubting) else ()
+
+
+def full_name(prefix: str, name: str) -> str:
+    """Return the name of a nested claim in the whole question."""
+    help = HELP if name.startswith(HELP) else ""
+    return f"{help}{prefix}{name.removeprefix(HELP)}"
+
+
+def own_name(prefix: str, name: str) -> str:
+    """Return the name of a claim in the nested question."""
+    help = HELP if name.startswith(HELP) else ""
+    return f"{help}{name.removeprefix(HELP).removeprefix(prefix)}"
 
 
 @dataclass(frozen=True)
@@ -48,7 +90,7 @@ class NestedBatch:
         """Return the work that the nested question allows for a claim."""
         match self.batch:
             case WorkByName():
-                return self.batch.work_of(name.removeprefix(self.prefix))
+                return self.batch.work_of(own_name(self.prefix, name))
             case OwnWork():
                 return self.batch.work
             case _:
@@ -60,6 +102,6 @@ class NestedBatch:
         try:
             name, claim = next(steps)
             while True:
-                name, claim = steps.send((yield f"{self.prefix}{name}", claim))
+                name, claim = steps.send((yield full_name(self.prefix, name), claim))
         except StopIteration:
             return

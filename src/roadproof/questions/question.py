@@ -100,6 +100,14 @@ class Seeded(Protocol):
 
 
 @runtime_checkable
+class Proposing(Protocol):
+    """A batch that knows drives which may show one of its claims, before any is looked for."""
+
+    def proposed(self, name: str, known: Answers) -> Iterator[JudgedDrive]:
+        """Yield drives for the claim of a name, given the answers to claims of the batch before it."""
+
+
+@runtime_checkable
 class Growing(Protocol):
     """A question whose folder holds the answers to former ones, too."""
 

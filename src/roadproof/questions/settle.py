@@ -10,7 +10,17 @@ from roadproof.engines.prove.doubt import Cause, Doubt
 from roadproof.errors import SharedError, UsageError
 from roadproof.evidence.answer import Answer, Evidence, undecided
 from roadproof.evidence.claim import Claim
-from roadproof.questions.question import Answers, Batch, Growing, OwnWork, Question, Seeded, WorkByName, walk
+from roadproof.questions.question import (
+    Answers,
+    Batch,
+    Growing,
+    OwnWork,
+    Proposing,
+    Question,
+    Seeded,
+    WorkByName,
+    walk,
+)
 from roadproof.questions.store import Store
 from roadproof.reasons import Reason
 from roadproof.runtime import pool
@@ -253,7 +263,7 @@ def _settle(job: _Job) -> list[Priced]:
     """Settle what is left of a batch."""
     from roadproof.engines.search.batches import Engines  # here: known answers need no solver
 
-    engines, new = Engines(job.store_of("").work), list[Priced]()
+    engines, new, known = Engines(job.store_of("").work), list[Priced](), dict(job.known)
     for drive in job.batch.seeds if isinstance(job.batch, Seeded) else ():
         engines.offer(drive)
 
@@ -265,7 +275,8 @@ def _settle(job: _Job) -> list[Priced]:
         if found is not None and store.stands(found[0]):
             answer, cost = found[0], NO_COST
         else:
-            answer, cost = replace(engines, work=store.work).settle(claim)
+            proposed = job.batch.proposed(name, known) if isinstance(job.batch, Proposing) else ()
+            answer, cost = replace(engines, work=store.work).settle(claim, proposed)
             answer = store.whole(store.exhausted(answer))
         new.append((name, answer.evidence, cost))
         return answer
@@ -273,9 +284,9 @@ def _settle(job: _Job) -> list[Priced]:
     def find(name: str, claim: Claim) -> Answer | None:
         if job.alone and new:
             return None
-        answer = answer_to(name, claim)
-        engines.learn(answer)
-        return answer
+        known[name] = answer_to(name, claim)
+        engines.learn(known[name])
+        return known[name]
 
     [*walk(job.batch, find)]
     return new

@@ -22,7 +22,7 @@ from roadproof.library.bind import values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import load_library
 from roadproof.library.scenarios import number_in
-from roadproof.library.specification import Specification, on_request
+from roadproof.library.specification import Specification, on_request, read_specification
 from roadproof.logic.formula import Formula
 from roadproof.logic.rewrite import with_values
 from roadproof.reasons import NO_REASON, Reason, Why
@@ -100,9 +100,9 @@ def drivers_in(home: Specification, given: Mapping[str, Fraction], names: tuple[
     if not names:
         return None
     library = home.library
-    path = on_request()[DRIVERS]
-    if all(x.name != str(path) for x in library.files):
-        library = load_library([path, *library.files])
+    driver = read_specification(on_request()[DRIVERS])
+    if all(x.text != driver.text for x in library.files):
+        library = load_library([driver, *library.files])
     specification = library.select(home.set_name, home.options)
     values = values_with(library, given)
     require(specification, values)

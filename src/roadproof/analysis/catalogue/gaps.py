@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from roadproof.analysis.basis import Basis
-from roadproof.analysis.coverage.answers import ClassAnswer
-from roadproof.analysis.coverage.classes import GapClasses, Part, sectors_of
+from roadproof.analysis.coverage.answers import ClassAnswer, Survey, is_covered
+from roadproof.analysis.coverage.classes import GapClasses, Part, sectors_of, with_only
 from roadproof.drivers.restriction import restriction_of
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
@@ -19,10 +19,11 @@ from roadproof.library.alike import likes_of
 from roadproof.library.bind import bind
 from roadproof.library.specification import Specification
 from roadproof.library.words import called
+from roadproof.questions.coverage.claims import group_name
 from roadproof.questions.coverage.question import CoverageQuestion, gaps_of
-from roadproof.questions.question import Answers
 from roadproof.recordings.evaluate.one_trace import OneTrace
 from roadproof.semantics.sampled.compiled import compile
+from roadproof.verdict import Verdict
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road
 
@@ -43,18 +44,8 @@ class GapKinds:
     @cached_property
     def classes(self) -> GapClasses:
         """What the judge is asked."""
-        return GapClasses(self._basis)
-
-    @cached_property
-    def _basis(self) -> Basis:
-        """About these scenarios alone."""
-        effort = self.basis.effort
-        return replace(
-            self.basis,
-            specification=_with_only(self.basis.specification, self.numbers),
-            sets=(),
-            effort=effort.of(min(effort.units, EFFORT)),
-        )
+        only = with_only(self.basis.specification, self.numbers)
+        return GapClasses(replace(self.basis, specification=only, sets=()))
 
     @cached_property
     def parts(self) -> Mapping[str, Part | None]:
@@ -78,22 +69,33 @@ class GapKinds:
                 found[name] = f"as {part.scenario} {scenarios[part.scenario].title}, but not {what}"
         return found
 
-    def question(self, names: Collection[str] | None = None) -> CoverageQuestion:
-        """Return the question for a drive of each class, or a proof that it is empty.
+    def question(self, shown: Collection[str]) -> CoverageQuestion:
+        """Return the question for a drive of each class that is not ``shown``, or a proof that it is empty.
 
-        ``names``: the classes that are asked about, each with those of its component; all where None.
+        Each class is asked about with all others of its component.
         """
-        asked = CoverageQuestion(self._basis, gaps_of((), tuple(map(load_road, ROADS))))
-        if names is None:
-            return asked
-        parts = {self.parts[name] for name in names}
-        return replace(asked, only=frozenset(x for x, y in asked.claims.groups.items() if parts & {*y.parts}))
+        parts = {part for name, part in self.parts.items() if name not in shown}
+        wanted = frozenset(group_name(x) for x in self.classes.groups() if parts & {*x.parts})
+        if wanted not in self._asked:
+            effort, roads = self.basis.effort, tuple(map(load_road, ROADS))
+            basis = replace(self.basis, sets=(), effort=effort.of(min(effort.units, EFFORT)))
+            self._asked[wanted] = CoverageQuestion(basis, gaps_of((), roads), wanted, self.numbers)
+        return self._asked[wanted]
 
-    def answers(self, question: CoverageQuestion, known: Answers) -> Mapping[str, ClassAnswer]:
-        """Return what is known of the classes that are asked about, by name."""
-        found = question.class_answers(known)
-        keys = {name: "" if part is None else part.key for name, part in self.parts.items()}
-        return {name: found[key] for name, key in keys.items() if key in found}
+    @cached_property
+    def _asked(self) -> dict[frozenset[str], CoverageQuestion]:
+        """The questions that were put together, by the groups of classes that they ask about."""
+        return {}
+
+    def answers(self, survey: Survey) -> Mapping[str, ClassAnswer | None]:
+        """Return what is known of each class, by name; None where it was not asked.
+
+        All are empty where it is proved that there is no gap.
+        """
+        if is_covered(survey.claims):
+            return {name: ClassAnswer(x, verdict=Verdict.IMPOSSIBLE) for name, x in self.parts.items()}
+        found = {x.part and x.part.key: x for x in survey.classes}
+        return {name: found.get(part and part.key) for name, part in self.parts.items()}
 
     def of_drive(self, file: DriveFile, pair: Sequence[str]) -> tuple[str, ...]:
         """The classes of a gap between the two vehicles ``pair`` of a drive."""
@@ -126,12 +128,6 @@ def gap_kinds(basis: Basis, numbers: Sequence[int]) -> GapKinds:
     return GapKinds(basis, tuple(numbers))
 
 
-def _with_only(home: Specification, numbers: Sequence[int]) -> Specification:
-    """The same definitions, of scenarios only those with these numbers."""
-    kept = {name: x for name, x in home.definitions.items() if s.number_in(name) in {None, *numbers}}
-    return Specification(home.library, home.set_name, home.options, kept)
-
-
 def _faults(home: Specification, numbers: Sequence[int]) -> Iterator[str]:
     if restriction_of(home.options) is not None:
         yield "a driver model says how scenarios begin; coverage asks which drives that begin so are in none"
@@ -144,7 +140,7 @@ def _faults(home: Specification, numbers: Sequence[int]) -> Iterator[str]:
             yield f"{s.name_of(number)} does not follow the template {s.TEMPLATE}; leave it out with --among"
             return
     likes = likes_of(home)
-    sectors = sectors_of(_with_only(home, numbers))
+    sectors = sectors_of(with_only(home, numbers))
     rows = {tuple(sorted({likes[n] for n in sector})) for sector in sectors}
     if len(rows) > 1:
         listed = ", ".join(map(str, two))

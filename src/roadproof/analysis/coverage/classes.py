@@ -169,6 +169,12 @@ def two_vehicle_numbers(specification: Specification) -> tuple[int, ...]:
     return tuple(n for n in numbers if len(s.vehicles_of(specification, s.Scenario(n, name))) == len(s.PAIR))
 
 
+def with_only(home: Specification, numbers: Collection[int]) -> Specification:
+    """Return the same definitions, of scenarios only those with these numbers."""
+    kept = {name: x for name, x in home.definitions.items() if s.number_in(name) in {None, *numbers}}
+    return Specification(home.library, home.set_name, home.options, kept)
+
+
 def sectors_of(specification: Specification) -> tuple[tuple[int, ...], ...]:
     """The two-vehicle scenarios, those of one road sector together, in the order of their numbers."""
     sectors: dict[Formula, list[int]] = {}

@@ -4,6 +4,7 @@ A drive of one claim is put on roads of the next and judged there; parts that cl
 the next and proved to clash there. So each claim has evidence of its own.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import assert_never
 
@@ -90,15 +91,21 @@ class Engines:
         self.unrefuted[:] = [x for x in self.unrefuted if x not in refuted]
         return refuted
 
-    def settle(self, claim: Claim) -> tuple[Answer, Cost]:
-        """Return the answer to a claim, and what it cost; in doubt where the clock cuts it off."""
+    def settle(self, claim: Claim, proposed: Iterable[JudgedDrive] = ()) -> tuple[Answer, Cost]:
+        """Return the answer to a claim, and what it cost; in doubt where the clock cuts it off.
+
+        ``proposed``: drives that are tried first where they are.
+        """
         begun = now()
         with about(f"{claim.query.text} {claim.home.set_name}"):
-            answer, cost = self._settle(claim)
+            answer, cost = self._settle(claim, proposed)
         return answer, replace(cost, seconds=since(begun))
 
-    def _settle(self, claim: Claim) -> tuple[Answer, Cost]:
+    def _settle(self, claim: Claim, proposed: Iterable[JudgedDrive]) -> tuple[Answer, Cost]:
         try:
+            shown = next((x for drive in proposed if (x := KnownDrive(drive).here(claim)) is not None), None)
+            if shown is not None:
+                return Answer(claim, shown), NO_COST
             match claim.mode:
                 case Valid():
                     alike = self.alike.get(without_sectors(claim.formula), ())

@@ -8,6 +8,7 @@ from typing import ClassVar, Unpack
 from roadproof.analysis.catalogue.completing import PriorResults, complete
 from roadproof.analysis.catalogue.decisions import Decision
 from roadproof.analysis.catalogue.entries import Catalogue, Concrete, Request
+from roadproof.analysis.catalogue.ranges import Span
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
 from roadproof.analysis.catalogue.tested import SCENARIOS, Targets, kind_of
 from roadproof.analysis.catalogue.traces import Courses, courses_of, of_drive
@@ -77,6 +78,31 @@ class CatalogueAnswer(QuestionAnswers[CatalogueView], BuildResult):
     def missing(self) -> tuple[str, ...]:
         """What is to be tested, and no test shows: scenarios, classes, with ``gaps`` classes of gaps."""
         return self.view.missing
+
+    @property
+    def figures(self) -> tuple[kept.Figure, ...]:
+        """How much is tested: by spec set, kind and road sector."""
+        return self.view.figures
+
+    @property
+    def spans(self) -> tuple[Span, ...]:
+        """Where it was asked, how tests of each class begin, and how drives of it can."""
+        return self.view.spans
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """On files that are no tests, samples that contradict themselves, drives made with other values."""
+        return self.view.notes
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """Those of the notes that say which vehicles and parts of files were left out."""
+        return self.view.left_out
+
+    @property
+    def in_force(self) -> tuple[str, ...]:
+        """What was asked otherwise than by default: spec set, readings, parameters, a driver model."""
+        return self.view.in_force
 
     @property
     def tests(self) -> tuple[str, ...]:

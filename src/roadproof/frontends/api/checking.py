@@ -227,7 +227,8 @@ class _Evidence:
     def given(self) -> _Given:
         """Every file, with the specification files that it is read with."""
         alone = [(file, self.specs) for file in self.alone]
-        return [*alone, *((file, (*self.specs, *x.specs)) for x in self.folders for file in x.files)]
+        answered = ((x, file, name) for x in self.folders for file, name in x.files.items())
+        return [*alone, *((file, (*self.specs, *x.specs_of(name))) for x, file, name in answered)]
 
 
 def _accepted_view(found: QuestionFolder, shown: Mapping[str, Finding]) -> "QuestionAnswers[Any]":

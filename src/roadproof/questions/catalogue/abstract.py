@@ -5,12 +5,13 @@ the test shows it, which a proof that the two clash answers, too. Only what all 
 implied.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import field, replace
 from functools import cached_property
 
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Questions
+from roadproof.analysis.catalogue.candidates import CandidateDrives
 from roadproof.analysis.catalogue.entries import Abstract, Freedom
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.showing import names_shown, shown_by
@@ -23,7 +24,7 @@ from roadproof.library.bind import bind
 from roadproof.library.compose import both, implication
 from roadproof.library.scenarios import Scenario, applied, name_of
 from roadproof.library.specification import Query
-from roadproof.questions.question import Steps
+from roadproof.questions.question import Answers, Steps
 from roadproof.reasons import Why
 from roadproof.runtime.canonical import digest
 from roadproof.runtime.records import dataclass
@@ -39,12 +40,16 @@ def stem_of(test: str) -> str:
 
 @dataclass(frozen=True)
 class TestBatch:
-    """The claims about a test with a formula; ``beside``: what is asked in further spec sets."""
+    """The claims about a test with a formula; ``beside``: what is asked in further spec sets.
+
+    ``shipped``: the shipped drives as drives of the test, once its first drive is known.
+    """
 
     basis: Basis
     asked: Questions
     entry: Abstract
     beside: tuple[Questions, ...] = ()
+    shipped: list[CandidateDrives] = field(default_factory=list, compare=False, repr=False)
 
     @property
     def name(self) -> str:
@@ -57,8 +62,7 @@ class TestBatch:
 
     def facts(self) -> Asking[tuple[Fact, ...]]:
         """Ask all of the test, and return what is known of it, in the order of the scenarios."""
-        entry = self.entry
-        runs = f"{self.name}-runs"
+        entry, runs = self.entry, self._runs
         first = yield runs, self.exists(entry.query)
         if first.drive is None:
             return (_alone(entry, runs, first),)
@@ -84,6 +88,23 @@ class TestBatch:
             implied = yield from self._implied(name, self.asked.class_query(name), drives)
             facts += [] if implied is None else [implied]
         return tuple(facts)
+
+    @property
+    def _runs(self) -> str:
+        """The name of the claim that there is a drive of the test."""
+        return f"{self.name}-runs"
+
+    def proposed(self, name: str, known: Answers) -> Iterator[JudgedDrive]:
+        """Yield a shipped drive that shows a scenario in the test, for the claim that there is one."""
+        found = (x for x in self.scenarios if self.named("shows", x) == name)
+        scenario, first = next(found, None), known.get(self._runs)
+        if scenario is None or first is None or first.drive is None:
+            return
+        if not self.shipped:
+            shown = names_shown(first.drive, self.asked)
+            self.shipped.append(CandidateDrives(self.basis, self.entry, first.drive, shown))
+        drive = self.shipped[0].find(scenario, self.scenarios[scenario])
+        yield from () if drive is None else (drive,)
 
     def _shown(self, name: str, query: Query) -> Asking[Fact]:
         """Ask for a drive of the test that shows a scenario, or a proof that the two clash."""

@@ -10,7 +10,7 @@ from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.decisions import Drivers, drivers_in
 from roadproof.analysis.catalogue.entries import Abstract, Catalogue, Concrete, Request
 from roadproof.analysis.catalogue.fact import Fact, scenarios_shown
-from roadproof.analysis.catalogue.gaps import GapKinds, gap_kinds
+from roadproof.analysis.catalogue.gaps import PREFIX, GapKinds, gap_kinds
 from roadproof.analysis.catalogue.ranges import Reach, ReachBatch, reaches_of
 from roadproof.analysis.catalogue.reading import read_tests
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
@@ -24,17 +24,21 @@ from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.catalogue_index import KeptRequest
 from roadproof.evidence.codec import Doc, Rule, read
 from roadproof.evidence.finding import Finding
-from roadproof.evidence.subject import DriverSide, SubjectKind
+from roadproof.evidence.subject import DriverSide, SubjectKind, subject_of_fact
 from roadproof.questions.catalogue.abstract import PairBatch, TestBatch
 from roadproof.questions.catalogue.concrete import ConcreteBatch
 from roadproof.questions.catalogue.sides import SidesBatch
 from roadproof.questions.catalogue.view import CatalogueView
 from roadproof.questions.classify.division import divide
+from roadproof.questions.nested import Nested
 from roadproof.questions.question import Answers, Batch, Place, seen, walk
+from roadproof.reasons import Reason
 from roadproof.runtime.budget import Work
 from roadproof.runtime.records import dataclass
 
 TESTS_IN_A_BATCH = 20
+GAPS = "gaps-"
+"""How names of claims about gaps begin."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -148,6 +152,15 @@ class CatalogueQuestion:
         """Yield what is asked when all is known of each test by itself."""
         yield from self._pairs_and_sides(known)
         yield from self._reaches(known)
+        gaps = self._gaps(known)
+        yield from () if gaps is None else gaps.batches(known)
+
+    def _gaps(self, known: Answers) -> Nested | None:
+        """Return the question about the classes of gaps that no concrete test shows, where they are asked."""
+        if self.kinds is None:
+            return None
+        shown = {name for x in self.shown(0, known) for name in x.names if name.startswith(PREFIX)}
+        return Nested(GAPS, self.kinds.question(shown))
 
     def _pairs_and_sides(self, known: Answers) -> "Iterator[PairBatch | SidesBatch]":
         facts = {x.entry.id: seen(x.facts(), known) for x in self._test_batches}
@@ -192,10 +205,12 @@ class CatalogueQuestion:
         return (*alone, *later)
 
     def label(self, name: str) -> str:
-        """Return which test or target the claim of a name is about."""
-        for batch in self._test_batches:
-            if name.startswith(batch.name):
-                return f"test {batch.entry.id}"
+        """Return which test, target or class of gaps the claim of a name is about."""
+        if self.kinds is not None and (gaps := Nested(GAPS, self.kinds.question(()))).has(name):
+            return gaps.label(name)
+        if (fact := self._fact(name)) is not None:
+            test, relation, other = fact
+            return f"{test} {relation if relation == 'implies' else 'open'} {other}".strip()
         for judged in self._concrete_batches:
             for entry in judged.entries:
                 if judged.named(entry) == name:
@@ -204,9 +219,11 @@ class CatalogueQuestion:
 
     def tell(self, name: str, answer: Answer, found: Finding) -> Finding:
         """Return what was found of a test, with what it shows and what becomes of it under driver models."""
+        if self.kinds is not None and (gaps := Nested(GAPS, self.kinds.question(()))).has(name):
+            return gaps.tell(name, answer, found)
         test = answer.evidence.shows if isinstance(answer.evidence, Judged) else None
         if not isinstance(test, ConcreteAnswer):
-            return found
+            return self._told(name, answer, found)
         shown = ", ".join(dict.fromkeys(x.what for x in test.shown)) or "no scenario"
         how = (
             "read again" if test.fault else "judged again in dense time" if test.dense else "monitored again"
@@ -224,9 +241,40 @@ class CatalogueQuestion:
             drivers=tuple(sides),
         )
 
+    def _fact(self, name: str) -> tuple[str, str, str] | None:
+        """Return what the claim of a name says: that a test stands in a relation to another name."""
+        ids = {x.name: x.entry.id for x in self._test_batches}
+        stem = next((x for x in ids if name.startswith(f"{x}-")), None)
+        if stem is None:
+            return None
+        relation, _, other = name.removeprefix(f"{stem}-").partition("-")
+        if relation in ("runs", "shows", "implies"):
+            return ids[stem], relation, ids.get(other, other.replace("-in-", "@"))
+        side, _, model = other.partition("-")
+        return ids[stem], "shows", f"{relation} {side} ({model})"
+
+    def _told(self, name: str, answer: Answer, found: Finding) -> Finding:
+        """Return what was found of a test that is a formula, in the relation that is shown."""
+        fact = self._fact(name)
+        if fact is None:
+            return found
+        test, relation, other = fact
+        subject = subject_of_fact(test, relation)
+        if answer.certificate is not None:
+            relation = {"runs": "empty", "shows": "excludes"}.get(relation, relation)
+        label = f"{test} {relation} {other}".strip()
+        return replace(found, label=label, subject=subject.kind, name=subject.name)
+
+    def doubts(self, known: Answers) -> list[tuple[str, Reason]]:
+        """Return the facts of tests that no claim was asked for, and the classes of gaps in doubt."""
+        facts = (x for x in self.facts(known) if x.test and x.relation == "open" and x.answer is None)
+        gaps = self._gaps(known)
+        found = [(f"{x.test} open {x.other}", x.reason) for x in facts]
+        return [*found, *(() if gaps is None else gaps.doubts(known))]
+
     def view(self, known: Answers) -> CatalogueView:
         """Return what tests show, mean and miss."""
-        return CatalogueView(
+        made = CatalogueView(
             self.basis,
             self.request,
             self.tests,
@@ -234,8 +282,12 @@ class CatalogueQuestion:
             tuple(self.shown(k, known) for k in range(len(self.questions))),
             self.facts(known),
             self.drivers,
-            None,
         )
+        gaps = self._gaps(known)
+        if gaps is None or self.kinds is None:
+            return made
+        view = gaps.question.view(gaps.own(known))
+        return replace(made, survey=(gaps, view), gap_answers=self.kinds.answers(view.survey))
 
     def data(self, view: CatalogueView, place: Place, seconds: float) -> Any:
         """Return the view as ``--json`` prints it."""

@@ -16,8 +16,12 @@ from roadproof.analysis.catalogue.tested import Targets, figures, figures_beside
 from roadproof.analysis.coverage.answers import ClassAnswer
 from roadproof.drivers.restriction import restriction_of
 from roadproof.evidence.answers import catalogue_index as kept
+from roadproof.evidence.answers import coverage
 from roadproof.evidence.answers.catalogue_index import Figure
 from roadproof.library.bind import values_with
+from roadproof.questions.coverage.data import claims_data, class_data
+from roadproof.questions.coverage.question import CoverageView
+from roadproof.questions.nested import Nested
 from roadproof.questions.question import Place, heading_of
 from roadproof.runtime.records import dataclass
 from roadproof.world.unread import left_out_in, unread_of_road
@@ -28,7 +32,8 @@ class CatalogueView:
     """What tests show and mean.
 
     ``shown``: what concrete tests show, in each spec set; ``facts``: what is known of the others;
-    ``gap_answers``: where it was asked, what is known of each class of gaps, None of those that tests show.
+    ``survey``: where it was asked, what is known of gaps, with the question inside this one, and
+    ``gap_answers``: of each class of gaps, None of those that tests show.
     """
 
     basis: Basis
@@ -38,7 +43,8 @@ class CatalogueView:
     shown: tuple[tuple[ConcreteAnswer, ...], ...]
     facts: tuple[Fact, ...]
     drivers: Drivers | None
-    gap_answers: Mapping[str, ClassAnswer | None] | None
+    survey: tuple[Nested, CoverageView] | None = None
+    gap_answers: Mapping[str, ClassAnswer | None] | None = None
 
     @property
     def asked(self) -> Questions:
@@ -166,7 +172,7 @@ class CatalogueView:
             request=self.request.kept,
             tests=tuple(map(self._test, self.catalogue.entries)),
             targets=found.targets,
-            gaps=self._gaps(),
+            gaps=self._gaps(place),
             not_tested=self.missing,
             figures=self.figures,
             decisions=tuple(_kept(test, x) for test, x in self.decisions),
@@ -181,17 +187,22 @@ class CatalogueView:
             seconds=round(seconds, 1),
         )
 
-    def _gaps(self) -> kept.Gaps:
-        """Return the classes of gaps: those that tests show, or all."""
-        gaps = self.tested.gaps
+    def _gaps(self, place: Place) -> kept.Gaps:
+        """Return the classes of gaps: those that tests show, or all with what shows that they are empty."""
+        gaps, claims, classes = self.tested.gaps, list[coverage.Claim](), list[coverage.KeptClass]()
+        if self.survey is not None:
+            nested, view = self.survey
+            there = nested.place(place)
+            claims += claims_data(view, there)
+            classes += (class_data(x, there) for x in view.survey.classes)
         return kept.Gaps(
             asked=gaps.asked,
             classes_in_all=gaps.total,
             targets=gaps.targets,
             empty=tuple(x.name for x in gaps.empty),
             open=gaps.open,
-            claims=(),
-            classes=(),
+            claims=tuple(claims),
+            classes=tuple(classes),
         )
 
     def _test(self, entry: Concrete | Abstract) -> kept.ConcreteTest | kept.AbstractTest:

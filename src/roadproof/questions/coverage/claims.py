@@ -1,7 +1,7 @@
 """What is claimed of the gaps of a spec set: that there are none, or that there are some of a class."""
 
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from fractions import Fraction
 from functools import partial
 from typing import Any, TypeVar
@@ -19,6 +19,7 @@ from roadproof.analysis.coverage.classes import (
     near_miss,
     starts_in,
     two_vehicle_numbers,
+    with_only,
 )
 from roadproof.analysis.coverage.found import Trials, mixed_definitions, parent_of, trial_without
 from roadproof.evidence.claim import Claim, Exists, Judge, On, claim_of, valid_under
@@ -53,10 +54,14 @@ class Made(dict[object, Any]):
 
 @dataclass(frozen=True)
 class GapClaims:
-    """Claims about the gaps of a set; ``wider``: extensions of it, each of the one before."""
+    """Claims about the gaps of a set; ``wider``: extensions of it, each of the one before.
+
+    ``numbers``: the scenarios that count, all of the set where None.
+    """
 
     basis: Basis
     wider: tuple[str, ...] = ()
+    numbers: tuple[int, ...] | None = None
     made: Made = field(default_factory=Made, compare=False, repr=False)
 
     @property
@@ -65,14 +70,22 @@ class GapClaims:
         return self.basis.specification
 
     @property
+    def counted(self) -> Basis:
+        """The basis with the scenarios that count."""
+        if self.numbers is None:
+            return self.basis
+        only = self.made.once("counted", partial(with_only, self.home, self.numbers))
+        return replace(self.basis, specification=only, sets=())
+
+    @property
     def classes(self) -> GapClasses:
         """Which classes a drive belongs to."""
-        return self.made.once("classes", lambda: GapClasses(self.basis))
+        return self.made.once("classes", lambda: GapClasses(self.counted))
 
     @property
     def trials(self) -> Trials:
         """The judge of drives under wider sets."""
-        return self.made.once("trials", lambda: Trials(self.basis, self.wider))
+        return self.made.once("trials", lambda: Trials(self.counted, self.wider))
 
     @property
     def groups(self) -> dict[str, GapGroup]:
@@ -82,7 +95,8 @@ class GapClaims:
     @property
     def covered(self) -> dict[str, Claim]:
         """Claims that together say that there is no gap, by name."""
-        made = self.made.once("covered", lambda: [valid_under(self.home, x) for x in claims_of(self.home)])
+        queries = self.made.once("queries", lambda: claims_of(self.counted.specification))
+        made = self.made.once("covered", lambda: [valid_under(self.home, x) for x in queries])
         return {f"covered-{k}": x for k, x in enumerate(made, 1)}
 
     # --- definitions that a set needs -------------------------------------------------------------

@@ -37,15 +37,7 @@ def coverage_data(
         **said,
         wider=tuple(wider),
         verdict=survey.verdict,
-        claims=tuple(
-            shown.Claim(
-                claim=x.claim.text,
-                verdict=x.verdict,
-                certificate=None if x.certificate is None else place(name, view.known[name]),
-                reason=x.reason,
-            )
-            for name, x in zip(view.proofs, survey.claims, strict=True)
-        ),
+        claims=claims_data(view, place),
         classes=tuple(classes),
         gaps=tuple(gaps),
         needs=tuple(_need(x, place) for x in survey.needs),
@@ -55,32 +47,55 @@ def coverage_data(
     )
 
 
-def _gap(number: int, gap: Gap, place: Place) -> shown.NumberedGap:
-    file = gap.drive.file
-    return shown.NumberedGap(
-        number=number,
-        road=file.road.name,
-        formula=file.formula,
-        first=gap.first,
-        caught_by=gap.caught_by,
-        classes=gap.classes,
-        drive=place(gap.shown.name, gap.shown.answer),
-        elsewhere={road: place(x.name, x.answer) for road, x in gap.elsewhere.items()},
+def claims_data(view: "CoverageView", place: Place) -> tuple[shown.Claim, ...]:
+    """Return the claims that there is no gap."""
+    return tuple(
+        shown.Claim(
+            claim=x.claim.text,
+            verdict=x.verdict,
+            certificate=None if x.certificate is None else place(name, view.known[name]),
+            reason=x.reason,
+        )
+        for name, x in zip(view.proofs, view.survey.claims, strict=True)
     )
+
+
+def class_data(x: ClassAnswer, place: Place) -> shown.KeptClass:
+    """Return a class with its gaps."""
+    return shown.KeptClass(**_said(x, place), gaps=tuple(shown.Gap(**_drive(y, place)) for y in x.gaps))
+
+
+def _gap(number: int, gap: Gap, place: Place) -> shown.NumberedGap:
+    return shown.NumberedGap(number=number, **_drive(gap, place))
+
+
+def _drive(gap: Gap, place: Place) -> dict[str, Any]:
+    file = gap.drive.file
+    return {
+        "road": file.road.name,
+        "formula": file.formula,
+        "first": gap.first,
+        "caught_by": gap.caught_by,
+        "classes": gap.classes,
+        "drive": place(gap.shown.name, gap.shown.answer),
+        "elsewhere": {road: place(x.name, x.answer) for road, x in gap.elsewhere.items()},
+    }
 
 
 def _class(x: ClassAnswer, numbers: range, place: Place) -> shown.CountedClass:
-    return shown.CountedClass(
+    said = _said(x, place)
+    return shown.CountedClass(**said, gaps=tuple(numbers), in_traffic=x.in_traffic, trace=x.trace)
+
+
+def _said(x: ClassAnswer, place: Place) -> dict[str, Any]:
+    return {
         **names_of(x.part),
-        verdict=x.verdict,
-        gaps=tuple(numbers),
-        claim="" if x.claim is None else x.claim.text,
-        certificate=None if x.proof is None else place(x.proof.name, x.proof.answer),
-        reason=x.reason,
-        none_for=x.none_for,
-        in_traffic=x.in_traffic,
-        trace=x.trace,
-    )
+        "verdict": x.verdict,
+        "claim": "" if x.claim is None else x.claim.text,
+        "certificate": None if x.proof is None else place(x.proof.name, x.proof.answer),
+        "reason": x.reason,
+        "none_for": x.none_for,
+    }
 
 
 def _need(x: Need, place: Place) -> shown.Need:

@@ -60,17 +60,19 @@ class CoverageView:
 class CoverageQuestion:
     """The question which disturbances between two vehicles a set misses.
 
-    ``only``: the groups of classes that are asked about, all where None.
+    ``only``: the groups of classes that are asked about, and ``numbers``: the scenarios that count; all where
+    None.
     """
 
     kind: ClassVar[str] = "coverage"
     basis: Basis
     asked: Gaps
     only: frozenset[str] | None = None
+    numbers: tuple[int, ...] | None = None
     claims: GapClaims = field(init=False, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "claims", GapClaims(self.basis, self.asked.wider))
+        object.__setattr__(self, "claims", GapClaims(self.basis, self.asked.wider, self.numbers))
 
     @property
     def work(self) -> Work:
@@ -193,21 +195,6 @@ class CoverageQuestion:
     def _classes(self, group: str, known: Answers) -> ClassAnswers:
         answers = seen(self._asking(group, known).run(), known)
         return answers
-
-    def class_answers(self, known: Answers) -> dict[str, ClassAnswer]:
-        """Return what is known of each class, by the key of its part, "" for no single condition.
-
-        All are empty where it is proved that there is no gap.
-        """
-        found: dict[str, ClassAnswer] = {}
-        for name in self.groups:
-            if self.is_covered(known):
-                parts = self.claims.groups[name].parts
-                answers: ClassAnswers = tuple(ClassAnswer(x, verdict=Verdict.IMPOSSIBLE) for x in parts)
-            else:
-                answers = self._classes(name, known)
-            found |= {"" if x.part is None else x.part.key: x for x in answers}
-        return found
 
     def doubts(self, known: Answers) -> list[tuple[str, Reason]]:
         """Return the classes of which neither a drive nor a proof is known, and why."""
