@@ -36,7 +36,7 @@ PLATE = Finding(
     name="careful-Vy-1",
 )
 TEST = Finding(
-    "index.json",
+    "judged-test-CUT-1-base.json",
     "test",
     GOOD,
     NO_REASON,
