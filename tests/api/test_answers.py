@@ -185,8 +185,7 @@ def test_what_rests_on_definitions_of_ones_own_is_accepted(tmp_path: Path) -> No
         assert answer.check().accepted
         assert len(answer.check().findings) == len(answer.evidence) == 2
         folder = answer.save(tmp_path / str(k), pictures=False)
-        named = any((folder / x).exists() for x in ("index.json", "question.json"))
-        specs = [] if named else [folder / "mine-1.spec"]
+        specs = [] if (folder / "question.json").exists() else [folder / "mine-1.spec"]
         assert rp.check(folder, specs=specs, jobs=1).accepted
         (folder / "mine-1.spec").write_text("def fast(a: vehicle) := v_lon(a) > 10 m/s")
         assert not rp.check(folder, jobs=1).accepted

@@ -12,6 +12,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -240,10 +241,10 @@ def test_a_claim_whose_process_dies_is_unknown_and_the_others_stand(
 ) -> None:
     settle = Engines.settle
 
-    def settle_or_die(engines: Engines, claim: Claim) -> tuple[Answer, Cost]:
+    def settle_or_die(engines: Engines, claim: Claim, *more: Any) -> tuple[Answer, Cost]:
         if claim.text == "false":
             os.kill(os.getpid(), signal.SIGKILL)
-        return settle(engines, claim)
+        return settle(engines, claim, *more)
 
     monkeypatch.setattr(Engines, "settle", settle_or_die)
     claims = ["true", "false", "not false"]

@@ -75,6 +75,8 @@ OPTIONAL = {
     "coverage.json": {"in_traffic", "trace"},
     "drive.json": {"lanes", "overlaps_allowed", "natural", "kind", "signals"},
     "monitor.json": {"exact"},
+    "refutation.json": {"assuming", "drive_sought"},
+    "undecided.json": {"assuming", "doubt", "limits", "work"},
     "redundancy.json": {"road"},
     "traffic-results.json": {"drivers"},
     "verdicts.json": {"limits", "road", "doubt"},

@@ -8,6 +8,7 @@ from itertools import combinations
 from typing import Any
 
 from findings.figures import WORDS, Outcome
+from roadproof.questions.views import folder_data
 
 US101 = "out/us101"
 
@@ -15,6 +16,11 @@ US101 = "out/us101"
 def read(outcome: Outcome, name: str) -> Any:
     """A JSON file that the command wrote."""
     return json.loads((outcome.folder / name).read_text("utf-8"))
+
+
+def view(outcome: Outcome, folder: str) -> Any:
+    """What the answers in a folder show together."""
+    return folder_data(outcome.folder / folder)
 
 
 def pairs_with(outcome: Outcome, verdict: str) -> set[tuple[int, int]]:
@@ -113,7 +119,7 @@ def happenings(outcome: Outcome) -> tuple[int, str, str]:
 
 def kinds_of_places(outcome: Outcome) -> int:
     """In how many choices of road sectors each class is there; 0 where that is not the same for all."""
-    counts = Counter(tuple(x["happens"]) for x in read(outcome, "classes/index.json")["classes"])
+    counts = Counter(tuple(x["happens"]) for x in view(outcome, "classes")["classes"])
     return counts.popitem()[1] if len(set(counts.values())) == 1 else 0
 
 
@@ -249,7 +255,7 @@ def doubts_and_traces(outcome: Outcome) -> tuple[str, ...]:
 
 def picture_of_a_gap_beside_the_lane(outcome: Outcome) -> str:
     """The file with the first gap that scenario 1 misses because of the danger in ``cutIn``."""
-    index = read(outcome, "gaps/index.json")
+    index = view(outcome, "gaps")
     [entry] = [
         x
         for x in index["classes"]
@@ -305,12 +311,12 @@ def roles_differ(outcome: Outcome) -> tuple[int, int]:
 
 
 def claims_of_classes(outcome: Outcome) -> int:
-    return len(read(outcome, "classes/index.json")["claims"])
+    return len(view(outcome, "classes")["claims"])
 
 
 def claims_about_cells(outcome: Outcome) -> tuple[object, ...]:
     """Claims, cells of what happens and of where; claims about pairs and unions of classes; classes."""
-    found = read(outcome, "classes/index.json")
+    found = view(outcome, "classes")
     happens = {tuple(x["happens"]) for x in found["classes"]}
     classes, scenarios = len(found["classes"]), {y for x in found["classes"] for y in x["scenarios"]}
     pairs = classes * (classes - 1) // 2
@@ -328,7 +334,7 @@ def needed_definitions(outcome: Outcome) -> int:
 
 def counts_of_order(outcome: Outcome) -> tuple[int, ...]:
     """Formulas, proofs, refuted implications, doubts."""
-    index = read(outcome, "order/index.json")
+    index = view(outcome, "order")
     return tuple(len(index[key]) for key in ("kinds", "proved", "missing", "doubts"))
 
 

@@ -201,7 +201,7 @@ def test_evidence_is_about_the_side_that_was_asked(tmp_path: Path, capsys: Heard
     assert "the formula does not hold on the drive" in capsys.readouterr().out
 
 
-def test_an_index_says_the_side_of_its_options(tmp_path: Path, capsys: Heard) -> None:
+def test_answers_for_one_side_are_none_for_the_other(tmp_path: Path, capsys: Heard) -> None:
     given = [
         "overlap",
         "--among",
@@ -214,13 +214,14 @@ def test_an_index_says_the_side_of_its_options(tmp_path: Path, capsys: Heard) ->
     ]
     assert main([*given, "--no-pictures", "--jobs", "1"]) == 0
     assert main(["check", str(tmp_path)]) == 0
-    index = tmp_path / "index.json"
-    data = json.loads(index.read_text())
-    data["prevention"]["side"] = "preventable"
-    index.write_text(json.dumps(data))
+    path = tmp_path / "question.json"
+    data = json.loads(path.read_text())
+    assert data["basis"]["options"]["prevention"] == "unpreventable"
+    data["basis"]["options"]["prevention"] = "preventable"
+    path.write_text(json.dumps(data))
     capsys.readouterr()
     assert main(["check", str(tmp_path)]) == 10
-    assert "not what its options say" in capsys.readouterr().out
+    assert "it was read with other options" in capsys.readouterr().out
 
 
 def test_without_a_driver_nothing_is_said() -> None:

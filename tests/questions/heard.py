@@ -16,10 +16,10 @@ class Asked:
         self.log = log
         settle = study.settle
 
-        def hear(asked: Any, piece: Any) -> Any:
+        def hear(asked: Any, piece: Any, *more: Any) -> Any:
             with log.open("a") as file:
                 file.write(f"{said(piece)}\n")
-            return settle(asked, piece)
+            return settle(asked, piece, *more)
 
         patch.setattr(study, "settle", hear)
 

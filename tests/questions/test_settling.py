@@ -80,11 +80,11 @@ from roadproof.frontends.cli.main import main
 
 settle = Engines.settle
 
-def settle_or_die(engines, claim):
+def settle_or_die(engines, claim, *more):
     if claim.text == {last!r}:
         os.kill(os.getppid(), signal.SIGKILL)
         os.kill(os.getpid(), signal.SIGKILL)
-    return settle(engines, claim)
+    return settle(engines, claim, *more)
 
 Engines.settle = settle_or_die
 main(["prove", *{claims!r}, "--jobs", "1", "--out", {out!r}])
@@ -299,10 +299,10 @@ def test_a_lost_process_puts_one_claim_in_doubt(
 ) -> None:
     true_settle = Engines.settle
 
-    def settle_or_die(engines: Engines, claim: Any) -> Any:
+    def settle_or_die(engines: Engines, claim: Any, *more: Any) -> Any:
         if claim.text == SYMMETRIC:
             os.kill(os.getpid(), signal.SIGKILL)
-        return true_settle(engines, claim)
+        return true_settle(engines, claim, *more)
 
     with monkeypatch.context() as patch:
         patch.setattr(Engines, "settle", settle_or_die)
@@ -347,11 +347,11 @@ from roadproof.frontends.cli.main import main
 
 settle = Engines.settle
 
-def settle_or_die(engines, claim):
+def settle_or_die(engines, claim, *more):
     if claim.text.endswith({last!r}):
         os.kill(os.getppid(), signal.SIGKILL)
         os.kill(os.getpid(), signal.SIGKILL)
-    return settle(engines, claim)
+    return settle(engines, claim, *more)
 
 Engines.settle = settle_or_die
 main(["witness", "3", "4", {formula!r}, "--jobs", "1", "--out", {out!r}])

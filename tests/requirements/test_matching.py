@@ -1,6 +1,5 @@
 """What evidence of each kind says of a link, on findings that are put together here."""
 
-import json
 from dataclasses import replace
 from fractions import Fraction
 from itertools import product
@@ -11,6 +10,7 @@ from typing import get_args
 import pytest
 
 import roadproof as rp
+from roadproof.analysis.requirements import checked_evidence
 from roadproof.analysis.requirements.checked_evidence import CheckedEvidence, read_findings
 from roadproof.analysis.requirements.fingerprints import Surroundings, differences, parts_of
 from roadproof.analysis.requirements.matching import combined, read_target, shown_by
@@ -36,7 +36,7 @@ PLATE = Finding(
     name="careful-Vy-1",
 )
 TEST = Finding(
-    "index.json",
+    "judged-test-CUT-1-base.json",
     "test",
     GOOD,
     NO_REASON,
@@ -213,11 +213,13 @@ def test_tests_of_a_catalogue(change: dict[str, str], expected: str, reason: str
     assert state(Link("test", "CUT-1"), found) == (expected, reason)
 
 
-def test_a_test_that_is_not_what_it_claims_is_refuted(tmp_path: Path) -> None:
-    index = {"schema": "roadproof/catalogue/1", "contradictions": []}
+def test_a_test_that_is_not_what_it_claims_is_refuted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answer = {"schema": "roadproof/catalogue/1", "contradictions": []}
     faults = [{"tests": ["CUT-1"], "told": "claims scenario_4, and shows scenario_1"}]
-    (tmp_path / "index.json").write_text(json.dumps(index | {"faults": faults}), "utf-8")
-    found = replace(TEST, where=str(tmp_path / "index.json"))
+    monkeypatch.setattr(checked_evidence, "folder_data", lambda *_: answer | {"faults": faults})
+    found = replace(TEST, where=str(tmp_path / "judged-test-CUT-1-base.json"))
     told = (LinkState.REFUTED, "claims scenario_4, and shows scenario_1")
     assert state(Link("test", "CUT-1"), found) == told
     assert state(Link("test", "CUT-2"), replace(found, name="CUT-2"))[0] == "witnessed"

@@ -66,7 +66,7 @@ class Checker:
             if schema in drive_file.SCHEMAS_READ:
                 return self._drive(path, content)
             if schema == JUDGED:
-                why = Why.TOLD("it is checked with the question of its folder")
+                why = Why.WITH_QUESTION()
                 return Finding(str(path), "test", Acceptance.UNREADABLE, why)
             if schema == REFUTATION:
                 return self._refutation(path, read(RefutationFile, content, str(path)))

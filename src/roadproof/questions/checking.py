@@ -91,7 +91,7 @@ class QuestionFolder:
         if isinstance(answer.claim.mode, On) and isinstance(answer.evidence, Judged):
             same = _is_so(answer.claim.mode.judge, answer.evidence.shows)
             outcome = Acceptance.ACCEPTED if same else Acceptance.REJECTED
-            reason = NO_REASON if same else Why.TOLD("the trace shows something else")
+            reason = NO_REASON if same else Why.NOT_SHOWN()
             found = replace(found, kind="test", outcome=outcome, reason=reason)
         claim = statement(assumed_by(answer.claim), answer.claim.query.text)
         if isinstance(answer.claim.mode, Beside):
@@ -206,7 +206,7 @@ def _content(path: Path) -> object:
 
 def _read(claim: Claim, content: object, where: str) -> Answer:
     if content is None:
-        return undecided(claim, Why.TOLD("the folder has no answer to it"))
+        return undecided(claim, Why.NO_ANSWER())
     if isinstance(claim.mode, On) and isinstance(content, dict) and "asked" in content:
         content = {**content, "asked": claim.mode.asked}  # its trace is judged again, whatever it was asked
     return read_answer(claim, content, where)
