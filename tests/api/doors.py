@@ -96,13 +96,17 @@ def without_clock(text: str) -> str:
     return re.sub(r" +\d+(\.\d+)? s$| +\d+\.\d+ s\b", " … s", text.strip(), flags=re.M)
 
 
+COST = ("seconds", "stages", "sizes")
+"""What answers say of the run that asked: how long each took, and how large the problems were."""
+
+
 def without_seconds(data: Any) -> Any:
-    """Plain data without what depends on how fast the machine is, as JSON brings it back."""
+    """Plain data without what a run cost, as JSON brings it back."""
 
     def strip(part: Any) -> Any:
         match part:
             case dict():
-                return {name: strip(x) for name, x in part.items() if name != "seconds"}
+                return {name: strip(x) for name, x in part.items() if name not in COST}
             case list():
                 return [*map(strip, part)]
             case _:

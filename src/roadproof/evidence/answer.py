@@ -70,7 +70,7 @@ Evidence: TypeAlias = (
 class Answer:
     """A claim, and the evidence that decides it.
 
-    Raises ``ValueError`` for evidence that decides no claim of this mode.
+    Raises ``ValueError`` for evidence that decides no claim of this mode, or has other values of parameters.
     """
 
     claim: Claim
@@ -78,6 +78,11 @@ class Answer:
 
     def __post_init__(self) -> None:
         _ = self.verdict
+        match self.evidence:
+            case JudgedDrive(file=file) if other := _other_value(self.claim, file.values):
+                raise ValueError(f"{other} on the drive")
+            case NoneWithinFile(values=values) if other := _other_value(self.claim, values):
+                raise ValueError(f"{other} in the trees")
 
     @property
     def verdict(self) -> Verdict:
@@ -276,8 +281,7 @@ def _drive(claim: Claim, content: object, where: str) -> JudgedDrive:
     file = read_drive(content, where)
     _require_readings(claim, file.set_name, file.options, where)
     _require(_shows(claim, file), where, f"its drive is one of {_short(file.formula)}")
-    if not isinstance(claim.mode, Valid) or claim.mode.within is not None:
-        _require_values(claim, file.values, where)
+    _require_values(claim, file.values, where)
     if isinstance(claim.mode, Exists):
         mode, overlaps = claim.mode, file.overlaps_allowed
         _require(file.drive not in mode.unlike, where, "it is a drive from which it has to differ")
@@ -423,9 +427,15 @@ def _require_readings(claim: Claim, set_name: str, options: Mapping[str, str], w
 
 
 def _require_values(claim: Claim, values: Mapping[str, Fraction], where: str) -> None:
+    other = _other_value(claim, values)
+    _require(not other, where, other)
+
+
+def _other_value(claim: Claim, values: Mapping[str, Fraction]) -> str:
+    """Return which parameter has another value than a claim gives it, or nothing."""
     known = values_with(claim.home.library, values)
-    for x in claim.parameters:
-        _require(known[x.name] == x.value, where, f"it has {x.name}={known[x.name]}, and not {x.value}")
+    other = ((name, value) for name, value in claim.values.items() if known[name] != value)
+    return next((f"it has {name}={known[name]}, and not {value}" for name, value in other), "")
 
 
 def _require(holds: bool, where: str, otherwise: str) -> None:

@@ -180,6 +180,12 @@ class Claim:
         """The claim as people read it."""
         return self.query.text
 
+    @property
+    def values(self) -> Mapping[str, Fraction]:
+        """The values that evidence has to have; none where the claim is about all values."""
+        is_about_all = isinstance(self.mode, Valid) and self.mode.within is None
+        return {} if is_about_all else {x.name: x.value for x in self.parameters}
+
     def read(self, text: str) -> Formula:
         """Return what a text says in the definitions of the claim; its own is not read again.
 

@@ -119,7 +119,8 @@ class CandidateDrives:
 
     def _on_another_road(self, wanted: Query) -> JudgedDrive | None:
         """The drive of the test itself where it shows the scenario, too."""
-        return None if self.entry.road else placed(self.drive.file, wanted, self.basis.library)
+        file = replace(self.drive.file, values=self.basis.all_values())
+        return None if self.entry.road else placed(file, wanted, self.basis.library)
 
 
 def _moved_towards(drive: Drive, other: Drive) -> Iterator[Drive]:

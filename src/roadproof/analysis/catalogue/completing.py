@@ -105,7 +105,7 @@ class _CompletionJobs:
     def _as_target(self, file: DriveFile, target: str) -> JudgedDrive | None:
         """A drive as one of the formula of a target, which needs no definition of classes."""
         home = self.basis.specification
-        here = replace(file, set_name=home.set_name)
+        here = replace(file, set_name=home.set_name, values=self.basis.all_values())
         return judged_as(here, self.asked.query_of(target), home.library)
 
     def _scenario(self, number: int) -> Completion:

@@ -1,7 +1,7 @@
 """A drive for each class: one is looked for, and put on roads where the same happens in other zones."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import get_args
 
 from roadproof.analysis.basis import Basis
@@ -78,7 +78,8 @@ class _DriveJobs:
 
     def _elsewhere(self, judged: JudgedDrive, query: Query) -> JudgedDrive | None:
         """The motions of a drive on another road, or on their own with other zones."""
-        file, library = judged.file, self.basis.library
+        library = self.basis.library
+        file = replace(judged.file, values=self.basis.all_values())
         return placed(file, query, library) or placed_on(file, query, library, patched(file.road, file.drive))
 
 

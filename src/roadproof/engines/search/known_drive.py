@@ -50,13 +50,13 @@ class KnownDrive:
         return self._holds(sought_by(claim), claim)
 
     def _holds(self, formula: Formula, claim: Claim) -> bool:
-        file = self.judged.file
+        file = with_values_of(self.judged.file, claim)
         values = values_with(claim.home.library, file.values)
         return self._judge.holds(bind(formula, file.road, file.lanes, values))
 
     def refutation(self, claim: Claim) -> JudgedDrive | None:
         """Return the drive as one on which a claim is false; None where the judge rejects that."""
-        return judged_as(self.judged.file, against(claim), claim.home.library)
+        return judged_as(with_values_of(self.judged.file, claim), against(claim), claim.home.library)
 
     def here(self, claim: Claim) -> JudgedDrive | None:
         """Return the drive where it is, with the values of a claim, as one that answers it, or None."""
@@ -74,7 +74,7 @@ class KnownDrive:
 
         ``cut``: also on its own road with other zones.
         """
-        file, library = self.judged.file, claim.home.library
+        file, library = with_values_of(self.judged.file, claim), claim.home.library
         found = placed(file, query, library, judge=self._judge)
         if found is None and cut:
             return placed_on(file, query, library, patched(file.road, file.drive), self._judge)
@@ -86,7 +86,8 @@ class KnownDrive:
         ``moved``: also on other roads.
         """
         library = claim.home.library
-        for file, judge in self._casts(claim.vehicles):
+        for cast, judge in self._casts(claim.vehicles):
+            file = with_values_of(cast, claim)
             if moved:
                 shown = placed(file, claim.query, library, judge=judge)
             else:
@@ -125,6 +126,11 @@ def recast(file: DriveFile, roles: Mapping[str, str], wanted: Iterable[str]) -> 
 def is_same_motion(one: DriveFile, other: DriveFile) -> bool:
     """Return whether two files have the same motions on the same road, with the same lanes."""
     return (one.drive, one.road, one.lanes) == (other.drive, other.road, other.lanes)
+
+
+def with_values_of(file: DriveFile, claim: Claim) -> DriveFile:
+    """Return a drive file with the values that a claim gives to parameters: its own file may lack them."""
+    return replace(file, values={**file.values, **claim.values})
 
 
 def offered(file: DriveFile, claim: Claim) -> DriveFile:

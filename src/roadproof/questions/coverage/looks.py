@@ -234,7 +234,8 @@ class NearJudge:
             places = [*with_moved([road], file.drive)]
             for counterpart in counterparts:
                 query = self.claims.query(counterpart, numbers)
-                there = placed_on(replace(file, formula=""), query, self.claims.basis.library, places, known)
+                here = replace(file, formula="", values=self.claims.basis.all_values())
+                there = placed_on(here, query, self.claims.basis.library, places, known)
                 if there is not None:
                     scenario = None if counterpart is None else counterpart.scenario
                     yield Placed(road=road.name, place=places.index(there.file.road), scenario=scenario)

@@ -16,7 +16,7 @@ from roadproof.evidence.answer import Answer, undecided
 from roadproof.evidence.claim import Claim, Exists, claim_of, valid_under
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.library.bind import bind, values_with
+from roadproof.library.bind import bind
 from roadproof.library.compose import both, implication, negation
 from roadproof.library.scenarios import Scenario, vehicles_of
 from roadproof.library.specification import Query, Specification
@@ -116,7 +116,7 @@ class JudgedDrives:
                 dict(zip(mine.vehicles, own.vehicles, strict=True)),
                 [v for x in (mine, *others) for v in x.vehicles],
             )
-            judge, values = LazyJudge.on(file.drive), values_with(basis.library, file.values)
+            judge, values = LazyJudge.on(file.drive), basis.all_values()
             formulas = tuple(x.query(basis.specification).formula for x in others)
             bound = _all_bound(formulas, file, values)
             self.known[key] = drive, tuple(judge.holds(x) for x in bound)
