@@ -185,6 +185,18 @@ def _first_claim(question: Any) -> Any:
     return claim
 
 
+def test_what_is_known_of_a_formula_is_known_in_each_set_that_has_it() -> None:
+    text = "v_lon(SV) > 2 m/s -> v_lon(SV) > 1 m/s"
+    settle(claims_of(load("base"), [text], None), hands=1)
+    for home in (load("extA"), load("base", options={"lateral_sign": "literal"})):
+        found = settle(claims_of(home, [text], None), hands=1)
+        assert [*found.origins.values()] == ["cache"]
+        [certificate] = [x.certificate for x in found.answers.values()]
+        assert certificate is not None
+        said = home.specification
+        assert (certificate.set_name, certificate.options) == (said.set_name, said.options)
+
+
 def test_known_answers_are_looked_up_by_the_claim() -> None:
     one, other = (claims_of(load(), [f"v_lon(SV) > {k} m/s -> v_lon(SV) > 1 m/s"], None) for k in (2, 3))
     first = settle(one, hands=1)
