@@ -247,7 +247,7 @@ def test_a_planted_fault_in_a_folder_is_noticed(tmp_path: Path, file: str, old: 
     assert not checked.accepted
     assert checked.exit_code == 10
     assert [x["outcome"] for x in checked.rows()].count("rejected") == 1
-    assert checked.to_frame().height == 3, "the claim is in doubt without its file"
+    assert checked.to_frame().height == 2, "a file that is refused is said once"
     assert "rejected" in repr(checked)
     assert "<pre>" in checked._repr_html_()
 

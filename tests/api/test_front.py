@@ -266,10 +266,10 @@ def is_forward(claim):
 def test_the_first_answer_is_told_while_the_other_is_still_looked_for(monkeypatch):
     plain, told = Engines.settle, multiprocessing.get_context("fork").Event()
 
-    def wait(engines, claim):
+    def wait(engines, claim, *more):
         if is_forward(claim):
             assert told.wait(300)
-        return plain(engines, claim)
+        return plain(engines, claim, *more)
 
     monkeypatch.setattr(Engines, "settle", wait)
     monkeypatch.setattr(settle, "is_fork_unsafe", lambda: False)
@@ -281,10 +281,10 @@ def test_the_first_answer_is_told_while_the_other_is_still_looked_for(monkeypatc
 def test_a_direction_that_is_lost_or_late_leaves_the_other(monkeypatch):
     plain = Engines.settle
 
-    def die(engines, claim):
+    def die(engines, claim, *more):
         if is_forward(claim):
             os._exit(7)
-        return plain(engines, claim)
+        return plain(engines, claim, *more)
 
     monkeypatch.setattr(Engines, "settle", die)
     monkeypatch.setattr(settle, "is_fork_unsafe", lambda: False)

@@ -88,8 +88,8 @@ def test_a_doubt_is_told_and_left_to_the_last_run(
 ) -> None:
     doubtful, true_settle = QUESTION.tasks[0].task.claim, Engines.settle
 
-    def doubt(engines: Engines, claim: Any) -> Any:
-        answer, cost = true_settle(engines, claim)
+    def doubt(engines: Engines, claim: Any, *more: Any) -> Any:
+        answer, cost = true_settle(engines, claim, *more)
         return (undecided(claim, Why.NONE_FOUND()) if claim.text == doubtful else answer), cost
 
     with monkeypatch.context() as patch:

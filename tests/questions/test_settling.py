@@ -306,6 +306,7 @@ def test_a_lost_process_puts_one_claim_in_doubt(
 
     with monkeypatch.context() as patch:
         patch.setattr(Engines, "settle", settle_or_die)
+        patch.setattr("roadproof.questions.settle.is_fork_unsafe", lambda: False)
         found = settle(claims_of(rp.load(), CLAIMS, None), tmp_path, 2).answers
     verdicts = {x.claim.text: x.verdict for x in found.values()}
     assert verdicts == {SYMMETRIC: Verdict.UNKNOWN, FALSE: Verdict.REFUTED, ALWAYS: Verdict.PROVED}

@@ -190,6 +190,7 @@ def test_of_scenarios_alike_only_that_whose_process_dies_is_in_doubt(monkeypatch
         return ask.undecided(search, Why.NONE_FOUND())
 
     monkeypatch.setattr("roadproof.engines.search.alone.ask", die_at_12)
+    monkeypatch.setattr("roadproof.questions.settle.is_fork_unsafe", lambda: False)
     asked = question(4, 12, 20, 5)
     answers = settle(asked, hands=2).answers
     dead = {name for name, answer in answers.items() if answer.reason.kind is Why.PROCESS}

@@ -392,7 +392,7 @@ def _judged(claim: Claim, content: object, where: str) -> Judged:
     mode = claim.mode
     if not isinstance(mode, On):
         raise InputError(f"{where} is no answer to its claim: it is about a given trace")
-    _require(file.files == mode.files, where, "it is about a trace with other bytes")
+    _require(file.files == mode.files, where, "what it is about has changed since it was judged: ask again")
     _require(file.asked == mode.asked, where, "it was asked something else")
     return Judged(read(mode.judge.kind, file.shows, where))
 
