@@ -101,7 +101,12 @@ class SidesBatch:
             return None
         home = self.basis.specification
         file = replace(answer.drive.file, options=dict(home.options), values=self.basis.all_values())
-        judged = judged_as(file, both(self.entry.query, self._plain), self.basis.library)
+        query = both(self.entry.query, self._plain)
+        judged = self.asked.remembered.of(
+            ("side", id(answer.drive), self.name),
+            answer.drive,
+            lambda: judged_as(file, query, self.basis.library),
+        )
         if judged is None or not _is_on(self._decisions((judged,)), wanted):
             return None
         return judged
