@@ -17,7 +17,7 @@ from roadproof.evidence.claim import Claim
 from roadproof.evidence.judged import JudgedDrive, judge_file
 from roadproof.library.compose import implication, negation
 from roadproof.library.scenarios import name_of
-from roadproof.questions.catalogue.abstract import TestBatch
+from roadproof.questions.catalogue import abstract
 from roadproof.questions.question import seen, walk
 from roadproof.runtime.archives import archived
 from roadproof.runtime.budget import Effort, Work
@@ -94,7 +94,7 @@ def relations(without: bool, monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[
     def none(drives: CandidateDrives, name: str, query: object) -> None:
         return None
 
-    batch, known = TestBatch(BASIS, ASKED, entry()), dict[str, Answer]()
+    batch, known = abstract.TestBatch(BASIS, ASKED, entry()), dict[str, Answer]()
     engines = Engines(Work(Effort(), 3.0, explain=True))
 
     def find(name: str, claim: Claim) -> Answer:
@@ -117,7 +117,7 @@ def test_a_test_means_the_same_without_shipped_drives(monkeypatch: pytest.Monkey
 
 
 def test_a_proposed_drive_is_judged_for_the_claim(drive: JudgedDrive) -> None:
-    batch = TestBatch(BASIS, ASKED, entry())
+    batch = abstract.TestBatch(BASIS, ASKED, entry())
     engines = Engines(Work(Effort(), 3.0))
     shown = engines.settle(batch.exists(QUERIES["scenario_4"]), [drive])[0]
     assert shown.drive is not None

@@ -30,6 +30,7 @@ from roadproof.library.specification import Library, Query, Source
 from roadproof.questions.catalogue.abstract import stem_of
 from roadproof.questions.question import Steps
 from roadproof.reasons import Reason, Why
+from roadproof.runtime.budget import Work
 from roadproof.runtime.records import dataclass
 
 
@@ -51,6 +52,11 @@ class SidesBatch:
     def name(self) -> str:
         """How the names of its claims begin."""
         return f"{stem_of(self.entry.id)}-{self.scenario}"
+
+    @property
+    def work(self) -> Work:
+        """The work that is allowed for a claim."""
+        return Work(self.basis.effort, self.basis.proof)
 
     def steps(self) -> Steps:
         """Yield a claim for each side that no known drive is on."""
