@@ -413,7 +413,7 @@ def test_an_outline_in_doubt_makes_no_classes_and_leaves_the_folder_alone(
 def test_lost_drives_are_doubts(monkeypatch: pytest.MonkeyPatch) -> None:
     basis = Basis(BASE)
     question = question_of(basis, divide(basis, plan_of(BASE, (4, 8)), 1))
-    monkeypatch.setattr("roadproof.engines.search.batches.ask", die)
+    monkeypatch.setattr("roadproof.engines.search.ask.ask", die)
     found = question.view(settle(question, hands=2).answers)
     assert {(x.verdict, x.drive) for x in found.examples} == {(Verdict.UNKNOWN, None)}
     assert all("its process ended each time" in x.reason for x in found.examples[:1])

@@ -145,8 +145,8 @@ def test_batches_leave_no_pair_out_and_are_36() -> None:
     batches = question.batches({})
     assert len(question.pairs) == 276
     assert len(batches) == 36
-    names = [name.rpartition("-")[0] if name.count("-") == 4 else name for x in batches for name in x]
-    assert sorted(names) == sorted(name_of(*pair) for pair in question.pairs)
+    every = sorted(name for batch in batches for claims in batch.pairs for name in claims)
+    assert every == sorted(name for claims in question.claims.values() for name in claims)
 
 
 def test_rows_that_differ_in_more_than_their_sector_are_kept_apart() -> None:

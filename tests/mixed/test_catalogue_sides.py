@@ -2,10 +2,9 @@
 
 from fractions import Fraction
 from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any
 
 import pytest
-from roadproof.analysis.catalogue.result import Result
 
 from mixed.test_catalogue_verdicts import FOUR, HOME, ONE, concrete, decision, fact
 from roadproof.analysis.catalogue.asked import Questions
@@ -16,6 +15,7 @@ from roadproof.analysis.catalogue.ranges import Span, spans_of
 from roadproof.analysis.catalogue.showing import ENDANGERED, _borne_out
 from roadproof.analysis.catalogue.sides import read_side_name, side_name
 from roadproof.evidence.subject import TestedSide
+from roadproof.questions.catalogue.view import CatalogueView
 from roadproof.reasons import NO_REASON, Why
 
 # --- driver models ---------------------------------------------------------------------------------
@@ -152,22 +152,16 @@ def test_who_is_given_a_role_plays_it_and_no_other() -> None:
 
 
 def test_notes_say_with_what_drives_were_made() -> None:
-    class Made(Result):
-        known: Any = None
-
-    made = object.__new__(Made)
+    made = object.__new__(CatalogueView)
     tests = (
         concrete("a", made_with=("rho = 1",)),
         concrete("b", notes=("odd",)),
         concrete("c", notes=("odd",)),
     )
     freedom = SimpleNamespace(lanes=False, start=False)
-    made.examination = cast(
-        Any,
-        SimpleNamespace(
-            concrete=tests,
-            tests=SimpleNamespace(notes=("first",), entries=()),
-            request=SimpleNamespace(freedom=freedom),
-        ),
+    vars(made).update(
+        shown=(tests,),
+        catalogue=SimpleNamespace(notes=("first",), entries=()),
+        request=SimpleNamespace(freedom=freedom),
     )
     assert made.notes == ("first", "b, c: odd", "made with rho = 1, and judged with what is asked for: a")

@@ -361,7 +361,7 @@ def test_in_another_set_counts_what_is_shown_or_implied_there(
 
 def answer(found: Targets) -> CatalogueAnswer:
     made = object.__new__(CatalogueAnswer)
-    vars(made)["tested"] = found
+    vars(made)["view"] = SimpleNamespace(tested=found)
     return made
 
 

@@ -38,6 +38,9 @@ class Undecided(AboutClaim):
     work: Annotated[
         str | None, LEFT_OUT, Doc("Digest of the work after which it is undecided; as much finds no more.")
     ] = None
+    units: Annotated[
+        float | None, LEFT_OUT, Doc("Units of work that were allowed, where a view says how many.")
+    ] = None
 
 
 @dataclass(frozen=True, kw_only=True)

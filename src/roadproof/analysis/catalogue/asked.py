@@ -15,6 +15,7 @@ from typing import TypeAlias
 from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.gaps import GapKinds, gap_kinds
 from roadproof.analysis.classify.classes import Class, Classes, Group, Plan
+from roadproof.engines.search.points import Remembered
 from roadproof.errors import RoadproofError, UsageError
 from roadproof.library import scenarios as s
 from roadproof.library.bind import bind
@@ -62,7 +63,7 @@ class Questions:
     """The questions to tests about scenarios ``numbers``; ``classes`` None where they are not divided.
 
     Formulas are kept by roles and vehicles; bound ones also by road and lane. ``parts``: one object for all
-    their parts that are equal, in all spec sets.
+    their parts that are equal, in all spec sets. ``remembered``: what drives showed.
     """
 
     specification: Specification
@@ -76,6 +77,7 @@ class Questions:
         default_factory=dict
     )
     parts: dict[Formula, Formula] = field(default_factory=dict)
+    remembered: Remembered = field(default_factory=Remembered, compare=False, repr=False)
 
     @property
     def is_always_judged(self) -> bool:

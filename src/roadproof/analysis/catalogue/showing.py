@@ -221,7 +221,14 @@ def all_shown_by(file: DriveFile, asked: Questions, freedom: Freedom) -> tuple[S
 
 def names_shown(drive: JudgedDrive, asked: Questions) -> tuple[str, ...]:
     """All that a drive shows in the roles and the lane of its file, by name, in order."""
-    return tuple(sorted({x.what for x in all_shown_by(drive.file, asked, Freedom())}))
+    return tuple(sorted({x.what for x in shown_from_start(drive, asked)}))
+
+
+def shown_from_start(drive: JudgedDrive, asked: Questions) -> tuple[Shown, ...]:
+    """Return what a drive shows in the roles and the lane of its file, which is looked at once."""
+    return asked.remembered.of(
+        ("shown", id(drive)), drive, lambda: all_shown_by(drive.file, asked, Freedom())
+    )
 
 
 def _gap(file: DriveFile, asked: Questions, shown: tuple[Shown, ...]) -> Iterator[Shown]:

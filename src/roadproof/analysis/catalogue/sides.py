@@ -9,8 +9,7 @@ from typing import get_args
 
 from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.decisions import Decision, Drivers, course_of
-from roadproof.analysis.catalogue.entries import Freedom
-from roadproof.analysis.catalogue.showing import all_shown_by, decisions_on
+from roadproof.analysis.catalogue.showing import decisions_on, shown_from_start
 from roadproof.drivers.models import MODELS
 from roadproof.drivers.restriction import Side
 from roadproof.evidence.judged import JudgedDrive
@@ -45,9 +44,11 @@ def decisions_of(
     drives: Iterable[JudgedDrive], scenarios: Sequence[str], asked: Questions, drivers: Drivers
 ) -> list[Decision]:
     """What becomes of these scenarios on each of the drives that shows them."""
-    return [
-        decision
-        for drive in drives
-        for decision in decisions_on(drive.file, all_shown_by(drive.file, asked, Freedom()), drivers)
-        if decision.scenario in scenarios
-    ]
+
+    def every(drive: JudgedDrive) -> tuple[Drivers, tuple[Decision, ...]]:
+        def work_out() -> tuple[Drivers, tuple[Decision, ...]]:
+            return drivers, decisions_on(drive.file, shown_from_start(drive, asked), drivers)
+
+        return asked.remembered.of(("decisions", id(drive), id(drivers)), drive, work_out)
+
+    return [x for drive in drives for x in every(drive)[1] if x.scenario in scenarios]

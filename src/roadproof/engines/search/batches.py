@@ -15,6 +15,7 @@ from roadproof.engines.search.looking import search_of
 from roadproof.engines.search.question import zones_of
 from roadproof.engines.search.valid import settle_valid
 from roadproof.evidence.answer import Answer, Judged, Refutation, undecided
+from roadproof.evidence.answer_files import Undecided
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.claim import Beside, Claim, Exists, Lines, Means, On, Valid
 from roadproof.evidence.countermodel import Countermodel
@@ -99,6 +100,9 @@ class Engines:
         begun = now()
         with about(f"{claim.query.text} {claim.home.set_name}"):
             answer, cost = self._settle(claim, proposed)
+        if self.work.simplify and isinstance(answer.evidence, Undecided):
+            allowed = replace(answer.evidence, units=self.work.effort.units)
+            answer = replace(answer, evidence=allowed)
         return answer, replace(cost, seconds=since(begun))
 
     def _settle(self, claim: Claim, proposed: Iterable[JudgedDrive]) -> tuple[Answer, Cost]:

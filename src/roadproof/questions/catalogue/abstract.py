@@ -26,6 +26,7 @@ from roadproof.library.scenarios import Scenario, applied, name_of
 from roadproof.library.specification import Query
 from roadproof.questions.question import Answers, Steps
 from roadproof.reasons import Why
+from roadproof.runtime.budget import Work
 from roadproof.runtime.canonical import digest
 from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.exact import DriveJudge, LazyJudge
@@ -55,6 +56,10 @@ class TestBatch:
     def name(self) -> str:
         """How the names of its claims begin."""
         return stem_of(self.entry.id)
+
+    def work_of(self, name: str) -> Work:
+        """Return the work that is allowed for a claim; why there is no drive is asked of the test alone."""
+        return Work(self.basis.effort, self.basis.proof, explain=name == self._runs)
 
     def steps(self) -> Steps:
         """Yield each claim, and be sent its answer."""

@@ -30,6 +30,7 @@ from roadproof.library.specification import Library, Query, Source
 from roadproof.questions.catalogue.abstract import stem_of
 from roadproof.questions.question import Steps
 from roadproof.reasons import Reason, Why
+from roadproof.runtime.budget import Work
 from roadproof.runtime.records import dataclass
 
 
@@ -51,6 +52,11 @@ class SidesBatch:
     def name(self) -> str:
         """How the names of its claims begin."""
         return f"{stem_of(self.entry.id)}-{self.scenario}"
+
+    @property
+    def work(self) -> Work:
+        """The work that is allowed for a claim."""
+        return Work(self.basis.effort, self.basis.proof)
 
     def steps(self) -> Steps:
         """Yield a claim for each side that no known drive is on."""
@@ -101,7 +107,12 @@ class SidesBatch:
             return None
         home = self.basis.specification
         file = replace(answer.drive.file, options=dict(home.options), values=self.basis.all_values())
-        judged = judged_as(file, both(self.entry.query, self._plain), self.basis.library)
+        query = both(self.entry.query, self._plain)
+        judged = self.asked.remembered.of(
+            ("side", id(answer.drive), self.name),
+            answer.drive,
+            lambda: judged_as(file, query, self.basis.library),
+        )
         if judged is None or not _is_on(self._decisions((judged,)), wanted):
             return None
         return judged

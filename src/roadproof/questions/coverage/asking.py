@@ -10,6 +10,7 @@ from roadproof.analysis.coverage.simple_drives import HORIZON
 from roadproof.engines.search.placing import with_moved
 from roadproof.engines.search.points import Asking
 from roadproof.evidence.answer import Judged
+from roadproof.evidence.answer_files import Undecided
 from roadproof.evidence.claim import HELP, valid_under
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.questions.coverage.claims import GapClaims, group_name
@@ -124,6 +125,7 @@ class GroupAsking:
     ) -> Asking[Reason]:
         """Look for a gap on the roads in turn; return why none was found, or nothing."""
         reasons: list[Reason] = []
+        units = self.claims.basis.effort.units
         for r, road in enumerate(roads, 1):
             counterparts = self.claims.on(part, self.claims.classes.numbers_on(road))
             for k, counterpart in enumerate(counterparts, 1):
@@ -140,11 +142,12 @@ class GroupAsking:
                         known.append(FoundGap(file, shows.first, shows.classes))
                         return NO_REASON
                     answer = looks
+                elif isinstance(answer.evidence, Undecided):
+                    units = answer.evidence.units or units
                 is_refused = answer.reason.startswith(Why.NO_SEARCH(road.name, ""))
                 reasons.append(
                     answer.reason if is_refused else Why.NOT_ON(answer.reason or "none", road.name)
                 )
-        units = self.claims.basis.effort.units
         return Why.WORK_EACH(joined(reasons), units, self.claims.basis.horizon)
 
     # --- evidence --------------------------------------------------------------------------------
