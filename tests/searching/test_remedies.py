@@ -190,7 +190,7 @@ def test_the_seconds_of_a_doubt_are_those_of_the_clock():
 
 
 def test_a_claim_whose_process_ended_is_asked_alone(monkeypatch):
-    monkeypatch.setattr(Engines, "settle", lambda self, claim: os._exit(7))
+    monkeypatch.setattr(Engines, "settle", lambda *_: os._exit(7))
     monkeypatch.setattr(settle, "is_fork_unsafe", lambda: False)
     found, _ = rp.prove("v_lon(SV) > 9 m/s", "v_lon(SV) > 8 m/s", jobs=2, fresh=True).as_data()["verdicts"]
     assert (found["verdict"], found["doubt"]["cause"]) == ("UNKNOWN", "process")
