@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 from roadproof.analysis.catalogue.formula_facts import FormulaFacts
 from roadproof.analysis.catalogue.meaning import Meanings, Piece
+from roadproof.analysis.study import known, pool
 
 import roadproof as rp
 from roadproof.analysis.catalogue import examination, meaning
@@ -19,7 +20,6 @@ from roadproof.analysis.catalogue.candidates import candidates
 from roadproof.analysis.catalogue.entries import Abstract, Concrete
 from roadproof.analysis.catalogue.fact import Fact
 from roadproof.analysis.catalogue.showing import ConcreteAnswer
-from roadproof.analysis.study import known, pool
 from roadproof.evidence.codec import read, write
 from roadproof.frontends.api.cataloguing import CatalogueAnswer
 from roadproof.runtime.archives import SWITCH
