@@ -1,6 +1,6 @@
 """What evidence of each kind says of a link, on findings that are put together here."""
 
-import json
+import shutil
 from dataclasses import replace
 from fractions import Fraction
 from itertools import product
@@ -214,10 +214,14 @@ def test_tests_of_a_catalogue(change: dict[str, str], expected: str, reason: str
 
 
 def test_a_test_that_is_not_what_it_claims_is_refuted(tmp_path: Path) -> None:
-    index = {"schema": "roadproof/catalogue/1", "contradictions": []}
-    faults = [{"tests": ["CUT-1"], "told": "claims scenario_4, and shows scenario_1"}]
-    (tmp_path / "index.json").write_text(json.dumps(index | {"faults": faults}), "utf-8")
-    found = replace(TEST, where=str(tmp_path / "index.json"))
+    example = Path(__file__).parents[2] / "examples" / "catalogue" / "tests" / "drives"
+    shutil.copy(example / "cut-in.json", tmp_path)
+    entry = '[[test]]\nid = "CUT-1"\nfile = "cut-in.json"\nclaims = [4]\n'
+    (tmp_path / "catalogue.toml").write_text(entry, "utf-8")
+    out = tmp_path / "out"
+    rp.catalogue(tmp_path, among="1,4", classes=False, drivers=(), out=out, jobs=1)
+    [judged] = out.glob("judged-*.json")
+    found = replace(TEST, where=str(judged))
     told = (LinkState.REFUTED, "claims scenario_4, and shows scenario_1")
     assert state(Link("test", "CUT-1"), found) == told
     assert state(Link("test", "CUT-2"), replace(found, name="CUT-2"))[0] == "witnessed"
