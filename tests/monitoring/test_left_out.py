@@ -8,6 +8,7 @@ import pytest
 
 import roadproof as rp
 from roadproof.frontends.cli.main import main
+from roadproof.questions.views import folder_data
 
 DRIVE = Path(__file__).parents[2] / "examples" / "traffic" / "drives" / "scenario-01-base.json"
 SLIP = "<slipAngle><exact>0.3</exact></slipAngle>"
@@ -81,7 +82,7 @@ def test_a_strict_catalogue_counts_the_test_as_a_fault(
     asked = ["catalogue", str(path), str(other), "--among", "1", "--no-classes", "--drivers", "none"]
     assert main([*asked, "--no-pictures", "--out", str(out)]) == 0
     assert main([*asked, "--no-pictures", "--strict", "--out", str(tmp_path / "strict")]) == UNEXPECTED
-    [told] = json.loads((tmp_path / "strict" / "index.json").read_text("utf-8"))["faults"]
+    [told] = folder_data(tmp_path / "strict")["faults"]
     assert part in told["told"]
     assert told["told"].startswith("cannot be read")
     assert main(["check", str(out)]) == main(["check", str(tmp_path / "strict")]) == 0
