@@ -27,6 +27,10 @@ class InputError(RoadproofError):
     exit_code = 3
 
 
+class StaleError(InputError):
+    """An answer is about a file that has changed since."""
+
+
 class MissingSolverError(RoadproofError):
     """A solver or another library that was asked for is not installed."""
 

@@ -4,7 +4,6 @@ import csv
 import json
 import shutil
 from collections.abc import Callable, Iterator, Mapping
-from copy import deepcopy
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -12,22 +11,21 @@ from typing import Any
 import pytest
 
 import roadproof as rp
-from evidence.folders import read, write
-from evidence.test_every_field import another, leaves, path_of
-from roadproof.analysis.catalogue import examination, traces
+from roadproof.analysis.catalogue import traces
 from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.entries import Concrete, Freedom
 from roadproof.analysis.catalogue.playing import choices
 from roadproof.analysis.catalogue.showing import ConcreteAnswer, show
 from roadproof.analysis.catalogue.traces import courses_of, digest_of, roles_in
-from roadproof.engines.prove.properties import find_label
 from roadproof.errors import InputError
+from roadproof.evidence.answers.catalogue_index import KeptRequest
 from roadproof.evidence.finding import Acceptance
-from roadproof.evidence.folder import survey
-from roadproof.frontends.api import judging_again
+from roadproof.evidence.subject import SubjectKind
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.report.page.catalogues import as_settings
 from roadproof.frontends.settings.flags import command_line
+from roadproof.questions.views import folder_data
+from roadproof.reasons import Why
 from roadproof.recordings.evaluate.one_trace import read_pair, read_samples
 from roadproof.verdict import ExitCode
 
@@ -44,8 +42,6 @@ claims = [4]
 id = "LEAD"
 file = "braking.json"
 """
-UNCHECKED = ("seconds", "facts[].reason")
-EQUIVALENT = {"request.near": "tests that say the same begin alike here, however near that is"}
 
 
 @pytest.fixture(scope="module")
@@ -84,76 +80,16 @@ def test_the_answer_is_accepted_and_says_what_was_judged(home: Path) -> None:
     assert checked.exit_code is ExitCode.AS_EXPECTED
     told = str(checked)
     assert "JUDGED    test LEAD  shows endangered, scenario_4  [judged again in dense time" in told
-    assert "DERIVED   what is tested  scenarios 2 of 3 (set base)" in told
-    [left] = checked.not_checked.values()
-    assert left == ("facts[].reason", "question")
-
-
-def test_no_field_is_changed_in_silence(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    folder = home / "report"
-    shutil.rmtree(folder / "answers")  # kept answers would tell that the index was changed
-    (folder / "question.json").unlink()
-    whole = read(folder / "index.json")
-    known: dict[object, examination.Examination] = {}
-    examine = examination.examine
-
-    def once(request, basis, numbers, *more, **how):  # type: ignore[no-untyped-def]
-        """The same tests are judged once: of the fields only those that are asked change what is."""
-        key = repr((request, numbers, basis.specification.options, basis.values))
-        if key not in known:
-            known[key] = examine(request, basis, numbers, *more, **how)
-        return known[key]
-
-    monkeypatch.setattr(judging_again, "examine", once)
-    accepted: list[str] = []
-    tried: set[str] = set()
-    for at in leaves(whole):
-        path = path_of(at)
-        if path.startswith(UNCHECKED) or path in tried or (at[0] == "parameters" and "parameters" in tried):
-            continue
-        tried |= {path, str(at[0])}
-        changed = deepcopy(whole)
-        place = changed
-        for key in at[:-1]:
-            place = place[key]
-        place[at[-1]] = another(place[at[-1]])
-        write(folder / "index.json", changed)
-        found = judging_again.compare(survey([folder], (), find_label).told[0])
-        whole_again = found is not None and all(x.outcome is Acceptance.ACCEPTED for x in found.findings)
-        if whole_again and (checked := rp.check(folder, jobs=1)).accepted:
-            listed = {x for those in checked.not_checked.values() for x in those}
-            accepted += [path] if path not in listed else []
-    assert len(tried) > 60
-    assert [x for x in accepted if x not in EQUIVALENT] == []
-
-
-@pytest.mark.parametrize(
-    "field", ["not_tested", "faults", "doubts", "targets", "figures", "decisions", "facts"]
-)
-def test_an_entry_that_is_left_out_or_added_is_rejected(home: Path, field: str) -> None:
-    whole = read(home / "report" / "index.json")
-    for changed in (whole[field][:-1], [*whole[field], *whole[field][-1:]]):
-        if changed != whole[field]:
-            write(home / "report" / "index.json", {**whole, field: changed})
-            assert reasons(home / "report")
-
-
-def test_no_fact_can_be_left_out(home: Path) -> None:
-    """Not even one from which nothing follows, such as that a test excludes a scenario."""
-    whole = read(home / "report" / "index.json")
-    for k in range(len(whole["facts"])):
-        left = [*whole["facts"][:k], *whole["facts"][k + 1 :]]
-        write(home / "report" / "index.json", {**whole, "facts": left})
-        found = judging_again.compare(survey([home / "report"], (), find_label).told[0])
-        assert found is not None
-        assert any(x.outcome is Acceptance.REJECTED for x in found.findings)
+    assert "WITNESSED wide runs  scenario_4(SV, POV, L)" in told
+    assert "PROVED    wide implies scenario_4  scenario_4(SV, POV, L) -> scenario_4(SV, POV, L)" in told
+    assert not checked.not_checked
 
 
 @pytest.mark.parametrize("name", ["matrix.csv", "figures.csv", "drivers.csv", "junit.xml"])
 def test_tables_are_compared(home: Path, name: str) -> None:
     path = home / "report" / name
     path.write_text(path.read_text("utf-8") + "\n", "utf-8")
-    assert reasons(home / "report") == ["it is not the table of these tests"]
+    assert reasons(home / "report") == ["it is not the table that these answers make"]
 
 
 def test_specifications_for_other_evidence_change_nothing(home: Path) -> None:
@@ -167,30 +103,36 @@ def test_stale_tests_are_named(home: Path, capsys: pytest.CaptureFixture[str]) -
     drive.write_bytes((home / "tests" / "from-behind.json").read_bytes())
     assert main(["check", str(home / "report"), "--jobs", "1"]) == ExitCode.UNEXPECTED
     told = capsys.readouterr().out
-    assert (
-        f"rejected  LEAD  {home / 'report' / 'index.json'}: {drive} has changed since it was judged" in told
+    assert "test LEAD has changed since it was judged: the answer is stale; ask again" in told
+    [stale] = [x for x in rp.check(home / "report", jobs=1).findings if x.name == "LEAD"]
+    assert (stale.subject, stale.reason.kind, stale.outcome) == (
+        SubjectKind.TEST,
+        Why.FILE_CHANGED,
+        Acceptance.REJECTED,
     )
 
 
 def test_tests_that_are_gone_or_new_are_named(home: Path) -> None:
     (home / "tests" / "samples.csv").unlink()
     shutil.copy(EXAMPLE / "drives" / "seven.json", home / "tests")
-    told = reasons(home / "report")
-    assert "there is no such test now: the answer is stale; ask again" in told
-    assert "the answer does not know this test: it is stale; ask again" in told
+    checked = rp.check(home / "report", jobs=1)
+    rejected = {Path(x.where).name for x in checked.findings if x.outcome is Acceptance.REJECTED}
+    assert {"matrix.csv", "junit.xml", "drivers.csv"} < rejected
+    assert any(x.startswith("judged-test-samples-") for x in rejected), "no test has this name now"
+    assert {x.label for x in checked.findings if x.verdict == "UNKNOWN"} >= {"test seven"}
 
 
-def test_a_formula_that_was_changed_is_no_longer_that_of_its_facts(home: Path) -> None:
+def test_a_formula_that_was_changed_is_no_longer_that_of_its_answers(home: Path) -> None:
     toml = home / "tests" / "catalogue.toml"
     toml.write_text(TOML.replace("scenario_4(", "scenario_3(").replace("[4]", "[3]"), "utf-8")
-    assert "its premise is not the formula of wide" in reasons(home / "report")
+    assert any("is no answer to its claim: its drive is one of" in x for x in reasons(home / "report"))
 
 
 def test_without_its_tests_nothing_is_accepted_in_silence(home: Path) -> None:
     shutil.rmtree(home / "tests")
     checked = rp.check(home / "report", jobs=1)
-    assert checked.exit_code is ExitCode.UNKNOWN
-    assert any("cannot be judged again" in x.reason for x in checked.findings)
+    assert checked.exit_code is ExitCode.UNEXPECTED
+    assert not checked.accepted
 
 
 def test_answers_among_the_tests_are_no_tests(home: Path) -> None:
@@ -200,26 +142,15 @@ def test_answers_among_the_tests_are_no_tests(home: Path) -> None:
     again = rp.catalogue(home / "tests", among="1,3,4", classes=False, out=inside, jobs=1)
     assert again.tests == first.tests
     assert rp.check(inside, jobs=1).accepted
-    (inside / "index.json").unlink()  # a run that was broken off
+    next(inside.glob("judged-*.json")).unlink()  # a run that was broken off
     assert rp.catalogue(home / "tests", among="1,3,4", classes=False, jobs=1).tests == first.tests
 
 
-def test_the_page_says_that_an_answer_is_rejected(home: Path) -> None:
-    index = home / "report" / "index.json"
-    whole = read(index)
-    write(index, {**whole, "not_tested": []})
-    made = rp.page(home / "report", out=home / "page.html", jobs=1)
-    assert made.exit_code is ExitCode.UNEXPECTED
-    assert "check rejects this answer" in made.text
-    write(index, whole)
-    assert "check rejects this answer" not in rp.page(home / "report", out=home / "page.html", jobs=1).text
-
-
 def test_the_command_asks_the_same(home: Path) -> None:
-    told = json.loads((home / "report" / "index.json").read_text("utf-8"))["request"]
-    assert told["paths"] == [str(home / "tests")]
-    request = judging_again.read_request(told, "request")
-    command = command_line("catalogue", request.paths, as_settings(request.kept))
+    request = folder_data(home / "report")["request"]
+    assert request["paths"] == [str(home / "tests")]
+    asked = KeptRequest(**{k: tuple(x) if isinstance(x, list) else x for k, x in request.items()})
+    command = command_line("catalogue", asked.paths, as_settings(asked))
     assert command == f"roadproof catalogue {home / 'tests'} --no-classes --drivers careful,rss"
 
 
@@ -490,7 +421,7 @@ def test_unknown_names_are_a_fault(name: str, roles: dict[str, str], told: str, 
     assert told in found.fault
 
 
-def test_roles_are_in_the_index_and_checked(tmp_path: Path) -> None:
+def test_roles_are_in_the_answer_and_checked(tmp_path: Path) -> None:
     """A changed role is rejected, and so is an answer whose tests have other roles now."""
     tests, out = tmp_path / "tests", tmp_path / "out"
     tests.mkdir()
@@ -501,7 +432,7 @@ def test_roles_are_in_the_index_and_checked(tmp_path: Path) -> None:
     assert found.exit_code == 0
     assert "A: blue is taken as POV" in found.notes
     assert {x.vehicles for _, x in found.decisions} == {("red", "blue")}
-    index: dict[str, Any] = json.loads((out / "index.json").read_text("utf-8"))
+    index = folder_data(out)
     assert index["tests"][0]["roles"] == {"SV": "red", "POV": "blue"}
     assert {tuple(x["vehicles"]) for x in index["tests"][0]["shown"]} == {("red", "blue")}
     assert main(["check", str(out), "--jobs", "1"]) == 0

@@ -1,5 +1,6 @@
 """What evidence of each kind says of a link, on findings that are put together here."""
 
+import shutil
 from dataclasses import replace
 from fractions import Fraction
 from itertools import product
@@ -10,7 +11,6 @@ from typing import get_args
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.requirements import checked_evidence
 from roadproof.analysis.requirements.checked_evidence import CheckedEvidence, read_findings
 from roadproof.analysis.requirements.fingerprints import Surroundings, differences, parts_of
 from roadproof.analysis.requirements.matching import combined, read_target, shown_by
@@ -213,13 +213,15 @@ def test_tests_of_a_catalogue(change: dict[str, str], expected: str, reason: str
     assert state(Link("test", "CUT-1"), found) == (expected, reason)
 
 
-def test_a_test_that_is_not_what_it_claims_is_refuted(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    answer = {"schema": "roadproof/catalogue/1", "contradictions": []}
-    faults = [{"tests": ["CUT-1"], "told": "claims scenario_4, and shows scenario_1"}]
-    monkeypatch.setattr(checked_evidence, "folder_data", lambda *_: answer | {"faults": faults})
-    found = replace(TEST, where=str(tmp_path / "judged-test-CUT-1-base.json"))
+def test_a_test_that_is_not_what_it_claims_is_refuted(tmp_path: Path) -> None:
+    example = Path(__file__).parents[2] / "examples" / "catalogue" / "tests" / "drives"
+    shutil.copy(example / "cut-in.json", tmp_path)
+    entry = '[[test]]\nid = "CUT-1"\nfile = "cut-in.json"\nclaims = [4]\n'
+    (tmp_path / "catalogue.toml").write_text(entry, "utf-8")
+    out = tmp_path / "out"
+    rp.catalogue(tmp_path, among="1,4", classes=False, drivers=(), out=out, jobs=1)
+    [judged] = out.glob("judged-*.json")
+    found = replace(TEST, where=str(judged))
     told = (LinkState.REFUTED, "claims scenario_4, and shows scenario_1")
     assert state(Link("test", "CUT-1"), found) == told
     assert state(Link("test", "CUT-2"), replace(found, name="CUT-2"))[0] == "witnessed"

@@ -9,7 +9,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TypeAlias
 
-from roadproof.errors import InputError, RoadproofError
+from roadproof.errors import InputError, RoadproofError, StaleError
 from roadproof.evidence import certificate, drive_file, none_within
 from roadproof.evidence.answer_files import (
     JUDGED,
@@ -392,7 +392,8 @@ def _judged(claim: Claim, content: object, where: str) -> Judged:
     mode = claim.mode
     if not isinstance(mode, On):
         raise InputError(f"{where} is no answer to its claim: it is about a given trace")
-    _require(file.files == mode.files, where, "what it is about has changed since it was judged: ask again")
+    if file.files != mode.files:
+        raise StaleError(f"{where} is no answer to its claim: it is about a trace with other bytes")
     _require(file.asked == mode.asked, where, "it was asked something else")
     return Judged(read(mode.judge.kind, file.shows, where))
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from roadproof.errors import InputError
+from roadproof.errors import InputError, StaleError
 from roadproof.evidence.answer import Answer, Judged, assumed_by, read_answer, undecided
 from roadproof.evidence.claim import HELP, Beside, Claim, Confirming, Exists, Judge, Judgement, On
 from roadproof.evidence.codec import write
@@ -161,7 +161,7 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
                 fault = Why.TOLD(error)
                 where = str(folder / f"{name}.json")
                 told = Why.TOLD(str(error).removeprefix(where).lstrip(": "))
-                problems.append(Finding(where, "", outcome, told))
+                problems.append(_problem(question, name, Finding(where, "", outcome, told), error))
                 refused.add(name)
                 answers[name] = undecided(claim, fault)
         return answers[name]
@@ -193,6 +193,15 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
         frozenset(refused),
         said != question.basis.library.fingerprint,
     )
+
+
+def _problem(question: Question[Any], name: str, found: Finding, error: InputError) -> Finding:
+    """Return what is wrong with a file; with its subject where that has changed since it was judged."""
+    if not isinstance(error, StaleError) or not isinstance(question, Linkable):
+        return found
+    label, linked = question.label(name), question.subject(name)
+    told = replace(found, kind="test", reason=Why.FILE_CHANGED(label), label=label)
+    return replace(told, subject=linked.kind, name=linked.name)
 
 
 def _content(path: Path) -> object:

@@ -11,9 +11,10 @@ from roadproof.analysis.basis import Basis
 from roadproof.errors import InputError
 from roadproof.evidence.answers import shared
 from roadproof.evidence.codec import Doc, read, write
-from roadproof.evidence.heading import heading
+from roadproof.evidence.heading import heading, library_of
 from roadproof.evidence.specifications import read_beside
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, JsonObject, read_json
+from roadproof.library.specification import Library
 from roadproof.questions.place import VehicleModel, model_of, vehicles_of
 from roadproof.questions.question import Question
 from roadproof.runtime.records import dataclass
@@ -86,7 +87,8 @@ def basis_data(basis: Basis) -> BasisSays:
 def read_question(folder: Path, given: Sequence[Path] = ()) -> Question[Any]:
     """Return the question whose answers a folder holds.
 
-    ``given``: specification files that lie below those in the folder. Raises ``InputError``.
+    ``given``: specification files that lie below those in the folder, where it was asked with others than
+    these alone. Raises ``InputError``.
     """
     path = folder / QUESTION
     content = read_json(path, LARGEST_INDEX)
@@ -94,7 +96,7 @@ def read_question(folder: Path, given: Sequence[Path] = ()) -> Question[Any]:
     if file.question not in KINDS and not _is_survey(file.question):
         raise InputError(f"{path}: question='{file.question[:40]}' is none of {', '.join(KINDS)}")
     said = file.basis
-    library, _ = read_beside(Fields(_mapping(content)["basis"], str(path)), folder, given)
+    library = _library_of(content, path, folder, given)
     specification = library.select(said.sets[0], said.options)
     values = {name: Fraction(x) for name, x in said.parameters.items()}
     basis = Basis(
@@ -107,6 +109,20 @@ def read_question(folder: Path, given: Sequence[Path] = ()) -> Question[Any]:
     )
     made: Callable[[Basis, object, str], Question[Any]] = _type_of(file.question).of
     return made(basis, file.asked, f"{path}, asked")
+
+
+def _library_of(content: object, path: Path, folder: Path, given: Sequence[Path]) -> Library:
+    """Return the definitions that a question was asked with, on ``given`` files where it needs any."""
+    said = Fields(_mapping(content)["basis"], str(path))
+    try:
+        library, _ = read_beside(said, folder, ())
+    except InputError:
+        if not given:
+            raise
+    else:
+        if not given or library.fingerprint == library_of(Fields(content, str(path))):
+            return library
+    return read_beside(said, folder, given)[0]
 
 
 def _is_survey(kind: str) -> bool:

@@ -24,7 +24,7 @@ from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.catalogue_index import KeptRequest
 from roadproof.evidence.codec import Doc, Rule, read
 from roadproof.evidence.finding import Finding
-from roadproof.evidence.subject import DriverSide, SubjectKind, subject_of_fact
+from roadproof.evidence.subject import OTHER, DriverSide, Subject, SubjectKind, subject_of_fact
 from roadproof.questions.catalogue.abstract import PairBatch, TestBatch
 from roadproof.questions.catalogue.concrete import ConcreteBatch
 from roadproof.questions.catalogue.sides import SidesBatch
@@ -211,11 +211,20 @@ class CatalogueQuestion:
         if (fact := self._fact(name)) is not None:
             test, relation, other = fact
             return f"{test} {relation if relation == 'implies' else 'open'} {other}".strip()
-        for judged in self._concrete_batches:
-            for entry in judged.entries:
-                if judged.named(entry) == name:
-                    return f"test {entry.id}"
-        return name
+        judged = self._judged.get(name)
+        return name if judged is None else f"test {judged}"
+
+    @cached_property
+    def _judged(self) -> dict[str, str]:
+        """The ids of concrete tests by the names of claims about them."""
+        return {x.named(entry): entry.id for x in self._concrete_batches for entry in x.entries}
+
+    def subject(self, name: str) -> Subject:
+        """Return the test that the claim of a name is about."""
+        if name in self._judged:
+            return Subject(SubjectKind.TEST, self._judged[name])
+        fact = self._fact(name)
+        return OTHER if fact is None else subject_of_fact(*fact[:2])
 
     def tell(self, name: str, answer: Answer, found: Finding) -> Finding:
         """Return what was found of a test, with what it shows and what becomes of it under driver models."""
@@ -235,8 +244,6 @@ class CatalogueQuestion:
             label=f"test {test.entry.id}",
             claim=f"cannot be read: {test.fault}" if test.fault else f"shows {shown}",
             checked=("read again" if test.fault else how, "its file is unchanged"),
-            subject=SubjectKind.TEST,
-            name=test.entry.id,
             shows="unreadable" if test.fault else "scenarios" if test.shown else "nothing",
             drivers=tuple(sides),
         )
@@ -259,11 +266,9 @@ class CatalogueQuestion:
         if fact is None:
             return found
         test, relation, other = fact
-        subject = subject_of_fact(test, relation)
         if answer.certificate is not None:
             relation = {"runs": "empty", "shows": "excludes"}.get(relation, relation)
-        label = f"{test} {relation} {other}".strip()
-        return replace(found, label=label, subject=subject.kind, name=subject.name)
+        return replace(found, label=f"{test} {relation} {other}".strip())
 
     def doubts(self, known: Answers) -> list[tuple[str, Reason]]:
         """Return the facts of tests that no claim was asked for, and the classes of gaps in doubt."""
