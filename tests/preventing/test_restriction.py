@@ -255,12 +255,12 @@ def test_a_driver_model_does_not_change_what_a_formula_test_means(side: str, tmp
     [target] = found.tested.targets
     assert (target.tested, target.possible) == ((), ("range",))
     assert found.exit_code == 10
-    [entry] = found.study.entries
+    [entry] = found.question.abstract
     assert isinstance(entry, Abstract)
     file = load_drive(EXAMPLE / "drives" / "cut-in.json")
     claims = {
         "as it is": (rp.load().specification, "scenario_1(SV,POV,L)"),
-        "of the test": (found.study.basis.specification, entry.query.text.partition(" and (20 m/s")[0]),
+        "of the test": (found.question.basis.specification, entry.query.text.partition(" and (20 m/s")[0]),
     }
     holds = {
         name: judge(
