@@ -8,8 +8,9 @@ from typing import Final
 
 from roadproof.errors import InputError
 from roadproof.evidence.codec import read, write
-from roadproof.evidence.strict import JsonObject
+from roadproof.evidence.strict import LARGEST_INDEX, JsonObject
 from roadproof.questions.classify.data import ClassesData, SharesData, Situations, counted
+from roadproof.runtime.files import read_text
 
 SHARES: Final = "shares.csv"
 _COLUMNS = ("what", "name", "number")
@@ -43,7 +44,7 @@ def with_shares(data: JsonObject, folder: Path) -> JsonObject:
     path = folder / SHARES
     if not path.is_file() or path.is_symlink():
         return data
-    rows = [*csv.reader(io.StringIO(path.read_text("utf-8")))]
+    rows = [*csv.reader(io.StringIO(read_text(path, LARGEST_INDEX, "no table of shares is larger")))]
     if not rows or tuple(rows[0]) != _COLUMNS or any(len(row) != len(_COLUMNS) for row in rows):
         raise InputError(f"{path}: its columns are not {', '.join(_COLUMNS)}")
     try:
