@@ -36,7 +36,7 @@ from roadproof.analysis.classify.drives import find_examples, patched, with_zone
 from roadproof.analysis.classify.shares import Shares, count_shares
 from roadproof.analysis.classify.simulated import shares_key, shares_of, shares_text, simulated_shares
 from roadproof.analysis.classify.text import claims_of, with_classes, write_classes
-from roadproof.engines.search import batches
+from roadproof.engines.search import valid
 from roadproof.engines.search.batches import Engines
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.claim import Claim
@@ -360,14 +360,14 @@ def test_a_cell_in_doubt_is_said_in_full_and_the_run_is_in_doubt(
 ) -> None:
     axis = what_axis(plan_of(BASE, (4, 8)), plan_of(BASE, (4, 8)).groups[0], BASE)
     _, first = next(refine(axis, BASE, "class_4", (4,), (8,)))
-    settle_valid = batches.settle_valid
+    settle_valid = valid.settle_valid
 
     def one_fails(claim: Claim, *more: Any) -> Any:
         if claim.text == first.text:
             fault()
         return settle_valid(claim, *more)
 
-    monkeypatch.setattr(batches, "settle_valid", one_fails)
+    monkeypatch.setattr(valid, "settle_valid", one_fails)
     line = ["classify", "--among", "4,8", "--no-shares", "--no-pictures", "--jobs", "2"]
     assert main([*line, "--out", str(tmp_path)]) == 20
     printed = capsys.readouterr().out
@@ -401,7 +401,7 @@ def test_an_outline_in_doubt_makes_no_classes_and_leaves_the_folder_alone(
     out = tmp_path / "out"
     shutil.copytree(written, out)
     before = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
-    monkeypatch.setattr(batches, "settle_valid", fault)
+    monkeypatch.setattr(valid, "settle_valid", fault)
     line = ["classify", "--no-pictures", "--jobs", "2", "--out", str(out)]
     # Of one axis alone there is no job that could be lost.
     assert main([*line, "--among", "4,8" if fault is late else "1-8"]) == 20

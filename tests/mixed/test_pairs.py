@@ -106,7 +106,7 @@ def test_what_the_clock_cuts_off_is_in_doubt(monkeypatch: pytest.MonkeyPatch) ->
     def late(*_: Any) -> Any:
         raise BudgetExceeded(3.0)
 
-    monkeypatch.setattr(batches, "prove_of_scenarios", late)
+    monkeypatch.setattr("roadproof.engines.prove.induction.prove_of_scenarios", late)
     engines = Engines(QUESTION.work)
     answers = [engines.settle(BASIS.claim(x))[0] for x in READINGS]
     assert [x.verdict for x in answers] == [V.UNKNOWN, V.UNKNOWN]
@@ -122,7 +122,7 @@ def test_parts_that_another_claim_does_not_have_do_not_clash_there(monkeypatch: 
         asked.append(query.text)
         raise BudgetExceeded(1.0)
 
-    monkeypatch.setattr(batches, "prove_of_scenarios", note)
+    monkeypatch.setattr("roadproof.engines.prove.induction.prove_of_scenarios", note)
     here, there = ([*parts_of(x.formula)] for x in (mine, other))
     foreign = [x for x in there if x not in here]
     assert foreign

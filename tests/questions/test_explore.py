@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from roadproof.analysis.basis import Basis
 from roadproof.engines.encode.unroll import common_step
-from roadproof.engines.search import batches, known_drive, placing, stages
+from roadproof.engines.search import known_drive, placing, stages
 from roadproof.engines.search.batches import Engines
 from roadproof.engines.search.bracket import Bracket, range_of, starting_ranges
 from roadproof.engines.search.extreme import (
@@ -448,7 +448,7 @@ def test_what_the_clock_cuts_off_is_a_doubt(monkeypatch: pytest.MonkeyPatch) -> 
     def late(*_: object) -> None:
         raise BudgetExceeded(1.0)
 
-    monkeypatch.setattr(batches, "prove_of_scenarios", late)
+    monkeypatch.setattr("roadproof.engines.prove.induction.prove_of_scenarios", late)
     question = question_of(FASTER, least="v_lon(SV)")
     answers = settle(question, hands=1).answers
     assert "cut off by the clock" in answers[f"{HELP}formula-01-base-any"].reason
@@ -467,7 +467,7 @@ def test_what_is_kept_is_not_explored_again(tmp_path: Path, monkeypatch: pytest.
         again.append(claim)
         return look(claim, search)
 
-    monkeypatch.setattr(batches, "look", counted)
+    monkeypatch.setattr(stages, "look", counted)
     settle(question_of(*TWO, least="v_lon(SV)"), tmp_path, 1)
     assert {x.digest() for x in again} <= {first.answers["formula-02-base-value-001"].claim.digest()}
     assert {x.name: x.read_bytes() for x in tmp_path.iterdir()} == before

@@ -1,9 +1,11 @@
 """The parts of a conjunction, through the names of definitions."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
+from roadproof.logic.restore import as_syntax
+from roadproof.logic.show import text
 
 
 def parts_of(formula: Formula) -> Iterator[Formula]:
@@ -16,3 +18,8 @@ def parts_of(formula: Formula) -> Iterator[Formula]:
             yield from parts_of(body)
         case _:
             yield formula
+
+
+def texts_of(parts: Iterable[Formula]) -> tuple[str, ...]:
+    """Return parts of a formula as texts, definitions by name."""
+    return tuple(text(as_syntax(part)) for part in parts)

@@ -11,7 +11,6 @@ from itertools import combinations, permutations
 from typing import Annotated, Any, ClassVar, Final, Literal, TypeAlias
 
 from roadproof.analysis.basis import Basis
-from roadproof.engines.search.impossible import told_parts
 from roadproof.errors import InputError
 from roadproof.evidence.answer import Answer
 from roadproof.evidence.answers import shared
@@ -25,7 +24,7 @@ from roadproof.library.compose import both, either, eventually, negation
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import Not
-from roadproof.logic.parts import parts_of
+from roadproof.logic.parts import parts_of, texts_of
 from roadproof.questions.question import Answers, Place, Steps, heading_of
 from roadproof.reasons import NO_REASON, Reason, Why, joined
 from roadproof.runtime.budget import Work
@@ -188,7 +187,7 @@ def _core(answer: Answer) -> tuple[str, ...]:
     assert proof is not None
     denied = read_claim(answer.claim.home, proof.claim).formula
     assert isinstance(denied, Not)
-    return told_parts([*dict.fromkeys(parts_of(denied.body))])
+    return texts_of([*dict.fromkeys(parts_of(denied.body))])
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ from functools import cached_property
 from typing import Annotated, ClassVar, Final, Literal, TypeAlias
 
 from roadproof.analysis.basis import Basis
-from roadproof.engines.search.impossible import told_parts
 from roadproof.engines.search.looking import limits_of
 from roadproof.engines.search.question import usual_road
 from roadproof.errors import InputError
@@ -23,7 +22,7 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.scenarios import Scenario, applied
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import Formula, Not
-from roadproof.logic.parts import parts_of
+from roadproof.logic.parts import parts_of, texts_of
 from roadproof.questions.place import Place, mode_of, place_of
 from roadproof.questions.question import Answers, Steps, heading_of
 from roadproof.questions.question import Place as Placing
@@ -152,7 +151,7 @@ class SearchResult:
     @property
     def told(self) -> tuple[str, ...]:
         """The parts that clash as texts."""
-        return told_parts(self.core)
+        return texts_of(self.core)
 
     @property
     def told_without_options(self) -> str:

@@ -2,16 +2,10 @@
 
 from dataclasses import replace
 
-from roadproof.engines.prove.prover import prove
 from roadproof.engines.search.ask import ask, reads_all
-from roadproof.engines.search.constant_motion import steady_drive
-from roadproof.engines.search.dense_candidates import falsifying_drive
 from roadproof.engines.search.looking import mode_of, search_of
-from roadproof.engines.search.minimal import simplest
-from roadproof.engines.search.none_within import refute
 from roadproof.engines.search.outcome import Outcome, Search
 from roadproof.engines.search.placing import judged_as
-from roadproof.engines.search.refute import sampled_drive
 from roadproof.errors import UsageError
 from roadproof.evidence.answer import Answer, undecided, values_of
 from roadproof.evidence.answer_files import OpenVerdict
@@ -43,6 +37,8 @@ def seek(claim: Claim, work: Work) -> tuple[Answer, Cost]:
     found = ask(search)
     drive = None
     if work.proof and found.verdict is Verdict.NONE_WITHIN:
+        from roadproof.engines.search.dense_candidates import falsifying_drive
+
         drive = falsifying_drive(search)
     stages = {name: x for name, x in found.seconds.items() if name != "all"}
     cost = Cost(stages=stages, sizes=found.sizes)
@@ -61,6 +57,8 @@ def seek_simple(claim: Claim, work: Work) -> tuple[Answer, Cost]:
         return undecided(claim, Why.NO_SEARCH("it" if road is None else road.name, error)), NO_COST
     if answer.drive is None:
         return answer, cost
+    from roadproof.engines.search.minimal import simplest
+
     file = simplest(answer.drive.file, claim.query, claim.home.library)
     shown = judged_as(file, claim.query, claim.home.library)
     return (answer if shown is None else Answer(claim, shown)), cost
@@ -68,6 +66,8 @@ def seek_simple(claim: Claim, work: Work) -> tuple[Answer, Cost]:
 
 def _decided(claim: Claim, search: Search, work: Work) -> Answer | None:
     """Return what is decided before a search: by constant motion, or by a proof."""
+    from roadproof.engines.prove.prover import prove  # here: a search without proofs needs no prover
+
     effort, never = search.search_options.effort, negation(claim.query)
     drive = _constant(claim, search)
     if drive is not None:
@@ -82,6 +82,9 @@ def _decided(claim: Claim, search: Search, work: Work) -> Answer | None:
 
 def _constant(claim: Claim, search: Search) -> JudgedDrive | None:
     """Return constant motion, of a claim about one instant that no engine reads."""
+    from roadproof.engines.prove.prover import prove
+    from roadproof.engines.search.refute import sampled_drive
+
     never = negation(claim.query)
     if not is_cubic_state(never.formula) or reads_all(search):
         return None
@@ -94,6 +97,9 @@ def _constant(claim: Claim, search: Search) -> JudgedDrive | None:
 
 def _at_values(claim: Claim, search: Search) -> Answer | None:
     """Return the answer to a claim about one instant that no engine can search: with its values put in."""
+    from roadproof.engines.prove.prover import prove
+    from roadproof.engines.search.constant_motion import steady_drive
+
     never, effort = negation(claim.query), search.search_options.effort
     result = prove(claim.home, never, effort, assumed=Assumption(values_of(claim)))
     if result.holds and result.certificate is not None:
@@ -107,6 +113,8 @@ def _at_values(claim: Claim, search: Search) -> Answer | None:
 
 def with_trees(claim: Claim, work: Work) -> Answer:
     """Return that there is no drive within limits, with trees that show it, where they are found."""
+    from roadproof.engines.search.none_within import refute
+
     trees = refute(search_of(claim, work))
     return undecided(claim, Why.NO_TREES()) if trees is None else Answer(claim, trees)
 

@@ -8,12 +8,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from typing import assert_never
 
-from roadproof.engines.prove.induction import prove_of_scenarios
-from roadproof.engines.search.impossible import explain
 from roadproof.engines.search.known_drive import KnownDrive, given_drive, is_same_motion
 from roadproof.engines.search.looking import search_of
 from roadproof.engines.search.question import zones_of
-from roadproof.engines.search.valid import settle_valid
 from roadproof.evidence.answer import Answer, Judged, Refutation, undecided
 from roadproof.evidence.answer_files import Undecided
 from roadproof.evidence.certificate import Certificate
@@ -112,6 +109,8 @@ class Engines:
                 return Answer(claim, shown), NO_COST
             match claim.mode:
                 case Valid():
+                    from roadproof.engines.search.valid import settle_valid  # here: drives need no prover
+
                     alike = self.alike.get(without_sectors(claim.formula), ())
                     return settle_valid(claim, self.work, self.drives, alike)
                 case Exists(like=Drive() as like):
@@ -261,6 +260,9 @@ class Engines:
 
     def _clash(self, claim: Claim, times: float) -> Certificate | None:
         """Return a proof that parts of a claim clash, as few as are found."""
+        from roadproof.engines.prove.induction import prove_of_scenarios
+        from roadproof.engines.search.impossible import explain
+
         effort = self.work.effort.of(times * self.work.proof)
         proof = prove_of_scenarios(claim.home, negation(claim.query), effort)
         shown = explain(claim.home, claim.query, proof, self.work.effort.of(FOR_A_PART * self.work.proof))
@@ -268,6 +270,8 @@ class Engines:
 
     def _proof(self, claim: Claim, core: Query, times: float) -> Certificate | None:
         """Return a proof that ``core`` never holds."""
+        from roadproof.engines.prove.induction import prove_of_scenarios
+
         effort = self.work.effort.of(times * self.work.proof)
         return prove_of_scenarios(claim.home, negation(core), effort).certificate
 

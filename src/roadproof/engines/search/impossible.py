@@ -1,6 +1,6 @@
 """No is explained: a proof that no trace satisfies a formula, and the parts of it that clash."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeAlias
 
@@ -14,9 +14,7 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Query, Specification
 from roadproof.logic import formula as f
 from roadproof.logic.formula import Formula
-from roadproof.logic.parts import parts_of
-from roadproof.logic.restore import as_syntax
-from roadproof.logic.show import text
+from roadproof.logic.parts import parts_of, texts_of
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.records import dataclass
 
@@ -39,7 +37,7 @@ class Impossibility:
     @property
     def told(self) -> tuple[str, ...]:
         """The core as texts."""
-        return told_parts(self.core)
+        return texts_of(self.core)
 
     @property
     def plain(self) -> JsonObject:
@@ -67,17 +65,12 @@ def explain(
         core, minimal, shown = _core(specification, query, left)
         return Impossibility(core, minimal, proof.certificate, shown or proof.certificate)
     shorter, minimal, _ = _core(outline, read_claim(outline, query.text), left)
-    said, whole = {*told_parts(shorter)}, tuple(dict.fromkeys(parts_of(query.formula)))
-    core = tuple(part for part in whole if {*told_parts((part,))} <= said)
+    said, whole = {*texts_of(shorter)}, tuple(dict.fromkeys(parts_of(query.formula)))
+    core = tuple(part for part in whole if {*texts_of((part,))} <= said)
     again = prove(specification, negation(of_parts(query, core)), effort.of(SHORTER)).certificate
     if again is None:
         core, minimal = whole, False
     return Impossibility(core, minimal, proof.certificate, again or proof.certificate)
-
-
-def told_parts(core: Sequence[Formula]) -> tuple[str, ...]:
-    """Parts of a formula as texts, definitions by name."""
-    return tuple(text(as_syntax(part)) for part in core)
 
 
 _Core: TypeAlias = tuple[tuple[Formula, ...], bool, Certificate | None]

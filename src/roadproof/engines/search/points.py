@@ -9,7 +9,6 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TypeAlias, TypeVar
 
-from roadproof.engines.search.impossible import told_parts
 from roadproof.engines.search.known_drive import KnownDrive, is_same_motion
 from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.stages import finest, fit_grid, staged_claim, stand_ins, values_of
@@ -22,7 +21,7 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import value_texts
 from roadproof.library.specification import Query
 from roadproof.logic.formula import Not
-from roadproof.logic.parts import parts_of
+from roadproof.logic.parts import parts_of, texts_of
 from roadproof.logic.rewrite import is_cubic_state, parameters_of
 from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.verdict import DriveVerdict, Verdict
@@ -206,4 +205,4 @@ def core_of(answer: Answer) -> tuple[str, ...]:
     assert proof is not None
     denied = read_claim(answer.claim.home, proof.claim).formula
     assert isinstance(denied, Not)
-    return told_parts([*dict.fromkeys(parts_of(denied.body))])
+    return texts_of([*dict.fromkeys(parts_of(denied.body))])
