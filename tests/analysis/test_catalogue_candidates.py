@@ -10,12 +10,10 @@ from roadproof.analysis.basis import Basis
 from roadproof.analysis.catalogue.asked import Questions
 from roadproof.analysis.catalogue.candidates import CandidateDrives, candidates
 from roadproof.analysis.catalogue.entries import Abstract
-from roadproof.engines.prove.prover import SharedPremise
 from roadproof.engines.search.batches import Engines
 from roadproof.evidence.answer import Answer
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.judged import JudgedDrive, judge_file
-from roadproof.library.compose import implication, negation
 from roadproof.library.scenarios import name_of
 from roadproof.questions.catalogue import abstract
 from roadproof.questions.question import seen, walk
@@ -124,12 +122,3 @@ def test_a_proposed_drive_is_judged_for_the_claim(drive: JudgedDrive) -> None:
     assert shown.drive.file.drive == drive.file.drive
     never = batch.exists(HOME.read("scenario_1(SV,POV,L) and scenario_4(SV,POV,L)"))
     assert engines.settle(never, [drive])[0].verdict is Verdict.IMPOSSIBLE
-
-
-def test_proofs_that_share_a_premise_come_to_the_same() -> None:
-    shared, premise = SharedPremise(), HOME.read(SLOW)
-    for query in QUERIES.values():
-        for claim in (implication(premise, query), implication(premise, negation(query))):
-            together, alone = BASIS.proof_of(claim, shared=shared), BASIS.proof_of(claim)
-            assert together.verdict is alone.verdict
-            assert (together.certificate is None) == (alone.certificate is None)

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from roadproof.drivers.restriction import left_open
-from roadproof.engines.prove.prover import Result, SharedPremise, prove
+from roadproof.engines.prove.prover import Result, prove
 from roadproof.errors import InputError
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import Assumption, Axiom, axiom_formula
@@ -68,9 +68,7 @@ def _number(term: Term) -> str:
     return text(term_as_syntax(term))
 
 
-def prove_of_scenarios(
-    specification: Specification, query: Query, effort: Effort, shared: SharedPremise | None = None
-) -> Result:
+def prove_of_scenarios(specification: Specification, query: Query, effort: Effort) -> Result:
     """As ``prove``; but where a driver model says what begins, UNKNOWN for what needs its numbers.
 
     A proof is one of the claim itself, with its certificate. That there may be one is asked first where what
@@ -82,4 +80,4 @@ def prove_of_scenarios(
         first = prove(outline, read_claim(outline, query.text), effort)
         if not first.holds:
             return Result(first.work, verdict=Verdict.UNKNOWN, reason=Why.LEFT_OPEN(), seconds=first.seconds)
-    return prove(specification, query, effort, shared=shared)
+    return prove(specification, query, effort)

@@ -72,22 +72,11 @@ class Result(Settled[ClaimVerdict]):
         return replace(self, certificate=replace(self.certificate, property=label, scenario=scenario))
 
 
-@dataclass(frozen=True)
-class SharedPremise:
-    """What proofs of claims with the same premise share, of which a judged drive shows that it can hold.
-
-    So no claim is VACUOUS because of it. ``learnt``: of states, by the values that a premise demands.
-    """
-
-    learnt: dict[tuple[str, ...], Learnt] = field(default_factory=dict)
-
-
 def prove(
     specification: Specification,
     query: Query,
     effort: Effort | None = None,
     assumed: motion.Assumption = motion.NOTHING,
-    shared: SharedPremise | None = None,
 ) -> Result:
     """Decide whether ``query`` holds at time 0 on all traces, for all values of its parameters.
 
@@ -95,16 +84,15 @@ def prove(
     above zero, roads, and signals as functions of time; a value that is ``assumed``, or that the claim's own
     premise demands, is put in first. A proof counts only once its certificate, derived apart, has been
     answered unsat. Where motion is ``assumed`` nothing is refuted: a trace that has it at finitely many
-    instants need be no motion. ``shared``: of the claim's own premise, where a drive satisfies it. Raises
-    ``BudgetExceeded``; ``InputError`` for forbidden assumptions.
+    instants need be no motion. Raises ``BudgetExceeded``; ``InputError`` for forbidden assumptions.
     """
     begun, effort = now(), (effort or Effort()).running()
-    found = _prove(specification, query, effort, assumed, shared)
+    found = _prove(specification, query, effort, assumed)
     brief = effort.of(min(OTHERWISE, effort.units))
     for reading in other_readings(query.formula):
         if found.verdict is not Verdict.UNKNOWN or found.stop is Stop.CERTIFICATE:
             break
-        again = _prove(specification, query, brief, assumed, shared, reading)
+        again = _prove(specification, query, brief, assumed, reading)
         found = replace(again if again.holds else found, work=found.work + again.work)
     return replace(found, seconds=since(begun))
 
@@ -114,7 +102,6 @@ def _prove(
     query: Query,
     effort: Effort,
     assumed: motion.Assumption,
-    shared: SharedPremise | None,
     reading: Reading = "states",
 ) -> Result:
     """As ``prove``, in one reading; in others than the usual one only proofs count."""
@@ -124,8 +111,7 @@ def _prove(
     demanded = _demanded(specification, query, here)
     pinned = motion.value_texts(specification, demanded)
     values = {**here, **demanded}
-    learnt = None if shared is None else shared.learnt.setdefault(pinned, Learnt())
-    states = _states(specification, values, learnt, reading)
+    states = _states(specification, values, None, reading)
     premise, claim = goal_of(specification, query, assumed, states.atoms, pinned)
     attempt = _Attempt(specification, query, states, meter, motion.is_moving(assumed.said))
 
@@ -143,7 +129,7 @@ def _prove(
         proofs.append(found)
     fewer = attempt.needed(assumed, values, proofs)
     if fewer != assumed:
-        again = _prove(specification, query, meter.effort(), fewer, None, reading)
+        again = _prove(specification, query, meter.effort(), fewer, reading)
         if again.verdict is Verdict.PROVED and attempt.never_holds(premise, f.TRUE):
             again = replace(again, verdict=Verdict.VACUOUS, reason=Why.CONTRADICTION())
         if again.holds:
@@ -157,7 +143,7 @@ def _prove(
         return replace(result(*rejected), stop=Stop.CERTIFICATE if rejected[0] is Verdict.UNKNOWN else None)
     if premise != f.TRUE and attempt.never_holds(premise, f.TRUE):
         return result(Verdict.VACUOUS, Why.CONTRADICTION(), certificate)
-    condition = None if shared is not None else premise_of(query, claim)
+    condition = premise_of(query, claim)
     if condition is not None and attempt.never_holds(premise, condition):
         return result(Verdict.VACUOUS, Why.PREMISE(), certificate)
     return result(Verdict.PROVED, NO_REASON, certificate)
