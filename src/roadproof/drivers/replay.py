@@ -294,7 +294,7 @@ def _judged(
     touch, past = (first_cut(judgement.truth(x), since) for x in (touching, passing))
     if touch is not None and (past is None or touch <= past):
         if latest is not None and touch.point > latest:
-            return Outcome(Result.UNDECIDED, reason=Why.TOO_LONG(LONGEST))
+            return Outcome(Result.UNDECIDED, reason=Why.TOO_LONG(LONGEST), is_late=True)
         at = _at_or_after(touch)
         mine, its = (state_at(drive.vehicles[x], at) for x in (me, last))
         speed = round(float(mine.v_lon - its.v_lon), 2)

@@ -9,12 +9,12 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 
-from roadproof.drivers.driving import DriverSettings, require
+from roadproof.drivers.driving import DriverSettings, require, rest_of
 from roadproof.drivers.initial_state import State
 from roadproof.drivers.manoeuvres import ManoeuvreName
 from roadproof.drivers.models import DRIVERS, MODELS, ModelName, course_in, foreseen
-from roadproof.drivers.outcome import Outcome
-from roadproof.drivers.replay import first_cut, replay
+from roadproof.drivers.outcome import Outcome, shown_by_drive
+from roadproof.drivers.replay import Replayed, first_cut, replay
 from roadproof.drivers.sampled_replay import replay_samples
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.subject import TestedSide
@@ -44,13 +44,22 @@ _PLACES = 6  # decimals of a state
 
 
 @dataclass(frozen=True)
+class DrivenTest:
+    """A drive in which a model drives SV, what it shows, and from when on (s) all its vehicles rest."""
+
+    drive: Drive
+    formula: str
+    rests: Fraction
+
+
+@dataclass(frozen=True)
 class Decision:
     """What becomes of a scenario under a model.
 
     ``at``: when the manoeuvre begins (s), None where it never does. ``gap``: the least gap that is left (m).
     ``instant``, ``speed``: when SV touches POV (s), and how much faster it then is (m/s). ``start``: the
-    state when the manoeuvre begins, as the sheets of UN R157 name it (SI). ``drive``: the drive of SV under
-    the model, of a test that is one.
+    state when the manoeuvre begins, as the sheets of UN R157 name it (SI). ``driven``: the drive of a
+    test that is one, with the model in place of SV.
     """
 
     scenario: str
@@ -63,7 +72,7 @@ class Decision:
     speed: float | None = None
     start: Mapping[str, float] = field(default_factory=dict)
     reason: Reason = NO_REASON
-    drive: Drive | None = field(default=None, repr=False, compare=False)
+    driven: DrivenTest | None = field(default=None, repr=False, compare=False)
 
 
 @dataclass(frozen=True)
@@ -142,7 +151,16 @@ def decide_drive(
             file.drive, file.road, vehicles, manoeuvre, model, start, drivers.specification, drivers.settings
         )
         decision = _decided(scenario, vehicles, model, found.outcome, at, state)
-        yield replace(decision, drive=found.drive)
+        yield replace(decision, driven=_driven(found, vehicles, start))
+
+
+def _driven(found: Replayed, vehicles: tuple[str, ...], since: Fraction) -> DrivenTest | None:
+    shown = shown_by_drive(found.outcome, vehicles)
+    if found.drive is None or not shown:
+        return None
+    begin = f"{since} s" if since.denominator == 1 else f"{since}*1 s"
+    formula = f"F[{begin}, {begin}] ({shown})" if since else shown
+    return DrivenTest(found.drive, formula, max(rest_of(found.drive), since))
 
 
 def _state_at(file: DriveFile, cut: Cut) -> State:
@@ -208,7 +226,7 @@ def decide_formula(found: Sequence[Decision], missed: Collection[tuple[str, str]
     for x in found:
         groups.setdefault((x.scenario, x.driver), []).append(x)
     for key, those in groups.items():
-        made = replace(those[0], at=None, gap=None, instant=None, speed=None, start={}, drive=None)
+        made = replace(those[0], at=None, gap=None, instant=None, speed=None, start={}, driven=None)
         counts = Counter(x.side for x in those)
         if {"preventable", "unpreventable"} <= counts.keys():
             yield replace(made, side="partly", reason=Why.BOTH_SIDES())

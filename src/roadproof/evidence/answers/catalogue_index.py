@@ -198,6 +198,11 @@ class _OfTest:
 class KeptDecision(DriverVerdict, _OfTest):
     """What becomes of a scenario that a test shows, under a driver model."""
 
+    drive: Annotated[
+        shared.KeptDrive,
+        Doc("The drive in which the model drives SV; null of samples and formulas, and where none begins."),
+    ] = None
+
 
 @dataclass(frozen=True, kw_only=True)
 class Range:

@@ -34,12 +34,16 @@ from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import CatalogueKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.library.scenarios import number_in, numbers_of
+from roadproof.questions.catalogue.driven import driven_name
 from roadproof.questions.catalogue.question import AskedTests, CatalogueQuestion
 from roadproof.questions.catalogue.view import CatalogueView
 from roadproof.runtime.executors import Jobs
 from roadproof.runtime.pool import Progress
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode, Verdict
+
+MOST_DRIVEN = 20
+"""Pictures of drives in which models drive SV."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -143,6 +147,18 @@ class CatalogueAnswer(QuestionAnswers[CatalogueView], BuildResult):
         yield "matrix", picture(report.draw_matrix(self.tests, self.tested, self.view.in_force))
         for k, page in enumerate(draw_tests(self._drawn()), 1):
             yield f"tests-{k}", picture(page)
+        yield from self._driven_pictures()
+
+    def _driven_pictures(self) -> Iterator[tuple[str, Picture]]:
+        """The drives in which models drive SV; of many those that touch POV or are undecided."""
+        from roadproof.frontends.report.drive import draw_drive
+
+        sides = {driven_name(test, x): x.side for test, x in self.decisions}
+        found = {name: x.drive.file for name, x in self.view.driven.items() if x.drive is not None}
+        if len(found) > MOST_DRIVEN:
+            found = {name: x for name, x in found.items() if sides.get(name) != "preventable"}
+        for name, file in [*found.items()][:MOST_DRIVEN]:
+            yield name, picture(draw_drive(file, self.library))
 
     def _drawn(self) -> list[DrivePicture]:
         """The tests to be drawn, by the first scenario that each shows."""

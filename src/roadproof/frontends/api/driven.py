@@ -6,7 +6,6 @@ begins. What a driver does in the trace is decided by the model that is put into
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from fractions import Fraction
 
 from roadproof.analysis.catalogue.decisions import Decision, Drivers, course_of, decide_drive, decide_trace
@@ -82,5 +81,5 @@ def driver_lines(decisions: tuple[Decision, ...]) -> Iterator[str]:
 
 def as_kept(decision: Decision) -> DriverVerdict:
     """Return a decision as an answer has it."""
-    fields = {name: value for name, value in vars(replace(decision, drive=None)).items() if name != "drive"}
+    fields = {name: value for name, value in vars(decision).items() if name != "driven"}
     return DriverVerdict(**fields)

@@ -25,8 +25,9 @@ from roadproof.evidence.answers.catalogue_index import KeptRequest
 from roadproof.evidence.codec import Doc, Rule, read
 from roadproof.evidence.finding import Finding
 from roadproof.evidence.subject import OTHER, DriverSide, Subject, SubjectKind, subject_of_fact
-from roadproof.questions.catalogue.abstract import PairBatch, TestBatch
+from roadproof.questions.catalogue.abstract import PairBatch, TestBatch, stem_of
 from roadproof.questions.catalogue.concrete import ConcreteBatch
+from roadproof.questions.catalogue.driven import DrivenBatch, driven_batches
 from roadproof.questions.catalogue.sides import SidesBatch
 from roadproof.questions.catalogue.view import CatalogueView
 from roadproof.questions.classify.division import divide
@@ -150,10 +151,16 @@ class CatalogueQuestion:
 
     def _later(self, known: Answers) -> Iterator[Batch]:
         """Yield what is asked when all is known of each test by itself."""
+        yield from self._driven(known)
         yield from self._pairs_and_sides(known)
         yield from self._reaches(known)
         gaps = self._gaps(known)
         yield from () if gaps is None else gaps.batches(known)
+
+    def _driven(self, known: Answers) -> Iterator[DrivenBatch]:
+        """Yield what is asked of concrete tests in which driver models drive SV."""
+        if self.drivers is not None and not self.is_restricted:
+            yield from driven_batches(self.basis, self.drivers, self.shown(0, known))
 
     def _gaps(self, known: Answers) -> Nested | None:
         """Return the question about the classes of gaps that no concrete test shows, where they are asked."""
@@ -211,8 +218,14 @@ class CatalogueQuestion:
         if (fact := self._fact(name)) is not None:
             test, relation, other = fact
             return f"{test} {relation if relation == 'implies' else 'open'} {other}".strip()
-        judged = self._judged.get(name)
-        return name if judged is None else f"test {judged}"
+        if name in self._judged:
+            return f"test {self._judged[name]}"
+        for test in self._judged.values():
+            begin = f"driven-{stem_of(test)}-"
+            if name.startswith(begin):
+                scenario, driver, _ = name.removeprefix(begin).split("-")
+                return f"test {test}, {scenario} with {driver} in place of SV"
+        return name
 
     @cached_property
     def _judged(self) -> dict[str, str]:
@@ -287,6 +300,7 @@ class CatalogueQuestion:
             tuple(self.shown(k, known) for k in range(len(self.questions))),
             self.facts(known),
             self.drivers,
+            {name: x for name, x in known.items() if name.startswith("driven-")},
         )
         gaps = self._gaps(known)
         if gaps is None or self.kinds is None:

@@ -1,6 +1,7 @@
 """All that is known of a catalogue: what its tests show, imply and miss."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import field
 from functools import cached_property
 from typing import Any
 
@@ -19,10 +20,11 @@ from roadproof.evidence.answers import catalogue_index as kept
 from roadproof.evidence.answers import coverage
 from roadproof.evidence.answers.catalogue_index import Figure
 from roadproof.library.bind import values_with
+from roadproof.questions.catalogue.driven import borne_out, driven_name
 from roadproof.questions.coverage.data import claims_data, class_data
 from roadproof.questions.coverage.question import CoverageView
 from roadproof.questions.nested import Nested
-from roadproof.questions.question import Place, heading_of
+from roadproof.questions.question import Answers, Place, heading_of
 from roadproof.runtime.records import dataclass
 from roadproof.world.unread import left_out_in, unread_of_road
 
@@ -33,7 +35,8 @@ class CatalogueView:
 
     ``shown``: what concrete tests show, in each spec set; ``facts``: what is known of the others;
     ``survey``: where it was asked, what is known of gaps, with the question inside this one, and
-    ``gap_answers``: of each class of gaps, None of those that tests show.
+    ``gap_answers``: of each class of gaps, None of those that tests show. ``driven``: the answers about tests
+    in which a driver model drives SV, by name.
     """
 
     basis: Basis
@@ -43,6 +46,7 @@ class CatalogueView:
     shown: tuple[tuple[ConcreteAnswer, ...], ...]
     facts: tuple[Fact, ...]
     drivers: Drivers | None
+    driven: Answers = field(default_factory=dict)
     survey: tuple[Nested, CoverageView] | None = None
     gap_answers: Mapping[str, ClassAnswer | None] | None = None
 
@@ -83,7 +87,9 @@ class CatalogueView:
     def decisions(self) -> tuple[tuple[str, Decision], ...]:
         """What becomes of each test, by id, under each driver model, in the order of tests."""
         drivers = self.drivers
-        concrete = {x.entry.id: x.decisions for x in self.concrete}
+        concrete = {
+            x.entry.id: [borne_out(x.entry.id, y, self.driven) for y in x.decisions] for x in self.concrete
+        }
         if drivers is None:
             return ()
         found: list[tuple[str, Decision]] = []
@@ -93,6 +99,13 @@ class CatalogueView:
                 made = self._of_formula(entry, drivers)
             found += [(entry.id, x) for x in made]
         return tuple(found)
+
+    def _kept(self, test: str, decision: Decision, place: Place) -> kept.KeptDecision:
+        """Return a decision as ``--json`` prints it, with its drive."""
+        fields = {name: value for name, value in vars(decision).items() if name != "driven"}
+        name = driven_name(test, decision)
+        drive = place(name, self.driven[name]) if name in self.driven else None
+        return kept.KeptDecision(test=test, drive=drive, **fields)
 
     def _of_formula(self, entry: Abstract, drivers: Drivers) -> Iterator[Decision]:
         """What becomes of an abstract test by the drives of it that were found, each once."""
@@ -175,7 +188,7 @@ class CatalogueView:
             gaps=self._gaps(place),
             not_tested=self.missing,
             figures=self.figures,
-            decisions=tuple(_kept(test, x) for test, x in self.decisions),
+            decisions=tuple(self._kept(test, x, place) for test, x in self.decisions),
             ranges=tuple(map(_range, self.spans)),
             facts=tuple(fact_data(x, place) for x in self.facts),
             faults=found.faults,
@@ -230,12 +243,6 @@ class CatalogueView:
 def _range(span: Span) -> kept.Range:
     said = {name: x for name, x in vars(span).items() if name != "unit"}
     return kept.Range(**said, untested=span.untested, share=round(span.share, 4))
-
-
-def _kept(test: str, decision: Decision) -> kept.KeptDecision:
-    """Return a decision as the index has it: without its drive, which ``check`` makes again."""
-    fields = {name: value for name, value in vars(decision).items() if name != "drive"}
-    return kept.KeptDecision(test=test, **fields)
 
 
 def fact_data(fact: Fact, place: Place) -> kept.KeptFact:
