@@ -36,6 +36,8 @@ from roadproof.world.drive import Drive
 MOVED = 5
 """So many drives are tried on other roads for a claim that is about no road sector."""
 FOR_A_PART = 10.0  # times the work of a first proof, for one that parts clash
+TRACES = 5
+"""So many of the latest refuting traces are tried as ones that have the formula of a further claim."""
 
 
 @dataclass(frozen=True)
@@ -256,7 +258,7 @@ class Engines:
 
     def _has_trace(self, claim: Claim) -> bool:
         never, bounds = negation(claim.query).formula, claim.home.library.bounds
-        return any(fault_of(trace, never, bounds) is None for trace in self.traces)
+        return any(fault_of(trace, never, bounds) is None for trace in self.traces[-TRACES:])
 
     def _clash(self, claim: Claim, times: float) -> Certificate | None:
         """Return a proof that parts of a claim clash, as few as are found."""
