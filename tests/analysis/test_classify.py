@@ -368,6 +368,7 @@ def test_a_cell_in_doubt_is_said_in_full_and_the_run_is_in_doubt(
         return settle_valid(claim, *more)
 
     monkeypatch.setattr(valid, "settle_valid", one_fails)
+    monkeypatch.setattr("roadproof.questions.settle.is_fork_unsafe", lambda: False)
     line = ["classify", "--among", "4,8", "--no-shares", "--no-pictures", "--jobs", "2"]
     assert main([*line, "--out", str(tmp_path)]) == 20
     printed = capsys.readouterr().out
@@ -402,6 +403,7 @@ def test_an_outline_in_doubt_makes_no_classes_and_leaves_the_folder_alone(
     shutil.copytree(written, out)
     before = {path: path.read_bytes() for path in out.rglob("*") if path.is_file()}
     monkeypatch.setattr(valid, "settle_valid", fault)
+    monkeypatch.setattr("roadproof.questions.settle.is_fork_unsafe", lambda: False)
     line = ["classify", "--no-pictures", "--jobs", "2", "--out", str(out)]
     # Of one axis alone there is no job that could be lost.
     assert main([*line, "--among", "4,8" if fault is late else "1-8"]) == 20
@@ -414,8 +416,9 @@ def test_lost_drives_are_doubts(monkeypatch: pytest.MonkeyPatch) -> None:
     basis = Basis(BASE)
     question = question_of(basis, divide(basis, plan_of(BASE, (4, 8)), 1))
     monkeypatch.setattr("roadproof.engines.search.ask.ask", die)
+    monkeypatch.setattr("roadproof.questions.settle.is_fork_unsafe", lambda: False)
     found = question.view(settle(question, hands=2).answers)
-    assert {(x.verdict, x.drive) for x in found.examples} == {(Verdict.UNKNOWN, None)}
+    assert {(x.verdict, x.drive is None) for x in found.examples} == {(Verdict.UNKNOWN, True)}
     assert all("its process ended each time" in x.reason for x in found.examples[:1])
     assert {x.verdict for x in found.decisions} == {Verdict.PROVED}
 

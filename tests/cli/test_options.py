@@ -309,6 +309,7 @@ READERS = {
     "roadproof.runtime.executors": {"--jobs"},
     "roadproof.questions.settle": {"--out", "--shard"},
     "roadproof.questions.store": {"--out"},
+    "roadproof.evidence.specifications": {"--spec"},
     "roadproof.runtime.pool": {"--jobs"},
     "roadproof.runtime.process_pool": {"--jobs"},
     "roadproof.questions.explore.asking": {

@@ -547,7 +547,7 @@ def no_formula(out: Path) -> None:
         (a_controller, "it is about another plate"),
         (another_parameter, "its parameters have other values"),
         (a_line_more, "it is about another plate"),
-        (another_name, "no entry of the index names it"),
+        (another_name, "no claim of the question has this name"),
         (no_formula, "it is about F touches"),
     ],
 )

@@ -403,7 +403,7 @@ def test_the_evidence_says_that_it_is_stepped_and_is_worked_out_again(folder, tm
     capsys.readouterr()
     assert main(["check", str(folder)]) == 0
     told = capsys.readouterr().out
-    assert "DERIVED   fsm-Ve0-50_3, lines  F touches(SV, POV2)  [worked out again" in told
+    assert "DERIVED   fsm-Ve0-50_3, lines  meets(SV, POV2)  [worked out again" in told
     assert "3 of 3 accepted" in told
 
 

@@ -95,8 +95,9 @@ class GroupAsking:
         return ClassAnswer(part, verdict=Verdict.WITNESSED, gaps=tuple(gaps), none_for=none_for)
 
     def _of(self, part: Part | None, known: Sequence[FoundGap]) -> list[FoundGap]:
-        """The known gaps of the class."""
-        return [x for x in known if self.claims.classes.has(part, x.classes)]
+        """The known gaps of the class; a forged one may name a set that is not asked."""
+        sets = ("", *self.claims.wider)
+        return [x for x in known if x.first in sets and self.claims.classes.has(part, x.classes)]
 
     def _prove(self, stem: str, part: Part | None, word: str, failed: set[str]) -> Asking[ClassAnswer | None]:
         """Ask whether the class is empty, in every road sector, where it is in the first.
