@@ -31,7 +31,13 @@ from roadproof.library.bind import bind, values_with
 from roadproof.library.roles import cast_of, subject_in, vehicle_order
 from roadproof.library.scenarios import SUBJECT, Scenario, lane_owner
 from roadproof.library.specification import Library, Query
-from roadproof.recordings.evaluate.observed import FirstAnswer, Spans, observe_drive, observe_samples
+from roadproof.recordings.evaluate.observed import (
+    FirstAnswer,
+    Spans,
+    answer_where_they_stand,
+    observe_drive,
+    observe_samples,
+)
 from roadproof.recordings.evaluate.one_trace import (
     OneTrace,
     is_pair,
@@ -165,7 +171,8 @@ def trace(columns: "Mapping[str, Any] | Frame", road: RoadLike = "main-2") -> On
     ``InputError`` with column, row, value and rule.
     """
     known = as_road(road)
-    return replace(of_columns(columns_of(columns), known), notes=unread_of_road(known))
+    made = of_columns(columns_of(columns), known)
+    return replace(made, notes=(*unread_of_road(known), *made.notes))
 
 
 @takes(Monitor)
@@ -258,7 +265,8 @@ def _on_drive(
     place = _place(played, home, query, lanes, overruled)
     casts = driven.casts_of(home, query, number, tuple(given.drivers))
     found = tuple(driven.decisions_on(replace(file, drive=drive), casts, home, values))
-    return MonitorAnswer(home.library, observed, place, road=file.road, decisions=found)
+    notes = (*samples.notes, *answer_where_they_stand(query.text, formula, played.batch, given.end))
+    return MonitorAnswer(home.library, observed, place, notes, file.road, found)
 
 
 def _on_storyboard(what: What, path: Path, home: Definitions, given: Monitor) -> MonitorAnswer:
@@ -306,7 +314,8 @@ def _on_trace(
     place = _place(samples, home, query, lanes)
     casts = driven.casts_of(home, query, number, tuple(given.drivers))
     found = tuple(driven.decisions_on(samples, casts, home, values))
-    return MonitorAnswer(home.library, observed, place, samples.notes, samples.road, found)
+    notes = (*samples.notes, *answer_where_they_stand(query.text, formula, samples.batch, given.end))
+    return MonitorAnswer(home.library, observed, place, notes, samples.road, found)
 
 
 def _place(

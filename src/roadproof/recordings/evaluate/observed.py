@@ -1,5 +1,6 @@
 """What a formula is on one trace: verdict, margin, and when each named part of it is true."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import TypeAlias
@@ -7,8 +8,10 @@ from typing import TypeAlias
 import numpy as np
 
 from roadproof.evidence.answers.monitor import Truth, View
+from roadproof.logic import terms as t
 from roadproof.logic.formula import Application, Formula, nesting
-from roadproof.recordings.formats.recording import Bools
+from roadproof.logic.rewrite import signal_degree, terms_of
+from roadproof.recordings.formats.recording import BACKWARDS, Bools
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.exact import judge
 from roadproof.semantics.exact.robust import agreeing, robustness
@@ -104,6 +107,45 @@ def observe_drive(text: str, formula: Formula, drive: Drive, horizon: Fraction, 
     strips += [replace(_exact_strip(name_of(part), truth), depth=depths[part]) for part, truth in named]
     verdict: Truth = "true" if judgement.holds else "false"
     return FirstAnswer(text, "dense", verdict, (margin, margin), float(horizon), dt, tuple(strips))
+
+
+def answer_where_they_stand(
+    text: str, formula: Formula, batch: Batch, convention: Convention
+) -> tuple[str, ...]:
+    """A note with the answer where no speed along the road is below 0, if a vehicle drives backwards and that
+    answer is another.
+
+    Only for formulas that square these speeds: a square has no sign, so the safe distance of RSS counts a
+    vehicle that rolls back as one that drives away. Raises ``InputError``.
+    """
+    speeds = {key: x for key, x in batch.signals.items() if key[0] == "v_lon"}
+    within = int(batch.lengths[0])
+    if not any(x[:within, 0].min() < BACKWARDS for x in speeds.values()) or not _squares_speeds(formula):
+        return ()
+    stopped = {key: np.maximum(x, 0) for key, x in speeds.items()}
+    monitor = compile({_ASKED: formula})
+    before, after = (
+        _said(monitor.evaluate(one, convention).answers[_ASKED])
+        for one in (batch, replace(batch, signals={**batch.signals, **stopped}))
+    )
+    return () if before == after else (f"with speeds below 0 taken as 0 m/s, {text}: {after}",)
+
+
+def _squares_speeds(formula: Formula) -> bool:
+    """Whether it compares a term in which a speed along the road is squared, or multiplied by a signal."""
+    return any(
+        isinstance(part, t.Power | t.Product)
+        and (signal_degree(part) or 0) > 1
+        and any(isinstance(leaf, t.Signal) and leaf.name == "v_lon" for leaf in t.leaves(part))
+        for side in terms_of(formula)
+        for part in _parts(side)
+    )
+
+
+def _parts(term: t.Term) -> Iterator[t.Term]:
+    yield term
+    for child in t.children(term):
+        yield from _parts(child)
 
 
 def name_of(part: Application) -> str:

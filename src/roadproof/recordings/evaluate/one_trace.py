@@ -283,7 +283,7 @@ def read_samples(path: Path, road: Road | None = None, strict: bool = False) -> 
     except InputError as error:
         raise with_causes(error, notes) from None
     doubts = samples.doubts_in(table, of_road(road, samples.DIRECTION, path), computed)
-    return replace(made, notes=(*notes, *doubts, *_overlaps(made), *backwards(made)), faults=faults)
+    return replace(made, notes=(*notes, *doubts, *_overlaps(made), *made.notes), faults=faults)
 
 
 def of_columns(columns: Mapping[str, Sequence[object]], road: Road, source: str = "columns") -> OneTrace:
@@ -375,7 +375,8 @@ def _one_trace(
     )
     names = dict.fromkeys(name for _, name in sizes)
     lanes = {n: _lane_of(road, columns["s", n][0], columns["d", n][0], sizes["width", n]) for n in names}
-    return OneTrace(source, batch, road, lanes, first)
+    made = OneTrace(source, batch, road, lanes, first)
+    return replace(made, notes=tuple(backwards(made)))
 
 
 def _lane_of(road: Road, s: float, d: float, width: float) -> str:
