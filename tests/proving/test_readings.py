@@ -63,7 +63,6 @@ def test_a_definition_that_is_a_predicate_costs_as_much_as_any_other(scenario, t
             read_claim(HOME, f"{turn * depth}{scenario} -> {turn}{scenario}"),
             Effort(0.4),
             NOTHING,
-            None,
             "names",
         )
         assert len(again.certificate.instances) == len(plain.certificate.instances)
@@ -79,7 +78,7 @@ def test_what_is_not_valid_is_not_proved_by_names(shape):
 def test_a_model_in_which_definitions_are_predicates_is_no_answer():
     """Nothing is said of states by a definition about several instants, whether it is true or false."""
     query = read_claim(HOME, f"F {SCENARIOS[1]} -> G {SCENARIOS[1]}")
-    found = prover._prove(HOME, query, Effort(2), NOTHING, None, "names")
+    found = prover._prove(HOME, query, Effort(2), NOTHING, "names")
     assert (found.verdict, found.stop) == (Verdict.UNKNOWN, Stop.PLACE)
 
 
