@@ -215,12 +215,14 @@ def test_the_command_writes_what_is_checked_again(written: Path, capsys: pytest.
     assert said[0] == f"read with {written / 'classes.spec'}"
     assert said[-1] == "8 of 8 accepted by z3 and the exact judge"
     assert said[-2] == f"not checked in {written}: claims.txt"
-    assert said[-5:-2] == [
+    assert [line.split()[0] for line in said[1:9]] == ["WITNESSED"] * 3 + ["PROVED"] * 5
+    assert said[9:13] == [
         "  4: deceleration ahead, lane keep",
         "  8: deceleration ahead, lane change (SV leaves its lane)",
         "  4, 8: main road",
+        f"what {written} shows (classify):",
     ]
-    assert [line.split()[0] for line in said[1:-5]] == ["WITNESSED"] * 3 + ["PROVED"] * 5
+    assert said[-3] == "each scenario is the union of its classes: 2 PROVED"
 
 
 def test_the_text_is_read_by_the_other_commands(written: Path, capsys: pytest.CaptureFixture[str]) -> None:

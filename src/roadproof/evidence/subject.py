@@ -18,6 +18,8 @@ class SubjectKind(StrEnum):
     """The drive of a test that is given as a formula."""
     FACT = "fact"
     """A relation between a test and a scenario, such as that it excludes one."""
+    DRIVEN = "driven"
+    """A test with a driver model in place of SV, named as links name it: ``TEST: MODEL``."""
     PLATE = "plate"
     OTHER = ""
 

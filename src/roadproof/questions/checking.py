@@ -93,20 +93,13 @@ class QuestionFolder:
             outcome = Acceptance.ACCEPTED if same else Acceptance.REJECTED
             reason = NO_REASON if same else Why.NOT_SHOWN()
             found = replace(found, kind="test", outcome=outcome, reason=reason)
-        claim = statement(assumed_by(answer.claim), answer.claim.query.text)
-        if isinstance(answer.claim.mode, Beside):
-            claim = found.claim  # which says the numbers that the claim leaves open
-        linked = self.question.subject(name) if isinstance(self.question, Linkable) else OTHER
         told = replace(
-            found,
+            _told(self.question, name, answer.claim, found),
             verdict=str(answer.verdict),
-            label=self.question.label(name),
-            claim=claim,
-            subject=linked.kind,
-            name=linked.name,
-            set=linked.set or self.question.basis.specification.set_name,
             unchecked=(*found.unchecked, *(OTHER_LIBRARY,) * self.is_other_library),
         )
+        if isinstance(answer.claim.mode, Beside):
+            told = replace(told, claim=found.claim)  # which says the numbers that the claim leaves open
         return self.question.tell(name, answer, told) if isinstance(self.question, Telling) else told
 
 
@@ -161,7 +154,7 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
                 fault = Why.TOLD(error)
                 where = str(folder / f"{name}.json")
                 told = Why.TOLD(str(error).removeprefix(where).lstrip(": "))
-                problems.append(_problem(question, name, Finding(where, "", outcome, told), error))
+                problems.append(_problem(question, name, claim, Finding(where, "", outcome, told), error))
                 refused.add(name)
                 answers[name] = undecided(claim, fault)
         return answers[name]
@@ -195,13 +188,28 @@ def read_folder(folder: Path, given: Sequence[Path] = ()) -> QuestionFolder:
     )
 
 
-def _problem(question: Question[Any], name: str, found: Finding, error: InputError) -> Finding:
-    """Return what is wrong with a file; with its subject where that has changed since it was judged."""
+def _problem(question: Question[Any], name: str, claim: Claim, found: Finding, error: InputError) -> Finding:
+    """Return what is wrong with a file, which is about the claim that it is named after.
+
+    Where a test has changed since it was judged, the answer is stale.
+    """
+    about = _told(question, name, claim, found)
     if not isinstance(error, StaleError) or not isinstance(question, Linkable):
-        return found
-    label, linked = question.label(name), question.subject(name)
-    told = replace(found, kind="test", reason=Why.FILE_CHANGED(label), label=label)
-    return replace(told, subject=linked.kind, name=linked.name)
+        return about
+    return replace(about, kind="test", reason=Why.FILE_CHANGED(about.label))
+
+
+def _told(question: Question[Any], name: str, claim: Claim, found: Finding) -> Finding:
+    """Return a finding with what the question says of a claim: its label, its text and its subject."""
+    linked = question.subject(name) if isinstance(question, Linkable) else OTHER
+    return replace(
+        found,
+        label=question.label(name),
+        claim=statement(assumed_by(claim), claim.query.text),
+        subject=linked.kind,
+        name=linked.name,
+        set=linked.set or question.basis.specification.set_name,
+    )
 
 
 def _content(path: Path) -> object:

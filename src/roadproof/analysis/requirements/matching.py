@@ -244,9 +244,11 @@ def driver_link(link: Link) -> DriverLink:
 def _of_driver(link: DriverLink, evidence: Sequence[CheckedEvidence]) -> Iterator[Shown]:
     """What a catalogue says of a test under a driver model, in each scenario that it shows."""
     for x in evidence:
+        wrong = _not_accepted(x)
+        if wrong is not None and _is_driven(x, link.test, link.model):
+            yield wrong
         if x.finding.subject is not SubjectKind.TEST or x.finding.name != link.test:
             continue
-        wrong = _not_accepted(x)
         if wrong is not None:
             yield wrong
             continue
@@ -271,9 +273,28 @@ def _side_reason(decided: DriverSide, wanted: str) -> Reason:
     return NO_REASON if decided.side == wanted else Why.DRIVER_SIDE(decided.scenario, decided.side)
 
 
-def is_of_test(link: Link, x: CheckedEvidence) -> bool:
-    """Whether evidence is a fact of a catalogue about the test, such as ``CUT-1 excludes scenario_4``."""
-    return link.kind == "test" and x.finding.subject in OF_TESTS and x.finding.name == link.target
+def is_beside(link: Link, x: CheckedEvidence) -> bool:
+    """Whether accepted evidence is about the test of a link, but does not show the link by itself.
+
+    Such as that ``CUT-1 excludes scenario_4``, or the drive of a driver model in the test.
+    """
+    if x.finding.outcome is not Acceptance.ACCEPTED:
+        return False
+    match link.kind:
+        case "test":
+            of_test = x.finding.subject in OF_TESTS and x.finding.name == link.target
+            return of_test or any(_is_driven(x, link.target, model) for model in MODELS)
+        case "driver":
+            about = driver_link(link)
+            return _is_driven(x, about.test, about.model)
+        case "claim" | "scenario" | "plate" | "evidence":
+            return False
+        case _:
+            assert_never(link.kind)
+
+
+def _is_driven(x: CheckedEvidence, test: str, model: str) -> bool:
+    return x.finding.subject is SubjectKind.DRIVEN and x.finding.name == f"{test}: {model}"
 
 
 def _is_plate(x: CheckedEvidence, name: str) -> bool:

@@ -16,7 +16,7 @@ from roadproof.analysis.requirements.matching import (
     Shown,
     Target,
     combined,
-    is_of_test,
+    is_beside,
     read_target,
     shown_by,
 )
@@ -77,7 +77,7 @@ def states_of(
         links[x.id] = []
         for target in targets[x.id]:
             found = _Matched(target, shown_by(target, evidence, around.values, around.folder))
-            used |= {id(y) for y in (*found.evidence, *(z for z in evidence if is_of_test(target.link, z)))}
+            used |= {id(y) for y in (*found.evidence, *(z for z in evidence if is_beside(target.link, z)))}
             key = key_of(x, target.link)
             rests_on[key] = parts_of(x, target, found.evidence, around)
             before = None if locked is None else locked.get(key)

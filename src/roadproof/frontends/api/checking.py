@@ -32,7 +32,7 @@ from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Check
 from roadproof.frontends.settings.value_types import KernelName
 from roadproof.library.loading import load_library
-from roadproof.library.specification import Library
+from roadproof.library.specification import Library, read_specification
 from roadproof.library.words import called_by, legend
 from roadproof.questions.checking import QuestionFolder, folders_in, read_folder
 from roadproof.questions.data import QUESTION
@@ -133,12 +133,10 @@ class CheckReport(Table, BuildResult):
         words = called_by(self.library.select(), (x.claim for x in self.findings))
         lines += [f"  {line}" for line in legend(words)]
         kernel = [] if self.kernel is None else [str(self.kernel)]
-        lines += [f"not checked in {folder}: {', '.join(x)}" for folder, x in self.not_checked.items()]
         asked = "the extracted program" if self.solver == "extracted" else self.solver
-        shown = [
-            f"{folder}: {x.question.kind}, from what is accepted\n{x}" for folder, x in self.views.items()
-        ]
-        return "\n".join([*lines, summary(self.findings, asked), *kernel, *shown])
+        lines += [f"what {folder} shows ({x.question.kind}):\n{x}" for folder, x in self.views.items()]
+        lines += [f"not checked in {folder}: {', '.join(x)}" for folder, x in self.not_checked.items()]
+        return "\n".join([*lines, summary(self.findings, asked), *kernel])
 
 
 @takes(Check)
@@ -313,8 +311,9 @@ class _Job:
 
     def key(self, solver: str) -> bytes:
         """What the finding depends on: the bytes of the files, the solver and the program."""
-        files = (x.read_bytes() for x in (self.path, *self.specs))
-        return "|".join((solver, program(), *(sha256(x).hexdigest() for x in files))).encode()
+        texts = (read_specification(x).text.encode() for x in self.specs)
+        digests = (sha256(x).hexdigest() for x in (self.path.read_bytes(), *texts))
+        return "|".join((solver, program(), *digests)).encode()
 
 
 def _doubt(job: _Job, reason: Reason) -> Finding:

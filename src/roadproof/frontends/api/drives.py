@@ -26,6 +26,7 @@ from roadproof.frontends.api.settings import searches_of, setting, work_of
 from roadproof.frontends.report.animation import ENDINGS
 from roadproof.frontends.report.ci.cases import Case
 from roadproof.frontends.report.ci.questions import search_cases
+from roadproof.frontends.report.numbers import took
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.report.witness import EVERY_VIEW, Views, as_line, sheet_of
 from roadproof.frontends.settings.keywords import WitnessKeywords
@@ -177,7 +178,7 @@ class Witnesses(QuestionAnswers[WitnessView], BuildResult):
     def summary(self) -> str:
         """How many were found, in words."""
         found = sum(x.verdict is Verdict.WITNESSED for x in self.outcomes)
-        return f"{found} of {len(self.outcomes)} witnessed in {self.seconds:.1f} s"
+        return f"{found} of {len(self.outcomes)} witnessed{took(self.seconds)}"
 
 
 @takes(Witness)

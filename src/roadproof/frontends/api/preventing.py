@@ -21,6 +21,7 @@ from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.report import preventable as report
 from roadproof.frontends.report.ci.cases import Case
 from roadproof.frontends.report.ci.questions import plate_cases
+from roadproof.frontends.report.numbers import count, took
 from roadproof.frontends.report.sheet import Sheet, as_csv
 from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import PreventableKeywords
@@ -97,9 +98,9 @@ class Plates(QuestionAnswers[PreventableView], BuildResult):
         return table | drawn(sheet)
 
     def __str__(self) -> str:
-        count = f"{len(self.plates)} plates, {len(self.lemmas)} lemmas in {self.seconds:.1f} s"
+        said = f"{count(len(self.plates), 'plate')}, {count(len(self.lemmas), 'lemma')}{took(self.seconds)}"
         proved = "".join(f"{x}\n" for x in self.boundaries)
-        return f"{report.as_text(self.question, self.plates, self.lemmas)}\n{proved}{count}"
+        return f"{report.as_text(self.question, self.plates, self.lemmas)}\n{proved}{said}"
 
 
 @takes(settings.Preventable)

@@ -25,6 +25,7 @@ from roadproof.frontends.api.settings import models_of, setting, work_of
 from roadproof.frontends.report import claims as claims_text
 from roadproof.frontends.report.ci.cases import Case, Location
 from roadproof.frontends.report.ci.questions import claim_cases
+from roadproof.frontends.report.numbers import count, took
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.groups import Run, SearchPlace
 from roadproof.frontends.settings.keywords import ProveKeywords
@@ -179,7 +180,7 @@ class Proofs(QuestionAnswers[ClaimsView], BuildResult):
         if self.question.are_own:
             return "\n".join(claims_text.details(x, self.question) for x in self.answers)
         table = claims_text.table(self.answers, self.library.select())
-        return f"{table}\n{len(self.answers)} claims in {self.seconds:.1f} s"
+        return f"{table}\n{count(len(self.answers), 'claim')}{took(self.seconds)}"
 
 
 @takes(Prove)

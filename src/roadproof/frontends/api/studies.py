@@ -16,6 +16,7 @@ from roadproof.frontends.api.settings import basis_of, positive
 from roadproof.frontends.report import order as order_report
 from roadproof.frontends.report import overlap as overlap_report
 from roadproof.frontends.report import redundancy as redundancy_report
+from roadproof.frontends.report.numbers import count, took
 from roadproof.frontends.report.sheet import Sheet, as_csv
 from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import OrderKeywords, OverlapKeywords, RedundancyKeywords
@@ -84,8 +85,8 @@ class Overlaps(QuestionAnswers[OverlapView]):
         return table | drawn(self.pictures() if pictures else {})
 
     def __str__(self) -> str:
-        count = f"{len(self.pairs)} pair{'s' if len(self.pairs) > 1 else ''} in {self.seconds:.1f} s"
-        return f"{overlap_report.as_text(self.pairs, self.across, self.words)}\n{count}"
+        said = count(len(self.pairs), "pair") + took(self.seconds)
+        return f"{overlap_report.as_text(self.pairs, self.across, self.words)}\n{said}"
 
 
 @takes(settings.Overlap)

@@ -9,6 +9,7 @@ from roadproof.evidence.answer import Answer
 from roadproof.frontends.api.definitions import Among, Definitions, definitions_of
 from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.settings import basis_of
+from roadproof.frontends.report.numbers import count, took
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.frontends.settings.keywords import AskKeywords
 from roadproof.frontends.settings.option import takes
@@ -44,7 +45,7 @@ class SurveyAnswers(QuestionAnswers[Mapping[str, Answer | None]]):
         lines = [
             f"{x:<11} {name}{reasons[name] and f': {reasons[name]}'}" for name, x in self.verdicts.items()
         ]
-        return "\n".join([*lines, f"{len(lines)} answers in {self.seconds:.1f} s"])
+        return "\n".join([*lines, count(len(lines), "answer") + took(self.seconds)])
 
 
 @takes(Ask)

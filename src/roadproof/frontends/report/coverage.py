@@ -9,6 +9,7 @@ from roadproof.analysis.coverage.answers import ClassAnswer, Gap, GapTraffic, Ne
 from roadproof.evidence.answers import coverage as kept
 from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.figures import as_bytes
+from roadproof.frontends.report.numbers import count, took
 from roadproof.frontends.report.sheet import Column, Sheet, as_outline
 from roadproof.library.scenarios import PAIR, Scenario, applied, danger_comes
 from roadproof.library.specification import Library
@@ -23,7 +24,7 @@ def as_text(surveyed: Survey, index: kept.CoverageData, name: str, words: Called
     if index.classes:
         sheet = sheet_of(index, {number: x.name for number, x in words.items()})
         lines += [*as_outline(sheet), f"set {name}: " + "\n".join(summary(surveyed.classes))]
-        lines += [f"{len(index.gaps)} gaps in {index.seconds:.1f} s"]
+        lines += [count(len(index.gaps), "gap") + took(index.seconds)]
     else:
         lines += [f"proved: {x.claim.text}" for x in surveyed.claims]
     lines += [f"{need.definition}: {_needed(need)}" for need in surveyed.needs]

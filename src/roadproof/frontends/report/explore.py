@@ -11,6 +11,7 @@ from roadproof.engines.search.extreme import Extreme
 from roadproof.engines.search.points import PointFinding
 from roadproof.frontends.report.drive import draw_drive
 from roadproof.frontends.report.figures import draw_cell, legend_beside, make_figure, name_cells
+from roadproof.frontends.report.numbers import took
 from roadproof.frontends.report.overlap import COLOURS, SIGNS
 from roadproof.frontends.report.sheet import Cell, Column, Sheet
 from roadproof.library.words import words_of
@@ -56,7 +57,7 @@ def as_text(asked: Explorable, explored: ExplorationResult, seconds: float = 0.0
     counts = [f"{explored.searches} searches"]
     if explored.findings:
         counts = [f"{len(explored.findings)} values", *counts, f"{explored.drives} drives"]
-    return "\n".join([*lines, f"  {', '.join(counts)} in {round(seconds, 1)} s"])
+    return "\n".join([*lines, f"  {', '.join(counts)}{took(seconds)}"])
 
 
 def _title(asked: Explorable) -> str:

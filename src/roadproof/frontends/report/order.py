@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from roadproof.frontends.report.figures import make_figure
+from roadproof.frontends.report.numbers import took
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.scenarios import Scenario
 from roadproof.library.words import Called, legend
@@ -24,7 +25,7 @@ def as_text(order: OrderView, seconds: float, words: Called) -> str:
     lines.append(
         f"{count} scenarios, {len(order.kinds)} formulas: {len(order.edges)} edges proved, "
         f"{len(order.missing)} implications refuted by {len(order.drives)} drives, "
-        f"{len(order.doubts)} in doubt, in {seconds:.1f} s"
+        f"{len(order.doubts)} in doubt{took(seconds)}"
     )
     return "\n".join(lines)
 

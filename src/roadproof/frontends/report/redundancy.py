@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
+from roadproof.frontends.report.numbers import took
 from roadproof.frontends.report.sheet import Column, Sheet, Trail
 from roadproof.library.words import Called, legend
 from roadproof.questions.redundancy import ChangeFinding, FindingData
@@ -25,7 +26,7 @@ def as_text(findings: Mapping[int, Sequence[ChangeFinding]], seconds: float, wor
     traces = sum(x.verdict is Verdict.REFUTED for _, x in every) - drives
     lines.append(
         f"{len(every)} changes: {redundant} redundant, {moving} more for motion, {drives} told apart by a "
-        f"drive, {traces} by a trace, {len(doubts)} in doubt, in {seconds:.1f} s"
+        f"drive, {traces} by a trace, {len(doubts)} in doubt{took(seconds)}"
     )
     return "\n".join(lines)
 

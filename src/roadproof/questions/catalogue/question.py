@@ -220,12 +220,19 @@ class CatalogueQuestion:
             return f"{test} {relation if relation == 'implies' else 'open'} {other}".strip()
         if name in self._judged:
             return f"test {self._judged[name]}"
+        if (driven := self._driven_test(name)) is not None:
+            test, scenario, driver = driven
+            return f"test {test}, {scenario} with {driver} in place of SV"
+        return name
+
+    def _driven_test(self, name: str) -> tuple[str, str, str] | None:
+        """Return test, scenario and driver model of a claim about a drive of the model; None of another."""
         for test in self._judged.values():
             begin = f"driven-{stem_of(test)}-"
             if name.startswith(begin):
                 scenario, driver, _ = name.removeprefix(begin).split("-")
-                return f"test {test}, {scenario} with {driver} in place of SV"
-        return name
+                return test, scenario, driver
+        return None
 
     @cached_property
     def _judged(self) -> dict[str, str]:
@@ -236,6 +243,8 @@ class CatalogueQuestion:
         """Return the test that the claim of a name is about."""
         if name in self._judged:
             return Subject(SubjectKind.TEST, self._judged[name])
+        if (driven := self._driven_test(name)) is not None:
+            return Subject(SubjectKind.DRIVEN, f"{driven[0]}: {driven[2]}")
         fact = self._fact(name)
         return OTHER if fact is None else subject_of_fact(*fact[:2])
 
