@@ -24,11 +24,11 @@ from pathlib import Path
 import numpy as np
 
 from roadproof.errors import RoadproofError
-from roadproof.recordings.formats.commonroad import read_commonroad
-from roadproof.recordings.formats.commonroad_obstacles import ObstacleRules, read_obstacles
-from roadproof.recordings.formats.reliable import LEFT_OUT
+from roadproof.extensions.exchange.commonroad import read_commonroad
+from roadproof.extensions.exchange.commonroad_obstacles import ObstacleRules, read_obstacles
+from roadproof.extensions.traffic.formats.reliable import LEFT_OUT
 from roadproof.runtime.xml_reader import read_xml
-from roadproof.world.maps.overview import all_stretches
+from roadproof.extensions.maps.overview import all_stretches
 
 ENDINGS = (".xml", ".xodr", ".osm")
 

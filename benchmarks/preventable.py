@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from preventing import stepping
 from preventing.labels import labels
 from preventing.read import boundary
-from roadproof.drivers.manoeuvres import CUT_IN
+from roadproof.extensions.drivers.manoeuvres import CUT_IN
 
 TABLE = Path(__file__).parents[1] / "docs/data/labels.csv"
 KMH = float(Fraction(5, 18))

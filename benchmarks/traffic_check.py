@@ -12,11 +12,11 @@ import sys
 import time
 from pathlib import Path
 
-from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
-from roadproof.recordings.evaluate.questions import ask, default_settings
-from roadproof.recordings.formats.recording import Recording
-from roadproof.recordings.simulate.simulate import simulate
-from roadproof.recordings.simulate.traffic import Traffic
+from roadproof.extensions.traffic.evaluate.evaluate import Findings, evaluate_recording
+from roadproof.extensions.traffic.evaluate.questions import ask, default_settings
+from roadproof.extensions.traffic.formats.recording import Recording
+from roadproof.extensions.traffic.simulate.simulate import simulate
+from roadproof.extensions.traffic.simulate.traffic import Traffic
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 from traffic.reference import Reference, Row

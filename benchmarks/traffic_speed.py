@@ -17,13 +17,13 @@ from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
-from roadproof.recordings.evaluate.experiment import Experiment, run_experiment
-from roadproof.recordings.evaluate.questions import default_settings
-from roadproof.recordings.formats.highd import SAMPLE_KINDS
-from roadproof.recordings.formats.table import polars_module
-from roadproof.recordings.formats.write_highd import write_highd
-from roadproof.recordings.simulate.simulate import simulate
-from roadproof.recordings.simulate.traffic import Traffic
+from roadproof.extensions.traffic.evaluate.experiment import Experiment, run_experiment
+from roadproof.extensions.traffic.evaluate.questions import default_settings
+from roadproof.extensions.traffic.formats.highd import SAMPLE_KINDS
+from roadproof.extensions.traffic.formats.table import polars_module
+from roadproof.extensions.traffic.formats.write_highd import write_highd
+from roadproof.extensions.traffic.simulate.simulate import simulate
+from roadproof.extensions.traffic.simulate.traffic import Traffic
 from roadproof.runtime.executors import Executor
 
 

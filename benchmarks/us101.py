@@ -14,8 +14,8 @@ from xml.etree.ElementTree import parse
 
 import numpy as np
 
-from roadproof.recordings.formats.recording import Recording
-from roadproof.recordings.formats.sources import find_sources
+from roadproof.extensions.traffic.formats.recording import Recording
+from roadproof.extensions.traffic.formats.sources import find_sources
 
 
 def share_a_lane(recording: Recording, first: int, second: int, begin: int, end: int) -> bool:

@@ -201,8 +201,8 @@ from roadproof.logic.latex import latex
 from roadproof.engines.prove.prover import prove
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
-from roadproof.recordings.evaluate.one_trace import sample_drive
-from roadproof.recordings.evaluate.traces import gather
+from roadproof.extensions.traffic.evaluate.one_trace import sample_drive
+from roadproof.extensions.traffic.evaluate.traces import gather
 from roadproof.semantics.sampled import Batch, compile
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road, load_vehicle
@@ -253,7 +253,7 @@ from roadproof.semantics.sampled import compile
 from roadproof.world.signals import STARTING
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
-from roadproof.recordings.evaluate.one_trace import sample_drive
+from roadproof.extensions.traffic.evaluate.one_trace import sample_drive
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road, load_vehicle
 from roadproof.world.motion import state_at

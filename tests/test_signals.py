@@ -7,9 +7,9 @@ from typing import get_args
 
 import pytest
 
+from roadproof.extensions.traffic.formats.recording import Recording
 from roadproof.logic import terms as t
 from roadproof.logic.parse import parse_claim
-from roadproof.recordings.formats.recording import Recording
 from roadproof.semantics.exact.polynomial import polynomial
 from roadproof.semantics.exact.signals import DriveSignals
 from roadproof.world.drive import Drive, Motion, Piece

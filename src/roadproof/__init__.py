@@ -10,10 +10,11 @@ monitor compile evaluate simulate check``, and ``ask`` for studies of yours), dr
 drive``), ``export`` for other tools, and the errors that they raise. Each is imported when it is first used.
 """
 
+from collections.abc import Mapping
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from roadproof.runtime.version import VERSION as __version__
+from roadproof.runtime.version import VERSION
 
 if TYPE_CHECKING:
     from roadproof.errors import InputError as InputError
@@ -23,15 +24,31 @@ if TYPE_CHECKING:
     from roadproof.errors import TextError as TextError
     from roadproof.errors import TextErrors as TextErrors
     from roadproof.errors import UsageError as UsageError
-    from roadproof.frontends.api.assuring import assurance as assurance
-    from roadproof.frontends.api.bundling import bundle as bundle
-    from roadproof.frontends.api.cataloguing import catalogue as catalogue
+    from roadproof.extensions.assurance.assuring import assurance as assurance
+    from roadproof.extensions.assurance.bundling import bundle as bundle
+    from roadproof.extensions.assurance.tracing import requirement_changes as requirement_changes
+    from roadproof.extensions.assurance.tracing import requirements as requirements
+    from roadproof.extensions.catalogue.cataloguing import catalogue as catalogue
+    from roadproof.extensions.drivers.preventing import preventable as preventable
+    from roadproof.extensions.exchange.compiling import compile as compile
+    from roadproof.extensions.exchange.exporting import export as export
+    from roadproof.extensions.maps.roads import road as road
+    from roadproof.extensions.maps.roads import stretches as stretches
+    from roadproof.extensions.pages.atlas.atlas import atlas as atlas
+    from roadproof.extensions.pages.reporting import page as page
+    from roadproof.extensions.surveys.classifying import classify as classify
+    from roadproof.extensions.surveys.covering import coverage as coverage
+    from roadproof.extensions.surveys.exploring import explore as explore
+    from roadproof.extensions.surveys.redundancies import redundancy as redundancy
+    from roadproof.extensions.surveys.surveying import ask as ask
+    from roadproof.extensions.traffic.converting import convert as convert
+    from roadproof.extensions.traffic.evaluating import evaluate as evaluate
+    from roadproof.extensions.traffic.evaluating import roads as roads
+    from roadproof.extensions.traffic.monitoring import monitor as monitor
+    from roadproof.extensions.traffic.monitoring import trace as trace
+    from roadproof.extensions.traffic.simulating import simulate as simulate
     from roadproof.frontends.api.checking import check as check
-    from roadproof.frontends.api.classifying import classify as classify
     from roadproof.frontends.api.comparing import compare as compare
-    from roadproof.frontends.api.compiling import compile as compile
-    from roadproof.frontends.api.converting import convert as convert
-    from roadproof.frontends.api.covering import coverage as coverage
     from roadproof.frontends.api.definitions import Definitions as Definitions
     from roadproof.frontends.api.definitions import diagnose as diagnose
     from roadproof.frontends.api.definitions import load as load
@@ -39,10 +56,6 @@ if TYPE_CHECKING:
     from roadproof.frontends.api.drives import witness as witness
     from roadproof.frontends.api.driving import drive as drive
     from roadproof.frontends.api.driving import motion as motion
-    from roadproof.frontends.api.exploring import explore as explore
-    from roadproof.frontends.api.exporting import export as export
-    from roadproof.frontends.api.maps import road as road
-    from roadproof.frontends.api.maps import stretches as stretches
     from roadproof.frontends.api.phrases import POV as POV
     from roadproof.frontends.api.phrases import POV1 as POV1
     from roadproof.frontends.api.phrases import POV2 as POV2
@@ -61,21 +74,9 @@ if TYPE_CHECKING:
     from roadproof.frontends.api.phrases import some as some
     from roadproof.frontends.api.phrases import vehicle as vehicle
     from roadproof.frontends.api.phrases import zone as zone
-    from roadproof.frontends.api.preventing import preventable as preventable
     from roadproof.frontends.api.proofs import prove as prove
-    from roadproof.frontends.api.recordings import evaluate as evaluate
-    from roadproof.frontends.api.recordings import roads as roads
-    from roadproof.frontends.api.reporting import page as page
-    from roadproof.frontends.api.simulating import simulate as simulate
     from roadproof.frontends.api.studies import order as order
     from roadproof.frontends.api.studies import overlap as overlap
-    from roadproof.frontends.api.studies import redundancy as redundancy
-    from roadproof.frontends.api.surveying import ask as ask
-    from roadproof.frontends.api.traces import monitor as monitor
-    from roadproof.frontends.api.traces import trace as trace
-    from roadproof.frontends.api.tracing import requirement_changes as requirement_changes
-    from roadproof.frontends.api.tracing import requirements as requirements
-    from roadproof.frontends.atlas.atlas import atlas as atlas
     from roadproof.library.diagnose import Proofreader as Proofreader
     from roadproof.runtime.executors import Cluster as Cluster
     from roadproof.runtime.executors import Executor as Executor
@@ -85,6 +86,7 @@ if TYPE_CHECKING:
     from roadproof.verdict import Verdict as Verdict
 
 
+__version__ = VERSION
 _PHRASES = (
     *("SV", "POV", "POV1", "POV2", "L", "F", "G", "U", "lanes", "lanelets", "zone", "adjacent_lanes"),
     *("some", "every", "vehicle", "lane", "parameter", "call"),
@@ -106,30 +108,7 @@ _HOMES = {
     "compare": "frontends.api.comparing",
     "overlap": "frontends.api.studies",
     "order": "frontends.api.studies",
-    "redundancy": "frontends.api.studies",
-    "coverage": "frontends.api.covering",
-    "classify": "frontends.api.classifying",
-    "catalogue": "frontends.api.cataloguing",
-    "explore": "frontends.api.exploring",
-    "preventable": "frontends.api.preventing",
-    "ask": "frontends.api.surveying",
-    "monitor": "frontends.api.traces",
-    "trace": "frontends.api.traces",
-    "compile": "frontends.api.compiling",
-    "evaluate": "frontends.api.recordings",
-    "roads": "frontends.api.recordings",
-    "road": "frontends.api.maps",
-    "stretches": "frontends.api.maps",
-    "convert": "frontends.api.converting",
-    "simulate": "frontends.api.simulating",
-    "export": "frontends.api.exporting",
-    "page": "frontends.api.reporting",
-    "assurance": "frontends.api.assuring",
-    "bundle": "frontends.api.bundling",
-    "atlas": "frontends.atlas.atlas",
     "check": "frontends.api.checking",
-    "requirements": "frontends.api.tracing",
-    "requirement_changes": "frontends.api.tracing",
     "Verdict": "verdict",
     "Stage": "runtime.progress",
     "Cancelled": "runtime.progress",
@@ -137,14 +116,30 @@ _HOMES = {
     **dict.fromkeys(_ERRORS, "errors"),
     **dict.fromkeys(("Executor", "Shard", "Cluster"), "runtime.executors"),
 }
-__all__ = [*_HOMES, "__version__"]
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _HOMES:
-        raise AttributeError(f"module 'roadproof' has no attribute '{name}'; there are {', '.join(_HOMES)}")
-    return getattr(import_module(f"roadproof.{_HOMES[name]}"), name)
+    if name == "__all__":
+        return [*_HOMES, *_of_extensions(), "__version__"]
+    if name in _HOMES:
+        return getattr(import_module(f"roadproof.{_HOMES[name]}"), name)
+    if name.startswith("__"):
+        raise AttributeError(f"module 'roadproof' has no attribute '{name}'")
+    from roadproof.extension import imported
+
+    found = _of_extensions()
+    if name not in found:
+        known = ", ".join((*_HOMES, *found))
+        raise AttributeError(f"module 'roadproof' has no attribute '{name}'; there are {known}")
+    return imported(found[name])
+
+
+def _of_extensions() -> Mapping[str, str]:
+    """The functions that extensions add."""
+    from roadproof.extension import entries
+
+    return entries("functions")
 
 
 def __dir__() -> list[str]:
-    return sorted(__all__)
+    return sorted((*_HOMES, *_of_extensions(), "__version__"))

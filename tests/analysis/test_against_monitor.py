@@ -15,11 +15,11 @@ import pytest
 import roadproof as rp
 from asking import prove
 from monitoring.cases import random_traffic
-from roadproof.analysis.basis import Basis
-from roadproof.analysis.coverage.classes import GapClasses, in_either_role, sectors_of
-from roadproof.analysis.coverage.traffic import disturbances_in, recordings_in
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import load_drive
+from roadproof.extensions.surveys.coverage.classes import GapClasses, in_either_role, sectors_of
+from roadproof.extensions.surveys.coverage.traffic import disturbances_in, recordings_in
+from roadproof.extensions.surveys.redundancy import changes_of
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.settings.groups import Budget
@@ -30,8 +30,8 @@ from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import Scenario, applied
 from roadproof.library.specification import Specification
 from roadproof.logic.rewrite import with_values
+from roadproof.questions.basis import Basis
 from roadproof.questions.overlap import Meeting, conjunctions
-from roadproof.questions.redundancy import changes_of
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.sampled import compile
 from roadproof.verdict import Verdict

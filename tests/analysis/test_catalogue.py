@@ -12,31 +12,31 @@ from xml.etree import ElementTree as xml
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.catalogue import showing, tested
-from roadproof.analysis.catalogue.asked import NOWHERE, Questions, Row
-from roadproof.analysis.catalogue.entries import Abstract, Concrete, Freedom
-from roadproof.analysis.catalogue.fact import Fact
-from roadproof.analysis.catalogue.reading import read_catalogue
-from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, show
-from roadproof.analysis.catalogue.tested import figures
-from roadproof.analysis.classify.cells import Cell
-from roadproof.analysis.classify.classes import Classes, plan_of
 from roadproof.engines.search.batches import Engines
 from roadproof.errors import InputError
 from roadproof.evidence.answer import Answer, undecided
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.drive_file import DriveFile, drive_data, load_drive
-from roadproof.frontends.api.cataloguing import CatalogueAnswer, catalogue
+from roadproof.extensions.catalogue import showing, tested
+from roadproof.extensions.catalogue.asked import NOWHERE, Questions, Row
+from roadproof.extensions.catalogue.cataloguing import CatalogueAnswer, catalogue
+from roadproof.extensions.catalogue.entries import Abstract, Concrete, Freedom
+from roadproof.extensions.catalogue.fact import Fact
+from roadproof.extensions.catalogue.reading import read_catalogue
+from roadproof.extensions.catalogue.report import as_text
+from roadproof.extensions.catalogue.showing import ENDANGERED, GAP, show
+from roadproof.extensions.catalogue.tested import figures
+from roadproof.extensions.exchange.export.registry import FORMATS
+from roadproof.extensions.surveys.classify.cells import Cell
+from roadproof.extensions.surveys.classify.classes import Classes, plan_of
+from roadproof.extensions.surveys.classify.division import Division, divide
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.report.catalogue import as_text
 from roadproof.frontends.settings.groups import Budget
 from roadproof.library.bind import bind
 from roadproof.library.scenarios import Scenario, applied, name_of, vehicles_of
 from roadproof.library.specification import Query
-from roadproof.questions.classify.division import Division, divide
 from roadproof.reasons import Why
-from roadproof.recordings.export.registry import FORMATS
 from roadproof.runtime.cost import NO_COST, Cost
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.exact import judge
@@ -255,7 +255,7 @@ def ask(*paths: Path, **more: Any) -> CatalogueAnswer:
 def test_what_is_missing_is_made_and_then_nothing_is_missing(
     few: Path, tmp_path: Path, division: Division, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("roadproof.questions.catalogue.question.divide", lambda *_, **__: division)
+    monkeypatch.setattr("roadproof.extensions.catalogue.question.divide", lambda *_, **__: division)
     missing = {"class_3_6", "class_6", "class_7", "scenario_7", "class_2", "scenario_2"}
     found = ask(few)
     assert {*found.missing} == missing

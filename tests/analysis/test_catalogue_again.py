@@ -11,22 +11,22 @@ from typing import Any
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.catalogue import traces
-from roadproof.analysis.catalogue.asked import Questions
-from roadproof.analysis.catalogue.entries import Concrete, Freedom
-from roadproof.analysis.catalogue.playing import choices
-from roadproof.analysis.catalogue.showing import ConcreteAnswer, show
-from roadproof.analysis.catalogue.traces import courses_of, digest_of, roles_in
 from roadproof.errors import InputError
-from roadproof.evidence.answers.catalogue_index import KeptRequest
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.subject import SubjectKind
+from roadproof.extensions.catalogue import traces
+from roadproof.extensions.catalogue.asked import Questions
+from roadproof.extensions.catalogue.entries import Concrete, Freedom
+from roadproof.extensions.catalogue.kept import KeptRequest
+from roadproof.extensions.catalogue.playing import choices
+from roadproof.extensions.catalogue.showing import ConcreteAnswer, show
+from roadproof.extensions.catalogue.traces import courses_of, digest_of, roles_in
+from roadproof.extensions.pages.page.catalogues import as_settings
+from roadproof.extensions.traffic.evaluate.one_trace import read_pair, read_samples
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.report.page.catalogues import as_settings
 from roadproof.frontends.settings.flags import command_line
 from roadproof.questions.views import folder_data
 from roadproof.reasons import Why
-from roadproof.recordings.evaluate.one_trace import read_pair, read_samples
 from roadproof.verdict import ExitCode
 
 pytestmark = pytest.mark.usefixtures("searched_once")

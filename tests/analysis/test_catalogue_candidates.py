@@ -6,16 +6,16 @@ from dataclasses import replace
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.basis import Basis
-from roadproof.analysis.catalogue.asked import Questions
-from roadproof.analysis.catalogue.candidates import CandidateDrives, candidates
-from roadproof.analysis.catalogue.entries import Abstract
 from roadproof.engines.search.batches import Engines
 from roadproof.evidence.answer import Answer
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.judged import JudgedDrive, judge_file
+from roadproof.extensions.catalogue import abstract
+from roadproof.extensions.catalogue.asked import Questions
+from roadproof.extensions.catalogue.candidates import CandidateDrives, candidates
+from roadproof.extensions.catalogue.entries import Abstract
 from roadproof.library.scenarios import name_of
-from roadproof.questions.catalogue import abstract
+from roadproof.questions.basis import Basis
 from roadproof.questions.question import seen, walk
 from roadproof.runtime.archives import archived
 from roadproof.runtime.budget import Effort, Work
@@ -84,7 +84,7 @@ def test_a_drive_that_does_not_show_the_scenario_is_not_taken(
 ) -> None:
     wrong = next(x for x in candidates() if x.scenarios == {"scenario_4"})
     lying = replace(wrong, scenarios=frozenset({"scenario_4", "scenario_6"}))
-    monkeypatch.setattr("roadproof.analysis.catalogue.candidates.candidates", lambda: (lying,))
+    monkeypatch.setattr("roadproof.extensions.catalogue.candidates.candidates", lambda: (lying,))
     assert found_for(entry(), drive) is None
 
 

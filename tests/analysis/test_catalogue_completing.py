@@ -13,37 +13,36 @@ import pytest
 
 import roadproof as rp
 from cli.test_schemas import validator
-from roadproof.analysis.basis import Basis
-from roadproof.analysis.catalogue import completing, gaps, ranges, tested
-from roadproof.analysis.catalogue.asked import Questions, ScenarioQuestion
-from roadproof.analysis.catalogue.completing import complete
-from roadproof.analysis.catalogue.entries import Abstract, Concrete, Freedom
-from roadproof.analysis.catalogue.fact import Fact
-from roadproof.analysis.catalogue.gaps import NO_SINGLE
-from roadproof.analysis.catalogue.nearest import first_false_part
-from roadproof.analysis.catalogue.ranges import Reach
-from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, show
-from roadproof.analysis.catalogue.traces import courses_of
-from roadproof.analysis.catalogue.why import Course, why_none
-from roadproof.analysis.coverage import found
-from roadproof.analysis.coverage.answers import ClassAnswer
-from roadproof.analysis.coverage.classes import near_miss
 from roadproof.errors import UsageError
 from roadproof.evidence.answer import Answer, undecided
-from roadproof.evidence.answers.catalogue_index import Why
 from roadproof.evidence.drive_file import load_drive
-from roadproof.frontends.api.cataloguing import CatalogueAnswer, catalogue
+from roadproof.extensions.catalogue import abstract, completing, gaps, ranges, tested
+from roadproof.extensions.catalogue import report_drives as catalogue_drives
+from roadproof.extensions.catalogue.asked import Questions, ScenarioQuestion
+from roadproof.extensions.catalogue.cataloguing import CatalogueAnswer, catalogue
+from roadproof.extensions.catalogue.completing import complete
+from roadproof.extensions.catalogue.entries import Abstract, Concrete, Freedom
+from roadproof.extensions.catalogue.fact import Fact
+from roadproof.extensions.catalogue.gaps import NO_SINGLE
+from roadproof.extensions.catalogue.kept import Why
+from roadproof.extensions.catalogue.nearest import first_false_part
+from roadproof.extensions.catalogue.ranges import Reach
+from roadproof.extensions.catalogue.report_drives import DrivePicture, draw_tests
+from roadproof.extensions.catalogue.showing import ENDANGERED, GAP, show
+from roadproof.extensions.catalogue.traces import courses_of
+from roadproof.extensions.catalogue.why import Course, why_none
+from roadproof.extensions.surveys.coverage import asking as coverage_asking
+from roadproof.extensions.surveys.coverage import found
+from roadproof.extensions.surveys.coverage import question as coverage_question
+from roadproof.extensions.surveys.coverage.answers import ClassAnswer
+from roadproof.extensions.surveys.coverage.classes import near_miss
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.report import catalogue_drives
-from roadproof.frontends.report.catalogue_drives import DrivePicture, draw_tests
 from roadproof.frontends.report.figures import as_bytes, make_page, shorten
 from roadproof.library.bind import bind, values_with
 from roadproof.library.scenarios import Scenario, applied, name_of, vehicles_of
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
-from roadproof.questions.catalogue import abstract
-from roadproof.questions.coverage import asking as coverage_asking
-from roadproof.questions.coverage import question as coverage_question
+from roadproof.questions.basis import Basis
 from roadproof.reasons import Why as Texts
 from roadproof.semantics.exact.exact import DriveJudge, judge
 from roadproof.semantics.exact.signals import DriveSignals
@@ -224,7 +223,7 @@ def test_the_part_of_a_range_that_nobody_tests(tmp_path: Path, monkeypatch: pyte
     def along(*given: object) -> list[Reach]:
         return [x for x in reaches(*given) if x.term == "s(POV) - s(SV)"]  # type: ignore[arg-type]
 
-    monkeypatch.setattr("roadproof.questions.catalogue.question.reaches_of", along)
+    monkeypatch.setattr("roadproof.extensions.catalogue.question.reaches_of", along)
     report = tmp_path / "report"
     made = catalogue(BRAKING, among="4", classes=False, explore=True, jobs=1, out=report)
     (span,) = made.spans

@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.catalogue.decisions import Decision
-from roadproof.frontends.api.cataloguing import CatalogueAnswer
+from roadproof.extensions.catalogue import driven
+from roadproof.extensions.catalogue.cataloguing import CatalogueAnswer
+from roadproof.extensions.catalogue.decisions import Decision
+from roadproof.extensions.catalogue.driven import borne_out, driven_name
 from roadproof.frontends.api.checking import check
-from roadproof.questions.catalogue import driven
-from roadproof.questions.catalogue.driven import borne_out, driven_name
 from roadproof.verdict import ExitCode, Verdict
 from sharing import made_once
 

@@ -15,32 +15,32 @@ import pytest
 
 import roadproof as rp
 from preventing.read import specification, values
-from roadproof.analysis.catalogue import decisions
-from roadproof.analysis.catalogue.decisions import (
+from roadproof.errors import InputError
+from roadproof.evidence.drive_file import DriveFile, drive_data, load_drive
+from roadproof.extensions.catalogue import decisions
+from roadproof.extensions.catalogue.decisions import (
     Decision,
     Drivers,
     decide_drive,
     decide_formula,
     decide_trace,
 )
-from roadproof.analysis.catalogue.entries import Abstract, Concrete
-from roadproof.analysis.catalogue.listing import _by_itself
-from roadproof.analysis.catalogue.reading import read_catalogue
-from roadproof.analysis.catalogue.sides import read_side_name
-from roadproof.drivers.driving import OWN_LANE, DriverSettings, drive_of, road_of
-from roadproof.drivers.initial_state import State
-from roadproof.drivers.lines import SIDES, Side
-from roadproof.drivers.manoeuvres import KMH, MANOEUVRES, signals_of
-from roadproof.drivers.models import MODELS, SCENARIOS
-from roadproof.errors import InputError
-from roadproof.evidence.drive_file import DriveFile, drive_data, load_drive
+from roadproof.extensions.catalogue.driver_sides import read_side_name
+from roadproof.extensions.catalogue.entries import Abstract, Concrete
+from roadproof.extensions.catalogue.listing import _by_itself
+from roadproof.extensions.catalogue.reading import read_catalogue
+from roadproof.extensions.drivers.driving import OWN_LANE, DriverSettings, drive_of, road_of
+from roadproof.extensions.drivers.initial_state import State
+from roadproof.extensions.drivers.lines import SIDES, Side
+from roadproof.extensions.drivers.manoeuvres import KMH, MANOEUVRES, signals_of
+from roadproof.extensions.drivers.models import MODELS, SCENARIOS
+from roadproof.extensions.traffic.evaluate.evaluate import evaluate_recording
+from roadproof.extensions.traffic.evaluate.one_trace import cut_trace, sample_drive
 from roadproof.frontends.cli.main import main
 from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.questions.views import folder_data
-from roadproof.recordings.evaluate.evaluate import evaluate_recording
-from roadproof.recordings.evaluate.one_trace import cut_trace, sample_drive
 from roadproof.semantics.exact.exact import judge
 from roadproof.world.drive import Drive, Piece
 from tables import read_table

@@ -12,14 +12,14 @@ from typing import Any
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.catalogue.candidates import candidates
-from roadproof.analysis.catalogue.entries import Concrete
-from roadproof.analysis.catalogue.showing import ConcreteAnswer
 from roadproof.engines.search.batches import Engines
 from roadproof.evidence.claim import Claim, On
 from roadproof.evidence.codec import read, write
-from roadproof.frontends.api.cataloguing import CatalogueAnswer
-from roadproof.questions.catalogue import concrete
+from roadproof.extensions.catalogue import concrete
+from roadproof.extensions.catalogue.candidates import candidates
+from roadproof.extensions.catalogue.cataloguing import CatalogueAnswer
+from roadproof.extensions.catalogue.entries import Concrete
+from roadproof.extensions.catalogue.showing import ConcreteAnswer
 from roadproof.runtime import archives, pool
 from roadproof.runtime.archives import SWITCH
 
@@ -191,6 +191,6 @@ def test_workers_start_afresh_where_polars_has_threads(
     for name, module in modules.items():
         monkeypatch.setitem(sys.modules, name, module)
     monkeypatch.setattr(multiprocessing, "get_context", lambda x: asked_for.append(x) or real(x))
-    monkeypatch.setattr("roadproof.questions.catalogue.question.TESTS_IN_A_BATCH", 16)
+    monkeypatch.setattr("roadproof.extensions.catalogue.question.TESTS_IN_A_BATCH", 16)
     rp.catalogue(EXAMPLE / "drives", among="1", classes=False, drivers=(), jobs=2)
     assert {*asked_for} == {method}

@@ -19,9 +19,14 @@ from hypothesis import strategies as st
 
 from asking import prove
 from monitoring.cases import random_traffic
-from roadproof.analysis.basis import Basis
-from roadproof.analysis.classify import simulated
-from roadproof.analysis.classify.cells import (
+from roadproof.engines.search import valid
+from roadproof.engines.search.batches import Engines
+from roadproof.errors import InputError, UsageError
+from roadproof.evidence.claim import Claim
+from roadproof.evidence.drive_file import load_drive
+from roadproof.evidence.judged import judge_file
+from roadproof.extensions.surveys.classify import simulated
+from roadproof.extensions.surveys.classify.cells import (
     Asked,
     Axis,
     Cell,
@@ -31,17 +36,20 @@ from roadproof.analysis.classify.cells import (
     refine,
     whole_cell,
 )
-from roadproof.analysis.classify.classes import Classes, plan_of, what_axis, where_axis
-from roadproof.analysis.classify.drives import find_examples, patched, with_zones
-from roadproof.analysis.classify.shares import Shares, count_shares
-from roadproof.analysis.classify.simulated import shares_key, shares_of, shares_text, simulated_shares
-from roadproof.analysis.classify.text import claims_of, with_classes, write_classes
-from roadproof.engines.search import valid
-from roadproof.engines.search.batches import Engines
-from roadproof.errors import InputError, UsageError
-from roadproof.evidence.claim import Claim
-from roadproof.evidence.drive_file import load_drive
-from roadproof.evidence.judged import judge_file
+from roadproof.extensions.surveys.classify.classes import Classes, plan_of, what_axis, where_axis
+from roadproof.extensions.surveys.classify.division import divide
+from roadproof.extensions.surveys.classify.drives import find_examples, patched, with_zones
+from roadproof.extensions.surveys.classify.question import question_of
+from roadproof.extensions.surveys.classify.simulated import (
+    shares_key,
+    shares_of,
+    shares_text,
+    simulated_shares,
+)
+from roadproof.extensions.surveys.classify.text import claims_of, with_classes, write_classes
+from roadproof.extensions.surveys.classify.traffic_shares import Shares, count_shares
+from roadproof.extensions.traffic.simulate.simulate import simulate
+from roadproof.extensions.traffic.simulate.traffic import Traffic
 from roadproof.frontends.cli.main import main
 from roadproof.library.bind import default_values
 from roadproof.library.elaborate import read_claim
@@ -50,12 +58,9 @@ from roadproof.library.scenarios import components
 from roadproof.library.specification import Query, Source, Specification
 from roadproof.library.words import spans
 from roadproof.logic.rewrite import with_values, without_names
-from roadproof.questions.classify.division import divide
-from roadproof.questions.classify.question import question_of
+from roadproof.questions.basis import Basis
 from roadproof.questions.settle import settle
 from roadproof.questions.views import folder_data
-from roadproof.recordings.simulate.simulate import simulate
-from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.runtime.archives import SWITCH, remember
 from roadproof.runtime.budget import BudgetExceeded, Effort, Work
 from roadproof.runtime.version import ANSWERS
@@ -440,7 +445,9 @@ def test_classes_that_recordings_contradict(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     told = Shares(["01"], 3, 2, classified=Counter({2: 2}), broken=["recording 01: two classes"])
-    monkeypatch.setattr("roadproof.analysis.classify.simulated.count_shares", lambda *arguments, **more: told)
+    monkeypatch.setattr(
+        "roadproof.extensions.surveys.classify.simulated.count_shares", lambda *arguments, **more: told
+    )
     assert main(["classify", "--among", "7", "--jobs", "1"]) == 30
     said = capsys.readouterr().out
     assert "3 traces, 1 (33.3 %) in none of these scenarios" in said
@@ -573,7 +580,9 @@ def test_a_drive_is_put_in_every_place(written: Path) -> None:
 
 
 def test_a_road_of_one_zone_where_the_usual_one_does_not_do(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("roadproof.analysis.classify.drives.usual_road", lambda formula: load_road("main-2"))
+    monkeypatch.setattr(
+        "roadproof.extensions.surveys.classify.drives.usual_road", lambda formula: load_road("main-2")
+    )
     (leaves, *_) = components(BASE, 16, ("SV", "POV"))
     assert leaves.text == "behaviourSV_16(SV, POV, L)"
     classes = Classes(plan_of(BASE, (12, 16)), ((Cell((12,), (12,), (leaves,)),),), ())

@@ -8,9 +8,15 @@ from typing import TypeVar
 import pytest
 
 from asking import prove
-from roadproof.analysis.basis import Basis, ProofResult
-from roadproof.analysis.coverage import found as needed
-from roadproof.analysis.coverage.answers import (
+from roadproof.engines.search.batches import Engines
+from roadproof.engines.search.minimal import simplest
+from roadproof.engines.search.points import Asking
+from roadproof.errors import InputError
+from roadproof.evidence.certificate import to_json
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.judged import judge_file
+from roadproof.extensions.surveys.coverage import found as needed
+from roadproof.extensions.surveys.coverage.answers import (
     Answers,
     ClassAnswer,
     GapTrace,
@@ -19,7 +25,9 @@ from roadproof.analysis.coverage.answers import (
     verdict_on,
     with_counts,
 )
-from roadproof.analysis.coverage.classes import (
+from roadproof.extensions.surveys.coverage.asking import GapRoads, GroupAsking, ask_need, work_of
+from roadproof.extensions.surveys.coverage.claims import GapClaims
+from roadproof.extensions.surveys.coverage.classes import (
     GapClasses,
     GapGroup,
     Part,
@@ -32,22 +40,14 @@ from roadproof.analysis.coverage.classes import (
     sets_between,
     two_vehicle_numbers,
 )
-from roadproof.analysis.coverage.found import FoundGap, SimpleDrives, Trials, replaced_by
-from roadproof.analysis.coverage.simple_drives import HORIZON, simple_drives
-from roadproof.engines.search.batches import Engines
-from roadproof.engines.search.minimal import simplest
-from roadproof.engines.search.points import Asking
-from roadproof.errors import InputError
-from roadproof.evidence.certificate import to_json
-from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.judged import judge_file
+from roadproof.extensions.surveys.coverage.found import FoundGap, SimpleDrives, Trials, replaced_by
+from roadproof.extensions.surveys.coverage.simple_drives import HORIZON, simple_drives
 from roadproof.frontends.cli.main import main
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import build_library, bundled_library
 from roadproof.library.specification import Source
 from roadproof.logic.show import text
-from roadproof.questions.coverage.asking import GapRoads, GroupAsking, ask_need, work_of
-from roadproof.questions.coverage.claims import GapClaims
+from roadproof.questions.basis import Basis, ProofResult
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact.replay import first_breach
 from roadproof.verdict import Verdict
@@ -467,7 +467,7 @@ def test_a_trace_is_told_under_all_its_classes() -> None:
 
 def test_windows_that_overlap_count_once(tmp_path: Path) -> None:
     pytest.importorskip("polars")
-    from roadproof.analysis.coverage.traffic import count_in_traffic, recordings_in
+    from roadproof.extensions.surveys.coverage.traffic import count_in_traffic, recordings_in
     from traffic.test_figures import STEPS_SEEN, window
 
     window(tmp_path / "a.xml", 0, STEPS_SEEN)
@@ -480,7 +480,7 @@ def test_windows_that_overlap_count_once(tmp_path: Path) -> None:
 
 def test_a_recording_under_two_names_is_refused(tmp_path: Path) -> None:
     pytest.importorskip("polars")
-    from roadproof.analysis.coverage.traffic import recordings_in
+    from roadproof.extensions.surveys.coverage.traffic import recordings_in
     from traffic.test_figures import STEPS_SEEN, window
 
     for name in ("a.xml", "b.xml"):

@@ -9,7 +9,6 @@ import pytest
 
 from asking import prove
 from report.edges import cut_off
-from roadproof.analysis.basis import Basis
 from roadproof.engines.search.placing import placed
 from roadproof.engines.solve.smt import ask
 from roadproof.errors import InputError, UsageError
@@ -34,6 +33,7 @@ from roadproof.library.specification import Query
 from roadproof.library.words import Words, called
 from roadproof.logic.formula import Not
 from roadproof.logic.parts import parts_of
+from roadproof.questions.basis import Basis
 from roadproof.questions.overlap import Meeting, OverlapQuestion, PairVerdict, conjunctions, name_of, pairs_of
 from roadproof.questions.settle import settle
 from roadproof.reasons import Why

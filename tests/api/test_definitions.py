@@ -12,7 +12,7 @@ import pytest
 import roadproof as rp
 from api.doors import tell
 from roadproof.errors import InputError, Position
-from roadproof.frontends.api.drafting import Draft, Mistake, mistakes, place_in, sources_of
+from roadproof.extensions.pages.studio.drafting import Draft, Mistake, mistakes, place_in, sources_of
 from roadproof.logic.formula import Application
 
 SPEC = 'def fast(a: vehicle) "it is fast" := v_lon(a) > 30 m/s\n'

@@ -16,25 +16,25 @@ import roadproof as rp
 from exporting.kept import kept, subject
 from exporting.kept import motion as motion_from
 from planting import plant
-from roadproof.analysis.catalogue.reading import is_test
 from roadproof.engines.prove.motion import prove_of_motions
 from roadproof.engines.search import minimal
 from roadproof.engines.search.minimal import simplest
 from roadproof.errors import InputError
-from roadproof.evidence.derivations.prepare import prepare
 from roadproof.evidence.drive_file import DriveFile, drive_data
 from roadproof.evidence.judged import JudgedDrive, judge_file
-from roadproof.evidence.kernel.derivation import rational
+from roadproof.extensions.catalogue.reading import is_test
+from roadproof.extensions.exchange.export.registry import FORMATS
+from roadproof.extensions.kernel.derivation import rational
+from roadproof.extensions.kernel.derivations.prepare import prepare
+from roadproof.extensions.pages.studio.dropping import drop
+from roadproof.extensions.pages.studio.requests import read_ask
+from roadproof.extensions.pages.viewer_data import viewer_data
+from roadproof.extensions.traffic.evaluate.one_trace import sample_drive
 from roadproof.frontends.api.driving import drive, motion
-from roadproof.frontends.report.viewer_data import viewer_data
-from roadproof.frontends.studio.dropping import drop
-from roadproof.frontends.studio.requests import read_ask
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.logic import motion as schemas
 from roadproof.logic import terms as t
-from roadproof.recordings.evaluate.one_trace import sample_drive
-from roadproof.recordings.export.registry import FORMATS
 from roadproof.runtime.budget import Effort
 from roadproof.runtime.files import write_json
 from roadproof.verdict import Verdict

@@ -17,10 +17,10 @@ from roadproof import _HOMES
 from roadproof.engines.search.batches import Engines
 from roadproof.errors import MissingSolverError, UsageError
 from roadproof.evidence.drive_file import load_drive
-from roadproof.evidence.kernel import coq
-from roadproof.frontends.api.completing import _free
-from roadproof.frontends.api.kernel import KernelQuestion, write
-from roadproof.frontends.api.restricting import drivers_of
+from roadproof.extensions.catalogue.writing import _free
+from roadproof.extensions.drivers.restricting import drivers_of
+from roadproof.extensions.kernel import coq
+from roadproof.extensions.kernel.asking import KernelQuestion, write
 from roadproof.frontends.cli.main import main
 from roadproof.questions import settle
 from tables import read_table

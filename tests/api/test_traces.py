@@ -15,11 +15,11 @@ import roadproof as rp
 from api.doors import tell
 from console import agree, sessions_of
 from pages import Example, examples_of, rewritten, run
-from roadproof.evidence.answers.monitor import Override
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.frontends.api.recordings import Evaluation
-from roadproof.frontends.api.simulating import Simulation
-from roadproof.frontends.api.traces import MonitorAnswer
+from roadproof.extensions.traffic.answers.monitor import Override
+from roadproof.extensions.traffic.evaluating import Evaluation
+from roadproof.extensions.traffic.monitoring import MonitorAnswer
+from roadproof.extensions.traffic.simulating import Simulation
 
 pytestmark = pytest.mark.usefixtures("searched_once")
 

@@ -3,7 +3,7 @@
 import random
 from pathlib import Path
 
-from roadproof.analysis.assurance.case import Case, Element, Kind
+from roadproof.extensions.assurance.case.case import Case, Element, Kind
 
 GOOD = """\
 title = "Trial"

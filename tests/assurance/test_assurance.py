@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.assurance.case import Kind
-from roadproof.analysis.assurance.reading import read_case
-from roadproof.analysis.assurance.states import State
-from roadproof.analysis.assurance.template import fill_template
 from roadproof.errors import InputError
-from roadproof.frontends.api.solutions import whole_verdict
+from roadproof.extensions.assurance.case.case import Kind
+from roadproof.extensions.assurance.case.reading import read_case
+from roadproof.extensions.assurance.case.states import State
+from roadproof.extensions.assurance.case.template import fill_template
+from roadproof.extensions.assurance.solutions import whole_verdict
 from roadproof.frontends.cli.main import main
 from roadproof.questions.views import folder_data
 

@@ -7,12 +7,12 @@ from xml.etree import ElementTree
 import pytest
 
 from assurance.cases import random_case
-from roadproof.analysis.assurance.case import Kind
-from roadproof.analysis.assurance.states import State, propagate
-from roadproof.frontends.report.argument import layout as layouts
-from roadproof.frontends.report.argument.drawing import as_file, draw_argument
-from roadproof.frontends.report.argument.layout import Labels, Layout, Node, Rectangle
-from roadproof.frontends.report.argument.measured_text import width_of, wrap
+from roadproof.extensions.assurance.argument import layout as layouts
+from roadproof.extensions.assurance.argument.drawing import as_file, draw_argument
+from roadproof.extensions.assurance.argument.layout import Labels, Layout, Node, Rectangle
+from roadproof.extensions.assurance.argument.measured_text import width_of, wrap
+from roadproof.extensions.assurance.case.case import Kind
+from roadproof.extensions.assurance.case.states import State, propagate
 
 SEEDS = range(25)
 TEXT = "A competent and careful driver prevents-the-preventable-collisions-of-all-disturbances %s"

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.assurance.limits import limits_of
 from roadproof.evidence.finding import Acceptance, Finding
+from roadproof.extensions.assurance.case.limits import limits_of
 
 
 def told(*files: Path) -> dict[str, tuple[str, ...]]:

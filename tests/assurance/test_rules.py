@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from assurance.cases import GOOD
-from roadproof.analysis.assurance.case import Kind
-from roadproof.analysis.assurance.reading import read_case
 from roadproof.errors import InputError
+from roadproof.extensions.assurance.case.case import Kind
+from roadproof.extensions.assurance.case.reading import read_case
 from tables import read_table
 
 FAULTS = read_table(__file__, "faults")

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 import pytest
 
 from assurance.cases import random_case
-from roadproof.analysis.assurance.case import Case, Kind
-from roadproof.analysis.assurance.states import State, open_points, propagate
+from roadproof.extensions.assurance.case.case import Case, Kind
+from roadproof.extensions.assurance.case.states import State, open_points, propagate
 
 SEEDS = range(200)
 

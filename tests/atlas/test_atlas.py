@@ -11,11 +11,11 @@ import roadproof as rp
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import RejectedError
-from roadproof.frontends.atlas.notation import shown
-from roadproof.frontends.atlas.pictures import _draw, _Job
-from roadproof.frontends.atlas.traffic import frequencies
+from roadproof.extensions.pages.atlas.notation import shown
+from roadproof.extensions.pages.atlas.pictures import _draw, _Job
+from roadproof.extensions.pages.atlas.traffic import frequencies
+from roadproof.extensions.pages.miniature import miniature, small_scene
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.report.miniature import miniature, small_scene
 
 AMONG = "1,2,4"  # in conftest.py
 

@@ -15,9 +15,9 @@ import pytest
 import roadproof as rp
 from cli.test_schemas import accept
 from roadproof.errors import InputError, MissingSolverError, UsageError
+from roadproof.extensions.assurance import pins
+from roadproof.extensions.assurance.pins import Pin
 from roadproof.frontends.cli.main import main
-from roadproof.runtime import pins
-from roadproof.runtime.pins import Pin
 from roadproof.verdict import ExitCode
 
 ROOT = Path(__file__).parents[2]

@@ -10,24 +10,24 @@ from typing import Any
 import pytest
 
 from planting import plant
-from roadproof.analysis.basis import Basis
-from roadproof.analysis.coverage import answers as occurring
-from roadproof.analysis.coverage.classes import GapClasses, GapGroup
-from roadproof.analysis.coverage.found import FoundGap, SimpleDrives
 from roadproof.engines.search.batches import Engines
 from roadproof.errors import UsageError
 from roadproof.evidence.answer import Answer, undecided
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.drive_file import SCHEMA, load_drive
-from roadproof.frontends.api import covering
+from roadproof.extensions.surveys import covering
+from roadproof.extensions.surveys.coverage import answers as occurring
+from roadproof.extensions.surveys.coverage import claims as coverage_claims
+from roadproof.extensions.surveys.coverage import question as coverage_question
+from roadproof.extensions.surveys.coverage.classes import GapClasses, GapGroup
+from roadproof.extensions.surveys.coverage.found import FoundGap, SimpleDrives
+from roadproof.extensions.surveys.coverage.question import CoverageQuestion, gaps_of
 from roadproof.frontends.cli.main import main
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.library.specification import Query, Specification
+from roadproof.questions.basis import Basis
 from roadproof.questions.checking import read_folder
-from roadproof.questions.coverage import claims as coverage_claims
-from roadproof.questions.coverage import question as coverage_question
-from roadproof.questions.coverage.question import CoverageQuestion, gaps_of
 from roadproof.questions.question import walk
 from roadproof.questions.settle import settle
 from roadproof.questions.store import Store

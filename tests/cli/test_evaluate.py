@@ -14,16 +14,16 @@ from typing import Any
 import pytest
 
 from roadproof.evidence.drive_file import load_drive
-from roadproof.frontends.api import traces
+from roadproof.extensions.exchange.export.csv_table import csv_of
+from roadproof.extensions.traffic import monitoring as traces
+from roadproof.extensions.traffic.evaluate import results, totals
+from roadproof.extensions.traffic.evaluate.evaluate import evaluate_recording
+from roadproof.extensions.traffic.evaluate.questions import ask, default_settings
+from roadproof.extensions.traffic.formats.highd import read_highd
+from roadproof.extensions.traffic.formats.write_highd import write_highd
+from roadproof.extensions.traffic.simulate.simulate import simulate
+from roadproof.extensions.traffic.simulate.traffic import Traffic
 from roadproof.frontends.cli.main import main
-from roadproof.recordings.evaluate import results, totals
-from roadproof.recordings.evaluate.evaluate import evaluate_recording
-from roadproof.recordings.evaluate.questions import ask, default_settings
-from roadproof.recordings.export.csv_table import csv_of
-from roadproof.recordings.formats.highd import read_highd
-from roadproof.recordings.formats.write_highd import write_highd
-from roadproof.recordings.simulate.simulate import simulate
-from roadproof.recordings.simulate.traffic import Traffic
 from traffic.faults import plant_fault
 
 ROADPROOF = Path(sys.executable).parent / "roadproof"

@@ -20,9 +20,9 @@ import pytest
 
 from roadproof.engines.search import ask
 from roadproof.errors import RoadproofError
+from roadproof.extensions.pages.studio.server import serve
 from roadproof.frontends.cli.help import command_parser
 from roadproof.frontends.cli.main import COMMANDS, answer
-from roadproof.frontends.studio.server import serve
 from roadproof.runtime import pool
 from roadproof.runtime.package_data import shipped
 from roadproof.verdict import ExitCode

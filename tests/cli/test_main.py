@@ -123,8 +123,19 @@ def _processor_seconds(arguments: list[str]) -> float:
 
 PROOF = Path(__file__).parents[2] / "proofs" / "P4-scenario-03-base.json"
 _SOLVERS = ("z3", "cvc5", "cvxpy", "highspy", "clarabel")
-_DRAWING = ("matplotlib", "PIL", "sympy", "polars", "roadproof.recordings.export", "roadproof.world.maps")
-_OTHERS = ("roadproof.analysis.catalogue", "roadproof.recordings.formats", "roadproof.evidence.kernel.accept")
+_DRAWING = (
+    "matplotlib",
+    "PIL",
+    "sympy",
+    "polars",
+    "roadproof.extensions.exchange.export",
+    "roadproof.extensions.maps",
+)
+_OTHERS = (
+    "roadproof.extensions.catalogue",
+    "roadproof.extensions.traffic.formats",
+    "roadproof.extensions.kernel.accept",
+)
 _SEARCHER = ("scipy", "roadproof.semantics.sampled", "roadproof.engines.solve.refuting")
 _PROVER = ("z3", "roadproof.engines.prove.prover", "roadproof.engines.prove.countermodel")
 
@@ -135,7 +146,15 @@ _PROVER = ("z3", "roadproof.engines.prove.prover", "roadproof.engines.prove.coun
         ("--help", ["argparse", "dataclasses", "pathlib", "roadproof.errors"]),
         (
             "list",
-            [*_SOLVERS, *_DRAWING, *_OTHERS, "numpy", "lark", "roadproof.drivers", "roadproof.evidence"],
+            [
+                *_SOLVERS,
+                *_DRAWING,
+                *_OTHERS,
+                "numpy",
+                "lark",
+                "roadproof.extensions.drivers",
+                "roadproof.evidence",
+            ],
         ),
         (
             "prove true --jobs 1",

@@ -20,8 +20,10 @@ import pytest
 import roadproof
 import roadproof as rp
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence.answers.monitor import View
 from roadproof.evidence.claim import Engine, Objective
+from roadproof.extensions.traffic.answers.monitor import View
+from roadproof.extensions.traffic.settings import Evaluate, Monitor, Simulate
+from roadproof.extensions.traffic.simulate.traffic import Ramp
 from roadproof.frontends.api.checking import Kernel, Solver
 from roadproof.frontends.cli import options, prove
 from roadproof.frontends.cli.basis import read_definitions
@@ -35,9 +37,7 @@ from roadproof.frontends.settings.flags import add_flags, is_rare, read_keywords
 from roadproof.frontends.settings.groups import Definitions
 from roadproof.frontends.settings.option import Settings
 from roadproof.frontends.settings.questions import Check, Prove, Witness
-from roadproof.frontends.settings.recordings import Evaluate, Monitor, Simulate
 from roadproof.questions.prove import ProveQuestion
-from roadproof.recordings.simulate.traffic import Ramp
 from roadproof.semantics.sampled.answers import Convention
 
 
@@ -312,13 +312,13 @@ READERS = {
     "roadproof.evidence.specifications": {"--spec"},
     "roadproof.runtime.pool": {"--jobs"},
     "roadproof.runtime.process_pool": {"--jobs"},
-    "roadproof.questions.explore.asking": {
+    "roadproof.extensions.surveys.explore.asking": {
         *("--vary", "--steps", "--precision", "--greatest", "--least", "--when"),
     },
-    "roadproof.analysis.classify.classes": {"--among"},
-    "roadproof.frontends.api.covering": {"--wider"},
+    "roadproof.extensions.surveys.classify.classes": {"--among"},
+    "roadproof.extensions.surveys.covering": {"--wider"},
     # Names a run of preventable.
-    "roadproof.analysis.assurance.template": {"--model"},
+    "roadproof.extensions.assurance.case.template": {"--model"},
 }
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z-]*")
 

@@ -15,23 +15,23 @@ from referencing import Registry, Resource
 import roadproof as rp
 from asking import search_for
 from cli.test_coverage import components
-from roadproof.analysis.coverage.classes import GapClasses
-from roadproof.analysis.coverage.found import SimpleDrives
 from roadproof.engines.search.none_within import refute
 from roadproof.evidence.drive_file import read_drive
 from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.none_within import none_within_data
+from roadproof.extensions.surveys.coverage import claims as coverage_claims
+from roadproof.extensions.surveys.coverage import question as coverage_question
+from roadproof.extensions.surveys.coverage.classes import GapClasses
+from roadproof.extensions.surveys.coverage.found import SimpleDrives
+from roadproof.extensions.traffic.formats.write_highd import write_highd
+from roadproof.extensions.traffic.simulate.simulate import simulate
+from roadproof.extensions.traffic.simulate.traffic import Traffic
 from roadproof.frontends.cli.main import COMMANDS, main
 from roadproof.frontends.schemas import as_text, schemas
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.library.specification import Query, Specification
-from roadproof.questions.coverage import claims as coverage_claims
-from roadproof.questions.coverage import question as coverage_question
-from roadproof.recordings.formats.write_highd import write_highd
-from roadproof.recordings.simulate.simulate import simulate
-from roadproof.recordings.simulate.traffic import Traffic
 
 pytestmark = pytest.mark.usefixtures("searched_once")
 

@@ -15,7 +15,7 @@ for folder in (ROOT / "tests", ROOT / "src"):
         sys.path.insert(0, str(folder))
 
 from documents.reference import PAGES  # noqa: E402
-from roadproof.frontends.report.viewer_page import design  # noqa: E402
+from roadproof.extensions.pages.viewer_page import design  # noqa: E402
 
 _LINK = re.compile(r"(?<!!)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s#]+)(#[^)]*)?\)")
 _FOR_DEVELOPERS = ("tests", "map")

@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 
 from roadproof.evidence.drive_file import DriveFile, read_drive
-from roadproof.recordings.export.subject import Subject
+from roadproof.extensions.exchange.export.subject import Subject
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road
 from roadproof.world.road import Road

@@ -16,12 +16,12 @@ from exporting.integration import integrated
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import DriveFile, drive_data, load_drive, read_drive
 from roadproof.evidence.judged import judge_file
+from roadproof.extensions.exchange.commonroad import read_commonroad
+from roadproof.extensions.exchange.export import commonroad, openscenario
+from roadproof.extensions.exchange.export.points import centre
+from roadproof.extensions.exchange.export.subject import subject_of
+from roadproof.extensions.exchange.openscenario import read_scenario
 from roadproof.library.loading import bundled_library
-from roadproof.recordings.export import commonroad, openscenario
-from roadproof.recordings.export.points import centre
-from roadproof.recordings.export.subject import subject_of
-from roadproof.recordings.formats.commonroad import read_commonroad
-from roadproof.recordings.formats.openscenario import read_scenario
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.replay import first_breach
 from roadproof.world.bends import on_bends

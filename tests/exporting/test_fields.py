@@ -16,9 +16,9 @@ import pytest
 
 from exporting.kept import TURN, motion, subject
 from roadproof.errors import UsageError
-from roadproof.recordings.export.openscenario import polyline_of
-from roadproof.recordings.export.registry import FORMATS
-from roadproof.recordings.export.subject import Subject, subject_of
+from roadproof.extensions.exchange.export.openscenario import polyline_of
+from roadproof.extensions.exchange.export.registry import FORMATS
+from roadproof.extensions.exchange.export.subject import Subject, subject_of
 from roadproof.world.road import Lanelet, Road
 
 EXPECTED = Path(__file__).parent / "expected"

@@ -14,9 +14,9 @@ from exporting.integration import integrated
 from exporting.kept import kept
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import judge_file
-from roadproof.frontends.api.exporting import ExportedDrive, Exports
+from roadproof.extensions.exchange.export.points import centre
+from roadproof.extensions.exchange.exporting import ExportedDrive, Exports
 from roadproof.library.loading import bundled_library
-from roadproof.recordings.export.points import centre
 from roadproof.world.curves import Spiral
 from roadproof.world.motion import state_at
 from roadproof.world.reference_line import Part, ReferenceLine

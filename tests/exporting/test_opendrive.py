@@ -15,10 +15,10 @@ import pytest
 from exporting.kept import TURN, kept, motion, subject, subjects
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.recordings.export import commonroad, opendrive, openscenario, points
-from roadproof.recordings.export.subject import MARGIN, Subject, lay_out, span_of
-from roadproof.recordings.formats.commonroad import read_commonroad
-from roadproof.recordings.formats.recording import ZONES, Recording
+from roadproof.extensions.exchange.commonroad import read_commonroad
+from roadproof.extensions.exchange.export import commonroad, opendrive, openscenario, points
+from roadproof.extensions.exchange.export.subject import MARGIN, Subject, lay_out, span_of
+from roadproof.extensions.traffic.formats.recording import ZONES, Recording
 from roadproof.world.models import load_road, names_of
 from roadproof.world.motion import State, state_at
 from roadproof.world.road import Lanelet, Road

@@ -21,22 +21,22 @@ from exporting.kept import SMOOTH, TURN, WEAVING, kept, motion, subject, subject
 from fuzz.held import CALLS
 from planting import plant
 from roadproof.errors import InputError
+from roadproof.extensions.exchange.export import openscenario
+from roadproof.extensions.exchange.export.points import axle_to_centre, centre, heading, rear_axle
+from roadproof.extensions.exchange.export.registry import FORMATS
+from roadproof.extensions.exchange.export.subject import Subject, span_of
+from roadproof.extensions.exchange.exporting import export
+from roadproof.extensions.traffic.evaluate.one_trace import OneTrace, read_pair, read_samples, sample_drive
+from roadproof.extensions.traffic.formats.large import write_large
+from roadproof.extensions.traffic.formats.sources import find_source
+from roadproof.extensions.traffic.monitoring import MonitorAnswer, monitor, of_file
 from roadproof.frontends.api.definitions import load
 from roadproof.frontends.api.driving import drive
 from roadproof.frontends.api.driving import motion as given
-from roadproof.frontends.api.exporting import export
-from roadproof.frontends.api.traces import MonitorAnswer, monitor, of_file
 from roadproof.library.bind import bind
 from roadproof.library.elaborate import read_claim
 from roadproof.library.roles import vehicle_order
 from roadproof.library.scenarios import roles
-from roadproof.recordings.evaluate.one_trace import OneTrace, read_pair, read_samples, sample_drive
-from roadproof.recordings.export import openscenario
-from roadproof.recordings.export.points import axle_to_centre, centre, heading, rear_axle
-from roadproof.recordings.export.registry import FORMATS
-from roadproof.recordings.export.subject import Subject, span_of
-from roadproof.recordings.formats.large import write_large
-from roadproof.recordings.formats.sources import find_source
 from roadproof.semantics.sampled.compiled import compile
 from roadproof.world.drive import Motion
 from roadproof.world.motion import State, state_at

@@ -11,10 +11,10 @@ import pytest
 import roadproof as rp
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.recordings.export import commonroad as made
-from roadproof.recordings.export import opendrive
-from roadproof.recordings.export.registry import numbers_in
-from roadproof.recordings.export.subject import Subject
+from roadproof.extensions.exchange.export import commonroad as made
+from roadproof.extensions.exchange.export import opendrive
+from roadproof.extensions.exchange.export.registry import numbers_in
+from roadproof.extensions.exchange.export.subject import Subject
 from roadproof.world.drive import Drive, motion_of
 from roadproof.world.models import load_road
 from world.measured_lanelets import RAMP, commonroad

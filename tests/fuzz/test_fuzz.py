@@ -14,7 +14,7 @@ from kernel.needs import needs_coq
 from kernel.raw import random_formula
 from roadproof.engines.encode import unroll
 from roadproof.engines.search import question
-from roadproof.evidence.kernel.printer import Printer
+from roadproof.extensions.kernel.printer import Printer
 from roadproof.logic import formula as f
 from roadproof.logic import show
 from roadproof.logic import terms as t

@@ -18,8 +18,8 @@ from interop.damage import DAMAGES
 from interop.environments import OUT, Client, clients, python_of
 from interop.expected import expected
 from roadproof.evidence.drive_file import load_drive
+from roadproof.extensions.exchange.exporting import export
 from roadproof.frontends.api.drives import witness
-from roadproof.frontends.api.exporting import export
 from roadproof.frontends.cli.main import main as roadproof
 from tally import rows, write
 from world.measured_lanelets import RAMPS, commonroad

@@ -12,7 +12,7 @@ from interop.clients.asam_report import issues_in
 from interop.damage import DAMAGES
 from interop.environments import Client, clients, python_of
 from interop.expected import expected
-from roadproof.recordings.export.registry import FORMATS
+from roadproof.extensions.exchange.export.registry import FORMATS
 
 REPORT = """<CheckerResults><CheckerBundle>{}</CheckerBundle></CheckerResults>"""
 FINE = '<Checker status="completed" checkerId="c" summary="0 issue(s) are found."/>'

@@ -22,8 +22,8 @@ from judge.cases import (
 from judge.pinning import disagreement_on_drive, disagreement_on_sets
 from planting import plant
 from preventing.read import boundary
-from roadproof.drivers.manoeuvres import CUT_IN, along_line
 from roadproof.errors import InputError, UsageError
+from roadproof.extensions.drivers.manoeuvres import CUT_IN, along_line
 from roadproof.library.bind import bind, default_values
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library

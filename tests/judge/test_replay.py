@@ -19,6 +19,7 @@ from roadproof.errors import UsageError
 from roadproof.evidence.countermodel import Countermodel, Instant
 from roadproof.evidence.drive_file import DriveFile, load_drive
 from roadproof.evidence.refutation import when_true
+from roadproof.extensions.traffic.evaluate.recheck import trace_of
 from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library, load_library
@@ -28,7 +29,6 @@ from roadproof.logic.custom_names import code_of
 from roadproof.logic.formula import Formula, subformulas
 from roadproof.logic.rewrite import without_names
 from roadproof.logic.show import as_syntax, text
-from roadproof.recordings.evaluate.recheck import trace_of
 from roadproof.semantics.exact import replay
 from roadproof.semantics.exact.algebraic import real_roots
 from roadproof.semantics.exact.blame import Blame, blame

@@ -17,13 +17,13 @@ from judge.cases import (
     operators,
 )
 from kernel import raw
-from roadproof.evidence.derivations.derive import derive
-from roadproof.evidence.derivations.parts import NoDerivationError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.evidence.kernel.coq import ready
-from roadproof.evidence.kernel.derivation import coq_derivation
-from roadproof.evidence.kernel.drive import Shown
-from roadproof.evidence.kernel.world import world_lines
+from roadproof.extensions.kernel.coq import ready
+from roadproof.extensions.kernel.derivation import coq_derivation
+from roadproof.extensions.kernel.derivations.derive import derive
+from roadproof.extensions.kernel.derivations.parts import NoDerivationError
+from roadproof.extensions.kernel.drive import Shown
+from roadproof.extensions.kernel.world import world_lines
 from roadproof.library.bind import bind
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t

@@ -3,7 +3,7 @@
 import tempfile
 from pathlib import Path
 
-from roadproof.evidence.kernel import coq
+from roadproof.extensions.kernel import coq
 from roadproof.runtime.package_data import shipped
 
 KERNEL = shipped("proofs") / "kernel"

@@ -6,9 +6,9 @@ from fractions import Fraction
 from pathlib import Path
 
 from kernel import raw
-from roadproof.evidence.kernel.coq import ready
-from roadproof.evidence.kernel.printer import CLOSE, Formals, Printer
-from roadproof.evidence.kernel.source import HEAD, Module
+from roadproof.extensions.kernel.coq import ready
+from roadproof.extensions.kernel.printer import CLOSE, Formals, Printer
+from roadproof.extensions.kernel.source import HEAD, Module
 from roadproof.logic.formula import Formula
 
 SOURCES = Path(__file__).parents[2] / "proofs" / "kernel"

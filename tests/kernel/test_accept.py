@@ -9,9 +9,9 @@ from cli.test_schemas import validator
 from kernel.needs import needs_coq
 from roadproof.evidence.certificate import read_certificate, to_json
 from roadproof.evidence.finding import Acceptance
-from roadproof.evidence.kernel import accept
-from roadproof.evidence.kernel.accept import Word, find_tableau, judge, prepare
-from roadproof.evidence.kernel.coq import ready
+from roadproof.extensions.kernel import accept
+from roadproof.extensions.kernel.accept import Word, find_tableau, judge, prepare
+from roadproof.extensions.kernel.coq import ready
 from roadproof.frontends.api.checking import check
 from roadproof.library.loading import bundled_library
 from roadproof.runtime.package_data import shipped

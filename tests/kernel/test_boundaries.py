@@ -8,13 +8,13 @@ import pytest
 import roadproof as rp
 from kernel.needs import needs_coq
 from kernel.reading import answers, compared
-from roadproof.drivers.manoeuvres import MANOEUVRES
-from roadproof.drivers.models import unpreventable
-from roadproof.evidence.kernel.accept import Word
-from roadproof.evidence.kernel.boundary import Boundary, settle, theorem_for
-from roadproof.evidence.kernel.coq import Coq, CoqRun, ready
-from roadproof.evidence.kernel.printer import CLOSE, Printer
-from roadproof.evidence.kernel.statement import formals_of
+from roadproof.extensions.drivers.manoeuvres import MANOEUVRES
+from roadproof.extensions.drivers.models import unpreventable
+from roadproof.extensions.kernel.accept import Word
+from roadproof.extensions.kernel.boundary import Boundary, settle, theorem_for
+from roadproof.extensions.kernel.coq import Coq, CoqRun, ready
+from roadproof.extensions.kernel.printer import CLOSE, Printer
+from roadproof.extensions.kernel.statement import formals_of
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library, Source, Specification

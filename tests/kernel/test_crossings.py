@@ -12,15 +12,15 @@ import roadproof as rp
 from kernel.needs import needs_coq, needs_ocaml
 from kernel.test_drives import ONE, accepted_whole, refused
 from roadproof.evidence.countermodel import NOWHERE
-from roadproof.evidence.derivations.derive import derive
-from roadproof.evidence.derivations.parts import NoDerivationError
-from roadproof.evidence.derivations.prepare import prepare
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import judge_file
-from roadproof.evidence.kernel import extracted, ocaml
-from roadproof.evidence.kernel.derivation import coq_derivation
-from roadproof.evidence.kernel.drive import shown
-from roadproof.evidence.kernel.world import world_lines
+from roadproof.extensions.kernel import extracted, ocaml
+from roadproof.extensions.kernel.derivation import coq_derivation
+from roadproof.extensions.kernel.derivations.derive import derive
+from roadproof.extensions.kernel.derivations.parts import NoDerivationError
+from roadproof.extensions.kernel.derivations.prepare import prepare
+from roadproof.extensions.kernel.drive import shown
+from roadproof.extensions.kernel.world import world_lines
 from roadproof.frontends.api.checking import check
 from roadproof.library.loading import bundled_library
 from roadproof.reasons import Why

@@ -13,19 +13,19 @@ from examples import some
 from kernel import raw
 from kernel.drives import agrees_with_the_judge, cases
 from kernel.needs import needs_coq
-from roadproof.evidence.derivations.derive import derive
-from roadproof.evidence.derivations.prepare import prepare
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.judged import judge_file
-from roadproof.evidence.kernel.accept import AXIOMS, CoqModule, Ruling, Word, axioms_of, batches
-from roadproof.evidence.kernel.accept import file as theory_file
-from roadproof.evidence.kernel.accept import judge as accept_judge
-from roadproof.evidence.kernel.coq import CoqRun, ready
-from roadproof.evidence.kernel.derivation import Step, coq_derivation
-from roadproof.evidence.kernel.drive import claim_text, module, shown
-from roadproof.evidence.kernel.source import Module, file
-from roadproof.evidence.kernel.world import world_lines
+from roadproof.extensions.kernel.accept import AXIOMS, CoqModule, Ruling, Word, axioms_of, batches
+from roadproof.extensions.kernel.accept import file as theory_file
+from roadproof.extensions.kernel.accept import judge as accept_judge
+from roadproof.extensions.kernel.coq import CoqRun, ready
+from roadproof.extensions.kernel.derivation import Step, coq_derivation
+from roadproof.extensions.kernel.derivations.derive import derive
+from roadproof.extensions.kernel.derivations.prepare import prepare
+from roadproof.extensions.kernel.drive import claim_text, module, shown
+from roadproof.extensions.kernel.source import Module, file
+from roadproof.extensions.kernel.world import world_lines
 from roadproof.frontends.api.checking import check
 from roadproof.library.bind import bind
 from roadproof.library.loading import bundled_library

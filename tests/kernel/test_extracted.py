@@ -23,14 +23,14 @@ from kernel.test_theories import library_formulas
 from roadproof.evidence.certificate import read_certificate
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.judged import judge_file
-from roadproof.evidence.kernel import coq, ocaml
-from roadproof.evidence.kernel import extracted as extracted_text
-from roadproof.evidence.kernel.accept import CoqModule, prepare
-from roadproof.evidence.kernel.constructors import Writer
-from roadproof.evidence.kernel.drive import claim_text, shown
-from roadproof.evidence.kernel.extracted import drive, judge, proof
-from roadproof.evidence.kernel.source import Module
-from roadproof.evidence.kernel.statement import state
+from roadproof.extensions.kernel import coq, ocaml
+from roadproof.extensions.kernel import extracted as extracted_text
+from roadproof.extensions.kernel.accept import CoqModule, prepare
+from roadproof.extensions.kernel.constructors import Writer
+from roadproof.extensions.kernel.drive import claim_text, shown
+from roadproof.extensions.kernel.extracted import drive, judge, proof
+from roadproof.extensions.kernel.source import Module
+from roadproof.extensions.kernel.statement import state
 from roadproof.frontends.api.checking import check
 from roadproof.frontends.cli.main import main
 from roadproof.library.bind import bind

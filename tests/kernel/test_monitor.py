@@ -23,8 +23,8 @@ from monitoring.test_planted_faults import (
     window_one_short,
     window_starts_late,
 )
-from roadproof.evidence.kernel.accept import AXIOMS, axioms_of
-from roadproof.evidence.kernel.coq import ready
+from roadproof.extensions.kernel.accept import AXIOMS, axioms_of
+from roadproof.extensions.kernel.coq import ready
 from roadproof.library.bind import default_values
 from roadproof.library.elaborate import apply_definition
 from roadproof.library.loading import bundled_library

@@ -12,14 +12,14 @@ from exporting.kept import kept
 from kernel.needs import needs_coq, needs_ocaml
 from kernel.reading import answers
 from kernel.test_accept import ruling
-from roadproof.evidence.kernel import extracted, ocaml
-from roadproof.evidence.kernel.accept import CoqModule, Word, find_tableau, judge, prepare
-from roadproof.evidence.kernel.coq import ready
-from roadproof.evidence.kernel.drive import shown
-from roadproof.evidence.kernel.printer import CLOSE, Printer
-from roadproof.evidence.kernel.source import HEAD, Module, instance_text
-from roadproof.evidence.kernel.statement import SCHEMAS, Instance, bounds_of
-from roadproof.evidence.kernel.world import world_lines
+from roadproof.extensions.kernel import extracted, ocaml
+from roadproof.extensions.kernel.accept import CoqModule, Word, find_tableau, judge, prepare
+from roadproof.extensions.kernel.coq import ready
+from roadproof.extensions.kernel.drive import shown
+from roadproof.extensions.kernel.printer import CLOSE, Printer
+from roadproof.extensions.kernel.source import HEAD, Module, instance_text
+from roadproof.extensions.kernel.statement import SCHEMAS, Instance, bounds_of
+from roadproof.extensions.kernel.world import world_lines
 from roadproof.library.loading import bundled_library
 from roadproof.library.motion import ALL_SCHEMAS, INDUCTIONS, axiom_arguments, axiom_formula
 from roadproof.logic import formula as f

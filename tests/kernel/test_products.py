@@ -16,17 +16,17 @@ import roadproof as rp
 from kernel.needs import needs_coq
 from planting import plant
 from roadproof.evidence.certificate import read_certificate
-from roadproof.evidence.derivations.parts import NoDerivationError, between, breaks, covered, moments
-from roadproof.evidence.derivations.signs import Part
-from roadproof.evidence.kernel import cone, source
-from roadproof.evidence.kernel.accept import prepare
-from roadproof.evidence.kernel.coq import ready
-from roadproof.evidence.kernel.derivation import Crossing, Fixed, Later, Soon
-from roadproof.evidence.kernel.derivation import Moment as DerivedMoment
-from roadproof.evidence.kernel.instant import reason
-from roadproof.evidence.kernel.linear import GOAL, Linear
-from roadproof.evidence.kernel.source import HEAD
 from roadproof.evidence.times import Moment
+from roadproof.extensions.kernel import cone, source
+from roadproof.extensions.kernel.accept import prepare
+from roadproof.extensions.kernel.coq import ready
+from roadproof.extensions.kernel.derivation import Crossing, Fixed, Later, Soon
+from roadproof.extensions.kernel.derivation import Moment as DerivedMoment
+from roadproof.extensions.kernel.derivations.parts import NoDerivationError, between, breaks, covered, moments
+from roadproof.extensions.kernel.derivations.signs import Part
+from roadproof.extensions.kernel.instant import reason
+from roadproof.extensions.kernel.linear import GOAL, Linear
+from roadproof.extensions.kernel.source import HEAD
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.logic.rewrite import without_names

@@ -11,11 +11,11 @@ import roadproof as rp
 from kernel.needs import needs_coq
 from roadproof.engines.prove.properties import template_properties
 from roadproof.evidence.certificate import read_certificate
-from roadproof.evidence.kernel.accept import Word, find_tableau, prepare
-from roadproof.evidence.kernel.coq import ready
-from roadproof.evidence.kernel.source import HEAD, module
-from roadproof.evidence.kernel.statement import state
-from roadproof.evidence.kernel.tableau import RULES, coq_tree, lines, read_lines
+from roadproof.extensions.kernel.accept import Word, find_tableau, prepare
+from roadproof.extensions.kernel.coq import ready
+from roadproof.extensions.kernel.source import HEAD, module
+from roadproof.extensions.kernel.statement import state
+from roadproof.extensions.kernel.tableau import RULES, coq_tree, lines, read_lines
 from roadproof.library.loading import bundled_library
 from roadproof.runtime.package_data import shipped
 from roadproof.verdict import Verdict

@@ -11,14 +11,14 @@ from kernel import raw
 from kernel.needs import needs_coq
 from kernel.test_products import asked
 from planting import plant
-from roadproof.evidence.kernel import accept, cone, squares
-from roadproof.evidence.kernel.accept import prepare
-from roadproof.evidence.kernel.cone import Constraint
-from roadproof.evidence.kernel.constructors import term
-from roadproof.evidence.kernel.coq import ready
-from roadproof.evidence.kernel.instant import reason
-from roadproof.evidence.kernel.reduction import reduce_constraints
-from roadproof.evidence.kernel.source import HEAD
+from roadproof.extensions.kernel import accept, cone, squares
+from roadproof.extensions.kernel.accept import prepare
+from roadproof.extensions.kernel.cone import Constraint
+from roadproof.extensions.kernel.constructors import term
+from roadproof.extensions.kernel.coq import ready
+from roadproof.extensions.kernel.instant import reason
+from roadproof.extensions.kernel.reduction import reduce_constraints
+from roadproof.extensions.kernel.source import HEAD
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.logic.rewrite import without_names

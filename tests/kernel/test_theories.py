@@ -12,15 +12,15 @@ from kernel import raw
 from kernel.needs import needs_coq
 from kernel.reading import SOURCES, answers, compared, monitor_theory
 from roadproof.errors import InputError, RoadproofError, TextError
-from roadproof.evidence.derivations import prepare as module
-from roadproof.evidence.derivations.parts import NoDerivationError
-from roadproof.evidence.derivations.prepare import prepare
-from roadproof.evidence.kernel import coq as coq_module
-from roadproof.evidence.kernel.accept import AXIOMS, CoqModule, Ruling, Word, axioms_of
-from roadproof.evidence.kernel.coq import THEORIES, ready
-from roadproof.evidence.kernel.names import WORDS, comment
-from roadproof.evidence.kernel.printer import CLOSE, Printer
-from roadproof.evidence.kernel.source import HEAD
+from roadproof.extensions.kernel import coq as coq_module
+from roadproof.extensions.kernel.accept import AXIOMS, CoqModule, Ruling, Word, axioms_of
+from roadproof.extensions.kernel.coq import THEORIES, ready
+from roadproof.extensions.kernel.derivations import prepare as module
+from roadproof.extensions.kernel.derivations.parts import NoDerivationError
+from roadproof.extensions.kernel.derivations.prepare import prepare
+from roadproof.extensions.kernel.names import WORDS, comment
+from roadproof.extensions.kernel.printer import CLOSE, Printer
+from roadproof.extensions.kernel.source import HEAD
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f

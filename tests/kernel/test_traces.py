@@ -13,16 +13,16 @@ from kernel import raw
 from kernel.drives import HEAD
 from kernel.needs import needs_coq, needs_ocaml
 from roadproof.evidence.countermodel import Countermodel, Instant, Loop, trace_data
-from roadproof.evidence.derivations.derive import derive_on
-from roadproof.evidence.derivations.prepare import prepare_trace
-from roadproof.evidence.derivations.traces import TraceShapes
 from roadproof.evidence.finding import Acceptance
-from roadproof.evidence.kernel.accept import Word
-from roadproof.evidence.kernel.coq import ready
-from roadproof.evidence.kernel.derivation import Later, Step, coq_derivation, sign, timed
-from roadproof.evidence.kernel.trace import Refutation, Refuted, refuted, world_of
-from roadproof.evidence.kernel.world import ANYWHERE, world_lines
 from roadproof.evidence.refutation import when_true
+from roadproof.extensions.kernel.accept import Word
+from roadproof.extensions.kernel.coq import ready
+from roadproof.extensions.kernel.derivation import Later, Step, coq_derivation, sign, timed
+from roadproof.extensions.kernel.derivations.derive import derive_on
+from roadproof.extensions.kernel.derivations.prepare import prepare_trace
+from roadproof.extensions.kernel.derivations.traces import TraceShapes
+from roadproof.extensions.kernel.trace import Refutation, Refuted, refuted, world_of
+from roadproof.extensions.kernel.world import ANYWHERE, world_lines
 from roadproof.frontends.api.checking import check
 from roadproof.library.loading import bundled_library
 from roadproof.logic import formula as f

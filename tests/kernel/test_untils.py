@@ -6,7 +6,7 @@ import roadproof as rp
 from kernel.needs import needs_coq
 from kernel.reading import sort_out
 from proving.claims import spelled
-from roadproof.evidence.kernel.accept import find_tableau, prepare
+from roadproof.extensions.kernel.accept import find_tableau, prepare
 from roadproof.library.loading import bundled_library
 from tables import read_table
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import roadproof as rp
 from kernel.needs import needs_coq
 from kernel.reading import answers, printed, sort_out
-from roadproof.evidence.kernel.accept import find_tableau, prepare
-from roadproof.evidence.kernel.source import HEAD
+from roadproof.extensions.kernel.accept import find_tableau, prepare
+from roadproof.extensions.kernel.source import HEAD
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from tables import read_table

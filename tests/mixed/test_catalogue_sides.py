@@ -7,15 +7,15 @@ from typing import Any
 import pytest
 
 from mixed.test_catalogue_verdicts import FOUR, HOME, ONE, concrete, decision, fact
-from roadproof.analysis.catalogue.asked import Questions
-from roadproof.analysis.catalogue.decisions import Decision, decide_formula
-from roadproof.analysis.catalogue.fact import Fact
-from roadproof.analysis.catalogue.playing import choices, chosen_vehicles
-from roadproof.analysis.catalogue.ranges import Span, spans_of
-from roadproof.analysis.catalogue.showing import ENDANGERED, _borne_out
-from roadproof.analysis.catalogue.sides import read_side_name, side_name
 from roadproof.evidence.subject import TestedSide
-from roadproof.questions.catalogue.view import CatalogueView
+from roadproof.extensions.catalogue.asked import Questions
+from roadproof.extensions.catalogue.decisions import Decision, decide_formula
+from roadproof.extensions.catalogue.driver_sides import read_side_name, side_name
+from roadproof.extensions.catalogue.fact import Fact
+from roadproof.extensions.catalogue.playing import choices, chosen_vehicles
+from roadproof.extensions.catalogue.ranges import Span, spans_of
+from roadproof.extensions.catalogue.showing import ENDANGERED, _borne_out
+from roadproof.extensions.catalogue.view import CatalogueView
 from roadproof.reasons import NO_REASON, Why
 
 # --- driver models ---------------------------------------------------------------------------------
@@ -63,7 +63,7 @@ def test_a_scenario_counts_under_a_restriction_where_its_driver_bears_it_out(
     decided: list[Decision], left: set[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     wanted = SimpleNamespace(model="careful", side="preventable", scenarios=(1,))
-    monkeypatch.setattr("roadproof.analysis.catalogue.showing.restriction_of", lambda _: wanted)
+    monkeypatch.setattr("roadproof.extensions.catalogue.showing.restriction_of", lambda _: wanted)
     asked = Questions(HOME, (1,), None, {})
     found = _borne_out(concrete("t", ONE, "class_4", ENDANGERED, decisions=tuple(decided)), asked)
     assert {x.what for x in found.shown} == left

@@ -6,17 +6,17 @@ from typing import Any, cast
 
 import pytest
 
-from roadproof.analysis.catalogue.asked import NOWHERE, Questions
-from roadproof.analysis.catalogue.decisions import Decision
-from roadproof.analysis.catalogue.entries import Abstract, Concrete
-from roadproof.analysis.catalogue.fact import Fact
-from roadproof.analysis.catalogue.showing import ENDANGERED, GAP, ConcreteAnswer
-from roadproof.analysis.catalogue.tested import Targets, figures, figures_beside
-from roadproof.analysis.catalogue.tested import tested as targets_of
-from roadproof.analysis.coverage.answers import ClassAnswer
-from roadproof.evidence.answers.catalogue_index import Figure, Relation, Shown
 from roadproof.evidence.subject import TestedSide
-from roadproof.frontends.api.cataloguing import CatalogueAnswer
+from roadproof.extensions.catalogue.asked import NOWHERE, Questions
+from roadproof.extensions.catalogue.cataloguing import CatalogueAnswer
+from roadproof.extensions.catalogue.decisions import Decision
+from roadproof.extensions.catalogue.entries import Abstract, Concrete
+from roadproof.extensions.catalogue.fact import Fact
+from roadproof.extensions.catalogue.kept import Figure, Relation, Shown
+from roadproof.extensions.catalogue.showing import ENDANGERED, GAP, ConcreteAnswer
+from roadproof.extensions.catalogue.tested import Targets, figures, figures_beside
+from roadproof.extensions.catalogue.tested import tested as targets_of
+from roadproof.extensions.surveys.coverage.answers import ClassAnswer
 from roadproof.library.bind import values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library

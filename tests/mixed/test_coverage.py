@@ -11,10 +11,17 @@ from typing import Any, TypeVar
 
 import pytest
 
-from roadproof.analysis.basis import Basis, ProofResult
-from roadproof.analysis.catalogue.gaps import gap_kinds
-from roadproof.analysis.coverage.answers import ClassAnswer, Survey
-from roadproof.analysis.coverage.classes import (
+from roadproof.engines.search.batches import Engines
+from roadproof.engines.search.points import Asking
+from roadproof.errors import InputError
+from roadproof.evidence.answer import Judged, answer_data, read_answer, undecided
+from roadproof.evidence.certificate import read_certificate_data
+from roadproof.evidence.claim import Claim
+from roadproof.extensions.catalogue.gaps import gap_kinds
+from roadproof.extensions.surveys.coverage.answers import ClassAnswer, Survey
+from roadproof.extensions.surveys.coverage.asking import AGAIN, LOOK, GapRoads, GroupAsking, ask_need, work_of
+from roadproof.extensions.surveys.coverage.claims import GapClaims
+from roadproof.extensions.surveys.coverage.classes import (
     GapClasses,
     GapGroup,
     Part,
@@ -28,24 +35,24 @@ from roadproof.analysis.coverage.classes import (
     sectors_of,
     starts,
 )
-from roadproof.analysis.coverage.found import FoundGap, SimpleDrives
-from roadproof.analysis.coverage.simple_drives import simple_drives
-from roadproof.engines.search.batches import Engines
-from roadproof.engines.search.points import Asking
-from roadproof.errors import InputError
-from roadproof.evidence.answer import Judged, answer_data, read_answer, undecided
-from roadproof.evidence.certificate import read_certificate_data
-from roadproof.evidence.claim import Claim
+from roadproof.extensions.surveys.coverage.found import FoundGap, SimpleDrives
+from roadproof.extensions.surveys.coverage.looks import (
+    Near,
+    Needing,
+    NeedJudge,
+    SimpleGap,
+    SimpleGaps,
+    SimpleJudge,
+)
+from roadproof.extensions.surveys.coverage.question import CoverageQuestion, gaps_of
+from roadproof.extensions.surveys.coverage.simple_drives import simple_drives
 from roadproof.library.compose import both, either, in_some_lane, negation
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import LANE, PAIR
 from roadproof.logic import formula as f
 from roadproof.logic.formula import subformulas
-from roadproof.questions.coverage.asking import AGAIN, LOOK, GapRoads, GroupAsking, ask_need, work_of
-from roadproof.questions.coverage.claims import GapClaims
-from roadproof.questions.coverage.looks import Near, Needing, NeedJudge, SimpleGap, SimpleGaps, SimpleJudge
-from roadproof.questions.coverage.question import CoverageQuestion, gaps_of
+from roadproof.questions.basis import Basis, ProofResult
 from roadproof.reasons import NO_REASON, Reason, Why
 from roadproof.runtime.budget import Effort, Work
 from roadproof.semantics.exact.replay import first_overlap
@@ -102,7 +109,7 @@ def test_a_gap_is_missed_by_all_scenarios_in_either_role() -> None:
 
 def test_what_begins_so_that_is_asked_about_is_a_part_of_every_gap() -> None:
     import roadproof as rp
-    from roadproof.drivers.restriction import Restriction, files_for
+    from roadproof.extensions.drivers.restriction import Restriction, files_for
     from roadproof.library.diagnose import checked_library
 
     wanted = Restriction("unpreventable", "careful", "drives")

@@ -9,27 +9,27 @@ from typing import Any
 
 import pytest
 
-from roadproof.analysis.coverage.answers import ClassAnswer, is_covered, verdict_on, with_counts
-from roadproof.drivers.lines import SIDES, Line, end_of, sides_in
 from roadproof.engines.search.extreme import Extreme
 from roadproof.engines.search.points import PointFinding
 from roadproof.evidence.finding import Acceptance
-from roadproof.evidence.kernel.accept import Word
-from roadproof.frontends.api.assuring import AssuranceReport
-from roadproof.frontends.api.cataloguing import CatalogueAnswer
-from roadproof.frontends.api.classifying import Classifications
+from roadproof.extensions.assurance.assuring import AssuranceReport
+from roadproof.extensions.catalogue.cataloguing import CatalogueAnswer
+from roadproof.extensions.drivers.lines import SIDES, Line, end_of, sides_in
+from roadproof.extensions.drivers.preventable.view import Plate, Shown
+from roadproof.extensions.drivers.preventing import Plates
+from roadproof.extensions.kernel.accept import Word
+from roadproof.extensions.pages.reporting import Page
+from roadproof.extensions.surveys.classifying import Classifications
+from roadproof.extensions.surveys.coverage.answers import ClassAnswer, is_covered, verdict_on, with_counts
+from roadproof.extensions.surveys.covering import CODES
+from roadproof.extensions.surveys.explore.values import Boundary, ExplorationResult
+from roadproof.extensions.traffic.evaluating import Evaluation
+from roadproof.extensions.traffic.monitoring import MonitorAnswer
 from roadproof.frontends.api.comparing import ComparisonAnswer
-from roadproof.frontends.api.covering import CODES
 from roadproof.frontends.api.drives import Witnesses
-from roadproof.frontends.api.preventing import Plates
 from roadproof.frontends.api.proofs import Proofs
 from roadproof.frontends.api.questioned import QuestionAnswers
-from roadproof.frontends.api.recordings import Evaluation
-from roadproof.frontends.api.reporting import Page
 from roadproof.frontends.api.studies import Orders, Overlaps
-from roadproof.frontends.api.traces import MonitorAnswer
-from roadproof.questions.explore.values import Boundary, ExplorationResult
-from roadproof.questions.preventable.view import Plate, Shown
 from roadproof.reasons import Why
 from roadproof.verdict import ExitCode, Verdict
 
@@ -147,7 +147,7 @@ def test_the_verdict_on_a_set() -> None:
 
 def test_a_class_that_traffic_shows() -> None:
     def trace(*keys: str, alone: bool = False) -> Any:
-        from roadproof.analysis.coverage.answers import GapTrace
+        from roadproof.extensions.surveys.coverage.answers import GapTrace
 
         return GapTrace("01", 1, 2, (3, 4), True, keys, alone)
 
@@ -244,7 +244,7 @@ def test_pages_say_how_many_claims_are_not_accepted() -> None:
 
 
 def test_assurance_cases() -> None:
-    from roadproof.analysis.assurance.states import State
+    from roadproof.extensions.assurance.case.states import State
 
     for state in State:
         for codes in mixtures([ExitCode.UNEXPECTED, ExitCode.BAD_INPUT], 3):

@@ -10,15 +10,15 @@ from typing import Any
 
 import pytest
 
-from roadproof.analysis.basis import Basis
+from roadproof.extensions.surveys.redundancy import RedundancyQuestion
 from roadproof.frontends.api.definitions import load
 from roadproof.frontends.api.proofs import claims_of
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import build_library, bundled_library
 from roadproof.library.specification import Source
+from roadproof.questions.basis import Basis
 from roadproof.questions.overlap import Meeting, OverlapQuestion
 from roadproof.questions.question import walk
-from roadproof.questions.redundancy import RedundancyQuestion
 from roadproof.questions.settle import look_up, settle, share_of
 from roadproof.questions.store import Store
 from roadproof.runtime import archives, package_data

@@ -7,7 +7,6 @@ from typing import Any
 
 import pytest
 
-from roadproof.analysis.basis import Basis
 from roadproof.engines.search import batches
 from roadproof.engines.search.batches import Engines
 from roadproof.evidence.answer import Answer, undecided
@@ -17,6 +16,7 @@ from roadproof.library.compose import both, negation
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import Scenario
 from roadproof.logic.parts import parts_of
+from roadproof.questions.basis import Basis
 from roadproof.questions.overlap import Meeting, OverlapQuestion, PairVerdict, conjunctions, name_of
 from roadproof.questions.question import walk
 from roadproof.questions.settle import settle

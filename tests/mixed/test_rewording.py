@@ -27,11 +27,11 @@ from mixed.test_catalogue_verdicts import (
     fact,
     looked_at,
 )
-from roadproof.analysis.catalogue.asked import NOWHERE, Questions
 from roadproof.errors import InputError
 from roadproof.evidence.finding import Finding
-from roadproof.frontends.report.page.results import Result
-from roadproof.frontends.report.page.summary import Overview, overview
+from roadproof.extensions.catalogue.asked import NOWHERE, Questions
+from roadproof.extensions.pages.page.results import Result
+from roadproof.extensions.pages.page.summary import Overview, overview
 from roadproof.reasons import Reason, Why
 
 _ = asked  # a fixture

@@ -11,12 +11,12 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import UsageError
+from roadproof.extensions.exchange.streaming.arithmetic import HELPERS
+from roadproof.extensions.exchange.streaming.c_files import FLAGS
 from roadproof.frontends.settings import readers
 from roadproof.frontends.settings.flags import flags_of, read_keywords
 from roadproof.frontends.settings.option import Option
 from roadproof.frontends.settings.questions import Prove
-from roadproof.semantics.streaming.arithmetic import HELPERS
-from roadproof.semantics.streaming.c_files import FLAGS
 
 FAST = "v_lon(SV) > 30 m/s -> v_lon(SV) > 20 m/s"
 

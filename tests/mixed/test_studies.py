@@ -11,8 +11,6 @@ from typing import Any
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.basis import Basis
-from roadproof.analysis.classify.cells import whole_cell
 from roadproof.engines.search import placing
 from roadproof.evidence.answer import Answer, Refutation, undecided
 from roadproof.evidence.certificate import read_certificate_data
@@ -20,13 +18,15 @@ from roadproof.evidence.claim import Claim
 from roadproof.evidence.codec import write
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.extensions.surveys.classify.cells import whole_cell
+from roadproof.extensions.surveys.classify.division import DivisionQuestion, ToDivide
+from roadproof.extensions.surveys.redundancy import Changes, RedundancyQuestion, changes_of
 from roadproof.frontends.api.drives import drives_asked
 from roadproof.frontends.settings.questions import Witness
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
-from roadproof.questions.classify.division import DivisionQuestion, ToDivide
+from roadproof.questions.basis import Basis
 from roadproof.questions.question import OwnWork, walk
-from roadproof.questions.redundancy import Changes, RedundancyQuestion, changes_of
 from roadproof.questions.store import Store
 from roadproof.reasons import Reason, Why
 from roadproof.runtime.budget import Work

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from monitoring.cases import random_batch
-from roadproof.frontends.report.one_trace import as_text
+from roadproof.extensions.traffic.evaluate.observed import observe_drive
+from roadproof.extensions.traffic.report.one_trace import as_text
 from roadproof.library.bind import bind
 from roadproof.library.elaborate import read_claim
-from roadproof.recordings.evaluate.observed import observe_drive
 from roadproof.semantics.exact.robust import robustness
 from roadproof.semantics.sampled.compiled import compile
 from searching.known import BASE, ROADS, VALUES, known

@@ -6,8 +6,8 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import UsageError
-from roadproof.evidence.answers.monitor import Answer
 from roadproof.evidence.codec import read
+from roadproof.extensions.traffic.answers.monitor import Answer
 from roadproof.frontends.cli.main import main
 
 DRIVE = Path(__file__).parents[2] / "examples" / "catalogue" / "tests" / "drives" / "cut-in.json"

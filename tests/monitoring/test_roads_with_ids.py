@@ -6,7 +6,7 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import RoadproofError
-from roadproof.recordings.formats.table import polars_module
+from roadproof.extensions.traffic.formats.table import polars_module
 
 DRIVE = Path(__file__).parents[2] / "examples" / "traffic" / "drives" / "scenario-01-base.json"
 ENDINGS = (".csv", ".parquet", ".xosc", ".xml")

@@ -10,10 +10,10 @@ import pytest
 import roadproof as rp
 from roadproof.errors import InputError, TextError, UsageError
 from roadproof.evidence.drive_file import load_drive
+from roadproof.extensions.traffic.simulate.planting import with_roles
 from roadproof.frontends.cli.main import main
 from roadproof.library.loading import bundled_library
 from roadproof.library.roles import cast_of, vehicle_order, with_vehicles
-from roadproof.recordings.simulate.planting import with_roles
 from roadproof.verdict import ExitCode
 
 DRIVES = Path(__file__).parents[2] / "examples" / "catalogue" / "tests" / "drives"

@@ -1,6 +1,6 @@
 """The fuzzy safety model written again, in m and s, from its formulas; and a drive compared with it.
 
-It shares nothing with roadproof.drivers.fuzzy, which is in whole numbers of other units.
+It shares nothing with roadproof.extensions.drivers.fuzzy, which is in whole numbers of other units.
 """
 
 from fractions import Fraction as F

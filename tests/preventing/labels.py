@@ -6,7 +6,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from roadproof.drivers.manoeuvres import BESIDE, Manoeuvre, signals_of
+from roadproof.extensions.drivers.manoeuvres import BESIDE, Manoeuvre, signals_of
 from roadproof.logic.formula import Formula
 from roadproof.logic.terms import SizeName
 from roadproof.semantics.sampled import Batch, compile

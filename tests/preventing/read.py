@@ -5,8 +5,8 @@ from fractions import Fraction
 from functools import cache
 from pathlib import Path
 
-from roadproof.drivers.manoeuvres import MANOEUVRES
-from roadproof.drivers.models import unpreventable
+from roadproof.extensions.drivers.manoeuvres import MANOEUVRES
+from roadproof.extensions.drivers.models import unpreventable
 from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import load_library

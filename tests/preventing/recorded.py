@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from fractions import Fraction
 
-from roadproof.drivers.driving import DriverSettings, drive_of
-from roadproof.drivers.manoeuvres import Manoeuvre
-from roadproof.recordings.formats.recording import Recording
+from roadproof.extensions.drivers.driving import DriverSettings, drive_of
+from roadproof.extensions.drivers.manoeuvres import Manoeuvre
+from roadproof.extensions.traffic.formats.recording import Recording
 from roadproof.world.motion import State, state_at
 from traffic.make_recording import Track, make_recording
 

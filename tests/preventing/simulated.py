@@ -1,4 +1,4 @@
-"""Driver models put into a test, simulated in steps of a millisecond, without roadproof.drivers.
+"""Driver models put into a test, simulated in steps of a millisecond, without roadproof.extensions.drivers.
 
 A vehicle is its first state and its pieces, all floats; models are as the regulations say, in m and s.
 """

@@ -14,18 +14,18 @@ from preventing.labels import labels
 from preventing.read import boundary, specification, values
 from preventing.test_stepping import RATE as STEP_RATE
 from preventing.test_stepping import random_cut_ins
-from roadproof.drivers import driving
-from roadproof.drivers.braking import AssistedBraking, Ramp
-from roadproof.drivers.driving import DriverSettings, drive_of
-from roadproof.drivers.lemmas import lemmas_for
-from roadproof.drivers.lines import Side
-from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, along_line, start_of
-from roadproof.drivers.models import models_for
-from roadproof.engines.search.beside import judged_drive
 from roadproof.errors import InputError
 from roadproof.evidence.judged import judge_file
+from roadproof.extensions.drivers import driving
+from roadproof.extensions.drivers.braking import AssistedBraking, Ramp
+from roadproof.extensions.drivers.driving import DriverSettings, drive_of
+from roadproof.extensions.drivers.lemmas import lemmas_for
+from roadproof.extensions.drivers.lines import Side
+from roadproof.extensions.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, along_line, start_of
+from roadproof.extensions.drivers.models import models_for
+from roadproof.extensions.drivers.preventable.beside import judged_drive
+from roadproof.extensions.traffic.evaluate.questions import Settings
 from roadproof.frontends.cli.main import main
-from roadproof.recordings.evaluate.questions import Settings
 from roadproof.semantics.exact.exact import judge
 from tables import read_table
 

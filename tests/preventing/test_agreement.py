@@ -10,15 +10,15 @@ import numpy as np
 import roadproof as rp
 from preventing.read import library, values
 from preventing.test_replay import RATE, Maker, track_of
-from roadproof.drivers.manoeuvres import MANOEUVRES
-from roadproof.drivers.models import MODELS, course_in
-from roadproof.drivers.sampled_replay import Track as Samples
-from roadproof.recordings.evaluate.evaluate import evaluate_recording
-from roadproof.recordings.evaluate.foretelling import last_common
-from roadproof.recordings.evaluate.matching import Match
-from roadproof.recordings.evaluate.one_trace import road_of
-from roadproof.recordings.evaluate.questions import Questions, Settings, ask
-from roadproof.recordings.formats.recording import Recording
+from roadproof.extensions.drivers.manoeuvres import MANOEUVRES
+from roadproof.extensions.drivers.models import MODELS, course_in
+from roadproof.extensions.drivers.sampled_replay import Track as Samples
+from roadproof.extensions.traffic.evaluate.evaluate import evaluate_recording
+from roadproof.extensions.traffic.evaluate.foretelling import last_common
+from roadproof.extensions.traffic.evaluate.matching import Match
+from roadproof.extensions.traffic.evaluate.one_trace import road_of
+from roadproof.extensions.traffic.evaluate.questions import Questions, Settings, ask
+from roadproof.extensions.traffic.formats.recording import Recording
 from traffic.make_recording import Track, make_recording
 from traffic.sampled import toml_of
 

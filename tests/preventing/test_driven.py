@@ -6,13 +6,13 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.catalogue import decisions
-from roadproof.drivers.driving import DriverSettings
-from roadproof.drivers.models import MODELS
-from roadproof.drivers.outcome import Result
-from roadproof.drivers.replay import replay
 from roadproof.engines.search import ask
-from roadproof.engines.search.driven import Driven
+from roadproof.extensions.catalogue import decisions
+from roadproof.extensions.drivers.driving import DriverSettings
+from roadproof.extensions.drivers.models import MODELS
+from roadproof.extensions.drivers.objection import Driven
+from roadproof.extensions.drivers.outcome import Result
+from roadproof.extensions.drivers.replay import replay
 from roadproof.library.bind import values_with
 from roadproof.reasons import Why
 from roadproof.verdict import Verdict

@@ -14,22 +14,27 @@ import roadproof as rp
 from preventing import stepping
 from preventing.read import boundary, specification, values
 from preventing.test_preventable import copy, with_changed
-from roadproof.drivers import gradual
-from roadproof.drivers.braking import AssistedBraking, Ramp
-from roadproof.drivers.driving import DriverSettings, _along, drive_of, motion_in_deceleration
-from roadproof.drivers.lemmas import lemmas_for
-from roadproof.drivers.lines import SIDES, Line, end_of, sides_in
-from roadproof.drivers.manoeuvres import DECELERATION, KMH, MANOEUVRES, Plane, line, start_of
-from roadproof.drivers.models import MODELS, unpreventable
-from roadproof.drivers.restriction import Restriction, check_drives
-from roadproof.drivers.words import _PARTS, legend, words_of_parts
-from roadproof.engines.search.beside import beside_boundary, far_apart, first_drive, judged_drive
 from roadproof.errors import UsageError
 from roadproof.evidence.judged import judge_file
+from roadproof.extensions.drivers import gradual
+from roadproof.extensions.drivers.braking import AssistedBraking, Ramp
+from roadproof.extensions.drivers.driving import DriverSettings, _along, drive_of, motion_in_deceleration
+from roadproof.extensions.drivers.lemmas import lemmas_for
+from roadproof.extensions.drivers.lines import SIDES, Line, end_of, sides_in
+from roadproof.extensions.drivers.manoeuvres import DECELERATION, KMH, MANOEUVRES, Plane, line, start_of
+from roadproof.extensions.drivers.models import MODELS, unpreventable
+from roadproof.extensions.drivers.preventable.beside import (
+    beside_boundary,
+    far_apart,
+    first_drive,
+    judged_drive,
+)
+from roadproof.extensions.drivers.preventable.report import as_text, shown_symbols
+from roadproof.extensions.drivers.restriction import Restriction, check_drives
+from roadproof.extensions.drivers.words import _PARTS, legend, words_of_parts
 from roadproof.frontends.api.definitions import Definitions
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.report.drive_data import strips_of
-from roadproof.frontends.report.preventable import as_text, shown_symbols
 from roadproof.logic.formula import And, Application, subformulas
 from roadproof.semantics.exact.algebraic import Root, approximate
 

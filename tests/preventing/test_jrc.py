@@ -15,13 +15,13 @@ import pytest
 
 from planting import plant
 from preventing.read import specification, values
-from roadproof.drivers import fuzzy, fuzzy_looks
-from roadproof.drivers.driving import DriverSettings, drive_of, road_of
-from roadproof.drivers.manoeuvres import KMH, MANOEUVRES, Manoeuvre
-from roadproof.drivers.outcome import Outcome, Result
-from roadproof.drivers.replay import replay
-from roadproof.drivers.sampled_replay import SampledScene, Track, replay_samples
-from roadproof.drivers.stepped import course_of
+from roadproof.extensions.drivers import fuzzy, fuzzy_looks
+from roadproof.extensions.drivers.driving import DriverSettings, drive_of, road_of
+from roadproof.extensions.drivers.manoeuvres import KMH, MANOEUVRES, Manoeuvre
+from roadproof.extensions.drivers.outcome import Outcome, Result
+from roadproof.extensions.drivers.replay import replay
+from roadproof.extensions.drivers.sampled_replay import SampledScene, Track, replay_samples
+from roadproof.extensions.drivers.stepped import course_of
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.motion import states_at
 

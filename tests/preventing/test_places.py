@@ -17,9 +17,9 @@ from preventing.labels import labels
 from preventing.places import RATE, Bools, Floats, braking_leader, cut_in, cut_out
 from preventing.read import values
 from preventing.simulated import Car, Case, Simulation
-from roadproof.drivers.manoeuvres import MANOEUVRES
-from roadproof.drivers.models import unpreventable
-from roadproof.drivers.stepped import course_of
+from roadproof.extensions.drivers.manoeuvres import MANOEUVRES
+from roadproof.extensions.drivers.models import unpreventable
+from roadproof.extensions.drivers.stepped import course_of
 from roadproof.library.bind import bind
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import load_library

@@ -12,20 +12,28 @@ import pytest
 
 import roadproof as rp
 from preventing.read import boundary, specification, values
-from roadproof.drivers.driving import DriverSettings
-from roadproof.drivers.lemmas import lemmas_for
-from roadproof.drivers.lines import SIDES
-from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES, Plane, line
-from roadproof.drivers.models import MODELS, manoeuvre_of, models_for
 from roadproof.engines.search.batches import Engines
-from roadproof.engines.search.beside import beside_boundary, first_drive, judged_drive
 from roadproof.evidence.answer import answer_data, read_answer
 from roadproof.evidence.strict import read_json
+from roadproof.extensions.drivers.driving import DriverSettings
+from roadproof.extensions.drivers.lemmas import lemmas_for
+from roadproof.extensions.drivers.lines import SIDES
+from roadproof.extensions.drivers.manoeuvres import (
+    CUT_IN,
+    CUT_OUT,
+    DECELERATION,
+    KMH,
+    MANOEUVRES,
+    Plane,
+    line,
+)
+from roadproof.extensions.drivers.models import MODELS, manoeuvre_of, models_for
+from roadproof.extensions.drivers.preventable import report
+from roadproof.extensions.drivers.preventable.beside import beside_boundary, first_drive, judged_drive
+from roadproof.extensions.drivers.preventable.question import PreventableQuestion
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.report import preventable as report
 from roadproof.logic import parse
 from roadproof.logic.parse import parse_claim
-from roadproof.questions.preventable.question import PreventableQuestion
 from roadproof.questions.store import Store
 from roadproof.reasons import Reason, Why
 from roadproof.runtime.files import write_json
@@ -99,7 +107,7 @@ def test_a_driver_with_another_constant_is_not_the_model(changed):
         CUT_IN, "careful", given, "preventable", home, DriverSettings(values(), home.options)
     )
     assert judged.file.values[changed] == values()[changed]
-    from roadproof.drivers.driving import drive_of
+    from roadproof.extensions.drivers.driving import drive_of
 
     wrong = drive_of(CUT_IN, "careful", given, DriverSettings(other, home.options))
     from dataclasses import replace

@@ -14,11 +14,11 @@ import pytest
 
 from preventing.read import specification, values
 from preventing.simulated import Car, Case, Found, Simulation
-from roadproof.drivers.driving import DriverSettings
-from roadproof.drivers.models import MODELS, ModelName
-from roadproof.drivers.outcome import Outcome
-from roadproof.drivers.replay import replay
-from roadproof.drivers.sampled_replay import SampledScene, Track, replay_samples
+from roadproof.extensions.drivers.driving import DriverSettings
+from roadproof.extensions.drivers.models import MODELS, ModelName
+from roadproof.extensions.drivers.outcome import Outcome
+from roadproof.extensions.drivers.replay import replay
+from roadproof.extensions.drivers.sampled_replay import SampledScene, Track, replay_samples
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.motion import starts_of
 from roadproof.world.road import Lanelet, Road, pairs

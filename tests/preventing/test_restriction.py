@@ -8,15 +8,15 @@ from typing import Literal, TypeAlias, get_args
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.catalogue.entries import Abstract
-from roadproof.drivers.manoeuvres import MANOEUVRES, Plane, line
-from roadproof.drivers.models import MODELS, SCENARIOS, foreseen, unpreventable
-from roadproof.drivers.restriction import Restriction, Side, restriction_of
 from roadproof.engines.prove.induction import prove_of_scenarios
 from roadproof.engines.search.impossible import show_impossible
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.drive_file import load_drive
-from roadproof.frontends.api.restricting import restricted
+from roadproof.extensions.catalogue.entries import Abstract
+from roadproof.extensions.drivers.manoeuvres import MANOEUVRES, Plane, line
+from roadproof.extensions.drivers.models import MODELS, SCENARIOS, foreseen, unpreventable
+from roadproof.extensions.drivers.restricting import restricted
+from roadproof.extensions.drivers.restriction import Restriction, Side, restriction_of
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.settings.groups import Prevention
 from roadproof.library.bind import bind

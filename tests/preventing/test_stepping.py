@@ -15,15 +15,15 @@ from preventing.fuzzy_again import first_difference, motion
 from preventing.labels import labels
 from preventing.read import bound, boundary, specification, values
 from preventing.test_preventable import copy, with_changed
-from roadproof.drivers import stepped
-from roadproof.drivers.driving import DriverSettings, drive_of
-from roadproof.drivers.fuzzy import Controller, Scale, scale_of
-from roadproof.drivers.lines import SIDES
-from roadproof.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES, Plane
-from roadproof.drivers.models import models_for
-from roadproof.drivers.stepped import course_of, labels_of, places_of, spans_of
-from roadproof.engines.search.beside import judged_drive
 from roadproof.evidence.judged import judge_file
+from roadproof.extensions.drivers import stepped
+from roadproof.extensions.drivers.driving import DriverSettings, drive_of
+from roadproof.extensions.drivers.fuzzy import Controller, Scale, scale_of
+from roadproof.extensions.drivers.lines import SIDES
+from roadproof.extensions.drivers.manoeuvres import CUT_IN, CUT_OUT, DECELERATION, KMH, MANOEUVRES, Plane
+from roadproof.extensions.drivers.models import models_for
+from roadproof.extensions.drivers.preventable.beside import judged_drive
+from roadproof.extensions.drivers.stepped import course_of, labels_of, places_of, spans_of
 from roadproof.frontends.cli.main import main
 
 RATE = 1000

@@ -10,9 +10,9 @@ from roadproof.engines.prove.doubt import Stop
 from roadproof.engines.prove.prover import prove
 from roadproof.engines.solve.recall import ask
 from roadproof.evidence.certificate import certificate_data, read_certificate_data, refusal
-from roadproof.evidence.kernel.accept import judge, prepare
-from roadproof.evidence.kernel.coq import ready
 from roadproof.evidence.sites import Lemma
+from roadproof.extensions.kernel.accept import judge, prepare
+from roadproof.extensions.kernel.coq import ready
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.library.motion import NOTHING

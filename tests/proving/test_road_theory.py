@@ -15,11 +15,11 @@ from roadproof.engines.prove.prover import prove
 from roadproof.engines.solve.recall import ask
 from roadproof.evidence import road_axioms
 from roadproof.evidence.certificate import refusal
-from roadproof.evidence.kernel.accept import judge as judge_by_kernel
-from roadproof.evidence.kernel.accept import prepare
-from roadproof.evidence.kernel.coq import ready
 from roadproof.evidence.refutation import fault_of
 from roadproof.evidence.road_axioms import AXIOMS, ZONES, membership, true_of_roads
+from roadproof.extensions.kernel.accept import judge as judge_by_kernel
+from roadproof.extensions.kernel.accept import prepare
+from roadproof.extensions.kernel.coq import ready
 from roadproof.library.bind import bind, default_values
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library

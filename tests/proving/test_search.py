@@ -13,8 +13,6 @@ from asking import prove
 from preventing.read import specification as driver_specification
 from proving.claims import settle, specification
 from proving.on_roads import is_road, neighbours
-from roadproof.drivers.lemmas import lemmas_for
-from roadproof.drivers.models import models_for
 from roadproof.engines.prove import countermodel, prover
 from roadproof.engines.prove.countermodel import place
 from roadproof.engines.prove.doubt import Stop
@@ -24,6 +22,8 @@ from roadproof.engines.prove.search import GaveUp, Model
 from roadproof.engines.prove.states import is_plain, reason
 from roadproof.evidence import state
 from roadproof.evidence.atoms import Atoms
+from roadproof.extensions.drivers.lemmas import lemmas_for
+from roadproof.extensions.drivers.models import models_for
 from roadproof.library.elaborate import read_claim
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t

@@ -12,7 +12,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roadproof.analysis.basis import Basis
 from roadproof.engines.encode.unroll import common_step
 from roadproof.engines.search import known_drive, placing, stages
 from roadproof.engines.search.batches import Engines
@@ -35,14 +34,15 @@ from roadproof.evidence.answer import Answer, undecided
 from roadproof.evidence.claim import HELP, Claim
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, judge_file
+from roadproof.extensions.surveys.explore import values
+from roadproof.extensions.surveys.explore.asking import Explorable, Variable
+from roadproof.extensions.surveys.explore.data import AskedFormula, AskedVariation, Exploring, SearchedPlace
+from roadproof.extensions.surveys.explore.question import ExploreQuestion
+from roadproof.extensions.surveys.explore.values import ExplorationResult
 from roadproof.frontends.cli.main import main
 from roadproof.library.elaborate import read_claim, read_term
 from roadproof.library.loading import bundled_library
-from roadproof.questions.explore import values
-from roadproof.questions.explore.asking import Explorable, Variable
-from roadproof.questions.explore.data import AskedFormula, AskedVariation, Exploring, SearchedPlace
-from roadproof.questions.explore.question import ExploreQuestion
-from roadproof.questions.explore.values import ExplorationResult
+from roadproof.questions.basis import Basis
 from roadproof.questions.settle import settle
 from roadproof.reasons import Why
 from roadproof.runtime.budget import BudgetExceeded, Effort, Work

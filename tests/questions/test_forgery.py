@@ -12,8 +12,8 @@ import pytest
 
 import roadproof as rp
 from api.doors import IMPOSSIBLE, MINE, SLOW
-from roadproof.analysis.coverage.classes import GapClasses, GapGroup
-from roadproof.analysis.coverage.found import FoundGap, SimpleDrives
+from roadproof.extensions.surveys.coverage.classes import GapClasses, GapGroup
+from roadproof.extensions.surveys.coverage.found import FoundGap, SimpleDrives
 from roadproof.frontends.api.checking import check
 from roadproof.library.elaborate import read_claim
 from roadproof.questions.checking import read_folder
@@ -93,11 +93,11 @@ def few_gaps() -> Iterator[None]:
 
         patch.setattr(GapClasses, "groups", few)
         patch.setattr(SimpleDrives, "best", some)
-        patch.setattr("roadproof.questions.coverage.question.CHUNKS", 1)
-        patch.setattr("roadproof.frontends.api.covering.ELSEWHERE", ("merge",))
-        patch.setattr("roadproof.analysis.catalogue.gaps.ROADS", ("main-2",))
+        patch.setattr("roadproof.extensions.surveys.coverage.question.CHUNKS", 1)
+        patch.setattr("roadproof.extensions.surveys.covering.ELSEWHERE", ("merge",))
+        patch.setattr("roadproof.extensions.catalogue.gaps.ROADS", ("main-2",))
         patch.setattr(
-            "roadproof.questions.coverage.claims.claims_of",
+            "roadproof.extensions.surveys.coverage.claims.claims_of",
             lambda home: (read_claim(home, "danger(SV,POV) -> v_lon(SV) > 0 m/s"),),
         )
         yield

@@ -12,7 +12,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from report.edges import cut_off
-from roadproof.analysis.basis import Basis
 from roadproof.engines.search.batches import Engines
 from roadproof.engines.search.known_drive import recast
 from roadproof.evidence.answer import Answer, undecided
@@ -27,6 +26,7 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import Scenario
 from roadproof.library.words import called
+from roadproof.questions.basis import Basis
 from roadproof.questions.order import deciding
 from roadproof.questions.order.deciding import Edge, JudgedDrives, drive_claim
 from roadproof.questions.order.kinds import Cast, Kind, casts_of, families_of, kinds_of

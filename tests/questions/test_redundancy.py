@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given, settings
 
 from judge.cases import drives
-from roadproof.analysis.basis import Basis
 from roadproof.engines.search import ask
 from roadproof.engines.search.batches import Engines
 from roadproof.engines.search.outcome import Outcome, Search
@@ -16,13 +15,20 @@ from roadproof.engines.solve.smt import ask as ask_solver
 from roadproof.evidence.answer import Answer
 from roadproof.evidence.certificate import refusal
 from roadproof.evidence.judged import judge_file
+from roadproof.extensions.surveys import redundancy
+from roadproof.extensions.surveys.redundancy import (
+    Change,
+    ChangeFinding,
+    Changes,
+    RedundancyQuestion,
+    changes_of,
+)
 from roadproof.frontends.cli.main import main
 from roadproof.library.bind import bind
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library
 from roadproof.library.specification import Query, Specification
-from roadproof.questions import redundancy
-from roadproof.questions.redundancy import Change, ChangeFinding, Changes, RedundancyQuestion, changes_of
+from roadproof.questions.basis import Basis
 from roadproof.runtime.budget import Effort
 from roadproof.semantics.exact.exact import judge
 from roadproof.verdict import Verdict

@@ -12,17 +12,17 @@ import pytest
 
 import roadproof as rp
 from questions.heard import Asked
-from roadproof.analysis.basis import Basis
 from roadproof.engines.search.batches import Engines
 from roadproof.errors import InputError, SharedError, UsageError
 from roadproof.evidence.answer import answer_data, undecided
+from roadproof.extensions.surveys.redundancy import RedundancyQuestion
 from roadproof.frontends.api.definitions import load
 from roadproof.frontends.api.proofs import claims_of
 from roadproof.frontends.cli.main import main
 from roadproof.library.loading import build_library, bundled_library
 from roadproof.library.specification import Source
+from roadproof.questions.basis import Basis
 from roadproof.questions.overlap import Meeting, OverlapQuestion
-from roadproof.questions.redundancy import RedundancyQuestion
 from roadproof.questions.settle import Settled, settle
 from roadproof.reasons import Why
 from roadproof.runtime.executors import Cluster, Executor, Shard

@@ -15,11 +15,11 @@ import roadproof as rp
 from report.test_drive import CROSSING, THREE, driving, file_of
 from roadproof.errors import MissingSolverError
 from roadproof.evidence.drive_file import DriveFile, load_drive
+from roadproof.extensions.pages.animation import draw_animation
+from roadproof.extensions.pages.frames import MOST_FRAMES, draw_film
+from roadproof.extensions.pages.scene import Scene
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.report.animation import draw_animation
 from roadproof.frontends.report.drive import COLOURS, DANGER, SHADES
-from roadproof.frontends.report.frames import MOST_FRAMES, draw_film
-from roadproof.frontends.report.scene import Scene
 from roadproof.library.loading import bundled_library
 from roadproof.world.motion import state_at
 

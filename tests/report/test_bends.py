@@ -15,15 +15,15 @@ import pytest
 from PIL import Image
 
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.frontends.report.animation import draw_animation
-from roadproof.frontends.report.bent_scene import BentScene, scene_of
+from roadproof.extensions.pages.animation import draw_animation
+from roadproof.extensions.pages.bent_scene import BentScene, scene_of
+from roadproof.extensions.pages.frames import draw_film
+from roadproof.extensions.pages.miniature import miniature, small_scene
+from roadproof.extensions.pages.scene import Polygon, Scene, Strokes
+from roadproof.extensions.pages.viewer_data import viewer_data
+from roadproof.extensions.pages.viewer_page import viewer_modules
 from roadproof.frontends.report.drive import COLOURS, draw_drive
-from roadproof.frontends.report.frames import draw_film
-from roadproof.frontends.report.miniature import miniature, small_scene
 from roadproof.frontends.report.plane import View
-from roadproof.frontends.report.scene import Polygon, Scene, Strokes
-from roadproof.frontends.report.viewer_data import viewer_data
-from roadproof.frontends.report.viewer_page import viewer_modules
 from roadproof.library.loading import bundled_library
 from roadproof.world.curves import Spiral
 from roadproof.world.drive import Drive, motion_of

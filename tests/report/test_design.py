@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.frontends.report.page.templates import page, style_without_scripts
-from roadproof.frontends.report.viewer_page import design, viewer_page
-from roadproof.frontends.studio.pages import served
+from roadproof.extensions.pages.page.templates import page, style_without_scripts
+from roadproof.extensions.pages.studio.pages import served
+from roadproof.extensions.pages.viewer_page import design, viewer_page
 
 ROOT = Path(__file__).parents[2]
 FRONTENDS = ROOT / "src/roadproof/frontends"

@@ -15,6 +15,14 @@ import roadproof as rp
 from report.edges import cut_off
 from roadproof.evidence.drive_file import DriveFile, load_drive, read_drive
 from roadproof.evidence.judged import judge_file
+from roadproof.extensions.pages.moving import draw_moving
+from roadproof.extensions.pages.scene import Scene
+from roadproof.extensions.pages.viewer_data import ShownFormula, viewer_data
+from roadproof.extensions.pages.viewer_page import json_in_html, viewer_modules, viewer_page, viewer_style
+from roadproof.extensions.pages.viewer_recorded import recorded_data
+from roadproof.extensions.traffic.evaluate.observed import observe_drive
+from roadproof.extensions.traffic.evaluate.one_trace import sample_drive
+from roadproof.extensions.traffic.report.one_trace import draw_strips
 from roadproof.frontends.report.drive import DANGER, SNAPSHOTS, draw_drive
 from roadproof.frontends.report.drive_data import (
     Danger,
@@ -29,19 +37,11 @@ from roadproof.frontends.report.drive_data import (
     vehicles_of,
     window_of,
 )
-from roadproof.frontends.report.moving import draw_moving
-from roadproof.frontends.report.one_trace import draw_strips
-from roadproof.frontends.report.scene import Scene
-from roadproof.frontends.report.viewer_data import ShownFormula, viewer_data
-from roadproof.frontends.report.viewer_page import json_in_html, viewer_modules, viewer_page, viewer_style
-from roadproof.frontends.report.viewer_recorded import recorded_data
 from roadproof.library.bind import bind, values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.loading import bundled_library, load_library
 from roadproof.library.specification import Source
 from roadproof.library.uses import nearest, places_of
-from roadproof.recordings.evaluate.observed import observe_drive
-from roadproof.recordings.evaluate.one_trace import sample_drive
 from roadproof.world.drive import Drive, Motion, Piece
 from roadproof.world.models import load_road
 from roadproof.world.motion import state_at

@@ -13,29 +13,26 @@ from typing import Any
 import pytest
 
 from report.edges import cut_off
-from roadproof.analysis.classify.cells import Cell
-from roadproof.analysis.classify.classes import Class
-from roadproof.analysis.classify.drives import Example
-from roadproof.analysis.classify.shares import Shares
 from roadproof.engines.search.extreme import Extreme
 from roadproof.engines.search.measure import read_measure
 from roadproof.engines.search.outcome import Search
 from roadproof.engines.search.points import PointFinding
 from roadproof.errors import InputError
-from roadproof.frontends.report.answers import answer_questions
-from roadproof.frontends.report.classify import as_table, draw_classes, summary
-from roadproof.frontends.report.explore import as_text, draw_exploration, show
-from roadproof.frontends.report.figures import (
-    as_bytes,
-    count_axis,
-    legend_beside,
-    make_figure,
-    name_rows,
-    settle,
-)
-from roadproof.frontends.report.tables import LOOKS, Table, as_csv, as_latex, as_markdown
-from roadproof.frontends.report.tables import as_text as table_text
-from roadproof.frontends.report.traffic import (
+from roadproof.extensions.surveys.classify.cells import Cell
+from roadproof.extensions.surveys.classify.classes import Class
+from roadproof.extensions.surveys.classify.data import Doubt
+from roadproof.extensions.surveys.classify.drives import Example
+from roadproof.extensions.surveys.classify.question import ClassesView
+from roadproof.extensions.surveys.classify.traffic_shares import Shares
+from roadproof.extensions.surveys.explore.asking import Explorable, Variable
+from roadproof.extensions.surveys.explore.values import Boundary, ExplorationResult
+from roadproof.extensions.surveys.report.classify import as_table, draw_classes, summary
+from roadproof.extensions.surveys.report.explore import as_text, draw_exploration, show
+from roadproof.extensions.traffic.evaluate.questions import Settings, default_settings
+from roadproof.extensions.traffic.evaluate.totals import Totals, begin_totals
+from roadproof.extensions.traffic.report.figures import draw_figures, write_report
+from roadproof.extensions.traffic.report.research_questions import answer_questions
+from roadproof.extensions.traffic.report.traffic import (
     COMPARISON,
     MARK,
     RESULTS,
@@ -46,17 +43,20 @@ from roadproof.frontends.report.traffic import (
     percent,
     results_tables,
 )
-from roadproof.frontends.report.traffic_figures import draw_figures, write_report
+from roadproof.frontends.report.figures import (
+    as_bytes,
+    count_axis,
+    legend_beside,
+    make_figure,
+    name_rows,
+    settle,
+)
+from roadproof.frontends.report.tables import LOOKS, Table, as_csv, as_latex, as_markdown
+from roadproof.frontends.report.tables import as_text as table_text
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenario_references import read_query
 from roadproof.library.scenarios import COMPARISON as DETECTORS
 from roadproof.library.words import Words
-from roadproof.questions.classify.data import Doubt
-from roadproof.questions.classify.question import ClassesView
-from roadproof.questions.explore.asking import Explorable, Variable
-from roadproof.questions.explore.values import Boundary, ExplorationResult
-from roadproof.recordings.evaluate.questions import Settings, default_settings
-from roadproof.recordings.evaluate.totals import Totals, begin_totals
 from roadproof.verdict import Verdict
 
 

@@ -12,10 +12,10 @@ import pytest
 
 import roadproof as rp
 from evidence.folders import some_proofs
+from roadproof.extensions.pages.page.summary import Overview
+from roadproof.extensions.pages.page.templates import page as page_of
+from roadproof.extensions.pages.page.templates import render
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.report.page.summary import Overview
-from roadproof.frontends.report.page.templates import page as page_of
-from roadproof.frontends.report.page.templates import render
 from roadproof.runtime.package_data import shipped
 
 HEADED = {"roadproof": "1.0.0", "library": "0123456789abcdef"}

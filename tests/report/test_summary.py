@@ -10,8 +10,8 @@ import roadproof as rp
 from evidence.folders import some_proofs
 from report.test_page import HEADED, body_of, drive_in, hostile_overlap, made
 from roadproof.engines.prove.properties import template_properties
-from roadproof.frontends.report.page.results import Result
-from roadproof.frontends.report.page.summary import overview
+from roadproof.extensions.pages.page.results import Result
+from roadproof.extensions.pages.page.summary import overview
 
 
 def claims_of(*names: str, **verdicts: str) -> dict:

@@ -13,10 +13,10 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.requirements.requirement import Link, Requirement
-from roadproof.analysis.requirements.sources import read_requirements
 from roadproof.errors import InputError
-from roadproof.evidence.answers.trace import Position
+from roadproof.extensions.assurance.answers.trace import Position
+from roadproof.extensions.assurance.requirements.requirement import Link, Requirement
+from roadproof.extensions.assurance.requirements.sources import read_requirements
 
 ROOT = Path(__file__).parents[2]
 NOWHERE = Position(file="")

@@ -11,14 +11,14 @@ from typing import get_args
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.requirements.checked_evidence import CheckedEvidence, read_findings
-from roadproof.analysis.requirements.fingerprints import Surroundings, differences, parts_of
-from roadproof.analysis.requirements.matching import combined, read_target, shown_by
-from roadproof.analysis.requirements.requirement import Link, Requirement
 from roadproof.errors import InputError, TextError
-from roadproof.evidence.answers.trace import LinkKind, LinkState, Position
 from roadproof.evidence.finding import Acceptance, Finding, Kind
 from roadproof.evidence.subject import DriverSide, SubjectKind, TestedSide
+from roadproof.extensions.assurance.answers.trace import LinkKind, LinkState, Position
+from roadproof.extensions.assurance.requirements.checked_evidence import CheckedEvidence, read_findings
+from roadproof.extensions.assurance.requirements.fingerprints import Surroundings, differences, parts_of
+from roadproof.extensions.assurance.requirements.matching import combined, read_target, shown_by
+from roadproof.extensions.assurance.requirements.requirement import Link, Requirement
 from roadproof.library.loading import bundled_library
 from roadproof.reasons import NO_REASON, Why
 

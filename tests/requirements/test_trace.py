@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.requirements.requirement import Link
-from roadproof.evidence.answers.trace import LinkState
-from roadproof.frontends.api.tracing import Traced
+from roadproof.extensions.assurance.answers.trace import LinkState
+from roadproof.extensions.assurance.requirements.requirement import Link
+from roadproof.extensions.assurance.tracing import Traced
 from roadproof.frontends.cli.main import main
 
 ROOT = Path(__file__).parents[2]

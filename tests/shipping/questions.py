@@ -6,14 +6,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import roadproof as rp
-from roadproof.analysis.classify.simulated import shares_key, shares_text, simulated_shares
 from roadproof.evidence.answer import Answer, answer_data
 from roadproof.evidence.claim import Claim
+from roadproof.extensions.surveys.classify.division import DivisionQuestion, ToDivide
+from roadproof.extensions.surveys.classify.question import question_of
+from roadproof.extensions.surveys.classify.simulated import shares_key, shares_text, simulated_shares
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.settings.studies import Classify
 from roadproof.library.scenarios import numbers_of
-from roadproof.questions.classify.division import DivisionQuestion, ToDivide
-from roadproof.questions.classify.question import question_of
 from roadproof.questions.question import Answers, Batch, Question, walk
 from roadproof.questions.settle import settle, store_of
 from roadproof.questions.store import Store

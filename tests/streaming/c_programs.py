@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from roadproof.extensions.exchange.streaming.c_files import CSource
+from roadproof.extensions.exchange.streaming.functions import StreamMonitor
 from roadproof.logic import terms as t
 from roadproof.logic.rewrite import without_names
 from roadproof.semantics.sampled import Batch, compile
-from roadproof.semantics.streaming.c_files import CSource
-from roadproof.semantics.streaming.functions import StreamMonitor
 
 COMPILER = shutil.which("gcc") or shutil.which("clang") or shutil.which("cc")
 needs_compiler = pytest.mark.skipif(COMPILER is None, reason="no C compiler: install gcc or clang")

@@ -8,10 +8,10 @@ import pytest
 
 import roadproof as rp
 from monitoring.cases import DT, random_traffic
+from roadproof.extensions.exchange.streaming.c_files import compile_c
+from roadproof.extensions.traffic.evaluate.one_trace import sample_drive
 from roadproof.library.bind import bind
-from roadproof.recordings.evaluate.one_trace import sample_drive
 from roadproof.semantics.sampled import compile
-from roadproof.semantics.streaming.c_files import compile_c
 from streaming.c_programs import (
     STRICT,
     TRUE,

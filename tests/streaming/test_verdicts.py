@@ -11,11 +11,11 @@ import roadproof as rp
 from examples import some
 from monitoring.cases import DT, interval, random_batch
 from roadproof.errors import InputError
+from roadproof.extensions.exchange.streaming.c_files import CSource, compile_c
 from roadproof.logic import formula as f
 from roadproof.logic import terms as t
 from roadproof.logic.formula import Formula
 from roadproof.semantics.sampled import Batch, compile
-from roadproof.semantics.streaming.c_files import CSource, compile_c
 from streaming.c_programs import (
     SANITIZED,
     STRICT,

@@ -13,9 +13,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-from roadproof.frontends.studio.pages import Begun
-from roadproof.frontends.studio.server import Studio, application, listen
-from roadproof.frontends.studio.worker_pool import Limits
+from roadproof.extensions.pages.studio.pages import Begun
+from roadproof.extensions.pages.studio.server import Studio, application, listen
+from roadproof.extensions.pages.studio.worker_pool import Limits
 
 NOBODY = Limits(workers=0)
 DRAFT = {"base": "base", "text": "", "before": None, "options": {}, "params": {}}

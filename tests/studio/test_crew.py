@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from roadproof.frontends.studio.worker_pool import Limits, Message, WorkerPool
+from roadproof.extensions.pages.studio.worker_pool import Limits, Message, WorkerPool
 from studio.serving import question
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="processes are killed by signals of POSIX")
@@ -112,7 +112,7 @@ async def test_a_job_that_takes_too_much_memory_is_told_so() -> None:
 
 LIMITED = """
 import resource
-from roadproof.frontends.studio.worker import _limit_memory
+from roadproof.extensions.pages.studio.worker import _limit_memory
 resource.setrlimit(resource.RLIMIT_AS, (2**40, 2**40))
 _limit_memory({memory})
 print(resource.getrlimit(resource.RLIMIT_AS)[0])

@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from roadproof.frontends.studio import jobs
-from roadproof.frontends.studio.examples import EXAMPLES, Example
+from roadproof.extensions.pages.studio import jobs
+from roadproof.extensions.pages.studio.examples import EXAMPLES, Example
 
 
 def asked(job: str, formula: str, **other: Any) -> dict[str, Any]:

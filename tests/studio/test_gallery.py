@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from roadproof.evidence.drive_file import load_drive
-from roadproof.frontends.studio import gallery, jobs
-from roadproof.frontends.studio.pages import LARGEST_FILE, begin_with, found_in
+from roadproof.extensions.pages.studio import gallery, jobs
+from roadproof.extensions.pages.studio.pages import LARGEST_FILE, begin_with, found_in
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 DRIVES = EXAMPLES / "traffic" / "drives"

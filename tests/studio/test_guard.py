@@ -13,13 +13,13 @@ from typing import Any
 import pytest
 
 from roadproof.errors import InputError, Position, RoadproofError
-from roadproof.frontends.api.drafting import QUESTION
+from roadproof.extensions.pages.studio import jobs
+from roadproof.extensions.pages.studio.drafting import QUESTION
+from roadproof.extensions.pages.studio.dropping import drop
+from roadproof.extensions.pages.studio.pages import begin_with, served
+from roadproof.extensions.pages.studio.requests import form, read_ask
+from roadproof.extensions.pages.studio.showing import marks_of
 from roadproof.frontends.settings.questions import Witness
-from roadproof.frontends.studio import jobs
-from roadproof.frontends.studio.dropping import drop
-from roadproof.frontends.studio.pages import begin_with, served
-from roadproof.frontends.studio.requests import form, read_ask
-from roadproof.frontends.studio.showing import marks_of
 from roadproof.library.uses import Place
 from roadproof.logic.formula import Truth
 from studio.serving import Served, question, serving

@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import roadproof as rp
+from roadproof.extensions.traffic import settings as recordings
 from roadproof.frontends.api.questioned import QuestionAnswers
-from roadproof.frontends.settings import questions, recordings, studies
+from roadproof.frontends.settings import questions, studies
 from roadproof.frontends.settings.option import Settings
 from study.asking import Asking
 

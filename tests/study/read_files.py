@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from roadproof.recordings.formats.samples import ROAD_ENDING
-from roadproof.world.maps.network import ZONES_ENDING
+from roadproof.extensions.maps.network import ZONES_ENDING
+from roadproof.extensions.traffic.formats.samples import ROAD_ENDING
 from traffic.make_recording import Track, make_recording
 from traffic.planar import commonroad_of
 from traffic.test_topology import with_ramps

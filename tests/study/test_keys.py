@@ -173,7 +173,7 @@ def test_another_version_has_no_answer_to_any_question(name: str) -> None:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("roadproof.frontends.api.questioned.settle", ask)
-        patch.setattr("roadproof.questions.classify.division.settle", ask)
+        patch.setattr("roadproof.extensions.surveys.classify.division.settle", ask)
         with pytest.raises(Asked):
             EVERY[name][0](Asking(), False)
         patch.setattr("roadproof.questions.store.ANSWERS", "9.9.9")
@@ -189,7 +189,7 @@ def test_another_version_of_the_program_evaluates_again(monkeypatch: pytest.Monk
     evaluate(tell, False)
     assert any("already evaluated" in x for x in lines)
     lines.clear()
-    monkeypatch.setattr("roadproof.recordings.evaluate.results.program", lambda: "another program")
+    monkeypatch.setattr("roadproof.extensions.traffic.evaluate.results.program", lambda: "another program")
     evaluate(tell, False)
     assert not any("already evaluated" in x for x in lines)
 

@@ -11,13 +11,13 @@ from typing import Any
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.basis import Basis
 from roadproof.evidence.answer import Answer, undecided
 from roadproof.evidence.claim import Claim
+from roadproof.extensions.surveys.classify.division import DivisionQuestion, ToDivide
+from roadproof.extensions.surveys.coverage.claims import GapClaims
+from roadproof.extensions.surveys.coverage.looks import NeedJudge
 from roadproof.library.scenarios import Scenario, applied
-from roadproof.questions.classify.division import DivisionQuestion, ToDivide
-from roadproof.questions.coverage.claims import GapClaims
-from roadproof.questions.coverage.looks import NeedJudge
+from roadproof.questions.basis import Basis
 from roadproof.questions.question import OwnWork, walk
 from roadproof.questions.settle import Settled
 from roadproof.questions.store import Store
@@ -80,7 +80,7 @@ def study_of(name: str, asking: Asking) -> Any:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("roadproof.frontends.api.questioned.settle", stop)
-        patch.setattr("roadproof.questions.classify.division.settle", nothing_known)
+        patch.setattr("roadproof.extensions.surveys.classify.division.settle", nothing_known)
         with pytest.raises(Stopped):
             EVERY[name][0](asking, True)
     return found[0]

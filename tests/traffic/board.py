@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from roadproof.recordings.formats.openscenario import read_scenario
+from roadproof.extensions.exchange.openscenario import read_scenario
 
 Rows = Mapping[str, np.ndarray]
 LANES = "".join(

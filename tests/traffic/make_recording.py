@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from roadproof.recordings.formats import pairs as moments
-from roadproof.recordings.formats.highd import lanes_of_markings
-from roadproof.recordings.formats.pairs import Pairs, Reach
-from roadproof.recordings.formats.recording import Recording, beside_by_order, occupy_bands, offsets
+from roadproof.extensions.traffic.formats import pairs as moments
+from roadproof.extensions.traffic.formats.highd import lanes_of_markings
+from roadproof.extensions.traffic.formats.pairs import Pairs, Reach
+from roadproof.extensions.traffic.formats.recording import Recording, beside_by_order, occupy_bands, offsets
 
 LANES = lanes_of_markings((8.5, 12.0, 15.5, 19.0), (23.5, 27.0, 30.5, 34.0))
 """Three lanes of 3.5 m each way: 2, 3, 4 (rightmost first) and 6, 7, 8 (rightmost last)."""

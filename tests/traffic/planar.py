@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from roadproof.recordings.formats.recording import Floats, Recording
+from roadproof.extensions.traffic.formats.recording import Floats, Recording
 from roadproof.world.road import Lanelet, Road
 
 Bend = Callable[[Floats, Floats], tuple[Floats, Floats, Floats]]

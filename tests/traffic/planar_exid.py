@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from roadproof.recordings.formats.recording import Floats, Recording
+from roadproof.extensions.traffic.formats.recording import Floats, Recording
 from roadproof.world.road import Lanelet, Road
 from traffic.planar import Bend, moving, straight
 
@@ -119,7 +119,7 @@ def osm_of(road: Road, bend: Bend = straight, step: float = 10.0, local: bool = 
 
 def degrees_of(east: float, north: float) -> tuple[float, float]:
     """The point of zone 32 with this place in UTM, found by Newton's method."""
-    from roadproof.recordings.formats.exid import utm_of
+    from roadproof.extensions.traffic.formats.exid import utm_of
 
     point = np.array([50.0, 9.0])
     for _ in range(20):

@@ -8,11 +8,11 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import combinations
 
+from roadproof.extensions.traffic.evaluate.questions import Settings
+from roadproof.extensions.traffic.formats.recording import Recording
 from roadproof.library.elaborate import read_claim
 from roadproof.logic.formula import Formula, transform
 from roadproof.logic.rewrite import with_values, without_names
-from roadproof.recordings.evaluate.questions import Settings
-from roadproof.recordings.formats.recording import Recording
 from roadproof.semantics.sampled.recursive import Trace, TraceReader
 
 Row = tuple[int, int, int | None, str, int, int, int, str, int]

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from roadproof.recordings.formats.recording import Recording
-from roadproof.recordings.formats.samples import HEADER
+from roadproof.extensions.traffic.formats.recording import Recording
+from roadproof.extensions.traffic.formats.samples import HEADER
 from roadproof.world.road import Lanelet, Road, pairs
 from roadproof.world.signals import RECORDED
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass, fields
 import numpy as np
 import pytest
 
-from roadproof.recordings.formats.line_coordinates import LineMotion, motion_along, project
-from roadproof.recordings.formats.recording import Floats
-from roadproof.world.maps.lines import even_line
+from roadproof.extensions.maps.lines import even_line
+from roadproof.extensions.traffic.formats.line_coordinates import LineMotion, motion_along, project
+from roadproof.extensions.traffic.formats.recording import Floats
 
 ROADS: dict[str, Callable[[Floats], Floats]] = {
     "arc to the left": lambda s: s / 150,

@@ -11,20 +11,13 @@ import numpy as np
 import pytest
 
 from planting import plant as plant_fault
-from roadproof.frontends.report.answers import answer_questions
-from roadproof.frontends.report.traffic import results_tables
-from roadproof.library.loading import build_library, bundled_library
-from roadproof.library.scenarios import COMPARISON
-from roadproof.library.specification import Source
-from roadproof.logic import formula as f
-from roadproof.logic import terms as t
-from roadproof.logic.formula import Compare, Formula
-from roadproof.recordings.evaluate import boundary, detectors
-from roadproof.recordings.evaluate.boundary import Bounds, TraceQuestions, bounds_of
-from roadproof.recordings.evaluate.detectors import Detection, find_detections
-from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
-from roadproof.recordings.evaluate.matching import PossibleMatch
-from roadproof.recordings.evaluate.questions import (
+from roadproof.extensions.exchange.commonroad import read_commonroad
+from roadproof.extensions.traffic.evaluate import boundary, detectors
+from roadproof.extensions.traffic.evaluate.boundary import Bounds, TraceQuestions, bounds_of
+from roadproof.extensions.traffic.evaluate.detectors import Detection, find_detections
+from roadproof.extensions.traffic.evaluate.evaluate import Findings, evaluate_recording
+from roadproof.extensions.traffic.evaluate.matching import PossibleMatch
+from roadproof.extensions.traffic.evaluate.questions import (
     MonitorKey,
     Questions,
     Settings,
@@ -32,17 +25,31 @@ from roadproof.recordings.evaluate.questions import (
     askable,
     default_settings,
 )
-from roadproof.recordings.evaluate.recheck import recheck
-from roadproof.recordings.evaluate.results import as_json, uncertain_pairs
-from roadproof.recordings.evaluate.sectors import ANYWHERE, is_possible, sectors_of
-from roadproof.recordings.evaluate.totals import add_findings, begin_totals
-from roadproof.recordings.formats.commonroad import read_commonroad
-from roadproof.recordings.formats.pairs import DetectionRange, common_pairs
-from roadproof.recordings.formats.recording import ZONES, Bools, Floats, Recording, Slack, keep_vehicles
-from roadproof.recordings.simulate.planting import Place, plant
-from roadproof.recordings.simulate.simulate import simulate
-from roadproof.recordings.simulate.traffic import Traffic
-from roadproof.recordings.simulate.traffic import Traffic as Simulated
+from roadproof.extensions.traffic.evaluate.recheck import recheck
+from roadproof.extensions.traffic.evaluate.results import as_json, uncertain_pairs
+from roadproof.extensions.traffic.evaluate.sectors import ANYWHERE, is_possible, sectors_of
+from roadproof.extensions.traffic.evaluate.totals import add_findings, begin_totals
+from roadproof.extensions.traffic.formats.pairs import DetectionRange, common_pairs
+from roadproof.extensions.traffic.formats.recording import (
+    ZONES,
+    Bools,
+    Floats,
+    Recording,
+    Slack,
+    keep_vehicles,
+)
+from roadproof.extensions.traffic.report.research_questions import answer_questions
+from roadproof.extensions.traffic.report.traffic import results_tables
+from roadproof.extensions.traffic.simulate.planting import Place, plant
+from roadproof.extensions.traffic.simulate.simulate import simulate
+from roadproof.extensions.traffic.simulate.traffic import Traffic
+from roadproof.extensions.traffic.simulate.traffic import Traffic as Simulated
+from roadproof.library.loading import build_library, bundled_library
+from roadproof.library.scenarios import COMPARISON
+from roadproof.library.specification import Source
+from roadproof.logic import formula as f
+from roadproof.logic import terms as t
+from roadproof.logic.formula import Compare, Formula
 from roadproof.semantics.sampled.compiled import compile as compile_formulas
 from roadproof.semantics.sampled.recursive import TraceReader
 from traffic.drives import braking, cut_in, swerve

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError
-from roadproof.recordings.formats.clock import Clock, clock_of
-from roadproof.recordings.formats.sources import find_source
+from roadproof.extensions.traffic.formats.clock import Clock, clock_of
+from roadproof.extensions.traffic.formats.sources import find_source
 
 RATES = (1, 3, 7, 10, 25, 30, 50, 60, 2.5, 12.5, 29.97, Fraction(30000, 1001), Fraction(1, 2))
 OFFSETS = (0.0, 0.3, 17.123, 1.7e9)

@@ -15,12 +15,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadproof.errors import InputError
-from roadproof.recordings.formats.commonroad import read_commonroad
-from roadproof.recordings.formats.line_coordinates import project
-from roadproof.recordings.formats.measured_roads import boxes_of, inside, overlap, triangles_of
-from roadproof.recordings.formats.neighbours import find_overlaps
-from roadproof.recordings.formats.plausible import LARGEST_SIZE
-from roadproof.world.maps.lines import even_line
+from roadproof.extensions.exchange.commonroad import read_commonroad
+from roadproof.extensions.maps.lines import even_line
+from roadproof.extensions.traffic.formats.line_coordinates import project
+from roadproof.extensions.traffic.formats.measured_roads import boxes_of, inside, overlap, triangles_of
+from roadproof.extensions.traffic.formats.neighbours import find_overlaps
+from roadproof.extensions.traffic.formats.plausible import LARGEST_SIZE
 from tables import read_table
 from traffic.tiny_commonroad import Car, document, point
 

@@ -14,8 +14,7 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import InputError
-from roadproof.frontends.cli.main import main
-from roadproof.recordings.formats.converted import (
+from roadproof.extensions.traffic.formats.converted import (
     HEAD,
     SAMPLES,
     digest_of,
@@ -24,9 +23,10 @@ from roadproof.recordings.formats.converted import (
     same_recording,
     write_converted,
 )
-from roadproof.recordings.formats.recording import Recording
-from roadproof.recordings.formats.sources import find_source, find_sources
-from roadproof.recordings.formats.table import polars_module
+from roadproof.extensions.traffic.formats.recording import Recording
+from roadproof.extensions.traffic.formats.sources import find_source, find_sources
+from roadproof.extensions.traffic.formats.table import polars_module
+from roadproof.frontends.cli.main import main
 from roadproof.world.models import load_road
 from traffic.make_recording import Track, cruise, make_recording
 from traffic.planar import commonroad_of
@@ -203,7 +203,7 @@ def test_forged_vehicles_with_new_digests_are_refused(
     sealed_anew(head, said | {"vehicles": change(said["vehicles"])})
     with pytest.raises(InputError, match=told):
         read_converted(head)
-    monkeypatch.setattr("roadproof.recordings.formats.windows.MOST_SAMPLES", 2000)
+    monkeypatch.setattr("roadproof.extensions.traffic.formats.windows.MOST_SAMPLES", 2000)
     with pytest.raises(InputError, match=told):
         divide_converted(head)
 
@@ -242,7 +242,7 @@ def test_forged_samples_with_new_digests_are_refused(
     sealed_anew(head, said, changed)
     with pytest.raises(InputError, match=told):
         read_converted(head)
-    monkeypatch.setattr("roadproof.recordings.formats.windows.MOST_SAMPLES", 2000)
+    monkeypatch.setattr("roadproof.extensions.traffic.formats.windows.MOST_SAMPLES", 2000)
     if said["samples"]["rows"] > 2000:
         with pytest.raises(InputError, match=told):
             divide_converted(head)

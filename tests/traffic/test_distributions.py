@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.catalogue.reading import read_catalogue
 from roadproof.errors import InputError
-from roadproof.recordings.formats.openscenario import read_recording
-from roadproof.recordings.formats.sources import find_source, find_sources
-from roadproof.recordings.formats.storyboard.distributions import MOST, numbered, read_distribution
+from roadproof.extensions.catalogue.reading import read_catalogue
+from roadproof.extensions.exchange.openscenario import read_recording
+from roadproof.extensions.exchange.storyboard.distributions import MOST, numbered, read_distribution
+from roadproof.extensions.traffic.formats.sources import find_source, find_sources
 from traffic.board import at, init, lane, put, rows
 
 DECLARED = (

@@ -16,23 +16,23 @@ import roadproof as rp
 from planting import plant
 from preventing.read import bound, boundary, library, specification, values
 from preventing.recorded import BEFORE, recorded
-from roadproof.drivers.driving import DriverSettings
-from roadproof.drivers.lines import SIDES, Side
-from roadproof.drivers.manoeuvres import KMH, MANOEUVRES, Manoeuvre, Plane, line
-from roadproof.drivers.models import MODELS, SCENARIOS, course_in, foreseen
-from roadproof.engines.search.beside import beside_boundary
 from roadproof.errors import UsageError
+from roadproof.extensions.drivers.driving import DriverSettings
+from roadproof.extensions.drivers.lines import SIDES, Side
+from roadproof.extensions.drivers.manoeuvres import KMH, MANOEUVRES, Manoeuvre, Plane, line
+from roadproof.extensions.drivers.models import MODELS, SCENARIOS, course_in, foreseen
+from roadproof.extensions.drivers.preventable.beside import beside_boundary
+from roadproof.extensions.traffic.evaluate import foretelling
+from roadproof.extensions.traffic.evaluate.evaluate import evaluate_recording, evaluate_windows
+from roadproof.extensions.traffic.evaluate.matching import Match
+from roadproof.extensions.traffic.evaluate.questions import Questions, Settings, ask
+from roadproof.extensions.traffic.evaluate.recheck import recheck, trace_of
+from roadproof.extensions.traffic.evaluate.traces import gather
+from roadproof.extensions.traffic.formats.recording import Integers, Recording
+from roadproof.extensions.traffic.formats.write_highd import write_highd
+from roadproof.extensions.traffic.simulate.simulate import simulate
+from roadproof.extensions.traffic.simulate.traffic import Traffic
 from roadproof.frontends.cli.main import main
-from roadproof.recordings.evaluate import foretelling
-from roadproof.recordings.evaluate.evaluate import evaluate_recording, evaluate_windows
-from roadproof.recordings.evaluate.matching import Match
-from roadproof.recordings.evaluate.questions import Questions, Settings, ask
-from roadproof.recordings.evaluate.recheck import recheck, trace_of
-from roadproof.recordings.evaluate.traces import gather
-from roadproof.recordings.formats.recording import Integers, Recording
-from roadproof.recordings.formats.write_highd import write_highd
-from roadproof.recordings.simulate.simulate import simulate
-from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.semantics.sampled.recursive import TraceReader as Plain
 from traffic.make_recording import Track, cruise, make_recording
 from traffic.test_windows import cut

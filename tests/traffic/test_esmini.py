@@ -19,10 +19,10 @@ from typing import Any
 
 import pytest
 
-from roadproof.recordings.formats.storyboard.conditions import TICKS
-from roadproof.recordings.formats.storyboard.positions import Positions, State, positions_on
-from roadproof.recordings.formats.storyboard.run import Play
-from roadproof.recordings.formats.storyboard.stage import open_stage, played
+from roadproof.extensions.exchange.storyboard.conditions import TICKS
+from roadproof.extensions.exchange.storyboard.positions import Positions, State, positions_on
+from roadproof.extensions.exchange.storyboard.run import Play
+from roadproof.extensions.exchange.storyboard.stage import open_stage, played
 from traffic.storyboards import BOARDS, CURVATURE, files
 
 NEAR = 0.05

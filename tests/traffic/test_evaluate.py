@@ -10,6 +10,29 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError, UsageError
+from roadproof.extensions.traffic.evaluate import disturbances, evaluate
+from roadproof.extensions.traffic.evaluate import questions as module
+from roadproof.extensions.traffic.evaluate.disturbances import NEVER, Disturbances, _last, _Lookup, _next
+from roadproof.extensions.traffic.evaluate.evaluate import Findings, evaluate_recording
+from roadproof.extensions.traffic.evaluate.one_trace import cut_trace, read_samples
+from roadproof.extensions.traffic.evaluate.questions import (
+    SAFE,
+    VIOLATION,
+    Danger,
+    MonitorKey,
+    Questions,
+    ask,
+    default_settings,
+)
+from roadproof.extensions.traffic.evaluate.recheck import recheck
+from roadproof.extensions.traffic.formats import pairs as recorded_pairs
+from roadproof.extensions.traffic.formats.neighbours import NONE, find_neighbours
+from roadproof.extensions.traffic.formats.pairs import Pairs
+from roadproof.extensions.traffic.formats.recording import Bools, Recording, keep_vehicles
+from roadproof.extensions.traffic.formats.samples import HEADER
+from roadproof.extensions.traffic.simulate.planting import Place, plant
+from roadproof.extensions.traffic.simulate.simulate import simulate
+from roadproof.extensions.traffic.simulate.traffic import Traffic
 from roadproof.library import elaborate as elaborating
 from roadproof.library import scenarios
 from roadproof.library.bind import occupies
@@ -22,29 +45,6 @@ from roadproof.logic.formula import Compare
 from roadproof.logic.rewrite import with_values
 from roadproof.logic.syntax import Claim
 from roadproof.logic.terms import Parameter, number
-from roadproof.recordings.evaluate import disturbances, evaluate
-from roadproof.recordings.evaluate import questions as module
-from roadproof.recordings.evaluate.disturbances import NEVER, Disturbances, _last, _Lookup, _next
-from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
-from roadproof.recordings.evaluate.one_trace import cut_trace, read_samples
-from roadproof.recordings.evaluate.questions import (
-    SAFE,
-    VIOLATION,
-    Danger,
-    MonitorKey,
-    Questions,
-    ask,
-    default_settings,
-)
-from roadproof.recordings.evaluate.recheck import recheck
-from roadproof.recordings.formats import pairs as recorded_pairs
-from roadproof.recordings.formats.neighbours import NONE, find_neighbours
-from roadproof.recordings.formats.pairs import Pairs
-from roadproof.recordings.formats.recording import Bools, Recording, keep_vehicles
-from roadproof.recordings.formats.samples import HEADER
-from roadproof.recordings.simulate.planting import Place, plant
-from roadproof.recordings.simulate.simulate import simulate
-from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.semantics.sampled import compile
 from roadproof.semantics.sampled.answers import TruthArrays, Verdicts
 from roadproof.world.models import load_road

@@ -16,13 +16,13 @@ import pytest
 
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import load_drive
-from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
-from roadproof.recordings.evaluate.one_trace import read_pair
-from roadproof.recordings.evaluate.questions import Questions, ask, default_settings
-from roadproof.recordings.evaluate.recheck import recheck
-from roadproof.recordings.formats.exid import NO_LANES, read_exid, read_osm, utm_of
-from roadproof.recordings.formats.recording import Recording
-from roadproof.recordings.formats.sources import find_source
+from roadproof.extensions.traffic.evaluate.evaluate import Findings, evaluate_recording
+from roadproof.extensions.traffic.evaluate.one_trace import read_pair
+from roadproof.extensions.traffic.evaluate.questions import Questions, ask, default_settings
+from roadproof.extensions.traffic.evaluate.recheck import recheck
+from roadproof.extensions.traffic.formats.exid import NO_LANES, read_exid, read_osm, utm_of
+from roadproof.extensions.traffic.formats.recording import Recording
+from roadproof.extensions.traffic.formats.sources import find_source
 from roadproof.world.motion import state_at
 from tables import read_table
 from traffic.make_recording import Track, make_recording

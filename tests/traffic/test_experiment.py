@@ -14,26 +14,26 @@ from typing import Any
 import polars as pl
 import pytest
 
-from roadproof.analysis.basis import Basis
-from roadproof.analysis.coverage.traffic import disturbances_in, recordings_in
 from roadproof.errors import InputError
+from roadproof.extensions.surveys.coverage.traffic import disturbances_in, recordings_in
+from roadproof.extensions.traffic.evaluate import experiment as module
+from roadproof.extensions.traffic.evaluate.evaluate import Findings, Trace
+from roadproof.extensions.traffic.evaluate.experiment import Experiment, run_experiment
+from roadproof.extensions.traffic.evaluate.matching import Match
+from roadproof.extensions.traffic.evaluate.questions import default_settings
+from roadproof.extensions.traffic.evaluate.results import as_json
+from roadproof.extensions.traffic.evaluate.totals import add_findings, begin_totals
+from roadproof.extensions.traffic.formats.highd import read_highd
+from roadproof.extensions.traffic.formats.recording import keep_vehicles
+from roadproof.extensions.traffic.formats.samples import read_columns
+from roadproof.extensions.traffic.formats.sources import find_sources
+from roadproof.extensions.traffic.formats.write_highd import write_highd
+from roadproof.extensions.traffic.simulate.planting import Place, plant
+from roadproof.extensions.traffic.simulate.simulate import simulate
+from roadproof.extensions.traffic.simulate.traffic import Traffic
 from roadproof.frontends.cli.main import main
 from roadproof.library.loading import bundled_library
-from roadproof.recordings.evaluate import experiment as module
-from roadproof.recordings.evaluate.evaluate import Findings, Trace
-from roadproof.recordings.evaluate.experiment import Experiment, run_experiment
-from roadproof.recordings.evaluate.matching import Match
-from roadproof.recordings.evaluate.questions import default_settings
-from roadproof.recordings.evaluate.results import as_json
-from roadproof.recordings.evaluate.totals import add_findings, begin_totals
-from roadproof.recordings.formats.highd import read_highd
-from roadproof.recordings.formats.recording import keep_vehicles
-from roadproof.recordings.formats.samples import read_columns
-from roadproof.recordings.formats.sources import find_sources
-from roadproof.recordings.formats.write_highd import write_highd
-from roadproof.recordings.simulate.planting import Place, plant
-from roadproof.recordings.simulate.simulate import simulate
-from roadproof.recordings.simulate.traffic import Traffic
+from roadproof.questions.basis import Basis
 from roadproof.runtime.executors import Executor
 from traffic.drives import braking, cut_in
 from traffic.planar import commonroad_of

@@ -16,23 +16,23 @@ import pytest
 
 import roadproof as rp
 from preventing.read import library, values
-from roadproof.analysis.classify.cells import whole_cell
-from roadproof.analysis.classify.classes import Classes, plan_of, what_axis
-from roadproof.analysis.classify.shares import Shares, count_shares
-from roadproof.analysis.classify.text import with_classes, write_classes
+from roadproof.extensions.surveys.classify.cells import whole_cell
+from roadproof.extensions.surveys.classify.classes import Classes, plan_of, what_axis
+from roadproof.extensions.surveys.classify.text import with_classes, write_classes
+from roadproof.extensions.surveys.classify.traffic_shares import Shares, count_shares
+from roadproof.extensions.traffic.evaluate.evaluate import Findings, Trace
+from roadproof.extensions.traffic.evaluate.experiment import Experiment, run_experiment
+from roadproof.extensions.traffic.evaluate.foretelling import LABELS
+from roadproof.extensions.traffic.evaluate.matching import Match
+from roadproof.extensions.traffic.evaluate.questions import Settings, default_settings
+from roadproof.extensions.traffic.evaluate.results import driver_cells, foretold_rows
+from roadproof.extensions.traffic.evaluate.totals import Counts as RepeatCounts
+from roadproof.extensions.traffic.evaluate.totals import Row, Totals, add_findings, begin_totals
+from roadproof.extensions.traffic.formats.repeats import STEPS, moments_of
+from roadproof.extensions.traffic.formats.sources import find_sources
 from roadproof.library.bind import default_values
 from roadproof.library.loading import bundled_library
 from roadproof.library.scenarios import COMPARISON
-from roadproof.recordings.evaluate.evaluate import Findings, Trace
-from roadproof.recordings.evaluate.experiment import Experiment, run_experiment
-from roadproof.recordings.evaluate.foretelling import LABELS
-from roadproof.recordings.evaluate.matching import Match
-from roadproof.recordings.evaluate.questions import Settings, default_settings
-from roadproof.recordings.evaluate.results import driver_cells, foretold_rows
-from roadproof.recordings.evaluate.totals import Counts as RepeatCounts
-from roadproof.recordings.evaluate.totals import Row, Totals, add_findings, begin_totals
-from roadproof.recordings.formats.repeats import STEPS, moments_of
-from roadproof.recordings.formats.sources import find_sources
 from traffic.tiny_commonroad import Car, document
 
 ROAD = {"main road": range(1, 9), "merge zone": range(9, 17), "departure zone": range(17, 25)}

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.analysis.catalogue.entries import Concrete
-from roadproof.analysis.catalogue.traces import digest_of, files_of, traces_of
+from roadproof.extensions.catalogue.entries import Concrete
+from roadproof.extensions.catalogue.traces import digest_of, files_of, traces_of
+from roadproof.extensions.traffic.formats.sources import find_source
 from roadproof.library.scenarios import PAIR, TRIPLE
-from roadproof.recordings.formats.sources import find_source
 from traffic.board import CAR, init, lane, put
 from traffic.test_topology import urban
 

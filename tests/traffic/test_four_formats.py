@@ -10,7 +10,7 @@ import pytest
 
 import roadproof as rp
 from roadproof.evidence.drive_file import SCHEMAS_READ
-from roadproof.recordings.formats.table import polars_module
+from roadproof.extensions.traffic.formats.table import polars_module
 from roadproof.runtime.archives import archived
 from roadproof.verdict import ExitCode
 

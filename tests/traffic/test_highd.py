@@ -12,14 +12,14 @@ import pytest
 
 from examples import some
 from roadproof.errors import InputError, MissingSolverError
-from roadproof.recordings.formats.highd import (
+from roadproof.extensions.traffic.formats.highd import (
     RECORDING_COLUMNS,
     SAMPLE_COLUMNS,
     VEHICLE_COLUMNS,
     find_highd,
     read_highd,
 )
-from roadproof.recordings.formats.recording import Recording, keep_vehicles
+from roadproof.extensions.traffic.formats.recording import Recording, keep_vehicles
 from tables import read_table
 from traffic.tiny_highd import Files, tiny_files, write_files
 

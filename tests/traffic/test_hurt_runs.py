@@ -22,17 +22,17 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import InputError
+from roadproof.extensions.exchange.commonroad import read_commonroad
+from roadproof.extensions.traffic.evaluate import experiment as module
+from roadproof.extensions.traffic.evaluate import results
+from roadproof.extensions.traffic.evaluate.experiment import Experiment, run_experiment
+from roadproof.extensions.traffic.evaluate.one_trace import read_samples
+from roadproof.extensions.traffic.evaluate.questions import default_settings
+from roadproof.extensions.traffic.formats.highd import read_highd
+from roadproof.extensions.traffic.formats.write_highd import write_highd
+from roadproof.extensions.traffic.simulate.simulate import simulate
+from roadproof.extensions.traffic.simulate.traffic import Traffic
 from roadproof.frontends.cli.main import main
-from roadproof.recordings.evaluate import experiment as module
-from roadproof.recordings.evaluate import results
-from roadproof.recordings.evaluate.experiment import Experiment, run_experiment
-from roadproof.recordings.evaluate.one_trace import read_samples
-from roadproof.recordings.evaluate.questions import default_settings
-from roadproof.recordings.formats.commonroad import read_commonroad
-from roadproof.recordings.formats.highd import read_highd
-from roadproof.recordings.formats.write_highd import write_highd
-from roadproof.recordings.simulate.simulate import simulate
-from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.runtime.files import hold_folder, write_whole
 from roadproof.world.models import load_road
 from traffic.tiny_highd import tiny_files, write_files
@@ -454,7 +454,7 @@ def test_a_dying_run_is_waited_for(
 RACE = """
 import sys, time
 from pathlib import Path
-from roadproof.frontends.api import recordings
+from roadproof.extensions.traffic import evaluating as recordings
 from roadproof.frontends.cli.main import main
 run = recordings.run_experiment
 def wait(*arguments):

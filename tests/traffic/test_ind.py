@@ -10,10 +10,10 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import InputError, UsageError
+from roadproof.extensions.traffic.evaluate.one_trace import read_pair
+from roadproof.extensions.traffic.formats.recording import Floats
+from roadproof.extensions.traffic.formats.sources import find_source, find_sources
 from roadproof.reasons import Why
-from roadproof.recordings.evaluate.one_trace import read_pair
-from roadproof.recordings.formats.recording import Floats
-from roadproof.recordings.formats.sources import find_source, find_sources
 from tables import read_table
 from traffic.make_recording import Track, make_recording
 from traffic.planar_exid import osm_of, write_exid

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from roadproof.errors import InputError
-from roadproof.recordings.formats import windows
-from roadproof.recordings.formats.large import divide_large
-from roadproof.recordings.formats.recording import Recording
-from roadproof.recordings.formats.samples import HEADER, read_recording
+from roadproof.extensions.traffic.formats import windows
+from roadproof.extensions.traffic.formats.large import divide_large
+from roadproof.extensions.traffic.formats.recording import Recording
+from roadproof.extensions.traffic.formats.samples import HEADER, read_recording
 
 ROAD = (
     '[[lanelet]]\nid = "1"\nlane = "1"\nzone = "main"\nattribute = "main"\ns = [-1000, 9000]\nd = [-7, 0]\n'
@@ -139,8 +139,8 @@ def test_both_readers_agree(
     (tmp_path / "a_road.toml").write_text(ROAD)
     whole = outcome(lambda: read_recording(path, strict))
     monkeypatch.setattr(windows, "MOST_SAMPLES", rng.choice((35, 70, 110)))
-    monkeypatch.setattr("roadproof.recordings.formats.samples.PIECE", 13)
-    monkeypatch.setattr("roadproof.recordings.formats.table.PIECE", 500)
+    monkeypatch.setattr("roadproof.extensions.traffic.formats.samples.PIECE", 13)
+    monkeypatch.setattr("roadproof.extensions.traffic.formats.table.PIECE", 500)
     assert outcome(lambda: joined(path, strict)) == whole
 
 

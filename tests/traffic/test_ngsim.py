@@ -10,11 +10,11 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import InputError
-from roadproof.recordings.evaluate.evaluate import evaluate_recording
-from roadproof.recordings.formats.ngsim import PERIOD, read_ngsim
-from roadproof.recordings.formats.recording import Recording, offsets
-from roadproof.recordings.formats.sources import find_source, find_sources
-from roadproof.recordings.formats.straight import of_road, record
+from roadproof.extensions.traffic.evaluate.evaluate import evaluate_recording
+from roadproof.extensions.traffic.formats.ngsim import PERIOD, read_ngsim
+from roadproof.extensions.traffic.formats.recording import Recording, offsets
+from roadproof.extensions.traffic.formats.sources import find_source, find_sources
+from roadproof.extensions.traffic.formats.straight import of_road, record
 from roadproof.world.models import load_recorded_road
 from roadproof.world.road import Road
 from roadproof.world.signals import RECORDED

@@ -16,13 +16,13 @@ import roadproof as rp
 from exporting.kept import kept
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.recordings.evaluate.one_trace import read_pair, read_samples
-from roadproof.recordings.export.openscenario import files
-from roadproof.recordings.export.subject import Subject
-from roadproof.recordings.formats import openscenario
-from roadproof.recordings.formats.openscenario import RATE, read_recording, read_scenario
-from roadproof.recordings.formats.sources import find_source
-from roadproof.recordings.formats.storyboard import curves, stage
+from roadproof.extensions.exchange import openscenario
+from roadproof.extensions.exchange.export.openscenario import files
+from roadproof.extensions.exchange.export.subject import Subject
+from roadproof.extensions.exchange.openscenario import RATE, read_recording, read_scenario
+from roadproof.extensions.exchange.storyboard import curves, stage
+from roadproof.extensions.traffic.evaluate.one_trace import read_pair, read_samples
+from roadproof.extensions.traffic.formats.sources import find_source
 from roadproof.world.motion import state_at
 from roadproof.world.reference_line import ReferenceLine
 from roadproof.world.signals import RECORDED

@@ -16,10 +16,10 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError
-from roadproof.recordings.formats.openscenario import read_scenario
-from roadproof.recordings.formats.storyboard import document as documents
-from roadproof.recordings.formats.storyboard import run
-from roadproof.recordings.formats.storyboard.harmless import HARMLESS
+from roadproof.extensions.exchange.openscenario import read_scenario
+from roadproof.extensions.exchange.storyboard import document as documents
+from roadproof.extensions.exchange.storyboard import run
+from roadproof.extensions.exchange.storyboard.harmless import HARMLESS
 from traffic.board import at_time, event, to_speed, when
 from traffic.storyboards import EGO, OTHER, group, write
 

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError
+from roadproof.extensions.exchange.protobuf import WireError, doubles_in, fields_of, integer_in, message_in
+from roadproof.extensions.traffic.formats.sources import find_source
 from roadproof.reasons import Why
-from roadproof.recordings.formats.protobuf import WireError, doubles_in, fields_of, integer_in, message_in
-from roadproof.recordings.formats.sources import find_source
 from traffic.planar_exid import osm_of
 from traffic.test_exid import CASES, planted
 from traffic.test_ind import around, bend_of

@@ -9,18 +9,18 @@ from pathlib import Path
 
 import pytest
 
-from roadproof.analysis.assurance.reading import read_case
-from roadproof.analysis.requirements.sources import read_requirements
-from roadproof.analysis.requirements.yaml_file import read_yaml
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import load_drive
+from roadproof.extensions.assurance.case.reading import read_case
+from roadproof.extensions.assurance.requirements.sources import read_requirements
+from roadproof.extensions.assurance.requirements.yaml_file import read_yaml
+from roadproof.extensions.exchange.commonroad import read_commonroad
+from roadproof.extensions.exchange.openscenario import read_scenario
+from roadproof.extensions.exchange.osi import read_osi
+from roadproof.extensions.traffic.evaluate.one_trace import read_samples
+from roadproof.extensions.traffic.formats.samples import column_pieces, read_columns
+from roadproof.extensions.traffic.formats.table import frame_of
 from roadproof.library.specification import read_specification
-from roadproof.recordings.evaluate.one_trace import read_samples
-from roadproof.recordings.formats.commonroad import read_commonroad
-from roadproof.recordings.formats.openscenario import read_scenario
-from roadproof.recordings.formats.osi import read_osi
-from roadproof.recordings.formats.samples import column_pieces, read_columns
-from roadproof.recordings.formats.table import frame_of
 from roadproof.runtime.files import read_text
 from roadproof.runtime.xml_reader import read_xml
 from roadproof.world.models import load_road, load_vehicle

@@ -14,12 +14,13 @@ from hypothesis import strategies as st
 import roadproof as rp
 from examples import some
 from roadproof.errors import InputError
-from roadproof.recordings.formats import large
-from roadproof.recordings.formats import pairs as module
-from roadproof.recordings.formats.believable import _check_lanelets
-from roadproof.recordings.formats.content import plain_text
-from roadproof.recordings.formats.median import Median
-from roadproof.recordings.formats.pairs import (
+from roadproof.extensions.maps import topology
+from roadproof.extensions.traffic.formats import large
+from roadproof.extensions.traffic.formats import pairs as module
+from roadproof.extensions.traffic.formats.believable import _check_lanelets
+from roadproof.extensions.traffic.formats.content import plain_text
+from roadproof.extensions.traffic.formats.median import Median
+from roadproof.extensions.traffic.formats.pairs import (
     DetectionRange,
     Pairs,
     Reach,
@@ -29,14 +30,13 @@ from roadproof.recordings.formats.pairs import (
     pairs_in_sight,
     triples_of,
 )
-from roadproof.recordings.formats.plausible import _worst
-from roadproof.recordings.formats.recording import Recording
-from roadproof.recordings.formats.repeats import see_pair
-from roadproof.recordings.formats.samples import HEADER
-from roadproof.recordings.formats.sources import find_sources
-from roadproof.recordings.simulate.simulate import simulate
-from roadproof.recordings.simulate.traffic import Traffic
-from roadproof.world.maps import topology
+from roadproof.extensions.traffic.formats.plausible import _worst
+from roadproof.extensions.traffic.formats.recording import Recording
+from roadproof.extensions.traffic.formats.repeats import see_pair
+from roadproof.extensions.traffic.formats.samples import HEADER
+from roadproof.extensions.traffic.formats.sources import find_sources
+from roadproof.extensions.traffic.simulate.simulate import simulate
+from roadproof.extensions.traffic.simulate.traffic import Traffic
 from roadproof.world.signals import KINDS
 from traffic.make_recording import Track, cruise, make_recording, near_pairs
 

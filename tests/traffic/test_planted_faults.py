@@ -9,22 +9,22 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from roadproof.analysis.classify.cells import Cell
-from roadproof.analysis.classify.classes import Class
-from roadproof.analysis.classify.drives import Example
-from roadproof.analysis.classify.shares import Shares
 from roadproof.errors import InputError
-from roadproof.frontends.report import classify
+from roadproof.extensions.surveys.classify.cells import Cell
+from roadproof.extensions.surveys.classify.classes import Class
+from roadproof.extensions.surveys.classify.drives import Example
+from roadproof.extensions.surveys.classify.traffic_shares import Shares
+from roadproof.extensions.surveys.report import classify
+from roadproof.extensions.traffic.evaluate import disturbances, evaluate
+from roadproof.extensions.traffic.evaluate.detectors import find_detections
+from roadproof.extensions.traffic.evaluate.questions import ask, default_settings
+from roadproof.extensions.traffic.formats import pairs
+from roadproof.extensions.traffic.formats.pairs import DetectionRange, Reach, common_pairs
+from roadproof.extensions.traffic.formats.recording import Recording
 from roadproof.library.loading import build_library, bundled_library
 from roadproof.library.scenarios import COMPARISON, PAIR, TRIPLE
 from roadproof.library.specification import Source
 from roadproof.library.words import Words
-from roadproof.recordings.evaluate import disturbances, evaluate
-from roadproof.recordings.evaluate.detectors import find_detections
-from roadproof.recordings.evaluate.questions import ask, default_settings
-from roadproof.recordings.formats import pairs
-from roadproof.recordings.formats.pairs import DetectionRange, Reach, common_pairs
-from roadproof.recordings.formats.recording import Recording
 from roadproof.verdict import Verdict
 from tables import read_table
 from traffic.faults import faulty_library, plant_fault

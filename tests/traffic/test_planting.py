@@ -11,15 +11,14 @@ import pytest
 import roadproof as rp
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile, load_drive
-from roadproof.library.loading import bundled_library
-from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
-from roadproof.recordings.evaluate.questions import ask, default_settings
-from roadproof.recordings.formats.highd import read_highd
-from roadproof.recordings.formats.neighbours import find_overlaps
-from roadproof.recordings.formats.recording import ZONES, Recording
-from roadproof.recordings.formats.write_highd import write_highd
-from roadproof.recordings.simulate import simulate as simulating
-from roadproof.recordings.simulate.planting import (
+from roadproof.extensions.traffic.evaluate.evaluate import Findings, evaluate_recording
+from roadproof.extensions.traffic.evaluate.questions import ask, default_settings
+from roadproof.extensions.traffic.formats.highd import read_highd
+from roadproof.extensions.traffic.formats.neighbours import find_overlaps
+from roadproof.extensions.traffic.formats.recording import ZONES, Recording
+from roadproof.extensions.traffic.formats.write_highd import write_highd
+from roadproof.extensions.traffic.simulate import simulate as simulating
+from roadproof.extensions.traffic.simulate.planting import (
     PLANTED_COLUMNS,
     Place,
     PlantedDrive,
@@ -29,8 +28,9 @@ from roadproof.recordings.simulate.planting import (
     plantable,
     rows_of,
 )
-from roadproof.recordings.simulate.simulate import markings_of, simulate
-from roadproof.recordings.simulate.traffic import Traffic, road_of, zone_of
+from roadproof.extensions.traffic.simulate.simulate import markings_of, simulate
+from roadproof.extensions.traffic.simulate.traffic import Traffic, road_of, zone_of
+from roadproof.library.loading import bundled_library
 from roadproof.world.drive import Drive
 from roadproof.world.models import load_road
 from roadproof.world.motion import state_at

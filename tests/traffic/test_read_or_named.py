@@ -11,19 +11,12 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError
-from roadproof.recordings.formats import (
-    commonroad,
-    harmless_columns,
-    highd,
-    levelx,
-    ngsim,
-    osi,
-    samples,
-)
-from roadproof.recordings.formats.table import Table
+from roadproof.extensions.exchange import commonroad, osi
+from roadproof.extensions.maps import harmless, lanelet2, opendrive
+from roadproof.extensions.maps.opendrive import read_map
+from roadproof.extensions.traffic.formats import harmless_columns, highd, levelx, ngsim, samples
+from roadproof.extensions.traffic.formats.table import Table
 from roadproof.runtime.xml_element import parse
-from roadproof.world.maps import harmless, lanelet2, opendrive
-from roadproof.world.maps.opendrive import read_map
 from roadproof.world.unread import left_out_in, unread_columns
 from traffic.planar_exid import SAMPLES
 from traffic.schema_parts import Schema, Way, is_read, schema

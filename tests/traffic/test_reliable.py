@@ -12,21 +12,21 @@ import numpy as np
 import pytest
 
 import roadproof as rp
-from roadproof.analysis.basis import Basis
-from roadproof.analysis.classify.cells import whole_cell
-from roadproof.analysis.classify.classes import Classes, plan_of, what_axis
-from roadproof.analysis.classify.shares import count_shares
-from roadproof.analysis.classify.text import with_classes, write_classes
-from roadproof.analysis.coverage.traffic import count_in_traffic, recordings_in
 from roadproof.errors import InputError
+from roadproof.extensions.surveys.classify.cells import whole_cell
+from roadproof.extensions.surveys.classify.classes import Classes, plan_of, what_axis
+from roadproof.extensions.surveys.classify.text import with_classes, write_classes
+from roadproof.extensions.surveys.classify.traffic_shares import count_shares
+from roadproof.extensions.surveys.coverage.traffic import count_in_traffic, recordings_in
+from roadproof.extensions.traffic.evaluate.one_trace import read_pair
+from roadproof.extensions.traffic.formats.off_line import follows_line, leave_out_strays
+from roadproof.extensions.traffic.formats.recording import Recording
+from roadproof.extensions.traffic.formats.sources import find_source
+from roadproof.extensions.traffic.formats.write_highd import write_highd
 from roadproof.frontends.cli.main import main
 from roadproof.frontends.settings import studies as settings
 from roadproof.library.loading import bundled_library
-from roadproof.recordings.evaluate.one_trace import read_pair
-from roadproof.recordings.formats.off_line import follows_line, leave_out_strays
-from roadproof.recordings.formats.recording import Recording
-from roadproof.recordings.formats.sources import find_source
-from roadproof.recordings.formats.write_highd import write_highd
+from roadproof.questions.basis import Basis
 from roadproof.verdict import ExitCode
 from roadproof.world.models import load_road
 from traffic.make_recording import Track, cruise, make_recording

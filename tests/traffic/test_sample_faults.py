@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from roadproof.recordings.evaluate.faults import faults_of
-from roadproof.recordings.evaluate.one_trace import of_columns
+from roadproof.extensions.traffic.evaluate.faults import faults_of
+from roadproof.extensions.traffic.evaluate.one_trace import of_columns
 from roadproof.world.models import load_road
 
 TIMES = np.arange(21) / 10

@@ -12,21 +12,21 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import InputError
+from roadproof.extensions.traffic.evaluate.evaluate import Findings, evaluate_recording
+from roadproof.extensions.traffic.evaluate.one_trace import read_pair, read_samples
+from roadproof.extensions.traffic.evaluate.questions import ask, default_settings
+from roadproof.extensions.traffic.formats.converted import same_recording
+from roadproof.extensions.traffic.formats.highd import read_highd
+from roadproof.extensions.traffic.formats.recording import Recording, keep_vehicles, kind_called, own_numbers
+from roadproof.extensions.traffic.formats.samples import HEADER, clock_of, read_columns, read_recording
+from roadproof.extensions.traffic.formats.sources import find_source, find_sources
+from roadproof.extensions.traffic.formats.straight import of_road, place
+from roadproof.extensions.traffic.formats.write_highd import write_highd
+from roadproof.extensions.traffic.simulate.planting import Place, plant
+from roadproof.extensions.traffic.simulate.simulate import simulate
+from roadproof.extensions.traffic.simulate.traffic import Traffic
 from roadproof.library.bind import occupies
 from roadproof.logic.rewrite import with_values
-from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
-from roadproof.recordings.evaluate.one_trace import read_pair, read_samples
-from roadproof.recordings.evaluate.questions import ask, default_settings
-from roadproof.recordings.formats.converted import same_recording
-from roadproof.recordings.formats.highd import read_highd
-from roadproof.recordings.formats.recording import Recording, keep_vehicles, kind_called, own_numbers
-from roadproof.recordings.formats.samples import HEADER, clock_of, read_columns, read_recording
-from roadproof.recordings.formats.sources import find_source, find_sources
-from roadproof.recordings.formats.straight import of_road, place
-from roadproof.recordings.formats.write_highd import write_highd
-from roadproof.recordings.simulate.planting import Place, plant
-from roadproof.recordings.simulate.simulate import simulate
-from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.semantics.sampled.batch import Batch
 from roadproof.semantics.sampled.compiled import compile
 from roadproof.world.models import load_road

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError
-from roadproof.recordings.formats.openscenario import read_recording, read_scenario
-from roadproof.recordings.formats.storyboard.expressions import expression_value, replaced
+from roadproof.extensions.exchange.openscenario import read_recording, read_scenario
+from roadproof.extensions.exchange.storyboard.expressions import expression_value, replaced
 from traffic.board import (
     CAR,
     EGO,

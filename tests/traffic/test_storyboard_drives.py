@@ -10,9 +10,9 @@ import pytest
 import roadproof as rp
 from examples import some
 from roadproof.errors import InputError
-from roadproof.recordings.evaluate.one_trace import OneTrace
-from roadproof.recordings.formats.storyboard.drives import StoryboardDrive, read_storyboard_drive
-from roadproof.recordings.formats.storyboard.stage import open_stage, played
+from roadproof.extensions.exchange.storyboard.drives import StoryboardDrive, read_storyboard_drive
+from roadproof.extensions.exchange.storyboard.stage import open_stage, played
+from roadproof.extensions.traffic.evaluate.one_trace import OneTrace
 from roadproof.world.drive import Piece
 from roadproof.world.motion import states_at
 from traffic.board import (

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError
-from roadproof.recordings.formats.openscenario import read_recording, read_scenario
+from roadproof.extensions.exchange.openscenario import read_recording, read_scenario
 from traffic.board import (
     CAR,
     EGO,

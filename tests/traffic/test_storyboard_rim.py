@@ -9,11 +9,11 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import InputError
-from roadproof.recordings.formats.openscenario import read_recording, read_scenario
-from roadproof.recordings.formats.storyboard.distances import Measure, distance_between
-from roadproof.recordings.formats.storyboard.drives import read_storyboard_drive
-from roadproof.recordings.formats.storyboard.positions import State, positions_on
-from roadproof.recordings.formats.storyboard.stage import open_stage
+from roadproof.extensions.exchange.openscenario import read_recording, read_scenario
+from roadproof.extensions.exchange.storyboard.distances import Measure, distance_between
+from roadproof.extensions.exchange.storyboard.drives import read_storyboard_drive
+from roadproof.extensions.exchange.storyboard.positions import State, positions_on
+from roadproof.extensions.exchange.storyboard.stage import open_stage
 from traffic.board import (
     CAR,
     EGO,

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from roadproof.errors import InputError
-from roadproof.frontends.api.recordings import roads
-from roadproof.recordings.evaluate.one_trace import read_pair
-from roadproof.recordings.formats.commonroad import read_commonroad
-from roadproof.recordings.formats.lanelets import network_of
-from roadproof.recordings.formats.sources import find_source
-from roadproof.world.maps.topology import MeasuredLanelet, attributes_of, chains_of, main_way
+from roadproof.extensions.exchange.commonroad import read_commonroad
+from roadproof.extensions.maps.topology import MeasuredLanelet, attributes_of, chains_of, main_way
+from roadproof.extensions.traffic.evaluate.one_trace import read_pair
+from roadproof.extensions.traffic.evaluating import roads
+from roadproof.extensions.traffic.formats.lanelets import network_of
+from roadproof.extensions.traffic.formats.sources import find_source
 from roadproof.world.models import load_road
 from roadproof.world.road import Lanelet, Road
 from tables import read_table

@@ -11,15 +11,15 @@ from random import Random
 import numpy as np
 import pytest
 
-from roadproof.recordings.evaluate.evaluate import Findings, evaluate_recording
-from roadproof.recordings.evaluate.questions import ask, default_settings
-from roadproof.recordings.evaluate.totals import Counts, add_findings, begin_totals, without_repeats
-from roadproof.recordings.evaluate.violations import ViolatingPairs
-from roadproof.recordings.formats.recording import OF_SAMPLES, Recording, keep_vehicles, offsets
-from roadproof.recordings.formats.repeats import FramePair, moments_of
-from roadproof.recordings.simulate.planting import Place, plant
-from roadproof.recordings.simulate.simulate import simulate
-from roadproof.recordings.simulate.traffic import Traffic
+from roadproof.extensions.traffic.evaluate.evaluate import Findings, evaluate_recording
+from roadproof.extensions.traffic.evaluate.questions import ask, default_settings
+from roadproof.extensions.traffic.evaluate.totals import Counts, add_findings, begin_totals, without_repeats
+from roadproof.extensions.traffic.evaluate.violations import ViolatingPairs
+from roadproof.extensions.traffic.formats.recording import OF_SAMPLES, Recording, keep_vehicles, offsets
+from roadproof.extensions.traffic.formats.repeats import FramePair, moments_of
+from roadproof.extensions.traffic.simulate.planting import Place, plant
+from roadproof.extensions.traffic.simulate.simulate import simulate
+from roadproof.extensions.traffic.simulate.traffic import Traffic
 from traffic.drives import braking, cut_in
 
 LABEL = (0, "ext", "", "match")

@@ -14,22 +14,22 @@ from hypothesis import strategies as st
 import roadproof as rp
 from examples import some
 from roadproof.errors import InputError
+from roadproof.extensions.traffic.evaluate import evaluate as evaluating
+from roadproof.extensions.traffic.evaluate.evaluate import evaluate_recording, evaluate_windows
+from roadproof.extensions.traffic.evaluate.questions import ask, default_settings
+from roadproof.extensions.traffic.formats import large, plausible, table, windows
+from roadproof.extensions.traffic.formats.converted import same_recording
+from roadproof.extensions.traffic.formats.highd import read_highd
+from roadproof.extensions.traffic.formats.plausible import check
+from roadproof.extensions.traffic.formats.recording import Recording, keep_vehicles
+from roadproof.extensions.traffic.formats.samples import HEADER
+from roadproof.extensions.traffic.formats.sources import find_source, find_sources
+from roadproof.extensions.traffic.formats.windows import Window, divide
+from roadproof.extensions.traffic.formats.write_highd import write_highd
+from roadproof.extensions.traffic.simulate.planting import Place, plant
+from roadproof.extensions.traffic.simulate.simulate import simulate
+from roadproof.extensions.traffic.simulate.traffic import Traffic
 from roadproof.frontends.cli.main import main
-from roadproof.recordings.evaluate import evaluate as evaluating
-from roadproof.recordings.evaluate.evaluate import evaluate_recording, evaluate_windows
-from roadproof.recordings.evaluate.questions import ask, default_settings
-from roadproof.recordings.formats import large, plausible, table, windows
-from roadproof.recordings.formats.converted import same_recording
-from roadproof.recordings.formats.highd import read_highd
-from roadproof.recordings.formats.plausible import check
-from roadproof.recordings.formats.recording import Recording, keep_vehicles
-from roadproof.recordings.formats.samples import HEADER
-from roadproof.recordings.formats.sources import find_source, find_sources
-from roadproof.recordings.formats.windows import Window, divide
-from roadproof.recordings.formats.write_highd import write_highd
-from roadproof.recordings.simulate.planting import Place, plant
-from roadproof.recordings.simulate.simulate import simulate
-from roadproof.recordings.simulate.traffic import Traffic
 from roadproof.runtime.package_data import shipped
 from traffic.drives import cut_in
 from traffic.lies import NOTED, REFUSED, Files, one_vehicle_twice, read_columns, scaled, write_columns
@@ -292,8 +292,8 @@ def test_windows_without_bad_vehicles(
 def test_cells_that_are_missing_or_not_finite_are_named(
     frame: pl.DataFrame, ending: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("roadproof.recordings.formats.samples.PIECE", 1_000)
-    monkeypatch.setattr("roadproof.recordings.formats.table.PIECE", 50_000)
+    monkeypatch.setattr("roadproof.extensions.traffic.formats.samples.PIECE", 1_000)
+    monkeypatch.setattr("roadproof.extensions.traffic.formats.table.PIECE", 50_000)
     late = pl.int_range(pl.len()) == 5_000
     for wrong in (None, float("nan"), float("inf")):
         path = put(

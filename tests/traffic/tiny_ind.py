@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from roadproof.recordings.formats.recording import Recording
+from roadproof.extensions.traffic.formats.recording import Recording
 from roadproof.world.road import Road
 from traffic.planar import Bend, straight
 from traffic.planar_exid import SAMPLES, write_exid

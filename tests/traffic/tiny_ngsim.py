@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from roadproof.recordings.formats.recording import Recording
+from roadproof.extensions.traffic.formats.recording import Recording
 
 HEADER = (
     "Vehicle_ID,Frame_ID,Total_Frames,Global_Time,Local_X,Local_Y,Global_X,Global_Y,v_Length,v_Width,v_Class,"

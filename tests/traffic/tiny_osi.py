@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from roadproof.recordings.formats.recording import Recording
+from roadproof.extensions.traffic.formats.recording import Recording
 from traffic.planar import Bend, moving, straight
 from traffic.planar_exid import turned
 

@@ -8,8 +8,8 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import InputError
+from roadproof.extensions.maps.opendrive import outer_edge, read_map
 from roadproof.frontends.cli.main import main
-from roadproof.world.maps.opendrive import outer_edge, read_map
 from roadproof.world.models import load_road
 from world.test_maps import lane, line, road, section, write
 

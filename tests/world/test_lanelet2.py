@@ -7,7 +7,7 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import InputError
-from roadproof.world.maps.projections import transverse_mercator
+from roadproof.extensions.maps.projections import transverse_mercator
 from roadproof.world.models import load_road
 from world.measured_lanelets import RAMP, MapLane, Point, commonroad, lanelet2
 

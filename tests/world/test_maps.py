@@ -7,9 +7,9 @@ import pytest
 
 import roadproof as rp
 from roadproof.errors import InputError, UsageError
+from roadproof.extensions.maps.opendrive import read_map
+from roadproof.extensions.maps.selection import read_selection, select
 from roadproof.frontends.cli.main import main
-from roadproof.world.maps.opendrive import read_map
-from roadproof.world.maps.selection import read_selection, select
 from roadproof.world.models import load_road
 
 MAP = Path(__file__).parents[2] / "examples" / "maps" / "motorway.xodr"

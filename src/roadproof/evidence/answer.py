@@ -30,9 +30,9 @@ from roadproof.evidence.countermodel import Countermodel, read_trace, trace_data
 from roadproof.evidence.drive_file import DriveFile, natural_of, read_drive
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.none_within import NoneWithinFile, none_within_data, read_none_within
-from roadproof.evidence.plate import BOUNDARY, BoundaryFile
 from roadproof.evidence.refutation import fault_of
 from roadproof.evidence.strict import Fields, JsonObject
+from roadproof.extensions.drivers.preventable.plate import BOUNDARY, BoundaryFile
 from roadproof.library.bind import values_with
 from roadproof.library.compose import denied_premise, never
 from roadproof.library.motion import under_limits, value_texts
@@ -303,7 +303,9 @@ def _is_given(mode: Exists, file: DriveFile) -> bool:
 def _shows(claim: Claim, file: DriveFile) -> bool:
     """Return whether a drive is about a claim: its formula, or the place of a plate that it begins at."""
     if isinstance(claim.mode, Beside):
-        from roadproof.evidence.boundary import start_of  # here: other answers need no driver model
+        from roadproof.extensions.drivers.preventable.boundary import (
+            start_of,  # here: other answers need no driver model
+        )
 
         return start_of(claim, file) is not None
     return claim.read(file.formula) == sought_by(claim)

@@ -16,10 +16,10 @@ from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.finding import Acceptance, Finding, OtherVerdict
 from roadproof.evidence.judged import judge_file, times_data
 from roadproof.evidence.none_within import Derive, Derived, NoneWithinFile
-from roadproof.evidence.plate import BOUNDARY, BoundaryFile
 from roadproof.evidence.refutation import judge_trace
 from roadproof.evidence.strict import Fields, read_json
 from roadproof.evidence.subject import SubjectKind
+from roadproof.extensions.drivers.preventable.plate import BOUNDARY, BoundaryFile
 from roadproof.library.bind import default_values, values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import is_moving, statement
@@ -134,7 +134,9 @@ class Checker:
 
     def _boundary(self, path: Path, file: BoundaryFile) -> Finding:
         """Lines are worked out again from the formula or the motion of their model."""
-        from roadproof.evidence.boundary import fault_of  # here: other evidence needs no driver model
+        from roadproof.extensions.drivers.preventable.boundary import (
+            fault_of,  # here: other evidence needs no driver model
+        )
 
         reason = Why.TOLD(fault) if (fault := fault_of(file, self.library)) else NO_REASON
         outcome = Acceptance.REJECTED if reason else Acceptance.ACCEPTED

@@ -11,7 +11,7 @@ from dataclasses import field
 from fractions import Fraction
 from typing import Any, Final, Literal, Protocol, TypeAlias, runtime_checkable
 
-from roadproof.evidence.plate import Plate
+from roadproof.extensions.drivers.preventable.plate import Plate
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import is_moving, under_limits, values_said
 from roadproof.library.specification import Library, Query, Specification

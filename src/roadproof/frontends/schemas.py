@@ -7,26 +7,7 @@ from pathlib import Path
 from typing import get_args
 
 from roadproof.evidence.answer_files import JudgedFile, RefutationFile, Undecided
-from roadproof.evidence.answers import (
-    assurance,
-    bundle,
-    catalogue_index,
-    certificate,
-    check,
-    coverage,
-    drive,
-    library,
-    monitor,
-    none_within,
-    road_map,
-    shared,
-    show,
-    trace,
-    trace_changes,
-    trace_lock,
-    traffic,
-    tree,
-)
+from roadproof.evidence.answers import certificate, check, drive, library, none_within, shared, show, tree
 from roadproof.evidence.codec import fields_of, notes_of
 from roadproof.evidence.json_schema import (
     COMMON,
@@ -36,20 +17,25 @@ from roadproof.evidence.json_schema import (
     shared_schemas,
     tagged_schema,
 )
-from roadproof.evidence.plate import BoundaryFile
 from roadproof.evidence.strict import JsonObject
+from roadproof.extensions.assurance.answers import assurance, bundle, trace, trace_changes, trace_lock
+from roadproof.extensions.catalogue import kept as catalogue_index
+from roadproof.extensions.drivers.preventable.data import PreventableData
+from roadproof.extensions.drivers.preventable.plate import BoundaryFile
+from roadproof.extensions.maps import answer as road_map
+from roadproof.extensions.surveys.classify.data import ClassesData
+from roadproof.extensions.surveys.coverage import kept as coverage
+from roadproof.extensions.surveys.explore.data import ExploreData
+from roadproof.extensions.surveys.redundancy import RedundancyData
+from roadproof.extensions.surveys.survey import SurveyData
+from roadproof.extensions.traffic.answers import monitor, traffic
 from roadproof.library.motion import INDUCTIONS
 from roadproof.questions import overlap as overlap_question
-from roadproof.questions.classify.data import ClassesData
 from roadproof.questions.compare import ComparisonData
 from roadproof.questions.data import QuestionFile
-from roadproof.questions.explore.data import ExploreData
 from roadproof.questions.order.data import OrderData
 from roadproof.questions.overlap import OverlapData
-from roadproof.questions.preventable.data import PreventableData
 from roadproof.questions.prove import ClaimsData
-from roadproof.questions.redundancy import RedundancyData
-from roadproof.questions.survey import SurveyData
 from roadproof.questions.witness import WitnessData
 
 TITLES: Mapping[type, str] = {

@@ -5,7 +5,6 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Annotated, ClassVar, Final, Literal, TypeAlias
 
-from roadproof.analysis.basis import Basis
 from roadproof.evidence.answer import Answer
 from roadproof.evidence.answers import shared
 from roadproof.evidence.certificate import Certificate, certificate_data
@@ -16,6 +15,7 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.library.compose import both, implication, negation
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Query
+from roadproof.questions.basis import Basis
 from roadproof.questions.place import Place, mode_of, place_of
 from roadproof.questions.question import Answers, Steps, heading_of
 from roadproof.questions.question import Place as Placing

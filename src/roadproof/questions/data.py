@@ -2,39 +2,32 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
-from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal
 
-from roadproof.analysis.basis import Basis
 from roadproof.errors import InputError
 from roadproof.evidence.answers import shared
 from roadproof.evidence.codec import Doc, read, write
 from roadproof.evidence.heading import heading, library_of
 from roadproof.evidence.specifications import read_beside
 from roadproof.evidence.strict import LARGEST_INDEX, Fields, JsonObject, read_json
+from roadproof.extension import entries, imported
 from roadproof.library.specification import Library
+from roadproof.questions.basis import Basis
 from roadproof.questions.place import VehicleModel, model_of, vehicles_of
 from roadproof.questions.question import Question
 from roadproof.runtime.records import dataclass
 
 QUESTION: Final = "question.json"
 SCHEMA: Final = "roadproof/question/1"
-KINDS: Mapping[str, str] = {
-    "catalogue": "roadproof.questions.catalogue.question:CatalogueQuestion",
-    "classify": "roadproof.questions.classify.question:ClassifyQuestion",
+CORE: Mapping[str, str] = {
     "compare": "roadproof.questions.compare:CompareQuestion",
-    "coverage": "roadproof.questions.coverage.question:CoverageQuestion",
     "order": "roadproof.questions.order.question:OrderQuestion",
-    "explore": "roadproof.questions.explore.question:ExploreQuestion",
     "overlap": "roadproof.questions.overlap:OverlapQuestion",
-    "preventable": "roadproof.questions.preventable.question:PreventableQuestion",
     "prove": "roadproof.questions.prove:ProveQuestion",
-    "redundancy": "roadproof.questions.redundancy:RedundancyQuestion",
     "witness": "roadproof.questions.witness:WitnessQuestion",
 }
-"""The class of each kind of question."""
+"""The class of each kind of question; extensions add others."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,8 +86,9 @@ def read_question(folder: Path, given: Sequence[Path] = ()) -> Question[Any]:
     path = folder / QUESTION
     content = read_json(path, LARGEST_INDEX)
     file = read(QuestionFile, content, str(path))
-    if file.question not in KINDS and not _is_survey(file.question):
-        raise InputError(f"{path}: question='{file.question[:40]}' is none of {', '.join(KINDS)}")
+    kinds = {**CORE, **entries("questions")}
+    if file.question not in kinds:
+        raise InputError(f"{path}: question='{file.question[:40]}' is none of {', '.join(sorted(kinds))}")
     said = file.basis
     library = _library_of(content, path, folder, given)
     specification = library.select(said.sets[0], said.options)
@@ -107,7 +101,7 @@ def read_question(folder: Path, given: Sequence[Path] = ()) -> Question[Any]:
         objective=said.objective,  # type: ignore[arg-type]
         vehicles=vehicles_of(said.vehicles),
     )
-    made: Callable[[Basis, object, str], Question[Any]] = _type_of(file.question).of
+    made: Callable[[Basis, object, str], Question[Any]] = imported(kinds[file.question]).of
     return made(basis, file.asked, f"{path}, asked")
 
 
@@ -123,20 +117,6 @@ def _library_of(content: object, path: Path, folder: Path, given: Sequence[Path]
         if not given or library.fingerprint == library_of(Fields(content, str(path))):
             return library
     return read_beside(said, folder, given)[0]
-
-
-def _is_survey(kind: str) -> bool:
-    """Whether a file of this folder has a survey of that name."""
-    return kind.isidentifier() and find_spec(f"roadproof.questions.{kind}") is not None
-
-
-def _type_of(kind: str) -> Any:
-    """Return the class of a kind of question; a survey is the ``SURVEY`` of its file."""
-    module, _, name = KINDS.get(kind, f"roadproof.questions.{kind}:SURVEY").partition(":")
-    found = import_module(module)
-    if not hasattr(found, name):
-        raise InputError(f"question='{kind[:40]}' is none of {', '.join(KINDS)}")
-    return getattr(found, name)
 
 
 def _mapping(content: object) -> JsonObject:

@@ -10,7 +10,6 @@ from functools import cached_property
 from itertools import combinations, permutations
 from typing import Annotated, Any, ClassVar, Final, Literal, TypeAlias
 
-from roadproof.analysis.basis import Basis
 from roadproof.errors import InputError
 from roadproof.evidence.answer import Answer
 from roadproof.evidence.answers import shared
@@ -25,6 +24,7 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import Not
 from roadproof.logic.parts import parts_of, texts_of
+from roadproof.questions.basis import Basis
 from roadproof.questions.question import Answers, Place, Steps, heading_of
 from roadproof.reasons import NO_REASON, Reason, Why, joined
 from roadproof.runtime.budget import Work

@@ -5,7 +5,6 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Annotated, ClassVar, Final, Literal, TypeAlias
 
-from roadproof.analysis.basis import Basis
 from roadproof.engines.prove.properties import OWN, Task, find_task
 from roadproof.evidence.answer import Answer, Refutation
 from roadproof.evidence.answer_files import Undecided
@@ -23,6 +22,7 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.custom_names import told_freedom
 from roadproof.logic.first_instant import told_first_instants
+from roadproof.questions.basis import Basis
 from roadproof.questions.place import Place, mode_of, place_of
 from roadproof.questions.question import Answers, Steps, heading_of
 from roadproof.questions.question import Place as Placing

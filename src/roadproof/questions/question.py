@@ -3,14 +3,14 @@
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from typing import Any, ClassVar, Protocol, Self, TypeAlias, TypeVar, runtime_checkable
 
-from roadproof.analysis.basis import Basis
-from roadproof.drivers import restriction
 from roadproof.evidence.answer import Answer, undecided
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.finding import Finding
 from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.subject import Subject
+from roadproof.extensions.drivers import restriction
+from roadproof.questions.basis import Basis
 from roadproof.reasons import NO_REASON, Reason
 from roadproof.runtime.budget import Work
 

@@ -5,7 +5,6 @@ from dataclasses import field, replace
 from functools import cached_property
 from typing import Annotated, ClassVar, Final, Literal, TypeAlias
 
-from roadproof.analysis.basis import Basis
 from roadproof.engines.search.looking import limits_of
 from roadproof.engines.search.question import usual_road
 from roadproof.errors import InputError
@@ -23,6 +22,7 @@ from roadproof.library.scenarios import Scenario, applied
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import Formula, Not
 from roadproof.logic.parts import parts_of, texts_of
+from roadproof.questions.basis import Basis
 from roadproof.questions.place import Place, mode_of, place_of
 from roadproof.questions.question import Answers, Steps, heading_of
 from roadproof.questions.question import Place as Placing

@@ -34,7 +34,7 @@ def load_road(name_or_path: str | Path) -> Road:
     Raises ``InputError``; ``UsageError`` for a stretch that is not well said (``maps.selection``).
     """
     if "." in str(name_or_path):  # no name of a bundled road
-        from roadproof.world.maps.selection import is_map
+        from roadproof.extensions.maps.selection import is_map
 
         if is_map(name_or_path):
             return _of_map(str(name_or_path))
@@ -43,7 +43,7 @@ def load_road(name_or_path: str | Path) -> Road:
 
 def _of_map(text: str) -> Road:
     """A stretch of a map. Raises ``InputError``, ``UsageError``."""
-    from roadproof.world.maps.selection import read_selection, select
+    from roadproof.extensions.maps.selection import read_selection, select
 
     path, selection = read_selection(text)
     found = select(path, selection)

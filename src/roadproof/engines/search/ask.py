@@ -3,14 +3,14 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from roadproof.drivers.restriction import restriction_of
-from roadproof.engines.search.driven import Driven
 from roadproof.engines.search.initial_candidates import is_read
 from roadproof.engines.search.outcome import Outcome, Search, undecided
 from roadproof.engines.search.question import FoundDrive, SearchProblem, pose
 from roadproof.engines.search.siblings import find_once, offered
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
+from roadproof.extensions.drivers.objection import Driven
+from roadproof.extensions.drivers.restriction import restriction_of
 from roadproof.library.bind import telling_values
 from roadproof.reasons import NO_REASON, Why
 from roadproof.runtime.budget import BudgetExceeded, Effort

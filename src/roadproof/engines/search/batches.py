@@ -134,11 +134,13 @@ class Engines:
                 case Exists():
                     return self._drive(claim, claim.mode.by), NO_COST
                 case Lines():
-                    from roadproof.engines.search.beside import settle_lines  # here: others need no driver
+                    from roadproof.extensions.drivers.preventable.beside import (
+                        settle_lines,  # here: others need no driver
+                    )
 
                     return settle_lines(claim), NO_COST
                 case Beside():
-                    from roadproof.engines.search.beside import settle_beside
+                    from roadproof.extensions.drivers.preventable.beside import settle_beside
 
                     return settle_beside(claim), NO_COST
                 case On(judge=judge):

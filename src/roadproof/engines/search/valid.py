@@ -3,7 +3,6 @@
 from collections.abc import Iterable
 from dataclasses import replace
 
-from roadproof.drivers.restriction import restriction_of
 from roadproof.engines.prove.doubt import doubt_of
 from roadproof.engines.prove.induction import prove_of_scenarios
 from roadproof.engines.search.known_drive import KnownDrive, against, first_refuting
@@ -13,6 +12,7 @@ from roadproof.engines.search.settle import Settlement, settle, settle_bounded
 from roadproof.engines.search.shipped_drives import shipped_drives
 from roadproof.evidence.answer import Answer, Refutation, assumed_by, undecided, vacuities
 from roadproof.evidence.claim import Claim, Valid
+from roadproof.extensions.drivers.restriction import restriction_of
 from roadproof.logic.formula import FALSE
 from roadproof.reasons import Reason, Why
 from roadproof.runtime.budget import Work

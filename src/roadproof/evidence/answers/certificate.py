@@ -9,7 +9,7 @@ from typing import Annotated, Final, Literal, TypeAlias
 from roadproof.evidence.answers.shared import Assuming, Dense, Formula, OneScenario, Options, SetName
 from roadproof.evidence.codec import LEFT_OUT, Doc, Remedy, Rule
 from roadproof.evidence.json_schema import Plain
-from roadproof.evidence.kernel.tableau import RULES
+from roadproof.extensions.kernel.tableau import RULES
 from roadproof.library.motion import ALL_SCHEMAS
 from roadproof.runtime.records import dataclass
 

@@ -22,11 +22,11 @@ from roadproof.evidence.finding import Acceptance, Finding, OtherVerdict, exit_c
 from roadproof.evidence.heading import heading
 from roadproof.evidence.none_within import Derived, NoneWithinFile
 from roadproof.evidence.strict import JsonObject
-from roadproof.frontends.api.ci import BuildResult
+from roadproof.extensions.assurance.build_result import BuildResult
+from roadproof.extensions.assurance.build_results.cases import Case
+from roadproof.extensions.assurance.build_results.questions import finding_cases
 from roadproof.frontends.api.settings import work_of
 from roadproof.frontends.api.table import Row, Table
-from roadproof.frontends.report.ci.cases import Case
-from roadproof.frontends.report.ci.questions import finding_cases
 from roadproof.frontends.settings.keywords import CheckKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Check
@@ -46,7 +46,7 @@ from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 
 if TYPE_CHECKING:
-    from roadproof.frontends.api.kernel import KernelAnswer, KernelQuestion
+    from roadproof.extensions.kernel.asking import KernelAnswer, KernelQuestion
     from roadproof.frontends.api.questioned import QuestionAnswers
 
 Solver: TypeAlias = Literal["z3", "cvc5"]
@@ -164,7 +164,7 @@ def _check(paths: Sequence[str | Path], asked: Check, takes_over: bool) -> Check
         # A solver that is missing is said once, before any work.
         ask("(set-logic QF_UF)(check-sat)", asked.solver)
     else:
-        from roadproof.frontends.api.kernel import find
+        from roadproof.extensions.kernel.asking import find
 
         find(asked.kernel)
     named = tuple(Path(x) for x in asked.specs)
@@ -255,7 +255,7 @@ def _put_to_kernel(
     kernel: Kernel, given: _Given, asked: Check
 ) -> tuple["KernelAnswer", dict[str, OtherVerdict]]:
     """What a kernel says of all files, and of each by its path."""
-    from roadproof.frontends.api.kernel import names_of, put, ruled
+    from roadproof.extensions.kernel.asking import names_of, put, ruled
 
     answered = put(_asked(given), asked.jobs, asked.progress, kernel)
     names = [(str(path), name) for path, name in names_of(path for path, _ in given).items()]
@@ -282,8 +282,8 @@ def write_sources(
 
     Raises ``InputError`` for a path that holds nothing, and where it cannot be written.
     """
-    from roadproof.frontends.api.kernel import names_of
-    from roadproof.frontends.api.kernel import write as write_all
+    from roadproof.extensions.kernel.asking import names_of
+    from roadproof.extensions.kernel.asking import write as write_all
 
     named = tuple(Path(x) for x in specs)
     given = _Evidence.read([Path(x) for x in paths], named).given
@@ -294,7 +294,7 @@ def write_sources(
 
 
 def _asked(given: _Given) -> list["KernelQuestion"]:
-    from roadproof.frontends.api.kernel import KernelQuestion, names_of
+    from roadproof.extensions.kernel.asking import KernelQuestion, names_of
 
     names = names_of(path for path, _ in given)
     return [KernelQuestion(names[path], path, specs) for path, specs in given]

@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import ClassVar, Unpack
 
-from roadproof.analysis.basis import Basis
 from roadproof.engines.search.question import SearchOptions, exists
 from roadproof.errors import UsageError
 from roadproof.evidence import answer as answers
@@ -20,6 +19,7 @@ from roadproof.frontends.settings.keywords import CompareKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Compare
 from roadproof.library.compose import taken_from
+from roadproof.questions.basis import Basis
 from roadproof.questions.compare import CompareQuestion, Comparison, Direction, direction_named
 from roadproof.runtime.cost import Cost
 from roadproof.runtime.progress import Listener, listening

@@ -7,7 +7,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import ClassVar, Unpack
 
-from roadproof.analysis.basis import Basis
 from roadproof.engines.search.question import SearchOptions, Setting, exists, pose
 from roadproof.errors import UsageError
 from roadproof.evidence import answer as answers
@@ -16,16 +15,16 @@ from roadproof.evidence.codec import write
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
+from roadproof.extensions.assurance.build_result import BuildResult
+from roadproof.extensions.assurance.build_results.cases import Case
+from roadproof.extensions.assurance.build_results.questions import search_cases
+from roadproof.extensions.drivers.restricting import restricted
+from roadproof.extensions.pages.animation import ENDINGS
 from roadproof.frontends.api.answer import Picture
-from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
 from roadproof.frontends.api.pictures import drive_pictures
 from roadproof.frontends.api.questioned import QuestionAnswers
-from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import searches_of, setting, work_of
-from roadproof.frontends.report.animation import ENDINGS
-from roadproof.frontends.report.ci.cases import Case
-from roadproof.frontends.report.ci.questions import search_cases
 from roadproof.frontends.report.numbers import took
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.report.witness import EVERY_VIEW, Views, as_line, sheet_of
@@ -33,6 +32,7 @@ from roadproof.frontends.settings.keywords import WitnessKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Witness
 from roadproof.library.specification import Library
+from roadproof.questions.basis import Basis
 from roadproof.questions.question import walk
 from roadproof.questions.settle import look_up
 from roadproof.questions.store import keep_all
@@ -294,8 +294,8 @@ def views_of(given: Witness) -> Views:
     """The files that are wanted beside each drive. Raises ``UsageError``, ``MissingSolverError``."""
     if not given.animate:
         return Views(given.pictures, ())
-    from roadproof.frontends.api.exporting import formats_in
-    from roadproof.frontends.report.film import need
+    from roadproof.extensions.exchange.exporting import formats_in
+    from roadproof.extensions.pages.film import need
 
     wanted = formats_in(given.animate, ENDINGS)
     if given.out is None:

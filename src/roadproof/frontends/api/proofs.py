@@ -7,7 +7,6 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Self, Unpack
 
-from roadproof.analysis.basis import Basis
 from roadproof.engines.prove.properties import OWN, Task, choose, template_properties
 from roadproof.errors import UsageError
 from roadproof.evidence import answer as answers
@@ -16,15 +15,15 @@ from roadproof.evidence.codec import write
 from roadproof.evidence.heading import heading
 from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
+from roadproof.extensions.assurance.build_result import BuildResult
+from roadproof.extensions.assurance.build_results.cases import Case, Location
+from roadproof.extensions.assurance.build_results.questions import claim_cases
 from roadproof.frontends.api.answer import Picture
-from roadproof.frontends.api.ci import BuildResult
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
 from roadproof.frontends.api.pictures import drive_pictures
 from roadproof.frontends.api.questioned import QuestionAnswers, evidence_of
 from roadproof.frontends.api.settings import models_of, setting, work_of
 from roadproof.frontends.report import claims as claims_text
-from roadproof.frontends.report.ci.cases import Case, Location
-from roadproof.frontends.report.ci.questions import claim_cases
 from roadproof.frontends.report.numbers import count, took
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.groups import Run, SearchPlace
@@ -35,6 +34,7 @@ from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import MOTION, AssumedClaim, at_values, is_moving, limits_of, split, statement
 from roadproof.library.scenario_references import names_scenarios, read_numbers
 from roadproof.library.specification import Specification
+from roadproof.questions.basis import Basis
 from roadproof.questions.prove import (
     SCHEMA,
     ClaimResult,
@@ -56,8 +56,8 @@ from roadproof.world.road import Road
 from roadproof.world.vehicle import Vehicle
 
 if TYPE_CHECKING:
-    from roadproof.evidence.kernel.accept import Ruling
-    from roadproof.frontends.api.kernel import KernelAnswer
+    from roadproof.extensions.kernel.accept import Ruling
+    from roadproof.extensions.kernel.asking import KernelAnswer
     from roadproof.frontends.settings.value_types import KernelName
 
 REQUIRES_MOTION = "limits of vehicles require assume=motion, or 'assuming motion:' before the claim"
@@ -123,7 +123,7 @@ class Proofs(QuestionAnswers[ClaimsView], BuildResult):
         self, kernel: "KernelName", jobs: Jobs = None, progress: Progress | None = None
     ) -> Self:
         """The same, with what a kernel says of each proof. Raises ``MissingSolverError``."""
-        from roadproof.frontends.api import kernel as kernels
+        from roadproof.extensions.kernel import asking as kernels
 
         asked = {x.name: x.certificate for x in self.answers if x.certificate is not None}
         names = {f"claim_{number}": name for number, name in enumerate(asked, 1)}
@@ -236,7 +236,7 @@ def claims_asked(
             raise UsageError(f"engine={given.engine!r} makes no certificates for Coq: omit kernel")
         return _within_limits(asked, home, given.engine, given)
     if given.kernel is not None:
-        from roadproof.frontends.api import kernel as kernels
+        from roadproof.extensions.kernel import asking as kernels
 
         kernels.find(given.kernel)
     return asked

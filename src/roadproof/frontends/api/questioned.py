@@ -6,11 +6,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import ClassVar, Generic, Self, TypeVar
 
-from roadproof.drivers.restriction import restriction_of
 from roadproof.evidence import answer as answers
 from roadproof.evidence.answer_files import Undecided
 from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
+from roadproof.extensions.drivers.restriction import restriction_of
 from roadproof.frontends.api.answer import Answer
 from roadproof.frontends.settings.groups import Run
 from roadproof.library.specification import Library

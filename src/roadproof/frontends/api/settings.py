@@ -18,9 +18,9 @@ from roadproof.world.unread import unread_of_road
 from roadproof.world.vehicle import Vehicle
 
 if TYPE_CHECKING:
-    from roadproof.analysis.basis import Basis
     from roadproof.engines.search.outcome import Search
     from roadproof.engines.search.question import SearchOptions, Setting
+    from roadproof.questions.basis import Basis
 
 
 def setting(using: Definitions, given: SearchPlace) -> "Setting":
@@ -98,7 +98,7 @@ def basis_of(home: Definitions, given: Budget, vehicles: Vehicles = None) -> "Ba
 
     Raises ``InputError``, ``UsageError`` for a role that no scenario has.
     """
-    from roadproof.analysis.basis import Basis
+    from roadproof.questions.basis import Basis
 
     models = models_of(vehicles)
     known = {name for count in (2, 3) for name in roles(count)}

@@ -1,38 +1,28 @@
 """What scenarios are to each other: which hold together, which imply which, what could be left out."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
 from typing import Unpack
 
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
+from roadproof.extensions.drivers.restricting import restricted
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Among, Definitions, definitions_of, load
 from roadproof.frontends.api.pictures import drawn
 from roadproof.frontends.api.questioned import QuestionAnswers, evidence_of
-from roadproof.frontends.api.restricting import restricted
 from roadproof.frontends.api.settings import basis_of, positive
 from roadproof.frontends.report import order as order_report
 from roadproof.frontends.report import overlap as overlap_report
-from roadproof.frontends.report import redundancy as redundancy_report
 from roadproof.frontends.report.numbers import count, took
 from roadproof.frontends.report.sheet import Sheet, as_csv
 from roadproof.frontends.settings import studies as settings
-from roadproof.frontends.settings.keywords import OrderKeywords, OverlapKeywords, RedundancyKeywords
+from roadproof.frontends.settings.keywords import OrderKeywords, OverlapKeywords
 from roadproof.frontends.settings.option import takes
-from roadproof.library.scenarios import numbers_of
-from roadproof.library.words import Called, called, called_in
+from roadproof.library.words import Called, called_in
 from roadproof.questions.order.question import Compared, OrderQuestion, OrderView
 from roadproof.questions.overlap import Meeting, OverlapQuestion, OverlapView, PairVerdict
-from roadproof.questions.redundancy import (
-    ChangeFinding,
-    Changes,
-    FindingData,
-    RedundancyQuestion,
-    RedundancyView,
-    finding_data,
-)
 from roadproof.verdict import ExitCode, Verdict, exit_code
 
 
@@ -165,54 +155,3 @@ def order(among: Among = None, using: Definitions | None = None, **options: Unpa
     home = using or load("base", "extA", "ext")
     basis = basis_of(home, given, given.vehicles)
     return Orders.settled(OrderQuestion(basis, Compared(among=home.among(among))), given)
-
-
-class Redundancies(QuestionAnswers[RedundancyView]):
-    """Which parts of scenarios could be left out, and what shows the others needed."""
-
-    pieces = "scenarios"
-
-    @property
-    def findings(self) -> Mapping[int, Sequence[ChangeFinding]]:
-        """The findings on every change, by the number of the scenario."""
-        return self.view.findings
-
-    @property
-    def evidence(self) -> tuple[Evidence, ...]:
-        every = (x.shown for each in self.findings.values() for x in each)
-        return tuple(evidence_of(x) for x in every if x is not None)
-
-    @cached_property
-    def words(self) -> Called:
-        """What the scenarios are called."""
-        return called(self.question.basis.specification, tuple(self.findings))
-
-    @property
-    def verdicts(self) -> dict[str, Verdict]:
-        every = ((number, k, x) for number, each in self.findings.items() for k, x in enumerate(each, 1))
-        return {f"scenario {number}, change {k}": x.verdict for number, k, x in every}
-
-    @property
-    def _sheet(self) -> Sheet[FindingData]:
-        names = {number: x.name for number, x in self.words.items()}
-        every = (x for each in self.findings.values() for x in each)
-        return redundancy_report.sheet_of([finding_data(x, lambda *_: None) for x in every], names)
-
-    def __str__(self) -> str:
-        return redundancy_report.as_text(self.findings, self.seconds, self.words)
-
-
-@takes(settings.Redundancy)
-def redundancy(
-    among: Among = None, using: Definitions | None = None, **options: Unpack[RedundancyKeywords]
-) -> Redundancies:
-    """Which parts of scenarios could be left out; with ``whole`` also those of simple predicates.
-
-    Raises as ``overlap``.
-    """
-    given = settings.Redundancy.of(options)
-    home = definitions_of(using)
-    every = numbers_of(home.alone)
-    basis = basis_of(home, given, given.vehicles)
-    asked = Changes(among=home.among(among) or every, whole=given.whole)
-    return Redundancies.settled(RedundancyQuestion(basis, asked), given)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from roadproof.frontends.report.sheet import Value
 
 if TYPE_CHECKING:
-    from roadproof.recordings.formats.table import Frame
+    from roadproof.extensions.traffic.formats.table import Frame
 
 Row: TypeAlias = dict[str, Value]
 """Values by the name of their column."""
@@ -21,7 +21,7 @@ class Table(ABC):
 
     def to_frame(self) -> "Frame":
         """The rows as a frame of polars. Raises ``MissingSolverError`` where polars is not installed."""
-        from roadproof.recordings.formats.table import frame_of
+        from roadproof.extensions.traffic.formats.table import frame_of
 
         return frame_of(self.rows())
 

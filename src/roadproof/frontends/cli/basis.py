@@ -26,7 +26,7 @@ def read_definitions(args: argparse.Namespace, settings: type[Readings]) -> "Def
     from roadproof.library.diagnose import checked_library
 
     if vars(args).get("preventable") or vars(args).get("unpreventable"):
-        from roadproof.drivers.restriction import names_for
+        from roadproof.extensions.drivers.restriction import names_for
 
         args.specs = names_for(args.specs or [])
     sets = read_flag(args, settings, "sets") or ("base",)
@@ -39,7 +39,7 @@ def read_definitions(args: argparse.Namespace, settings: type[Readings]) -> "Def
 
 def add_drivers(args: argparse.Namespace) -> None:
     """Add the definitions of driver models to the files of ``--spec``."""
-    from roadproof.drivers.models import DRIVERS
+    from roadproof.extensions.drivers.models import DRIVERS
 
     specs = args.specs or []
     args.specs = specs if Path(DRIVERS) in specs else [Path(DRIVERS), *specs]

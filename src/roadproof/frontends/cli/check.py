@@ -65,7 +65,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _check_case(args: argparse.Namespace) -> int:
-    from roadproof.frontends.api.assuring import assurance
+    from roadproof.extensions.assurance.assuring import assurance
 
     if len(args.paths) > 1 or args.kernel or args.junit or args.sarif:
         told = "name one CASE, and omit --kernel, --junit and --sarif"

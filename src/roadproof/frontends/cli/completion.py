@@ -42,8 +42,8 @@ def complete() -> None:
     asked = next((word for word in words if not word.startswith("-")), "")
     parser = CommandParser(prog="roadproof")
     commands = parser.add_subparsers()
-    for name, summary in COMMANDS.items():
-        command = commands.add_parser(name, help=summary, add_help=False)
+    for name, told in COMMANDS.items():
+        command = commands.add_parser(name, help=told.summary, add_help=False)
         if name == asked:
             fill(command, name)
             for action in command._actions:
@@ -114,19 +114,19 @@ def _parameters(prefix: str) -> Values:
 
 
 def _drivers(prefix: str) -> Values:
-    from roadproof.drivers.models import MODELS
+    from roadproof.extensions.drivers.models import MODELS
 
     return _listed(prefix, {name: model.title for name, model in MODELS.items()})
 
 
 def _formats(prefix: str) -> Values:
-    from roadproof.frontends.api.exporting import NAMES
+    from roadproof.extensions.exchange.exporting import NAMES
 
     return _listed(prefix, dict.fromkeys(NAMES, ""))
 
 
 def _animations(prefix: str) -> Values:
-    from roadproof.frontends.report.animation import ENDINGS
+    from roadproof.extensions.pages.animation import ENDINGS
 
     return _listed(prefix, dict.fromkeys(ENDINGS, ""))
 

@@ -9,13 +9,14 @@ from roadproof.errors import UsageError
 from roadproof.frontends.cli.overview import COMMANDS
 from roadproof.frontends.settings.flags import add_flags, is_rare, section
 
-PACKAGE = "roadproof.frontends.cli"
-
 
 def command_parser(name: str) -> "CommandParser":
     """The parser of a sub-command."""
     parser = CommandParser(
-        prog=f"roadproof {name}", description=COMMANDS[name], formatter_class=_UsualHelp, add_help=False
+        prog=f"roadproof {name}",
+        description=COMMANDS[name].summary,
+        formatter_class=_UsualHelp,
+        add_help=False,
     )
     fill(parser, name)
     return parser
@@ -28,7 +29,7 @@ def written_files(parser: argparse.ArgumentParser) -> list[str]:
 
 def fill(parser: argparse.ArgumentParser, name: str) -> None:
     """Add the examples, arguments and options of a sub-command, whose module is imported."""
-    command = import_module(f"{PACKAGE}.{name}")
+    command = import_module(COMMANDS[name].module)
     parser.epilog = command.EXAMPLES
     if hasattr(command, "add_arguments"):
         command.add_arguments(parser)

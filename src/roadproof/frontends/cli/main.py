@@ -18,7 +18,7 @@ from importlib import import_module
 from pathlib import Path
 
 from roadproof.errors import RoadproofError, UsageError
-from roadproof.frontends.cli.help import PACKAGE, CommandParser, command_parser, written_files
+from roadproof.frontends.cli.help import CommandParser, command_parser, written_files
 from roadproof.frontends.cli.overview import COMMANDS, overview
 from roadproof.frontends.cli.progress import be_quiet, clear
 from roadproof.frontends.cli.streams import FULL, forget_output, make_streams_lenient
@@ -120,7 +120,7 @@ def _run(arguments: list[str]) -> int:
     if getattr(parsed, "json", None) != "-" and getattr(parsed, "format", "text") == "text":
         dress_output()
     try:
-        code: int = import_module(f"{PACKAGE}.{name}").run(parsed)
+        code: int = import_module(COMMANDS[name].module).run(parsed)
     except (Exception, KeyboardInterrupt) as error:
         _write_ended(parsed, name, error)
         raise

@@ -29,7 +29,7 @@ def write_build_results(args: argparse.Namespace, found: object) -> None:
     """
     if not (vars(args).get("junit") or vars(args).get("sarif")):
         return
-    from roadproof.frontends.api.ci import BuildResult
+    from roadproof.extensions.assurance.build_result import BuildResult
 
     assert isinstance(found, BuildResult)
     _write_files(args, found.to_junit, found.to_sarif)
@@ -39,9 +39,9 @@ def write_ended(args: argparse.Namespace, command: str, code: ExitCode, message:
     """JUnit XML and SARIF of a command that ends without an answer, so that no earlier file stands for it."""
     if not (vars(args).get("junit") or vars(args).get("sarif")):
         return
-    from roadproof.frontends.report.ci.cases import ended_case
-    from roadproof.frontends.report.ci.junit import as_junit
-    from roadproof.frontends.report.ci.sarif import as_sarif
+    from roadproof.extensions.assurance.build_results.cases import ended_case
+    from roadproof.extensions.assurance.build_results.junit import as_junit
+    from roadproof.extensions.assurance.build_results.sarif import as_sarif
 
     cases = (ended_case(command, code, message),)
     title = f"roadproof {command}"

@@ -1,18 +1,12 @@
-"""The help of the program, with commands by job. It imports nothing that starts slowly."""
+"""The help of the program: the commands of the core, then those of each extension. It imports no command."""
 
 import os
+from collections.abc import Mapping
 
-_JOBS: dict[str, tuple[str, ...]] = {
-    "read the library": ("list", "show"),
-    "ask about scenarios and formulas": ("prove", "witness", "compare", "explore", "check"),
-    "analyse a set of scenarios": (
-        *("overlap", "order", "redundancy", "coverage", "classify", "preventable", "catalogue"),
-    ),
-    "work with recordings and maps": ("monitor", "compile", "evaluate", "simulate", "convert", "road"),
-    "show and share results": ("report", "trace", "assurance", "bundle", "atlas", "export", "studio"),
-    "set up": ("completion", "cache"),
-}
-_OTHERS = "other commands"
+from roadproof.extension import AUDIENCES, Installed, installed
+from roadproof.runtime.records import dataclass
+
+_ORDER = ("list", "show", "prove", "witness", "compare", "overlap", "order", "check")
 _HEAD = "Compiles driving scenarios to proofs, witnesses and monitors."
 _FOOT = """\
 options:
@@ -29,12 +23,28 @@ exit codes: 0 as expected, 10 refuted or unexpected, 20 unknown, 30 cross-check 
 """
 
 
-def _find_commands(folder: str) -> dict[str, str]:
-    """The sub-commands with their summaries, by job: the modules in a folder that have a summary."""
-    files = sorted(x for x in os.listdir(folder) if x.endswith(".py"))
-    found = {x[:-3]: text for x in files if (text := _summary(os.path.join(folder, x)))}
-    known = [name for names in _JOBS.values() for name in names if name in found]
-    return {name: found[name] for name in [*known, *sorted({*found} - {*known})]}
+@dataclass(frozen=True)
+class Command:
+    """A sub-command: the module that answers it, what it does, and the extension that adds it, if one."""
+
+    module: str
+    summary: str
+    extension: Installed | None = None
+
+
+def _find_commands() -> Mapping[str, Command]:
+    """The sub-commands by name: the modules with a summary, first those of the core."""
+    core = _commands_in(os.path.dirname(__file__), __name__.rpartition(".")[0], None)
+    found = {name: core[name] for name in (*_ORDER, *sorted({*core} - {*_ORDER})) if name in core}
+    for x in installed().values():
+        found |= _commands_in(os.path.join(x.folder, "commands"), f"{x.package}.commands", x)
+    return found
+
+
+def _commands_in(folder: str, package: str, extension: Installed | None) -> dict[str, Command]:
+    files = sorted(os.listdir(folder)) if os.path.isdir(folder) else []
+    summaries = {x[:-3]: _summary(os.path.join(folder, x)) for x in files if x.endswith(".py")}
+    return {name: Command(f"{package}.{name}", text, extension) for name, text in summaries.items() if text}
 
 
 def _summary(file: str) -> str:
@@ -46,19 +56,28 @@ def _summary(file: str) -> str:
     return ""
 
 
-COMMANDS = _find_commands(os.path.dirname(__file__))
-
-
-def jobs() -> dict[str, list[str]]:
-    """The sub-commands by job."""
-    found = {job: [name for name in names if name in COMMANDS] for job, names in _JOBS.items()}
-    others = [*COMMANDS][sum(map(len, found.values())) :]
-    return found | ({_OTHERS: others} if others else {})
+COMMANDS = _find_commands()
 
 
 def overview() -> str:
     """The help of the program."""
-    blocks = ["usage: roadproof COMMAND [OPTION ...] [ARGUMENT ...]", _HEAD]
-    for job, names in jobs().items():
-        blocks.append("\n".join([f"{job}:", *(f"  {name:<12} {COMMANDS[name]}" for name in names)]))
+    core = [f"  {name:<12} {x.summary}" for name, x in COMMANDS.items() if x.extension is None]
+    blocks = ["usage: roadproof COMMAND [OPTION ...] [ARGUMENT ...]", _HEAD, "\n".join(["core:", *core])]
+    width = max((len(", ".join(x)) for x in _of_extensions().values()), default=0)
+    for audience in AUDIENCES:
+        lines = [
+            f"  {', '.join(names):<{width}}  {installed()[name].record.title}"
+            for name, names in _of_extensions().items()
+            if installed()[name].record.audience == audience
+        ]
+        blocks += ["\n".join([f"for {audience}:", *lines])] if lines else []
     return "\n\n".join([*blocks, _FOOT])
+
+
+def _of_extensions() -> Mapping[str, list[str]]:
+    """The commands of each extension that has any."""
+    found: dict[str, list[str]] = {}
+    for name, x in COMMANDS.items():
+        if x.extension is not None:
+            found.setdefault(x.extension.name, []).append(name)
+    return found

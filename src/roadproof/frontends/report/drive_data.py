@@ -8,9 +8,9 @@ from fractions import Fraction
 from itertools import groupby
 from typing import Literal, TypeAlias
 
-from roadproof.drivers.words import words_of_parts
 from roadproof.errors import RoadproofError
 from roadproof.evidence.drive_file import DriveFile
+from roadproof.extensions.drivers.words import words_of_parts
 from roadproof.library.bind import bind, values_with
 from roadproof.library.roles import vehicle_order
 from roadproof.library.scenarios import danger, too_near_ahead, too_near_left

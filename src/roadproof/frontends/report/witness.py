@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.frontends.report.animation import ENDINGS, draw_animation
+from roadproof.extensions.pages.animation import ENDINGS, draw_animation
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.scenarios import LANE
 from roadproof.library.specification import Library
@@ -86,7 +86,7 @@ class Views:
 
     def of(self, judged: JudgedDrive, library: Library) -> Iterator[tuple[str, bytes]]:
         """The same, with their contents; the samples come first."""
-        from roadproof.recordings.export.csv_table import csv_of
+        from roadproof.extensions.exchange.export.csv_table import csv_of
 
         yield ".csv", csv_of(judged.file).encode()
         if self.pictures:

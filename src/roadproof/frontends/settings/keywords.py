@@ -8,11 +8,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
-    from roadproof.evidence.answers.catalogue_index import Look
-    from roadproof.evidence.answers.monitor import View
     from roadproof.evidence.claim import Engine, Objective
     from roadproof.evidence.drive_file import DriveFile
     from roadproof.evidence.judged import JudgedDrive
+    from roadproof.extensions.catalogue.kept import Look
+    from roadproof.extensions.traffic.answers.monitor import View
+    from roadproof.extensions.traffic.simulate.traffic import Ramp
     from roadproof.frontends.api.checking import Kernel, Solver
     from roadproof.frontends.api.definitions import Among, What
     from roadproof.frontends.api.phrases import Term
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
         Vehicles,
     )
     from roadproof.library.bind import Number
-    from roadproof.recordings.simulate.traffic import Ramp
     from roadproof.runtime.executors import Jobs
     from roadproof.runtime.pool import Progress, Say
     from roadproof.semantics.sampled.answers import Convention

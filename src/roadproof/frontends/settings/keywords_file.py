@@ -10,7 +10,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import TypeGuard
 
-from roadproof.frontends.settings import groups, questions, recordings, studies
+from roadproof.extensions.traffic import settings as recordings
+from roadproof.frontends.settings import groups, questions, studies
 from roadproof.frontends.settings.option import Settings
 
 MODULES = (questions, studies, recordings)

@@ -13,8 +13,8 @@ from roadproof.runtime.records import dataclass
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from roadproof.evidence.answers.catalogue_index import Look
     from roadproof.evidence.claim import Objective
+    from roadproof.extensions.catalogue.kept import Look
     from roadproof.frontends.api.checking import Kernel
     from roadproof.frontends.api.definitions import Among
     from roadproof.frontends.settings.value_types import RoadLike, Same

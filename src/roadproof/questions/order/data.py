@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal, TypeAlias
 
-from roadproof.analysis.basis import Basis
 from roadproof.evidence.answers import shared
 from roadproof.evidence.codec import Doc, Key, Rule
+from roadproof.questions.basis import Basis
 from roadproof.questions.question import Place, heading_of
 from roadproof.runtime.records import dataclass
 

@@ -9,7 +9,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from roadproof.analysis.basis import Basis
 from roadproof.engines.search.known_drive import recast
 from roadproof.engines.search.question import usual_road
 from roadproof.evidence.answer import Answer, undecided
@@ -21,6 +20,7 @@ from roadproof.library.compose import both, implication, negation
 from roadproof.library.scenarios import Scenario, vehicles_of
 from roadproof.library.specification import Query, Specification
 from roadproof.logic.formula import And, Formula
+from roadproof.questions.basis import Basis
 from roadproof.questions.order.kinds import Cast, Kind, Reading, casts_of, name_of, own_cast
 from roadproof.questions.question import Answers, Steps
 from roadproof.reasons import NO_REASON, Reason, Why, joined

@@ -10,12 +10,12 @@ from functools import cached_property
 from itertools import permutations
 from typing import Annotated, ClassVar
 
-from roadproof.analysis.basis import Basis
 from roadproof.evidence.answers import shared
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.codec import Doc, read
 from roadproof.library.compose import both, negation
 from roadproof.library.scenarios import Scenario
+from roadproof.questions.basis import Basis
 from roadproof.questions.order.data import OrderData, order_data
 from roadproof.questions.order.deciding import (
     Deciding,

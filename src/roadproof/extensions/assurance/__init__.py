@@ -1,0 +1,20 @@
+"""Requirements, arguments and bundles that rest on checked evidence, for those who sign a safety case."""
+
+from roadproof.extension import Extension
+
+EXTENSION = Extension(
+    title="Requirements, safety cases, bundles and build results",
+    audience="safety cases",
+    needs=(
+        "catalogue",
+        "drivers",
+        "pages",
+        "surveys",
+    ),
+    functions={
+        "assurance": "assuring:assurance",
+        "bundle": "bundling:bundle",
+        "requirements": "tracing:requirements",
+        "requirement_changes": "tracing:requirement_changes",
+    },
+)

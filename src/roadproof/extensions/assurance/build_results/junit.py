@@ -1,0 +1,66 @@
+"""Cases as JUnit XML, valid by the schema that Jenkins' xUnit plugin has (junit-10.xsd)."""
+
+from collections.abc import Iterable, Sequence
+from itertools import groupby
+from xml.etree import ElementTree as xml
+
+from roadproof.extensions.assurance.build_results.cases import Case, State
+
+_ELEMENTS: dict[State, str] = {"failed": "failure", "undecided": "error", "skipped": "skipped"}
+_FORBIDDEN = {code: "\N{REPLACEMENT CHARACTER}" for code in range(32) if chr(code) not in "\t\n\r"}
+"""Characters that XML cannot hold."""
+
+
+def as_junit(title: str, cases: Sequence[Case], in_force: Sequence[str] = ()) -> str:
+    """A suite for each kind of case: a failure where one came out otherwise, an error where it is undecided.
+
+    A case that the user lets roadproof skip is ``skipped``.
+    ``in_force``: what was asked otherwise than by default, a property of each suite.
+    """
+    suites = xml.Element("testsuites", {"name": title} | _counts(cases))
+    order = list(dict.fromkeys(x.suite for x in cases))
+    for name, those in groupby(sorted(cases, key=lambda x: order.index(x.suite)), lambda x: x.suite):
+        _add_suite(suites, name, list(those), in_force)
+    return as_text(suites)
+
+
+def as_text(suites: xml.Element) -> str:
+    """The document with its declaration."""
+    xml.indent(suites)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + xml.tostring(suites, "unicode") + "\n"
+
+
+def _counts(cases: Iterable[Case]) -> dict[str, str]:
+    states = [x.state for x in cases]
+    return {
+        "tests": str(len(states)),
+        "failures": str(states.count("failed")),
+        "errors": str(states.count("undecided")),
+    }
+
+
+def _add_suite(suites: xml.Element, name: str, cases: Sequence[Case], in_force: Sequence[str]) -> None:
+    suite = xml.SubElement(suites, "testsuite", {"name": name} | _counts(cases))
+    if in_force:
+        properties = xml.SubElement(suite, "properties")
+        for told in in_force:
+            xml.SubElement(properties, "property", name="asked with", value=told)
+    for case in cases:
+        _add_case(suite, case)
+
+
+def _add_case(suite: xml.Element, case: Case) -> None:
+    element = xml.SubElement(suite, "testcase", classname=_plain(case.suite), name=_plain(case.name))
+    if case.seconds is not None:
+        element.set("time", f"{case.seconds:.3f}")
+    lines = [] if case.place is None else [str(case.place)]
+    lines += [] if case.evidence is None else [f"[[ATTACHMENT|{case.evidence.as_posix()}]]"]
+    if case.state != "passed":
+        attributes = {"message": _plain(case.message)} | ({"type": str(case.rule)} if case.rule else {})
+        xml.SubElement(element, _ELEMENTS[case.state], attributes).text = _plain("\n".join(lines)) or None
+    elif lines:
+        xml.SubElement(element, "system-out").text = _plain("\n".join(lines))
+
+
+def _plain(text: str) -> str:
+    return text.translate(_FORBIDDEN)

@@ -1,0 +1,273 @@
+"""The result of a test under a driver model: SV drives as the model does, all else is the test's motion.
+
+The verdict is that of the drive, or of the samples, in which the model drives SV (``drivers.replay``).
+"""
+
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from functools import cached_property
+
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.subject import TestedSide
+from roadproof.extensions.drivers.driving import DriverSettings, require, rest_of
+from roadproof.extensions.drivers.initial_state import State
+from roadproof.extensions.drivers.manoeuvres import ManoeuvreName
+from roadproof.extensions.drivers.models import DRIVERS, MODELS, ModelName, course_in, foreseen
+from roadproof.extensions.drivers.outcome import Outcome, shown_by_drive
+from roadproof.extensions.drivers.replay import Replayed, first_cut, replay
+from roadproof.extensions.drivers.sampled_replay import replay_samples
+from roadproof.extensions.traffic.evaluate.courses import BEGINS
+from roadproof.extensions.traffic.evaluate.driven import scene_of
+from roadproof.extensions.traffic.evaluate.foretelling import RESULTS
+from roadproof.extensions.traffic.evaluate.one_trace import OneTrace
+from roadproof.library.bind import values_with
+from roadproof.library.elaborate import read_claim
+from roadproof.library.loading import load_library
+from roadproof.library.scenarios import number_in
+from roadproof.library.specification import Specification, on_request, read_specification
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import with_values
+from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.runtime.canonical import digest
+from roadproof.semantics.exact.algebraic import approximate
+from roadproof.semantics.exact.exact import judge
+from roadproof.semantics.exact.truth import Cut
+from roadproof.semantics.sampled.compiled import compile
+from roadproof.world.drive import Drive
+from roadproof.world.motion import state_at
+from roadproof.world.signals import SIGNALS
+
+_JUST_AFTER = Fraction(1, 1000)  # s after an instant that is not one of the manoeuvre itself
+_PLACES = 6  # decimals of a state
+
+
+@dataclass(frozen=True)
+class DrivenTest:
+    """A drive in which a model drives SV, what it shows, and from when on (s) all its vehicles rest."""
+
+    drive: Drive
+    formula: str
+    rests: Fraction
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What becomes of a scenario under a model.
+
+    ``at``: when the manoeuvre begins (s), None where it never does. ``gap``: the least gap that is left (m).
+    ``instant``, ``speed``: when SV touches POV (s), and how much faster it then is (m/s). ``start``: the
+    state when the manoeuvre begins, as the sheets of UN R157 name it (SI). ``driven``: the drive of a
+    test that is one, with the model in place of SV.
+    """
+
+    scenario: str
+    vehicles: tuple[str, ...]
+    driver: ModelName
+    side: TestedSide
+    at: float | None = None
+    gap: float | None = None
+    instant: float | None = None
+    speed: float | None = None
+    start: Mapping[str, float] = field(default_factory=dict)
+    reason: Reason = NO_REASON
+    driven: DrivenTest | None = field(default=None, repr=False, compare=False)
+
+
+@dataclass(frozen=True)
+class Drivers:
+    """The driver ``models`` that are asked, in definitions that have them; ``values``: parameters (SI)."""
+
+    specification: Specification
+    values: Mapping[str, Fraction]
+    models: tuple[ModelName, ...]
+    _read: dict[str, Formula] = field(default_factory=dict, repr=False, compare=False)
+
+    @cached_property
+    def settings(self) -> DriverSettings:
+        """Parameters and options of the models."""
+        return DriverSettings(self.values, self.specification.options)
+
+    def of(self, manoeuvre: ManoeuvreName) -> tuple[ModelName, ...]:
+        """The models that speak of a manoeuvre."""
+        return tuple(x for x in self.models if manoeuvre in MODELS[x].manoeuvres)
+
+    def begins(self, manoeuvre: ManoeuvreName, vehicles: tuple[str, ...]) -> Formula:
+        """Return the formula that the manoeuvre begins in a state, at the values of parameters."""
+        text = foreseen(manoeuvre, vehicles)
+        if text not in self._read:
+            self._read[text] = with_values(read_claim(self.specification, text).formula, self.values)
+        return self._read[text]
+
+
+def drivers_in(home: Specification, given: Mapping[str, Fraction], names: tuple[str, ...]) -> Drivers | None:
+    """Return the driver models of some names, in definitions on top of which ``driver.spec`` is read.
+
+    ``given``: values of parameters (SI). Raises ``InputError``, ``UsageError``.
+    """
+    if not names:
+        return None
+    library = home.library
+    driver = read_specification(on_request()[DRIVERS])
+    if all(x.text != driver.text for x in library.files):
+        library = load_library([driver, *library.files])
+    specification = library.select(home.set_name, home.options)
+    values = values_with(library, given)
+    require(specification, values)
+    return Drivers(specification, values, tuple(MODELS[name].name for name in names))
+
+
+def content_of(drivers: Drivers) -> str:
+    """A digest that changes with the models, with every definition in force, and with parameters."""
+    home = drivers.specification
+    return digest(drivers.models, home.set_name, home.options, drivers.values, home.library.fingerprint)
+
+
+def course_of(scenario: str) -> ManoeuvreName | None:
+    """The manoeuvre of a scenario by name; None for classes, and for scenarios that no model speaks of."""
+    number = number_in(scenario)
+    return None if number is None else course_in(number)
+
+
+# --- drives --------------------------------------------------------------------------------------
+
+
+def decide_drive(
+    file: DriveFile, drivers: Drivers, scenario: str, vehicles: tuple[str, ...], since: float
+) -> Iterator[Decision]:
+    """Yield a decision for each model that speaks of the scenario, which holds from ``since`` (s) on."""
+    manoeuvre = course_of(scenario)
+    if manoeuvre is None or not drivers.of(manoeuvre):
+        return
+    begins, start = drivers.begins(manoeuvre, vehicles), Fraction(since)
+    cut = first_cut(judge(begins, file.drive).truth(begins), start)
+    if cut is None:
+        yield from _not_foreseen(drivers, manoeuvre, scenario, vehicles)
+        return
+    at, state = approximate(cut.point), _state_at(file, cut).start(manoeuvre, vehicles)
+    for model in drivers.of(manoeuvre):
+        found = replay(
+            file.drive, file.road, vehicles, manoeuvre, model, start, drivers.specification, drivers.settings
+        )
+        decision = _decided(scenario, vehicles, model, found.outcome, at, state)
+        yield replace(decision, driven=_driven(found, vehicles, start))
+
+
+def _driven(found: Replayed, vehicles: tuple[str, ...], since: Fraction) -> DrivenTest | None:
+    shown = shown_by_drive(found.outcome, vehicles)
+    if found.drive is None or not shown:
+        return None
+    begin = f"{since} s" if since.denominator == 1 else f"{since}*1 s"
+    formula = f"F[{begin}, {begin}] ({shown})" if since else shown
+    return DrivenTest(found.drive, formula, max(rest_of(found.drive), since))
+
+
+def _state_at(file: DriveFile, cut: Cut) -> State:
+    """The state at a cut; near it where it is just after a point, or at an irrational one."""
+    time = cut.point if isinstance(cut.point, Fraction) else Fraction(approximate(cut.point))
+    time += _JUST_AFTER if cut.after else 0
+    states = {name: state_at(motion, time) for name, motion in file.drive.vehicles.items()}
+    return State(
+        {(x, name): _rounded(getattr(at, x)) for name, at in states.items() for x in SIGNALS},
+        {(x, n): getattr(m, x) for n, m in file.drive.vehicles.items() for x in ("length", "width")},
+    )
+
+
+# --- samples -------------------------------------------------------------------------------------
+
+
+def decide_trace(
+    trace: OneTrace,
+    drivers: Drivers,
+    scenario: str,
+    vehicles: tuple[str, ...],
+    since: float,
+    called: tuple[str, ...],
+) -> Iterator[Decision]:
+    """As ``decide_drive``, of samples; ``called``: what the test calls the vehicles."""
+    manoeuvre = course_of(scenario)
+    if manoeuvre is None or not drivers.of(manoeuvre):
+        return
+    batch = trace.batch
+    answer = compile({BEGINS: drivers.begins(manoeuvre, vehicles)}).evaluate(batch, "truncated", at="all")
+    true = answer.answers[BEGINS].true[:, 0]
+    first = round(since / float(batch.dt))
+    begun = next((k for k in range(first, int(batch.lengths[0])) if true[k]), None)
+    if begun is None:
+        yield from _not_foreseen(drivers, manoeuvre, scenario, called)
+        return
+    state = State(
+        {
+            (x, name): _rounded(batch.signals[x, name][begun, 0])
+            for name in vehicles
+            for x in SIGNALS
+            if (x, name) in batch.signals
+        },
+        {(x, n): _rounded(batch.sizes[x, n][0]) for n in vehicles for x in ("length", "width")},
+    )
+    scene = scene_of(batch, trace.road, vehicles, first * batch.dt)
+    for model in drivers.of(manoeuvre):
+        found = replay_samples(scene, manoeuvre, model, drivers.settings)
+        at = float(begun * batch.dt)
+        yield _decided(scenario, called, model, found, at, state.start(manoeuvre, vehicles))
+
+
+# --- tests with a formula -------------------------------------------------------------------------
+
+
+def decide_formula(found: Sequence[Decision], missed: Collection[tuple[str, str]] = ()) -> Iterator[Decision]:
+    """What becomes of a test with a formula, of some drives of which there are decisions.
+
+    Drives on both sides show that it is partly preventable; one side alone decides nothing of other drives.
+    ``missed``: scenarios and models for which a search for a drive on a further side found none.
+    """
+    groups: dict[tuple[str, str], list[Decision]] = {}
+    for x in found:
+        groups.setdefault((x.scenario, x.driver), []).append(x)
+    for key, those in groups.items():
+        made = replace(those[0], at=None, gap=None, instant=None, speed=None, start={}, driven=None)
+        counts = Counter(x.side for x in those)
+        if {"preventable", "unpreventable"} <= counts.keys():
+            yield replace(made, side="partly", reason=Why.BOTH_SIDES())
+        else:
+            told = ", ".join(f"{count} {side}" for side, count in counts.items())
+            why = Why.ONE_SIDE_SOUGHT if key in missed else Why.ONE_SIDE
+            yield replace(made, side="undecided", reason=why(told))
+
+
+# --- both ----------------------------------------------------------------------------------------
+
+
+def _not_foreseen(
+    drivers: Drivers, manoeuvre: ManoeuvreName, scenario: str, vehicles: tuple[str, ...]
+) -> Iterator[Decision]:
+    reason = Why.NOT_BEGUN(manoeuvre)
+    for model in drivers.of(manoeuvre):
+        yield Decision(scenario, vehicles, model, "not foreseen", reason=reason)
+
+
+def _decided(
+    scenario: str,
+    vehicles: tuple[str, ...],
+    model: ModelName,
+    found: Outcome,
+    at: float,
+    start: Mapping[str, float],
+) -> Decision:
+    return Decision(
+        scenario,
+        vehicles,
+        model,
+        RESULTS[found.result],
+        round(at, _PLACES),
+        found.gap,
+        found.instant,
+        found.speed,
+        start,
+        found.reason,
+    )
+
+
+def _rounded(value: float | Fraction) -> Fraction:
+    return Fraction(round(Fraction(value) * 10**_PLACES), 10**_PLACES)

@@ -1,0 +1,93 @@
+"""All tests of a catalogue as small pictures: who is how far ahead, and who is where across the road."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from roadproof.extensions.catalogue.traces import Courses
+from roadproof.frontends.report.drive import COLOURS
+from roadproof.frontends.report.figures import make_page, shorten
+from roadproof.runtime.records import dataclass
+
+MOST_ON_A_PAGE = 40
+_COLUMNS, _FEW = 5, 3
+_CELL = (2.05, 1.75)  # inches, title and labels included
+_HEADING = 0.32
+_MARGIN = (0.35, 0.55)  # left of all cells, above them
+
+
+@dataclass(frozen=True)
+class DrivePicture:
+    """A test to be drawn: its ``title``, the ``group`` it stands in, in words, and how its vehicles move."""
+
+    title: str
+    group: str
+    courses: Courses
+
+
+def draw_tests(tests: Sequence[DrivePicture]) -> Iterator[Any]:
+    """Pages of small pictures, groups in the order in which they come."""
+    for k in range(0, len(tests), MOST_ON_A_PAGE):
+        yield _page(tests[k : k + MOST_ON_A_PAGE])
+
+
+def _page(tests: Sequence[DrivePicture]) -> Any:
+    groups: dict[str, list[DrivePicture]] = {}
+    for test in tests:
+        groups.setdefault(test.group, []).append(test)
+    columns = _COLUMNS if len(tests) > 2 * _FEW else _FEW
+    rows = sum(-(-len(those) // columns) for those in groups.values())
+    height = rows * _CELL[1] + len(groups) * _HEADING + _MARGIN[1]
+    width = columns * _CELL[0] + _MARGIN[0]
+    figure = make_page(width, height)
+    names = dict.fromkeys(name for test in tests for name in test.courses.vehicles)
+    colours = {name: COLOURS[k % len(COLOURS)] for k, name in enumerate(names)}
+    _legend(figure, colours, height)
+    top = height - _MARGIN[1]
+    for group, those in groups.items():
+        figure.text(0.1 / width, (top - 0.2) / height, group, fontsize=8, weight="bold", va="bottom")
+        top -= _HEADING
+        for k, test in enumerate(those):
+            left, upper = _MARGIN[0] + k % columns * _CELL[0], top - k // columns * _CELL[1]
+            _draw(figure, test, colours, (left, upper), (width, height))
+        top -= -(-len(those) // columns) * _CELL[1]
+    return figure
+
+
+def _legend(figure: Any, colours: Mapping[str, str], height: float) -> None:
+    """What is drawn, and the colour of each vehicle."""
+    told = "above: m ahead of the first vehicle, below: m across the road, both over seconds"
+    figure.text(0.01, 1 - 0.22 / height, f"Tests by scenario; {told}", fontsize=8, va="center")
+    for k, (name, colour) in enumerate(colours.items()):
+        place = 0.01 + 0.09 * k
+        figure.text(place, 1 - 0.42 / height, f"■ {name}", fontsize=8, va="center", color=colour)
+
+
+def _draw(
+    figure: Any,
+    test: DrivePicture,
+    colours: Mapping[str, str],
+    corner: tuple[float, float],
+    page: tuple[float, float],
+) -> None:
+    left, upper = corner
+    width, height = _CELL[0] - 0.42, (_CELL[1] - 0.55) / 2
+
+    def place(bottom: float) -> Any:
+        return figure.add_axes((left / page[0], bottom / page[1], width / page[0], height / page[1]))
+
+    above, below = place(upper - 0.2 - height), place(upper - 0.26 - 2 * height)
+    shorten(above.set_title(test.title, fontsize=6.5, pad=2, loc="left"), _CELL[0] - 0.1)
+    courses = test.courses
+    first = next(iter(courses.vehicles.values()))
+    for name, course in courses.vehicles.items():
+        ahead = [x - y for x, y in zip(course.along, first.along, strict=True)]
+        above.plot(courses.times, ahead, color=colours[name], lw=1)
+        below.fill_between(courses.times, course.right, course.left, color=colours[name], alpha=0.45, lw=0)
+    for marking in courses.markings:
+        below.axhline(marking, color="#888888", lw=0.5)
+    for axes in (above, below):
+        axes.tick_params(labelsize=5, length=2, pad=1)
+        axes.set_xlim(courses.times[0], courses.times[-1])
+        axes.grid(color="#eeeeee", lw=0.4)
+        axes.set_axisbelow(True)
+    above.tick_params(labelbottom=False)

@@ -1,0 +1,12 @@
+"""Driver models in place of SV, for those who argue what a careful driver prevents."""
+
+from roadproof.extension import Extension
+
+EXTENSION = Extension(
+    title="Driver models, and collisions that they prevent",
+    audience="safety cases",
+    needs=("kernel",),
+    functions={"preventable": "preventing:preventable"},
+    questions={"preventable": "preventable.question:PreventableQuestion"},
+    answers={"preventable": "preventing:Plates"},
+)

@@ -1,0 +1,74 @@
+"""Whether a driver model, put into a drive that was found, ends as a restricted search says.
+
+A restriction (``prevention.spec``) is a formula of the first state, from which the other vehicle goes on as
+it begins. The drive that is found has its own motion, which may decide otherwise, so a drive counts only
+where the model in place of SV does what is asked for.
+"""
+
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
+
+from roadproof.engines.search.outcome import Search
+from roadproof.engines.search.question import FoundDrive, SearchProblem
+from roadproof.extensions.drivers.driving import DriverSettings
+from roadproof.extensions.drivers.models import MODELS, course_in
+from roadproof.extensions.drivers.outcome import Outcome, Result, told_faster
+from roadproof.extensions.drivers.replay import replay
+from roadproof.extensions.drivers.restriction import Restriction
+from roadproof.library.bind import bind
+from roadproof.library.scenarios import number_in
+from roadproof.logic.formula import Application, Formula, subformulas
+from roadproof.runtime.records import dataclass
+from roadproof.semantics.exact.exact import DriveJudge
+
+_START = Fraction(0)
+_WANTED: Mapping[str, Result] = {"unpreventable": Result.COLLIDES, "preventable": Result.PREVENTED}
+
+
+@dataclass(frozen=True)
+class Driven:
+    """A driver model in drives of a ``search`` under a ``restriction``, with bound ``problem``."""
+
+    search: Search
+    problem: SearchProblem
+    restriction: Restriction
+
+    def objection(self, found: FoundDrive) -> str:
+        """Return how the model ends in the drive, where that is not asked for; else nothing."""
+        for number, vehicles in self._shown(found):
+            outcome = self._outcome(found, number, vehicles)
+            if outcome.result is not _WANTED[self.restriction.side]:
+                return _words(outcome)
+        return ""
+
+    def _shown(self, found: FoundDrive) -> Iterator[tuple[int, tuple[str, ...]]]:
+        """Yield the restricted scenarios that the drive shows from its start on, with their vehicles."""
+        query, road = self.search.query, self.problem.road
+        scenarios: dict[Formula, tuple[int, tuple[str, ...]]] = {}
+        for part in subformulas(bind(query.formula, road, found.lanes, self.problem.values)):
+            if isinstance(part, Application):
+                number = number_in(part.name.partition("@")[0])
+                if number in self.restriction.scenarios:
+                    vehicles = tuple(x for x in part.arguments if x in found.drive.vehicles)
+                    scenarios[part] = (number, vehicles)
+        truths = DriveJudge.on(found.drive)
+        yield from (x for part, x in scenarios.items() if truths.visit(part).at(_START))
+
+    def _outcome(self, found: FoundDrive, number: int, vehicles: tuple[str, ...]) -> Outcome:
+        manoeuvre, home = course_in(number), self.search.specification
+        assert manoeuvre is not None
+        settings = DriverSettings(self.problem.values, home.options)
+        model = MODELS[self.restriction.model].name
+        return replay(
+            found.drive, self.problem.road, vehicles, manoeuvre, model, _START, home, settings
+        ).outcome
+
+
+def _words(outcome: Outcome) -> str:
+    match outcome.result:
+        case Result.COLLIDES:
+            return f"SV touches POV at {outcome.instant:g} s, {told_faster(outcome.speed or 0)}"
+        case Result.PREVENTED:
+            return "no collision" if outcome.gap is None else f"no collision, {outcome.gap:g} m left"
+        case Result.UNDECIDED:
+            return outcome.reason

@@ -1,0 +1,89 @@
+"""Plates: a driver model over a plane of initial values; and the file that says where a formula holds."""
+
+from collections.abc import Mapping
+from fractions import Fraction
+from typing import TYPE_CHECKING, Annotated, Final, Literal, TypeAlias
+
+from roadproof.evidence.answer_files import AboutClaim
+from roadproof.evidence.codec import Doc, Rule
+from roadproof.extensions.drivers.manoeuvres import MANOEUVRES, ManoeuvreName, Plane, plane_of
+from roadproof.extensions.drivers.models import ModelName
+from roadproof.runtime.records import dataclass
+
+if TYPE_CHECKING:
+    from roadproof.extensions.drivers import lines as drawn
+
+BOUNDARY: Final = "roadproof/boundary/1"
+Range: TypeAlias = tuple[Fraction, Fraction]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plate:
+    """One model over the plane of two initial values, in SI units."""
+
+    manoeuvre: ManoeuvreName
+    model: Annotated[ModelName, Doc("The driver model.")]
+    fixed: Annotated[Mapping[str, Fraction], Doc("Initial values that all places share, by name.")]
+    along: Annotated[Range, Doc("The range of the initial value that each line runs along.")]
+    across: Annotated[Range, Doc("The range of the initial value that differs from line to line.")]
+    lines: Annotated[int, Rule(minimum=2), Doc("How many lines there are.")]
+
+    @property
+    def plane(self) -> Plane:
+        """The plane of the plate. Raises ``UsageError``."""
+        return plane_of(MANOEUVRES[self.manoeuvre], self.fixed, self.along, self.across, self.lines)
+
+
+@dataclass(frozen=True, kw_only=True)
+class End:
+    """An end of a span."""
+
+    near: Annotated[float, Doc("Rounded to a millionth.")]
+    exact: Annotated[
+        str, Rule(least=1), Doc("The number, or the polynomial of which it is the root that is near.")
+    ]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Line:
+    """Where along a line a collision is unpreventable."""
+
+    at: Annotated[Fraction, Doc("The initial value that differs from line to line, in SI units.")]
+    unpreventable: Annotated[
+        tuple[tuple[End, End], ...],
+        Doc(
+            "Spans of the line in which the formula is true, from and to; on a stepped plate, first and last "
+            "of neighbouring places at which it is."
+        ),
+    ]
+
+    @staticmethod
+    def of(line: "drawn.Line") -> "Line":
+        """Return a line as files have it."""
+        spans = tuple(
+            (End(near=a.near, exact=a.exact), End(near=b.near, exact=b.exact)) for a, b in line.spans
+        )
+        return Line(at=line.at, unpreventable=spans)
+
+    @property
+    def drawn(self) -> "drawn.Line":
+        """The inverse of ``of``."""
+        from roadproof.extensions.drivers import lines as drawn
+
+        spans = (
+            (drawn.End(float(a.near), a.exact), drawn.End(float(b.near), b.exact))
+            for a, b in self.unpreventable
+        )
+        return drawn.Line(self.at, tuple(spans))
+
+
+@dataclass(frozen=True, kw_only=True)
+class BoundaryFile(AboutClaim):
+    """Where on the lines of a plate a formula holds, with exact ends."""
+
+    schema: Literal["roadproof/boundary/1"] = BOUNDARY
+    parameters: Annotated[
+        Mapping[str, Fraction], Doc("Values of parameters on which it depends, in SI units.")
+    ]
+    plate: Plate
+    lines: tuple[Line, ...]

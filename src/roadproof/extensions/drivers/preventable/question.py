@@ -1,0 +1,307 @@
+"""The question from which initial values a driver prevents a collision."""
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from functools import cached_property
+from itertools import product
+from typing import Any, ClassVar, get_args
+
+from roadproof.errors import InputError, UsageError
+from roadproof.evidence.answer import Answer
+from roadproof.evidence.claim import Beside, Claim, Lines, Mode, parameters_in, valid_under
+from roadproof.evidence.codec import read
+from roadproof.evidence.subject import OTHER, Subject, SubjectKind
+from roadproof.extensions.drivers import gradual
+from roadproof.extensions.drivers.driving import OPTIONS, PARAMETERS, DriverSettings, require
+from roadproof.extensions.drivers.lemmas import Lemma, chosen, idle, lemmas_for
+from roadproof.extensions.drivers.lines import SIDES, Side, boundary_text, open_claim
+from roadproof.extensions.drivers.manoeuvres import MANOEUVRES, Manoeuvre, Values
+from roadproof.extensions.drivers.models import Model, manoeuvre_of, models_for, parts_of
+from roadproof.extensions.drivers.preventable import data
+from roadproof.extensions.drivers.preventable.plate import Plate as Asked
+from roadproof.extensions.drivers.preventable.view import (
+    LemmaResult,
+    Plate,
+    PreventableView,
+    Shown,
+    lemma_data,
+    plate_data,
+    shown_by,
+    sides_of,
+)
+from roadproof.library.elaborate import read_claim, read_tree
+from roadproof.library.motion import value_texts
+from roadproof.library.specification import unknown
+from roadproof.logic.formula import Formula
+from roadproof.questions.basis import Basis
+from roadproof.questions.question import Answers, Place, Steps, heading_of
+from roadproof.runtime.budget import Work
+from roadproof.runtime.records import dataclass
+
+MOST_PLATES = 200
+FOR_A_LEMMA = 20.0
+"""Units of work."""
+
+
+@dataclass(frozen=True)
+class PreventableQuestion:
+    """Plates and lemmas; ``sheet`` has the values that differ from plate to plate.
+
+    ``scenario``: the number of the one that drives should be of, where the manoeuvre was asked for by it.
+    """
+
+    kind: ClassVar[str] = "preventable"
+    basis: Basis
+    manoeuvre: Manoeuvre
+    models: tuple[Model, ...]
+    fixed: Values
+    sheet: Mapping[str, tuple[Fraction, ...]]
+    along: tuple[Fraction, Fraction]
+    across: tuple[Fraction, Fraction]
+    rows: int = 100
+    with_lemmas: bool = True
+    scenario: int | None = None
+
+    @property
+    def work(self) -> Work:
+        """The work that is allowed for a claim."""
+        return Work(self.basis.effort, FOR_A_LEMMA)
+
+    @property
+    def asked(self) -> data.AskedPlates:
+        """What is asked as data."""
+        return data.AskedPlates(
+            manoeuvre=self.manoeuvre.name,
+            scenario=self.scenario,  # type: ignore[arg-type]  # as it was read
+            models=tuple(x.name for x in self.models),
+            fixed=self.fixed,
+            sheet=tuple(data.Choice(name=name, values=x) for name, x in self.sheet.items()),
+            along=self.along,
+            across=self.across,
+            lines=self.rows,
+            lemmas=self.with_lemmas,
+        )
+
+    @classmethod
+    def of(cls, basis: Basis, asked: object, where: str) -> "PreventableQuestion":
+        """Return the question that plain data ask. Raises ``InputError``."""
+        said = read(data.AskedPlates, asked, where)
+        kind = MANOEUVRES[said.manoeuvre]
+        try:
+            if said.scenario is not None and manoeuvre_of(str(said.scenario))[0] != said.manoeuvre:
+                raise UsageError(f"scenario {said.scenario} is no {said.manoeuvre}")
+            found = cls(
+                basis,
+                kind,
+                models_for(kind.name, said.models),
+                said.fixed,
+                {x.name: x.values for x in said.sheet},
+                said.along,
+                said.across,
+                said.lines,
+                said.lemmas,
+                said.scenario,
+            )
+            found.check()
+        except UsageError as error:
+            raise InputError(f"{where}: {error}") from None
+        return found
+
+    def check(self) -> None:
+        """Raises ``UsageError`` and ``InputError`` for values that no plate has, and for too many plates."""
+        kind, known = self.manoeuvre, self.manoeuvre.quantities
+        require(self.basis.specification, self.basis.all_values())
+        if not 2 <= self.rows <= data.MOST_LINES:
+            raise UsageError(f"lines={self.rows}: a plate has between 2 and {data.MOST_LINES}")
+        for name in (*self.fixed, *self.sheet):
+            if name not in known:
+                raise UsageError(f"{name}: {unknown('initial value of a ' + kind.name, name, known)}")
+            if name in (kind.line, kind.across) or (name in self.fixed and name in self.sheet):
+                raise UsageError(f"{name} varies on the plate: give a range, or omit it")
+        for name, (low, high) in ((kind.line, self.along), (kind.across, self.across)):
+            known[name].check(low)
+            if low >= high:
+                raise UsageError(f"{name}={low}:{high}: the range is empty; write the smaller value first")
+        count = len(self.plates)
+        if count > MOST_PLATES:
+            raise UsageError(f"{count} plates: ask for {MOST_PLATES} at most, with fewer values or models")
+        for plate in self.plates.values():
+            values = kind.values(plate.fixed)
+            if gradual.RATE in values:
+                gradual.check_gradual(plate.model, values, self.reading)
+
+    @cached_property
+    def plates(self) -> dict[str, Asked]:
+        """The plates by name: for each choice of the sheet's values, each model."""
+        found: dict[str, Asked] = {}
+        for values in product(*self.sheet.values()):
+            fixed = {**self.fixed, **dict(zip(self.sheet, values, strict=True))}
+            told = "-".join(f"{name}-{value}".replace("/", "_") for name, value in fixed.items())
+            for model in self.models:
+                name = f"{model.name}-{told}" if told else model.name
+                found[name] = Asked(
+                    manoeuvre=self.manoeuvre.name,
+                    model=model.name,
+                    fixed=fixed,
+                    along=self.along,
+                    across=self.across,
+                    lines=self.rows,
+                )
+        return found
+
+    @property
+    def is_gradual(self) -> bool:
+        """Whether the braking of POV grows at a finite rate, which no formula describes."""
+        return gradual.RATE in self.fixed or gradual.RATE in self.sheet
+
+    @cached_property
+    def lemmas(self) -> dict[str, Lemma]:
+        """The lemmas by name."""
+        aeb = self.reading.choices.cc_aeb
+        is_said = self.with_lemmas and not self.is_gradual
+        asked = lemmas_for(self.manoeuvre.name, self.models, aeb) if is_said else []
+        return {f"lemma-{lemma.name}": lemma for lemma in asked}
+
+    @cached_property
+    def reading(self) -> DriverSettings:
+        """Values of parameters, and options."""
+        return DriverSettings(self.basis.all_values(), self.basis.specification.options)
+
+    @property
+    def readings(self) -> tuple[str, ...]:
+        """Options and parameters that were chosen, and on which boundaries here depend."""
+        made = chosen(self.basis.specification, self.basis.values)
+        return tuple(x for x in (f"{name}={value}" for name, value in made.items()) if x not in self.idle)
+
+    @cached_property
+    def idle(self) -> tuple[str, ...]:
+        """Options and parameters that were chosen, and on which nothing here depends."""
+        return idle(self.basis.specification, self.basis.values, self.manoeuvre, self.models)
+
+    # --- claims ----------------------------------------------------------------------------------
+
+    def batches(self, known: Answers) -> list["PlateBatch | LemmaBatch"]:
+        """A batch for each plate, and one for each lemma."""
+        return self._batches
+
+    @cached_property
+    def _batches(self) -> list["PlateBatch | LemmaBatch"]:
+        made: list[PlateBatch | LemmaBatch] = []
+        for name in self.plates:
+            sides: dict[Side, Claim] = {side: self.side_claim(name, side) for side in SIDES}
+            made.append(PlateBatch(name, self.boundary_claim(name), sides))
+        return made + [LemmaBatch(name, self.lemma_claim(name)) for name in self.lemmas]
+
+    def boundary_claim(self, name: str) -> Claim:
+        """Return the claim where on the lines of a plate a collision is unpreventable."""
+        plate = self.plates[name]
+        stated = gradual.RATE not in plate.fixed
+        text = boundary_text(self.manoeuvre, plate.model, plate.fixed)
+        mode = Lines(plate, {} if stated else self._readings)
+        return self._claim(text, mode, more=() if stated else PARAMETERS)
+
+    def side_claim(self, name: str, side: Side) -> Claim:
+        """Return the claim that a drive begins on a plate that shows a side."""
+        home, plate = self.basis.specification, self.plates[name]
+        vehicles = self.manoeuvre.vehicles
+        parts = () if self.scenario is None else parts_of(self.scenario, vehicles)
+        of = tuple(read_claim(home, x).formula for x in parts)
+        text = open_claim(home, self.manoeuvre, plate.model, plate.fixed, side)
+        return self._claim(text, Beside(plate, side, self._readings, of, parts), of, PARAMETERS)
+
+    @cached_property
+    def _readings(self) -> dict[str, str]:
+        return {name: self.reading.options[name] for name in OPTIONS}
+
+    def _claim(
+        self, text: str, mode: Mode, formulas: Sequence[Formula] = (), more: Sequence[str] = ()
+    ) -> Claim:
+        home = self.basis.specification
+        query = read_claim(home, text)
+        occurring = parameters_in(home.library, (query.formula, *formulas), self.basis.values, more=more)
+        return Claim(query.formula, query.vehicles, query.lanes, mode, occurring, query, home)
+
+    def lemma_claim(self, name: str) -> Claim:
+        """Return the claim that a lemma holds at the values of its parameters."""
+        home, lemma, values = self.basis.specification, self.lemmas[name], self.basis.all_values()
+        said = value_texts(home, {x: values[x] for x in lemma.parameters})
+        return valid_under(home, read_tree(home, lemma.tree, lemma.claim), said)
+
+    def label(self, name: str) -> str:
+        """Return which plate or lemma the claim of a name is about."""
+        if name in self.lemmas:
+            return f"lemma {self.lemmas[name].name}"
+        if name in self.plates:
+            return f"{name}, lines"
+        plate, _, side = name.rpartition("-")
+        return f"{plate}, {side}"
+
+    def subject(self, name: str) -> Subject:
+        """Return what requirements link to: the plate that a drive is of."""
+        plate, _, side = name.rpartition("-")
+        is_drive = plate in self.plates and side in get_args(Side)
+        return Subject(SubjectKind.PLATE, plate) if is_drive else OTHER
+
+    # --- view ------------------------------------------------------------------------------------
+
+    def view(self, known: Answers) -> PreventableView:
+        """Return the plates and lemmas with their answers."""
+        lemmas = (LemmaResult(x, self.lemma_claim(name), known.get(name)) for name, x in self.lemmas.items())
+        return PreventableView(tuple(self._plate(name, known) for name in self.plates), tuple(lemmas))
+
+    def _plate(self, name: str, known: Answers) -> Plate:
+        asked, boundary = self.plates[name], known.get(name)
+        shown: list[Shown] = []
+        if boundary is not None and boundary.is_final:
+            there = sides_of(boundary)
+            names: dict[Side, str] = {side: f"{name}-{side}" for side in SIDES}
+            shown = [shown_by(side, x, known.get(x), side in there) for side, x in names.items()]
+        return Plate(name, asked.model, asked.fixed, boundary, tuple(shown))
+
+    def data(self, view: PreventableView, place: Place, seconds: float) -> data.PreventableData:
+        """Return the view as ``--json`` prints it."""
+        basis, kind = self.basis, self.manoeuvre
+        said: dict[str, Any] = {"set": basis.specification.set_name, **basis.said()}
+        (low, high), (least, most) = self.along, self.across
+        lemmas = zip(self.lemmas, view.lemmas, strict=True)
+        return data.PreventableData(
+            **heading_of(data.SCHEMA, basis),
+            **said,
+            manoeuvre=kind.name,
+            scenario=self.asked.scenario,
+            along=(kind.line, str(low), str(high)),
+            across=(kind.across, str(least), str(most), str(self.rows)),
+            seconds=seconds,
+            idle=self.idle,
+            plates=tuple(plate_data(x, kind, place) for x in view.plates),
+            lemmas=tuple(lemma_data(name, x, place) for name, x in lemmas),
+        )
+
+
+@dataclass(frozen=True)
+class PlateBatch:
+    """The claim about the lines of a plate, and those about drives on each side that they may have."""
+
+    name: str
+    lines: Claim
+    sides: Mapping[Side, Claim]
+
+    def steps(self) -> Steps:
+        """Yield the claim about the lines, then those about drives."""
+        boundary: Answer = yield self.name, self.lines
+        there = sides_of(boundary)
+        for side, claim in self.sides.items():
+            if side in there:
+                yield f"{self.name}-{side}", claim
+
+
+@dataclass(frozen=True)
+class LemmaBatch:
+    """One lemma."""
+
+    name: str
+    claim: Claim
+
+    def steps(self) -> Steps:
+        """Yield the claim."""
+        yield self.name, self.claim

@@ -1,0 +1,398 @@
+"""Plates to look at: which initial values a driver prevents a collision from, in every form."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from functools import partial
+from itertools import product
+from math import ceil
+from textwrap import wrap
+from typing import Any, NamedTuple, TypeAlias
+
+from roadproof.evidence.codec import read
+from roadproof.extensions.drivers.lines import End, Line
+from roadproof.extensions.drivers.manoeuvres import MANOEUVRES, Quantity
+from roadproof.extensions.drivers.models import MODELS, parts_of
+from roadproof.extensions.drivers.preventable.data import PlateData, PreventableData
+from roadproof.extensions.drivers.preventable.question import PreventableQuestion
+from roadproof.extensions.drivers.preventable.view import LemmaResult, Plate, Shown
+from roadproof.extensions.drivers.words import legend
+from roadproof.extensions.pages.page.page_context import PageContext
+from roadproof.extensions.pages.page.results import Result, Words
+from roadproof.frontends.report.figures import make_page
+from roadproof.frontends.report.sheet import Column, Sheet
+from roadproof.runtime.records import dataclass
+from roadproof.world.units import UNITS
+
+COLOURS: Mapping[str, str] = {
+    "careful": "#1f5fa8",
+    "r157": "#c44e1b",
+    "eu1426": "#2c8a4b",
+    "rss": "#7d3c98",
+    "fsm": "#8a6d1b",
+}
+_TOKENS = {"careful": "one", "r157": "two", "eu1426": "three", "rss": "four", "fsm": "open"}
+"""The colours of models on pages, as names of the design."""
+_STEPPED = "Single lines: places looked at, stepped at 10 Hz; nothing is claimed between them"
+_LEGEND = 1.9, 0.2  # inches for the name of a model
+_LETTERS = 21  # of a line below the plates, an inch
+_TOLD = 5  # lines of a plate, and spans of a line, that the terminal shows
+
+
+def measured(quantity: Quantity, value: Fraction) -> str:
+    """A value in its quantity's unit: ``60 km/h``."""
+    return f"{float(value / UNITS[quantity.unit][0]):g} {quantity.unit}"
+
+
+def fixed_text(question: PreventableQuestion, plate: Plate) -> str:
+    """What is fixed on a plate."""
+    known = question.manoeuvre.quantities
+    return ", ".join(f"{name} = {measured(known[name], value)}" for name, value in plate.fixed.items())
+
+
+def shown_symbols(question: PreventableQuestion) -> tuple[Quantity, ...]:
+    """The initial values that plates are about, in the order of the manoeuvre."""
+    names = {question.manoeuvre.line, question.manoeuvre.across, *question.sheet, *question.fixed}
+    return tuple(x for name, x in question.manoeuvre.quantities.items() if name in names)
+
+
+def share_of(question: PreventableQuestion, plate: Plate) -> float:
+    """Which part of the plane is unpreventable: the mean over its lines."""
+    low, high = question.along
+    total = sum(b.near - a.near for x in plate.lines for a, b in x.spans)
+    return total / (float(high - low) * len(plate.lines)) if plate.lines else 0.0
+
+
+def as_text(question: PreventableQuestion, plates: Sequence[Plate], lemmas: Sequence[LemmaResult]) -> str:
+    """For the terminal: each plate with some of its lines and its drives, and the lemmas."""
+    known = question.manoeuvre.quantities
+    along, across = known[question.manoeuvre.line], known[question.manoeuvre.across]
+    lines: list[str] = []
+    for plate in plates:
+        fixed = fixed_text(question, plate)
+        title = MODELS[plate.model].title
+        lines.append(f"{plate.verdict:<11} {question.manoeuvre.name}, {title}{fixed and f'; {fixed}'}")
+        if plate.reason:
+            lines.append(f"  {plate.reason}")
+        if plate.lines:
+            percent = 100 * share_of(question, plate)
+            what = f"{percent:.1f} % of the plane"
+            if plate.stepped:
+                what = "what follows"
+                lines.append(f"  {plate.stepped};")
+                lines.append("  the drives follow the controller, which their formula does not say")
+            if plate.motion:
+                lines.append(f"  {plate.motion};")
+            lines.append(f"  unpreventable on {what}; {along.doc} [{along.unit}]:")
+        for line in _some(plate.lines):
+            shown = " and ".join(f"{a.near:.6g} to {b.near:.6g}" for a, b in line.spans[:_TOLD]) or "nowhere"
+            if len(line.spans) > _TOLD:
+                shown += f" and {len(line.spans) - _TOLD} more"
+            lines.append(f"    {across.name} = {measured(across, line.at):<14} {shown}")
+        for x in plate.shown:
+            told: str = x.reason
+            if x.drive is not None:
+                values = ", ".join(
+                    f"{name} = {measured(known[name], x.values[name])}" for name in (across.name, along.name)
+                )
+                told = f"a drive at {values}{_scenario_text(question, x)}"
+            lines.append(f"  {x.side}: {told}")
+    lines += [legend(shown_symbols(question))] if plates else []
+    for proved in lemmas:
+        lines.append(f"{proved.verdict:<11} {proved.lemma.name}: {proved.lemma.title}")
+        if proved.reason:
+            lines.append(f"  {proved.reason}")
+    if question.readings:
+        lines.append(f"with {', '.join(question.readings)}")
+    lines += [f"{said}: no boundary that is asked for depends on it" for said in question.idle]
+    return "\n".join(lines)
+
+
+def _scenario_text(question: PreventableQuestion, shown: Shown) -> str:
+    """What the drive is of, where the scenario was asked for."""
+    if question.scenario is None:
+        return ""
+    whole, happening = parts_of(question.scenario, question.manoeuvre.vehicles)
+    if shown.scenario == whole:
+        return f", of scenario {question.scenario}"
+    if shown.scenario == happening:
+        return f"; what happens in scenario {question.scenario}, but no start that was tried is safe"
+    return f"; no drive that was tried is of scenario {question.scenario}"
+
+
+def _some(lines: Sequence[Line]) -> Sequence[Line]:
+    """A few lines, first and last with them."""
+    if len(lines) <= _TOLD:
+        return lines
+    return [lines[round(k * (len(lines) - 1) / (_TOLD - 1))] for k in range(_TOLD)]
+
+
+Entry: TypeAlias = tuple[Plate, Line, tuple[End, End]]
+"""A span of a line of a plate."""
+
+
+def sheet_of(question: PreventableQuestion, plates: Sequence[Plate]) -> Sheet[Entry]:
+    """An entry for each span of each line: SI units, ends as numbers and in CSV also exactly."""
+    fixed = dict.fromkeys(name for plate in plates for name in plate.fixed)
+    along, across = question.manoeuvre.line, question.manoeuvre.across
+    columns: tuple[Column[Entry], ...] = (
+        Column("model", lambda x: x[0].model),
+        *(Column(name, partial(_fixed, name)) for name in fixed),
+        Column(across, lambda x: x[1].at),
+        Column(f"{along}_from", lambda x: x[2][0].near),
+        Column(f"{along}_to", lambda x: x[2][1].near),
+        Column(f"{along}_from_exact", lambda x: "" if x[0].stepped else x[2][0].exact, "csv"),
+        Column(f"{along}_to_exact", lambda x: "" if x[0].stepped else x[2][1].exact, "csv"),
+        Column("note", lambda x: x[0].stepped or x[0].motion, "csv"),
+    )
+    every = [(plate, line, span) for plate in plates for line in plate.lines for span in line.spans]
+    return Sheet(columns, every)
+
+
+def _fixed(name: str, entry: Entry) -> Fraction:
+    return entry[0].fixed[name]
+
+
+def draw_sheet(question: PreventableQuestion, plates: Sequence[Plate]) -> Any:
+    """All plates of a sheet: rows are the second of what is fixed, columns all else; colours are models."""
+    names = list(question.sheet)
+    beside = [name for name in names if name not in names[1:2]]
+    columns = list(product(*(question.sheet[name] for name in beside)))
+    rows = list(product(*(question.sheet[name] for name in names[1:2])))
+    width = 1.1 + 2.5 * len(columns)
+    top = 0.55 + _LEGEND[1] * ceil(len(question.models) / _models_a_row(width))
+    height = top + 0.3 + 0.12 * len(_below(question, width)) + 2.2 * len(rows)
+    figure = make_page(width, height)
+    for i, row in enumerate(rows):
+        for j, column in enumerate(columns):
+            box = [
+                (0.75 + 2.5 * j) / width,
+                1 - (top + 2.2 * (i + 1) - 0.42) / height,
+                2.0 / width,
+                1.6 / height,
+            ]
+            axes = figure.add_axes(box)
+            chosen = dict(zip((*beside, *names[1:2]), (*column, *row), strict=True))
+            here = [p for p in plates if all(p.fixed.get(name) == value for name, value in chosen.items())]
+            _draw_plate(axes, question, here)
+            told = [f"{n} {measured(question.manoeuvre.quantities[n], v)}" for n, v in chosen.items()]
+            axes.set_title(", ".join(told), fontsize=7, loc="left", pad=3)
+            if j == 0:
+                axes.set_ylabel(_label(question, question.manoeuvre.across), fontsize=7)
+            if i == len(rows) - 1:
+                axes.set_xlabel(_label(question, question.manoeuvre.line), fontsize=7)
+    _head(figure, question, width, height)
+    return figure
+
+
+def _below(question: PreventableQuestion, width: float) -> list[str]:
+    """Lines below the plates, the lowest first: symbols, readings, and what single lines are."""
+    lines = [_STEPPED] if any(model.is_stepped for model in question.models) else []
+    lines += wrap(legend(shown_symbols(question)), int(width * _LETTERS))[::-1]
+    return lines + ([f"With {', '.join(question.readings)}"] if question.readings else [])
+
+
+def _head(figure: Any, question: PreventableQuestion, width: float, height: float) -> None:
+    what = "in what is shaded"
+    if all(model.is_stepped for model in question.models):
+        what = "at places on lines"
+    known = question.manoeuvre.quantities
+    fixed = "".join(f", {name} {measured(known[name], value)}" for name, value in question.fixed.items())
+    title = f"{question.manoeuvre.name}{fixed}: a collision is unpreventable {what}"
+    figure.text(0.2 / width, 1 - 0.22 / height, title, fontsize=9, va="center")
+    for k, said in enumerate(_below(question, width)):
+        figure.text(0.2 / width, (0.1 + 0.12 * k) / height, said, fontsize=5.5, va="center")
+    for k, model in enumerate(question.models):
+        row, column = divmod(k, _models_a_row(width))
+        x, y = (0.2 + _LEGEND[0] * column) / width, 1 - (0.45 + _LEGEND[1] * row) / height
+        told = f"─ {model.title}, stepped" if model.is_stepped else f"━ {model.title}"
+        figure.text(x, y, told, fontsize=7, color=COLOURS[model.name], va="center")
+
+
+def _models_a_row(width: float) -> int:
+    """How many names of models stand beside each other on a page so wide (inches)."""
+    return max(1, int((width - 0.2) / _LEGEND[0]))
+
+
+def _label(question: PreventableQuestion, name: str) -> str:
+    return f"{name} [{question.manoeuvre.quantities[name].unit}]"
+
+
+def _draw_plate(axes: Any, question: PreventableQuestion, plates: Sequence[Plate]) -> None:
+    known = question.manoeuvre.quantities
+    unit = float(UNITS[known[question.manoeuvre.across].unit][0])
+    scale = float(UNITS[known[question.manoeuvre.line].unit][0])
+    for plate in plates:
+        colour = COLOURS[plate.model]
+        if plate.stepped:
+            _draw_places(axes, plate, colour, scale, unit)
+        else:
+            _draw_area(axes, plate, colour, scale, unit, [float(x) / scale for x in question.along])
+        for x in plate.shown:
+            if x.drive is not None:
+                place = float(x.values[question.manoeuvre.line]) / scale
+                row = float(x.values[question.manoeuvre.across]) / unit
+                filled = colour if x.side == "unpreventable" else "white"
+                axes.plot(place, row, "o", markersize=2.6, color=colour, markerfacecolor=filled, zorder=4)
+    axes.set_xlim(*(float(x) / scale for x in question.along))
+    rows = [float(line.at) / unit for plate in plates for line in plate.lines]
+    axes.set_ylim(min(rows, default=0), max(rows, default=1))
+    axes.tick_params(labelsize=6)
+
+
+def _draw_places(axes: Any, plate: Plate, colour: str, scale: float, unit: float) -> None:
+    """Each span of each line by itself: nothing is claimed of what lies between lines and places."""
+    for line in plate.lines:
+        for a, b in line.spans:
+            ends, at = [a.near / scale, b.near / scale], [float(line.at) / unit] * 2
+            axes.plot(ends, at, "|-", color=colour, linewidth=0.6, markersize=1.5, alpha=0.8)
+
+
+def _draw_area(
+    axes: Any, plate: Plate, colour: str, scale: float, unit: float, edges: Sequence[float]
+) -> None:
+    """From the first to the last end of each line."""
+    at = [float(line.at) / unit for line in plate.lines]
+    low = [line.spans[0][0].near / scale if line.spans else 0.0 for line in plate.lines]
+    high = [line.spans[-1][1].near / scale if line.spans else 0.0 for line in plate.lines]
+    some = [bool(line.spans) for line in plate.lines]
+    axes.fill_betweenx(at, low, high, where=some, color=colour, alpha=0.14, linewidth=0)
+    for ends in (low, high):
+        curve = [x if there and x not in edges else float("nan") for x, there in zip(ends, some, strict=True)]
+        axes.plot(curve, at, color=colour, linewidth=1.1)
+
+
+_WIDE, _HIGH, _LEFT, _BELOW = 300.0, 190.0, 34.0, 28.0  # of a plate in px, and the room for its numbers
+
+
+def page_plates(result: Result, context: PageContext, words: Words) -> dict[str, object]:
+    """Plates, in ``groups`` of the same fixed values."""
+    index = read(PreventableData, result.data, result.name)
+    quantities = MANOEUVRES[index.manoeuvre].quantities
+    groups: dict[tuple[tuple[str, str], ...], list[PlateData]] = {}
+    for x in index.plates:
+        groups.setdefault(tuple(sorted(x.fixed.items())), []).append(x)
+    shown = {index.along[0], index.across[0], *(name for x in index.plates for name in x.fixed)}
+    return {
+        "answer": index,
+        "groups": [(dict(fixed), here) for fixed, here in groups.items()],
+        "models": dict.fromkeys(x.model for x in index.plates),
+        "plane": plane_of(index),
+        "legend": legend([x for name, x in quantities.items() if name in shown]),
+        "title_of": lambda model: MODELS[model].title if model in MODELS else model,
+        "colour_of": _colour,
+    }
+
+
+def plane_of(index: PreventableData) -> "_Plane":
+    """The two initial values that vary on the plates of an answer."""
+    return _Plane(MANOEUVRES[index.manoeuvre].quantities, index.along, index.across)
+
+
+def _colour(model: str) -> str:
+    return f"var(--{_TOKENS.get(model, 'faint')})"
+
+
+class _Span(NamedTuple):
+    """A rectangle in a picture, in px."""
+
+    x: float
+    y: float
+    width: float
+    height: float
+
+
+class _Area(NamedTuple):
+    """What is unpreventable for a model: spans of lines, and the points of their first and last ends."""
+
+    colour: str
+    spans: Sequence[_Span]
+    edges: Sequence[Sequence[str]]
+
+
+class _Drawing(NamedTuple):
+    """Areas, and the numbers at the ends of the axes."""
+
+    areas: Sequence[_Area]
+    low: str
+    high: str
+    bottom: str
+    top: str
+
+
+@dataclass(frozen=True)
+class _Plane:
+    """The two initial values that vary: ``along`` a line from left to right, ``across`` lines upwards."""
+
+    quantities: Mapping[str, Quantity]
+    along: Sequence[str]
+    across: Sequence[str]
+
+    def known(self, values: Mapping[str, str]) -> dict[str, str]:
+        """The values of the manoeuvre's own quantities."""
+        return {name: x for name, x in values.items() if name in self.quantities}
+
+    def measured(self, name: str, value: str) -> str:
+        """A value in the unit of its quantity."""
+        return measured(self.quantities[name], Fraction(value)) if name in self.quantities else value
+
+    def label(self, name: str) -> str:
+        """The name of an axis, with its unit."""
+        return f"{name} [{self._unit(name)}]"
+
+    def drawn(self, plates: Sequence[PlateData]) -> _Drawing:
+        """Plates over each other."""
+        low, high = (float(Fraction(x)) for x in self.along[1:])
+        rows = [float(Fraction(line.at)) for x in plates for line in x.lines] or [0.0, 1.0]
+        frame = _Frame((low, high), (min(rows), max(rows)))
+        ends = (self._number(self.along[0], low), self._number(self.along[0], high))
+        return _Drawing(
+            [_area(x, frame) for x in plates], *ends, *(self._number(self.across[0], x) for x in frame.across)
+        )
+
+    def _unit(self, name: str) -> str:
+        return self.quantities[name].unit if name in self.quantities else "unitless"
+
+    def _number(self, name: str, value: float) -> str:
+        return f"{value / float(UNITS[self._unit(name)][0]):.4g}"
+
+
+@dataclass(frozen=True)
+class _Frame:
+    """Where values are in a picture: those along a line from left to right, those of lines upwards."""
+
+    along: tuple[float, float]
+    across: tuple[float, float]
+
+    def x(self, value: float) -> float:
+        low, high = self.along
+        return round(_LEFT + (value - low) / (high - low) * (_WIDE - _LEFT), 2)
+
+    def y(self, value: float) -> float:
+        low, high = self.across
+        return round((_HIGH - _BELOW) * (1 - (value - low) / (high - low or 1)), 2)
+
+    def spans(self, plate: PlateData) -> Iterator[_Span]:
+        """What is unpreventable on each line: thin lines where nothing is said of what is between them."""
+        thick = 1.2 if plate.stepped else (_HIGH - _BELOW) / max(1, len(plate.lines) - 1)
+        for line in plate.lines:
+            middle = self.y(float(Fraction(line.at)))
+            top, bottom = max(0.0, middle - thick / 2), min(_HIGH - _BELOW, middle + thick / 2)
+            for begin, end in line.unpreventable:
+                left = self.x(float(begin.near))
+                width = max(0.4, self.x(float(end.near)) - left)
+                yield _Span(left, round(top, 2), round(width, 2), round(bottom - top, 2))
+
+    def edge(self, plate: PlateData, which: int) -> list[str]:
+        """The first (0) or last (-1) ends of all lines, where these are not ends of the range."""
+        points = []
+        for line in plate.lines:
+            if line.unpreventable:
+                value = float(line.unpreventable[which][which].near)
+                if self.along[0] < value < self.along[1]:
+                    points.append(f"{self.x(value)},{self.y(float(Fraction(line.at)))}")
+        return points
+
+
+def _area(plate: PlateData, frame: _Frame) -> _Area:
+    edges = [] if plate.stepped else [frame.edge(plate, which) for which in (0, -1)]
+    return _Area(_colour(plate.model), [*frame.spans(plate)], edges)

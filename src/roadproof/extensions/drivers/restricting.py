@@ -1,0 +1,77 @@
+"""Questions about scenarios, asked only of what a driver prevents, or cannot prevent."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, get_args
+
+from roadproof.errors import UsageError
+from roadproof.extensions.drivers.models import check_courses, check_formulas
+from roadproof.extensions.drivers.restriction import About, Restriction, Side, check_library, files_for
+from roadproof.frontends.api.definitions import Among, Definitions, What
+from roadproof.frontends.settings.groups import Prevention
+from roadproof.library.diagnose import checked_library
+from roadproof.library.scenarios import number_in, numbers_of
+from roadproof.library.specification import Query
+from roadproof.logic import formula as f
+from roadproof.logic.formula import subformulas
+
+if TYPE_CHECKING:
+    from roadproof.extensions.catalogue.decisions import Drivers
+
+
+def restricted(
+    home: Definitions,
+    given: Prevention,
+    among: Among = None,
+    what: Sequence[What] | None = None,
+    about: About = "scenarios",
+) -> Definitions:
+    """The same definitions under ``prevention.spec``; as they are where no driver model is named.
+
+    ``among`` or ``what``: what is asked for, among which there has to be a scenario of which the model says
+    something; nothing of that where it is ``about`` drives. Raises ``InputError``, ``UsageError``.
+    """
+    models = {side: getattr(given, side) for side in get_args(Side)}
+    named = [Restriction(side, model, about) for side, model in models.items() if model is not None]
+    if not named:
+        return home
+    if len(named) > 1:
+        told = ", ".join(f"{side}={model}" for side, model in models.items())
+        raise UsageError(f"{told}: no drive satisfies both; omit one")
+    [wanted] = named
+    said = f"{wanted.side}={wanted.model}"
+    check_formulas(wanted.model, said)
+    files = files_for(home.library.files)
+    library = home.library if len(files) == len(home.library.files) else checked_library(files)
+    check_library(library)
+    options = {**home.specification.options, **wanted.options}
+    found = replace(home, specification=library.select(home.sets[0], options))
+    if about == "scenarios":
+        check_courses(wanted.model, [*dict.fromkeys(_asked(found, among, what))], said)
+    return found
+
+
+def drivers_of(home: Definitions, names: tuple[str, ...]) -> "Drivers | None":
+    """Driver models to be asked, in definitions on top of which ``driver.spec`` is read; None for no names.
+
+    Raises ``InputError``, ``UsageError``.
+    """
+    from roadproof.extensions.catalogue.decisions import drivers_in
+
+    return drivers_in(home.specification.in_set(home.sets[0]), home.values, names)
+
+
+def _asked(home: Definitions, among: Among, what: Sequence[What] | None) -> Iterator[int]:
+    """The scenarios that are asked for, those that formulas speak of among them."""
+    if not what:
+        yield from home.among(among) or numbers_of(home.specification)
+    for one in what or ():
+        if isinstance(one, Query):
+            raise UsageError(
+                f"{one.text[:60]}: it was read without a driver model; give the formula as text, or read it "
+                "from definitions that have one"
+            )
+        for part in subformulas(home.read(one).formula):
+            number = number_in(part.name.partition("@")[0]) if isinstance(part, f.Application) else None
+            if number is not None:
+                yield number

@@ -1,0 +1,203 @@
+"""Questions about what begins with a manoeuvre whose collision a driver prevents, or cannot prevent.
+
+What that is, ``prevention.spec`` says. Which driver, which side and what begins so are its options, and
+options are told with every answer: so evidence is about the question that was asked, and ``check`` reads it.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Literal, TypeAlias, get_args
+
+from roadproof.errors import InputError, UsageError
+from roadproof.extensions.drivers import models
+from roadproof.library.elaborate import elaborate
+from roadproof.library.loading import bundled_library
+from roadproof.library.scenarios import initial_condition_name
+from roadproof.library.specification import (
+    Library,
+    Query,
+    Source,
+    Specification,
+    on_request,
+    read_specification,
+)
+from roadproof.logic import formula as f
+from roadproof.logic.formula import Formula, subformulas
+from roadproof.logic.parse import parse_library
+from roadproof.logic.restore import as_syntax
+from roadproof.logic.rewrite import without_names
+from roadproof.logic.syntax import Claim, Definition
+from roadproof.runtime.records import dataclass
+
+Side: TypeAlias = Literal["preventable", "unpreventable"]
+About: TypeAlias = Literal["scenarios", "drives"]
+
+
+@dataclass(frozen=True)
+class Restriction:
+    """``side`` of the driver ``model``; ``about``: what begins so, scenarios of a course or every drive."""
+
+    side: Side
+    model: str
+    about: About = "scenarios"
+
+    @property
+    def options(self) -> dict[str, str]:
+        """As options of ``prevention.spec``."""
+        return {models.PREVENTION: self.side, models.DRIVEN_BY: self.model, models.BEGINS: self.about}
+
+    @property
+    def scenarios(self) -> tuple[int, ...]:
+        """The scenarios that begin so; all others are as they are."""
+        return models.courses_of(self.model) if self.about == "scenarios" else ()
+
+    def as_data(self, schema: str) -> dict[str, object]:
+        """Return what an answer of this schema says of it, as plain data."""
+        by = "formula" if self.about == "drives" or schema in _BY_FORMULA else "model"
+        said = {"side": self.side, "driver": self.model, "of": self.about}
+        return {**said, "scenarios": list(self.scenarios), "drives_by": by}
+
+    def __str__(self) -> str:
+        said = f"{self.side} ({models.MODELS[self.model].title}; by the formula of a state)"
+        if self.about == "scenarios":
+            numbers = ", ".join(map(str, self.scenarios))
+            return f"{said}: scenarios {numbers} begin so, others are as they are"
+        kinds = " or ".join(x for x in models.MODELS[self.model].manoeuvres if x != "cut-out")
+        return f"{said}: drives between two vehicles begin so, with a {kinds}"
+
+
+EVERY = tuple(
+    Restriction(side, model.name, about)
+    for side in get_args(Side)
+    for model in models.MODELS.values()
+    for about in get_args(About)
+)
+
+
+def restriction_of(options: Mapping[str, str]) -> Restriction | None:
+    """The restriction that options say; None where ``prevention.spec`` is not read."""
+    return next((x for x in EVERY if x.options.items() <= options.items()), None)
+
+
+_BY_FORMULA = ("roadproof/explore/2", "roadproof/coverage/2")
+"""Answers whose drives are restricted by the formula of a state alone."""
+
+
+def told(options: Mapping[str, str], schema: str) -> dict[str, object]:
+    """Return what the heading of an answer says of a restriction; nothing where there is none."""
+    found = restriction_of(options)
+    return {} if found is None else {"prevention": found.as_data(schema)}
+
+
+# Of signals that no scenario speaks of: any drive may begin so, or not.
+_OPEN = """
+def begins_cutIn(a, b: vehicle) "left open" := a_lat(a) > a_lat(b)
+def begins_cutOut(a, b, c: vehicle) "left open" := a_lat(a) > a_lat(b)
+def begins_deceleration(a, b: vehicle) "left open" := j_lon(a) > j_lon(b)
+def begins_between(a, b: vehicle) "left open" := a_lat(a) > a_lat(b)
+"""
+
+
+def left_open(specification: Specification) -> Specification | None:
+    """The same definitions, but what a driver prevents is left open; None where none is asked for.
+
+    What is proved of the scenarios alone is proved of these, too, and what is not is quickly refuted, where
+    the formulas of a driver, cubic in the state, would keep a prover busy to no end.
+    """
+    if restriction_of(specification.options) is None:
+        return None
+    found = {x.name: x for x in parse_library(_OPEN, models.PREVENTION) if isinstance(x, Definition)}
+    definitions = {**specification.definitions, **found}
+    return Specification(specification.library, specification.set_name, specification.options, definitions)
+
+
+def unrestricted(specification: Specification) -> Specification:
+    """The same definitions, but scenarios begin as the library says."""
+    options = specification.options
+    if restriction_of(options) is None:
+        return specification
+    return specification.library.select(specification.set_name, {**options, models.BEGINS: "drives"})
+
+
+def said_in(query: Query, home: Specification, there: Specification) -> Query:
+    """``query``, read in ``home``, so that its text says the same in ``there``.
+
+    Definitions that say something else there are written out. Raises ``InputError`` where that cannot be.
+    """
+    mine, others = home.definitions, there.definitions
+    changed = {name for name in mine if others.get(name) != mine[name]}
+    called = {
+        (x.name, x.arguments)
+        for x in subformulas(query.formula)
+        if isinstance(x, f.Application)
+        and any(isinstance(y, f.Application) and y.name.partition("@")[0] in changed for y in subformulas(x))
+    }
+    if not called:
+        return query
+
+    def written_out(part: Formula) -> Formula:
+        return (
+            part.body if isinstance(part, f.Application) and (part.name, part.arguments) in called else part
+        )
+
+    formula = f.transform(query.formula, written_out)
+    again = elaborate(there, Claim(query.claim.given, as_syntax(formula)))
+    if _bare(again.formula) != _bare(query.formula):
+        raise InputError(
+            f"{query.text[:60]}: a driver model changes what its names mean, and it cannot be written out "
+            "without them; write the formula without names of scenarios"
+        )
+    return replace(again, vehicles=query.vehicles, lanes=query.lanes)
+
+
+def _bare(formula: Formula) -> Formula:
+    """Without names, and without parts that are always true, as a text that is read has none."""
+
+    def change(part: Formula) -> Formula:
+        match part:
+            case f.And(parts):
+                return f.conjunction(*parts)
+            case f.Or(parts):
+                return f.disjunction(*parts)
+            case _:
+                return part
+
+    return f.transform(without_names(formula), change)
+
+
+def check_drives(options: Mapping[str, str]) -> None:
+    """Raises ``UsageError`` where scenarios begin so, and drives are asked for that are in none of them."""
+    found = restriction_of(options)
+    if found is not None and found.about == "scenarios":
+        raise UsageError(
+            f"{models.BEGINS}=scenarios: drives that do not begin so would all be gaps; ask with "
+            f"{models.BEGINS}=drives"
+        )
+
+
+def files_for(given: Sequence[Source]) -> list[Path | Source]:
+    """The specification files that a restriction needs, with those that are given on top."""
+    needed = [read_specification(on_request()[name]) for name in (models.DRIVERS, models.PREVENTION)]
+    mine = {x.text for x in needed}
+    return [*needed, *(x for x in given if x.text not in mine)]
+
+
+def names_for(given: Sequence[Path]) -> list[Path]:
+    """As ``files_for``, of names as ``--spec`` takes them."""
+    needed = [Path(models.DRIVERS), Path(models.PREVENTION)]
+    return [*needed, *(x for x in given if x not in needed)]
+
+
+def check_library(library: Library) -> None:
+    """Raises ``InputError`` where a user's file says how a scenario begins, which would be lost."""
+    for number in models.SCENARIOS.values():
+        name = initial_condition_name(number)
+        blocks = [block.definitions for block in library.sets.values()]
+        blocks += [x for (option, _), x in library.variants.items() if option != models.BEGINS]
+        changed = library.definitions[name] != bundled_library().definitions[name]
+        if changed or any(name == x.name for block in blocks for x in block):
+            raise InputError(
+                f"{name}: your specification file and {models.PREVENTION}.spec both define it; "
+                "rename your definition, or use a formula with the conditions of driver.spec"
+            )

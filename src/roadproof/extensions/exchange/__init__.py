@@ -1,0 +1,13 @@
+"""Files of other tools: drives and monitors in C are written, OpenSCENARIO, OSI and CommonRoad are read."""
+
+from roadproof.extension import Extension
+
+EXTENSION = Extension(
+    title="Drives, recordings and monitors for other tools",
+    audience="testers",
+    needs=(
+        "maps",
+        "traffic",
+    ),
+    functions={"export": "exporting:export", "compile": "compiling:compile"},
+)

@@ -1,0 +1,52 @@
+"""Signals of a trace that refutes a claim, for derivations. Not trusted: Coq checks what comes out."""
+
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from roadproof.evidence.countermodel import Loop
+from roadproof.evidence.refutation import when_true
+from roadproof.extensions.kernel.derivations.signs import Part, Shapes
+from roadproof.extensions.kernel.trace import Refuted, steps_of
+from roadproof.extensions.kernel.world import Steps
+from roadproof.logic import terms as t
+from roadproof.logic.custom_names import code_of
+from roadproof.logic.formula import Compare
+from roadproof.semantics.exact.polynomial import Polynomial, polynomial
+from roadproof.semantics.exact.truth import TruthSet
+
+
+@dataclass
+class TraceShapes(Shapes):
+    """Those of a trace, which are constant in steps."""
+
+    refuted: Refuted
+    _steps: dict[t.Leaf, Steps] = field(default_factory=dict)
+
+    @property
+    def loop(self) -> Loop | None:
+        return self.refuted.trace.loop
+
+    def when(self, compared: Compare) -> TruthSet:
+        return when_true(compared, self.refuted.trace)
+
+    def knots(self, leaf: t.Leaf) -> list[Fraction]:
+        return []
+
+    def steps(self, leaf: t.Leaf) -> list[Fraction]:
+        return [time for time, _, _ in self._of(leaf)] if isinstance(leaf, t.Varying) else []
+
+    def signal(self, signal: t.Varying, part: Part) -> Polynomial:
+        time, at, after = [x for x in self._of(signal) if x[0] <= part.start][-1]
+        return polynomial(at if time == part.start and not part.begin.after else after)
+
+    def size(self, size: t.Size) -> Fraction:
+        motion = self.refuted.world.vehicles[size.vehicle]
+        if size.name == "kind":
+            return Fraction(code_of(motion.kind or "other"))
+        return motion.length if size.name == "length" else motion.width
+
+    def _of(self, signal: t.Varying) -> Steps:
+        if signal not in self._steps:
+            name = signal.told if isinstance(signal, t.Own) else f"{signal.name}({signal.vehicle})"
+            self._steps[signal] = steps_of(self.refuted.trace, name)
+        return self._steps[signal]

@@ -1,0 +1,371 @@
+"""A formula as text of Coq, in the notations of proofs/kernel/Text.v. Trusted: it says what is proved.
+
+Definitions stay functions of their vehicles and lanes, as in the specification; what is printed once as a
+function is applied only where its body, with the names replaced, is what the claim means there.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from itertools import groupby
+from typing import assert_never
+
+from roadproof.errors import InputError
+from roadproof.evidence.atoms import up_to_variables
+from roadproof.extensions.kernel.names import Names, literal
+from roadproof.logic import formula as f
+from roadproof.logic import terms as t
+from roadproof.logic.formula import Formula
+from roadproof.logic.rewrite import free_roads, rename, rename_vehicles, vehicles_of
+from roadproof.logic.terms import Term
+
+# Words of Text.v, which are those of the language; a new signal has none there.
+_SAID_OF_VEHICLES = frozenset(re.findall(r"\w+", "s d v_lon v_lat a_lon a_lat j_lon length width kind"))
+_ZONES = ("main", "merge", "depart")
+
+# What a definition calls its arguments, with their sorts; only names depend on it.
+Formals = Mapping[str, Sequence[tuple[str, str]]]
+
+
+# Between a word and what it is said of: a blank at which no line is broken.
+CLOSE = "\u00a0"
+# How tightly terms bind.
+_ATOM, _PRODUCT, _SUM, _LOOSE = 3, 2, 1, 0
+
+
+@dataclass(frozen=True)
+class Scope:
+    """What names stand for inside a definition or a quantifier; other names are those of the claim."""
+
+    vehicles: Mapping[str, str] = field(default_factory=dict)
+    roads: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def words(self) -> set[str]:
+        return {*self.vehicles.values(), *self.roads.values()}
+
+
+_OUTSIDE = Scope()
+
+
+@dataclass(frozen=True)
+class _Function:
+    """A printed definition: its arguments by place, True for vehicles, and its body over ``arguments``.
+
+    ``is_closed``: the body speaks of nothing but them, so that it means the same wherever it is applied.
+    """
+
+    word: str
+    arguments: tuple[str, ...]
+    are_vehicles: tuple[bool, ...]
+    body: Formula
+    is_closed: bool
+
+
+@dataclass
+class Printer:
+    """Prints formulas; what they rest on is in ``things`` and ``definitions``, in order."""
+
+    formals: Formals = field(default_factory=dict)
+    names: Names = field(default_factory=Names)
+    things: list[str] = field(default_factory=list)
+    definitions: list[str] = field(default_factory=list)
+    functions: dict[str, list[_Function]] = field(default_factory=dict)
+    applied: dict[tuple[f.Application, bool], tuple[_Function, tuple[str, ...]] | None] = field(
+        default_factory=dict
+    )
+
+    # --- terms -------------------------------------------------------------------------------------
+
+    def term(self, term: Term, scope: Scope = _OUTSIDE) -> str:
+        match term:
+            case t.Number(value, _):
+                return number(value)
+            case t.Parameter(name, _):
+                return self._thing("parameter", name, "term", "Par")
+            case t.Variable(name, _):
+                return self._thing("variable", name, "term", "Var")
+            case t.Signal(name, vehicle) | t.Size(name, vehicle):
+                if name not in _SAID_OF_VEHICLES:
+                    raise InputError(f"{name}({vehicle}): proofs/kernel/Text.v has no word for it")
+                return f"{name}{CLOSE}{self.vehicle(vehicle, scope)}"
+            case t.Own():
+                return self._own(term, scope)
+            case t.Sum(terms):
+                return self._sum(terms, scope)
+            case t.Product((t.Number(value=minus), other)) if minus == -1 and not isinstance(other, t.Number):
+                return f"-{CLOSE}{self._operand(other, scope, _ATOM)}"
+            case t.Product(factors):
+                if not factors:
+                    raise InputError("a product of nothing is not printed")
+                first, *others = factors
+                shown = [self._operand(first, scope, _PRODUCT if others else _SUM)]
+                return " * ".join([*shown, *(self._operand(x, scope, _ATOM) for x in others)])
+            case t.Power(base, exponent):
+                if exponent < 0:
+                    raise InputError(
+                        f"exponent={exponent}: a power has a whole exponent that is not negative"
+                    )
+                return f"{self._operand(base, scope, _ATOM)}^{exponent}"
+            case t.Quotient(numerator, denominator):
+                below = self._operand(denominator, scope, _ATOM)
+                return f"{self._operand(numerator, scope, _PRODUCT)} / {below}"
+            case t.Maximum(terms):
+                return self._extremum("max", terms, scope)
+            case t.Minimum(terms):
+                return self._extremum("min", terms, scope)
+            case t.Inverse():
+                raise InputError("an inverse stands only alone on one side of a comparison")
+            case _:
+                assert_never(term)
+
+    def _operand(self, term: Term, scope: Scope, least: int) -> str:
+        """A term in brackets where it binds less than ``least``."""
+        shown = self.term(term, scope)
+        return shown if _binding(term) >= least else f"({shown})"
+
+    def _sum(self, terms: Sequence[Term], scope: Scope) -> str:
+        """x + y - z is (x + y) + (-1) * z for Coq too."""
+        if not terms:
+            raise InputError("a sum of nothing is not printed")
+        first, *others = terms
+        shown = self._operand(first, scope, _SUM)
+        for other in others:
+            match other:
+                case t.Product((t.Number(value=minus), less)) if minus == -1 and not isinstance(
+                    less, t.Number
+                ):
+                    shown += f" - {self._operand(less, scope, _PRODUCT)}"
+                case _:
+                    shown += f" + {self._operand(other, scope, _PRODUCT)}"
+        return shown
+
+    def _extremum(self, word: str, terms: Sequence[Term], scope: Scope) -> str:
+        """max(max(x, y), z)."""
+        if not terms:
+            raise InputError(f"the {word} of nothing is not printed")
+        shown = self.term(terms[0], scope)
+        for other in terms[1:]:
+            shown = f"{word}({shown}, {self.term(other, scope)})"
+        return shown
+
+    def _side(self, term: Term, scope: Scope) -> str:
+        if isinstance(term, t.Inverse):
+            return f"inverse({self.term(term.term, scope)})"
+        return self._operand(term, scope, _SUM)
+
+    # --- names -------------------------------------------------------------------------------------
+
+    def vehicle(self, name: str, scope: Scope = _OUTSIDE) -> str:
+        return scope.vehicles.get(name) or self._thing("vehicle", name, "vehicle", "")
+
+    def road(self, name: str, scope: Scope = _OUTSIDE) -> str:
+        return scope.roads.get(name) or self._thing("lane", name, "road", "Free")
+
+    def _thing(self, kind: str, name: str, sort: str, maker: str, end: str = "") -> str:
+        """The word for a thing of the claim, which is defined where it is met first."""
+        known = (kind, name) in self.names.given
+        word = self.names.of(kind, name) if sort.endswith("term") else self.names.thing(kind, name)
+        if not known:
+            made = f"{maker}{' ' * bool(maker)}{literal(name)}{end}"
+            self.things.append(f"Definition {word} : {sort} := {made}.")
+        return word
+
+    def _own(self, signal: t.Own, scope: Scope) -> str:
+        """A signal that a specification declares; of no vehicle is one of the vehicle ''."""
+        if not signal.vehicle:
+            return self._thing("signal of none", signal.name, "term", "Sig (Own", ') ""')
+        word = self._thing("signal", signal.name, "vehicle -> term", "Sig (Own", ")")
+        return f"{word}{CLOSE}{self.vehicle(signal.vehicle, scope)}"
+
+    # --- formulas ----------------------------------------------------------------------------------
+
+    def formula(self, formula: Formula, scope: Scope = _OUTSIDE) -> str:
+        match formula:
+            case f.Truth(value):
+                return f"Truth{CLOSE}{str(value).lower()}"
+            case f.Compare(left, op, right):
+                return f"{self._side(left, scope)} {op} {self._side(right, scope)}"
+            case f.Occupies(vehicle, lanelet):
+                return CLOSE.join(["occ", self.vehicle(vehicle, scope), self.road(lanelet, scope)])
+            case f.Some(variable, domain, body) | f.Every(variable, domain, body):
+                word = "some" if isinstance(formula, f.Some) else "every"
+                where = self._domain(domain, scope)
+                name = self.names.local(variable, scope.words)
+                inside = Scope(scope.vehicles, {**scope.roads, variable: name})
+                return f"{word} {name} in {where}, {self._part(body, inside)}"
+            case f.Not(body):
+                return f"not {self._part(body, scope)}"
+            case f.And(parts):
+                return self._joined("and", parts, scope)
+            case f.Or((f.Not(premise), conclusion)):
+                return f"{self._part(premise, scope)} -> {self._part(conclusion, scope)}"
+            case f.Or(parts):
+                return self._joined("or", parts, scope)
+            case f.Until(left, interval, right):
+                until = f"U{self._interval(interval, scope)}"
+                return f"{self._part(left, scope)} {until} {self._part(right, scope)}"
+            case f.Eventually(interval, body):
+                return f"F{self._interval(interval, scope)} {self._part(body, scope)}"
+            case f.Always(interval, body):
+                return f"G{self._interval(interval, scope)} {self._part(body, scope)}"
+            case f.Application():
+                return self._named(formula, scope)
+            case _:
+                assert_never(formula)
+
+    def _part(self, formula: Formula, scope: Scope) -> str:
+        shown = self.formula(formula, scope)
+        bare = isinstance(formula, f.Truth | f.Occupies) or (
+            isinstance(formula, f.Application) and self._application(formula, scope) is not None
+        )
+        return shown if bare else f"({shown})"
+
+    def _joined(self, word: str, parts: Sequence[Formula], scope: Scope) -> str:
+        """p and q and r is p and (q and r) for Coq too."""
+        if len(parts) == 1:
+            return self.formula(parts[0], scope)
+        if not parts:
+            return f"Truth{CLOSE}{'true' if word == 'and' else 'false'}"
+        return f" {word} ".join(self._part(x, scope) for x in parts)
+
+    def _interval(self, interval: f.Interval, scope: Scope) -> str:
+        if interval.high is None:
+            if t.constant_value(interval.low) == 0 and isinstance(interval.low, t.Number):
+                return ""
+            return f"[{self.term(interval.low, scope)}, inf)"
+        return f"[{self.term(interval.low, scope)}, {self.term(interval.high, scope)}]"
+
+    def _domain(self, domain: f.Domain, scope: Scope) -> str:
+        match domain.kind:
+            case "lanes":
+                return "lanes"
+            case "adjacent":
+                return f"(adjacentLanes {self.road(domain.of, scope)})"
+            case "lanelets":
+                return f"(lanelets {self.road(domain.of, scope)})"
+            case "zone":
+                if domain.of not in _ZONES:
+                    raise InputError(f"zone={domain.of[:40]}: there are {', '.join(_ZONES)}")
+                return f"(zone {domain.of})"
+            case _:
+                assert_never(domain.kind)
+
+    # --- definitions -------------------------------------------------------------------------------
+
+    def _named(self, named: f.Application, scope: Scope) -> str:
+        found = self._application(named, scope)
+        if found is None:
+            return self.formula(named.body, scope)
+        function, actual = found
+        words = [
+            self.vehicle(name, scope) if is_vehicle else self.road(name, scope)
+            for name, is_vehicle in zip(actual, function.are_vehicles, strict=True)
+        ]
+        return CLOSE.join([function.word, *words])
+
+    def _application(self, named: f.Application, scope: Scope) -> tuple[_Function, tuple[str, ...]] | None:
+        """The function that means ``named`` applied to these names, printed now if it is new.
+
+        None where the body speaks of something bound that is no argument, so that it stands as it is.
+        """
+        bound = bool(scope.roads or scope.vehicles)
+        if (named, bound) not in self.applied:
+            self.applied[named, bound] = self._known(named, bound) or self._new(named, bound)
+        return self.applied[named, bound]
+
+    def _known(self, named: f.Application, bound: bool) -> tuple[_Function, tuple[str, ...]] | None:
+        meaning = up_to_variables(named.body)
+        for function in self.functions.get(named.name, ()):
+            actual = _kept(named, function)
+            if bound and not function.is_closed:
+                continue
+            if actual is not None and up_to_variables(_replaced(function, actual)) == meaning:
+                return function, actual
+        return None
+
+    def _new(self, named: f.Application, bound: bool) -> tuple[_Function, tuple[str, ...]] | None:
+        vehicles, roads = set(vehicles_of(named.body)), free_roads(named.body)
+        formals = self.formals.get(named.name.partition("@")[0], ())
+        if len(formals) != len(named.arguments):
+            formals = tuple((name, "") for name in named.arguments)
+        arguments: list[str] = []
+        sorts: list[bool] = []
+        wanted: list[str] = []
+        for name, (formal, sort) in zip(named.arguments, formals, strict=True):
+            is_vehicle = name in vehicles or (name not in roads and sort in ("vehicle", "vehicles"))
+            if is_vehicle or name in roads or sort == "lane":
+                arguments.append(name)
+                sorts.append(is_vehicle)
+                wanted.append(formal)
+        if len(set(arguments)) < len(arguments) or vehicles & roads:
+            arguments, sorts, wanted = [], [], []  # what is said of one thing twice is no pattern
+        is_closed = vehicles | roads <= set(arguments)
+        if bound and not is_closed:
+            return None
+        local = Scope()
+        for name, is_vehicle, formal in zip(arguments, sorts, wanted, strict=True):
+            word = self.names.argument(formal, local.words)
+            if is_vehicle:
+                local = Scope({**local.vehicles, name: word}, local.roads)
+            else:
+                local = Scope(local.vehicles, {**local.roads, name: word})
+        body = self.formula(named.body, local)
+        function = _Function(
+            self.names.new(named.name), tuple(arguments), tuple(sorts), named.body, is_closed
+        )
+        words = [
+            (local.vehicles if x else local.roads)[name] for name, x in zip(arguments, sorts, strict=True)
+        ]
+        head = " ".join([function.word, *_typed(words, sorts)])
+        self.definitions.append(f"Definition {head} : formula := {body}.")
+        self.functions.setdefault(named.name, []).append(function)
+        return function, tuple(arguments)
+
+
+def number(value: Fraction) -> str:
+    """A number in Coq: whole, or p # q."""
+    return str(value.numerator) if value.denominator == 1 else f"{value.numerator} # {value.denominator}"
+
+
+def _binding(term: Term) -> int:
+    match term:
+        case t.Number(value, _):
+            return _ATOM if value >= 0 and value.denominator == 1 else _LOOSE
+        case t.Sum((one,)) | t.Product((one,)):
+            return _binding(one)
+        case t.Sum():
+            return _SUM
+        case t.Product() | t.Quotient() | t.Power():
+            return _PRODUCT
+        case t.Maximum((one,)) | t.Minimum((one,)):
+            return _binding(one)
+        case _:
+            return _ATOM
+
+
+def _typed(words: Sequence[str], are_vehicles: Sequence[bool]) -> Iterator[str]:
+    """Arguments with their sorts, those of one sort that stand together as one: (a b : vehicle)."""
+    for is_vehicle, group in groupby(zip(words, are_vehicles, strict=True), key=lambda x: x[1]):
+        sort = "vehicle" if is_vehicle else "road"
+        yield f"({CLOSE.join([*(word for word, _ in group), ':', sort])})"
+
+
+def _kept(named: f.Application, function: _Function) -> tuple[str, ...] | None:
+    """The arguments of an application that the function has, by place; None where they do not fit."""
+    if len(function.arguments) == len(named.arguments):
+        return named.arguments
+    return () if not function.arguments else None
+
+
+def _replaced(function: _Function, actual: Sequence[str]) -> Formula:
+    """The body of a function with its arguments replaced, all at once."""
+    pairs = list(zip(function.arguments, actual, function.are_vehicles, strict=True))
+    body = rename_vehicles(function.body, {old: new for old, new, is_vehicle in pairs if is_vehicle})
+    lanes = [(old, new) for old, new, is_vehicle in pairs if not is_vehicle]
+    for place, (old, _) in enumerate(lanes):
+        body = rename(body, old, f"?{place}")
+    for place, (_, new) in enumerate(lanes):
+        body = rename(body, f"?{place}", new)
+    return body

@@ -1,0 +1,9 @@
+"""Roads of maps, for those whose tests and recordings have one."""
+
+from roadproof.extension import Extension
+
+EXTENSION = Extension(
+    title="Roads of OpenDRIVE, Lanelet2 and CommonRoad maps",
+    audience="testers",
+    functions={"road": "roads:road", "stretches": "roads:stretches"},
+)

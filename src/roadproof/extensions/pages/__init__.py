@@ -1,0 +1,15 @@
+"""Results to look at: pages, moving pictures and a studio in the browser."""
+
+from roadproof.extension import Extension
+
+EXTENSION = Extension(
+    title="Reports, viewer, atlas, studio and animations",
+    audience="testers",
+    needs=(
+        "catalogue",
+        "drivers",
+        "surveys",
+        "traffic",
+    ),
+    functions={"page": "reporting:page", "atlas": "atlas.atlas:atlas"},
+)

@@ -1,0 +1,99 @@
+"""All drives of the atlas as moving pictures, with their figures, drawn by several processes."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from roadproof.evidence.drive_file import load_drive
+from roadproof.evidence.judged import JudgedDrive
+from roadproof.extensions.pages.atlas.answers import EVIDENCE, OBJECTIVES, Answers, name_in
+from roadproof.extensions.pages.atlas.notation import shown
+from roadproof.extensions.pages.miniature import miniature, small_scene
+from roadproof.frontends.report.drive_data import Span, strips_of
+from roadproof.frontends.settings.studies import Atlas
+from roadproof.library.specification import Library
+from roadproof.runtime import pool
+from roadproof.verdict import Verdict
+
+MOST_STRIPS, DEEPEST = 14, 2
+
+
+@dataclass(frozen=True)
+class Figures:
+    """A drive in numbers: speeds of each vehicle at the start and the end in m/s, gaps to SV along the road
+    at the start and at least, in m, and when danger begins, in s.
+    """
+
+    speeds: Mapping[str, tuple[float, float]]
+    gaps: Mapping[str, tuple[float, float]]
+    begins: float | None
+
+
+@dataclass(frozen=True)
+class DrivePicture:
+    """A picture as SVG with what a page tells about it.
+
+    ``still``: the instant at which it stands, in s; ``strips``: parts of the formula as HTML, in how many
+    others each is, and when it is true, in s.
+    """
+
+    svg: str
+    horizon: float
+    lasts: float
+    still: float
+    figures: Figures
+    strips: Sequence[tuple[str, int, Sequence[Span]]]
+
+
+@dataclass(frozen=True)
+class _Job:
+    path: Path
+    name: str
+    told: str
+
+
+def draw_all(answers: Answers, given: Atlas) -> dict[str, DrivePicture]:
+    """Every picture by the file of its drive, relative to the pages.
+
+    Raises ``RejectedError`` where the judge rejects a drive, whatever an index says of it.
+    """
+    told = dict(_drives(answers))
+    jobs = [_Job(answers.folder / file, f"m{k}", x) for k, (file, x) in enumerate(told.items())]
+    draw = partial(_draw, answers.library or answers.home.library)
+    with closing(pool.work(draw, jobs, given.jobs, None, given.progress, "pictures")) as done:
+        found = dict(done)
+    return {file: found[k] for k, file in enumerate(told)}
+
+
+def _drives(answers: Answers) -> Iterator[tuple[str, str]]:
+    """The files of all drives, each in words."""
+    for objective in OBJECTIVES:
+        for number, drive in answers.drives.get(objective, {}).items():
+            yield drive.source.file, f"A {objective} drive of {answers.home.words(number)}"
+    for x in () if answers.overlap is None else answers.overlap.verdicts:
+        if x.verdict is Verdict.WITNESSED:
+            yield f"{EVIDENCE}/overlap/{name_in(x.evidence)}", f"A drive of scenarios {x.a} and {x.b} at once"
+    for y in () if answers.classes is None else answers.classes.classes:
+        if isinstance(y.drive, str):
+            yield f"{EVIDENCE}/classes/{name_in([y.drive])}", f"A drive of class {y.name}: {y.description}"
+    for z in () if answers.coverage is None else answers.coverage.gaps:
+        if isinstance(z.drive, str):
+            yield (
+                f"{EVIDENCE}/coverage/{name_in([z.drive])}",
+                f"A drive of gap {z.number}, which no scenario describes",
+            )
+
+
+def _draw(library: Library, job: _Job) -> DrivePicture:
+    file = load_drive(job.path)
+    judged = JudgedDrive(file, library)
+    scene, strips = small_scene(file, library), strips_of(judged.judgement, file.horizon)
+    speeds = {name: (float(x[0].v_lon), float(x[-1].v_lon)) for name, x in scene.states.items()}
+    gaps = {x.other: (x.gap[0], min(x.gap)) for x in scene.distances}
+    figures = Figures(speeds, gaps, scene.begins)
+    parts = [(shown(x.name), x.depth, x.spans) for x in strips if x.depth <= DEEPEST][:MOST_STRIPS]
+    svg = miniature(scene, job.name, job.told)
+    still = float(scene.times[scene.still])
+    return DrivePicture(svg, float(file.horizon), float(scene.lasts), still, figures, parts)

@@ -1,0 +1,143 @@
+"""Values of the section of claims: template properties, a grid of those about scenarios, and each claim."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from roadproof.engines.prove.properties import OWN, find_task
+from roadproof.evidence.codec import read
+from roadproof.evidence.finding import Acceptance, Finding
+from roadproof.evidence.strict import Fields
+from roadproof.extensions.pages.page.page_context import PageContext
+from roadproof.extensions.pages.page.results import Result, Words
+from roadproof.frontends.report.sheet import Heading, Linked, Matrix
+from roadproof.library.motion import statement
+from roadproof.library.words import spans
+from roadproof.questions.prove import ClaimData, ClaimsData
+from roadproof.verdict import Verdict
+
+LEAST_SCENARIOS = 3
+"""The grid has the properties of at least so many scenarios."""
+
+
+@dataclass(frozen=True)
+class ShownClaim:
+    """A claim with what was found of its evidence, and the drive that refutes it.
+
+    ``id``: the property of the list, empty for a claim of the user; ``title``: what it says, in words;
+    ``place``: where it is on the page.
+    """
+
+    verdict: Verdict
+    expected: Verdict | None
+    id: str
+    part: str
+    title: str
+    scenario: int | None
+    set: str
+    claim: str
+    finding: Finding | None
+    drive: Mapping[str, object] | None
+    place: str
+
+    @property
+    def label(self) -> str:
+        """Property, part and scenario, such as ``P1 4``."""
+        return " ".join(filter(None, (self.name, "" if self.scenario is None else str(self.scenario))))
+
+    @property
+    def name(self) -> str:
+        """Property and part, such as ``P8-rear``."""
+        return "-".join(filter(None, (self.id, self.part)))
+
+    @property
+    def outcome(self) -> str:
+        """What was found of its evidence, in a word."""
+        return "" if self.finding is None else str(self.finding.outcome)
+
+
+def claims(result: Result, context: PageContext, words: Words) -> dict[str, object]:
+    """The answer of ``prove``."""
+    shown = [*shown_claims(result, context)]
+    listed = [x for x in shown if x.id]
+    return {
+        "claims": shown,
+        "accepted": sum(x.outcome == Acceptance.ACCEPTED for x in shown),
+        "properties": _properties(listed),
+        "matrix": _grid(listed, words),
+    }
+
+
+def shown_claims(result: Result, context: PageContext) -> Iterator[ShownClaim]:
+    """The claims of a result, in its order. Raises ``InputError``."""
+    for k, x in enumerate(read(ClaimsData, result.data, result.name).verdicts):
+        finding = context.finding(result.folder, x.evidence)
+        task = find_task(x.claim, x.set)
+        yield ShownClaim(
+            verdict=x.verdict,
+            expected=x.expected,
+            id="" if x.property == OWN else x.property,
+            part="" if x.property == OWN else x.part,
+            title="" if task is None else task.title,
+            scenario=x.scenario,
+            set=x.set,
+            claim=statement(x.assuming, x.claim),
+            finding=finding,
+            drive=_drive_against(x),
+            place=f"claim-{result.id}-{k}",
+        )
+
+
+def _drive_against(claim: ClaimData) -> Mapping[str, object] | None:
+    if claim.refuted_by != "drive":
+        return None
+    return Fields(claim.counterexample, "its counterexample").mapping("drive")
+
+
+@dataclass(frozen=True)
+class ListedProperty:
+    """A property in words, with its claims in all sets."""
+
+    name: str
+    title: str
+    claims: Sequence[ShownClaim]
+
+    @property
+    def sets(self) -> str:
+        """The sets in which it was asked."""
+        return ", ".join(dict.fromkeys(x.set for x in self.claims))
+
+    @property
+    def scenarios(self) -> str:
+        """The scenarios of which it was asked, such as ``1-3, 7``."""
+        return spans({x.scenario for x in self.claims if x.scenario is not None})
+
+
+def _properties(listed: Sequence[ShownClaim]) -> list[ListedProperty]:
+    """A row for each property, in the order of the result."""
+    groups: dict[tuple[str, str], list[ShownClaim]] = {}
+    for x in listed:
+        groups.setdefault((x.name, x.title), []).append(x)
+    return [ListedProperty(name, title, found) for (name, title), found in groups.items()]
+
+
+def _grid(listed: Sequence[ShownClaim], words: Words) -> Matrix | None:
+    """A row for each scenario, a column for each property and set; None where no property has enough."""
+    about: dict[str, set[int]] = {}
+    for x in listed:
+        if x.scenario is not None:
+            about.setdefault(x.name, set()).add(x.scenario)
+    wide = [x for x in listed if x.scenario is not None and len(about[x.name]) >= LEAST_SCENARIOS]
+    if not wide:
+        return None
+    columns = dict.fromkeys((x.name, x.set) for x in wide)
+    sets = {name: [of for one, of in columns if one == name] for name, _ in columns}
+    cells: dict[tuple[object, object], Linked] = {
+        (x.scenario, (x.name, x.set)): Linked(x.verdict, f"{x.label} in {x.set}: {x.verdict}", x.place)
+        for x in wide
+    }
+    return Matrix(
+        [Heading(n, n, words.get(n)) for n in sorted({x.scenario for x in wide if x.scenario is not None})],
+        [Heading((name, of), of) for name, found in sets.items() for of in found],
+        cells,
+        [(name, len(found)) for name, found in sets.items()],
+    )

@@ -1,0 +1,290 @@
+"""The summary at the head of a page: question and answer of each result, findings, and versions."""
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from roadproof.engines.prove.properties import find_task
+from roadproof.evidence.codec import read
+from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding, summary
+from roadproof.evidence.strict import Json
+from roadproof.extensions.catalogue.kept import Figure
+from roadproof.extensions.pages.page.results import Result
+from roadproof.extensions.pages.page.templates import render
+from roadproof.frontends.report.sheet import excerpt
+from roadproof.library.words import spans
+
+OPEN: Final = ("UNKNOWN", "NONE-WITHIN", "PROVED-BOUNDED", "VACUOUS", "CROSSCHECK-FAILED", "undecided")
+"""Verdicts that leave a question open."""
+NOT_SHOWN: Final = ("unknown", "stale", "missing", "rejected", "refuted")
+"""States of requirements that evidence does not show."""
+_SKIPPED = ("drive", "drives", "counterexample", "boundaries", "missed", "surely", "words")
+_ANCHORS = {
+    ("index", "claims"): "claim",
+    ("verdicts", "verdicts"): "claim",
+    ("overlap", "verdicts"): "pair",
+    ("witness", "verdicts"): "sought",
+    ("redundancy", "verdicts"): "change",
+    ("classify", "classes"): "kind",
+    ("coverage", "classes"): "class",
+    ("preventable", "plates"): "plate",
+    ("preventable", "lemmas"): "lemma",
+}
+"""What the ids of entries begin with, by kind of result and field; other entries have no id of their own."""
+
+_REMARKS = {"faults": "fault", "doubts": "doubt", "contradictions": "contradiction"}
+"""Remarks of a catalogue about its tests, which are to be read soon."""
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A verdict in words; ``target``: the part of the page with its evidence.
+
+    ``expected``: of a claim whether the verdict is the one that was expected; None of other statements.
+    """
+
+    verdict: str
+    told: str
+    target: str
+    expected: bool | None = None
+
+
+@dataclass(frozen=True)
+class Overview:
+    """A section of the page in a line.
+
+    ``told``: counts in words; ``rejected``: how many reasons there are to reject its evidence; ``remarked``:
+    whether tests have faults or situations are untested.
+    """
+
+    title: str
+    question: str
+    target: str
+    name: str = ""
+    subject: str = ""
+    told: str = ""
+    statements: Sequence[Statement] = ()
+    rejected: int = 0
+    remarked: bool = False
+
+    @property
+    def verdicts(self) -> list[str]:
+        """The verdict of each statement."""
+        return [x.verdict for x in self.statements]
+
+    @property
+    def rank(self) -> int:
+        """How soon it is to be read: 0 where evidence is rejected, then refuted and open statements."""
+        if self.rejected:
+            return 0
+        surprising = any(x.verdict == "REFUTED" and x.expected is False for x in self.statements)
+        is_open = any(x.verdict in (*OPEN, *NOT_SHOWN) for x in self.statements)
+        return 1 if surprising or self.remarked or is_open else 2
+
+
+def overview(result: Result, title: str, question: str, rejected: int = 0) -> Overview:
+    """A result in a line."""
+    found = [*_statements(result)]
+    target = f"result-{result.id}"
+    statements = [Statement(_text(x, "verdict"), _told(x), at, _is_expected(x, result)) for x, at in found]
+    subject = _subject(result, [x for x, _ in found])
+    remarked = result.kind == "catalogue" and (
+        any(result.data.get(key) for key in _REMARKS) or any(x.tested < x.total for x in _figures(result))
+    )
+    told = _counts_of(result)
+    return Overview(title, question, target, result.name, subject, told, statements, rejected, remarked)
+
+
+def _statements(result: Result) -> Iterator[tuple[Mapping[str, Json], str]]:
+    """The entries that have a verdict, each with the id of the part of the page that shows it."""
+    if result.kind in ("order", "trace"):
+        yield from _implications(result) if result.kind == "order" else _requirements(result)
+        return
+    count = 0
+    for key, value in result.data.items():
+        prefix = _ANCHORS.get((result.kind, key))
+        entries = value if isinstance(value, list) else [value]
+        if result.kind == "redundancy":  # its section has those that are needed last
+            entries = sorted(entries, key=lambda x: isinstance(x, dict) and x.get("redundant") is False)
+        for k, entry in enumerate(entries):
+            target = f"{prefix}-{result.id}-{k}" if prefix else f"result-{result.id}"
+            for x in () if key in _SKIPPED else _with_verdict(entry):
+                count += 1
+                yield x, target
+    if not count and isinstance(result.data.get("verdict"), str):
+        yield result.data, f"result-{result.id}"
+
+
+def _requirements(result: Result) -> Iterator[tuple[Mapping[str, Json], str]]:
+    """The requirements, whose state is their verdict."""
+    found = result.data.get("requirements")
+    for k, x in enumerate(found if isinstance(found, list) else []):
+        if isinstance(x, dict):
+            told = f"{_text(x, 'id')}: {_text(x, 'title') or _text(x, 'text')}"
+            yield {"verdict": x.get("state"), "name": told}, f"requirement-{result.id}-{k}"
+
+
+def _implications(result: Result) -> Iterator[tuple[Mapping[str, Json], str]]:
+    for key, verdict in (("proved", "PROVED"), ("missing", "REFUTED"), ("doubts", "UNKNOWN")):
+        found = result.data.get(key)
+        for k, x in enumerate(found if isinstance(found, list) else []):
+            if isinstance(x, dict):
+                target = f"implied-{result.id}-{k}" if key == "proved" else f"result-{result.id}"
+                told = f"{x.get('from')} implies {x.get('to')}"
+                yield {"verdict": verdict, "name": told}, target
+
+
+def _with_verdict(value: Json) -> Iterator[Mapping[str, Json]]:
+    if isinstance(value, list):
+        for x in value:
+            yield from _with_verdict(x)
+    elif isinstance(value, dict) and isinstance(value.get("verdict"), str):
+        yield value
+    elif isinstance(value, dict):
+        for key, x in value.items():
+            if key not in _SKIPPED:
+                yield from _with_verdict(x)
+
+
+def _text(x: Mapping[str, Json], key: str) -> str:
+    """A field as text, empty where it is missing."""
+    found = x.get(key)
+    return "" if found is None else str(found)
+
+
+def _told(x: Mapping[str, Json]) -> str:
+    """An entry in words: of a claim its property, of a pair its scenarios, else a name or a formula."""
+    scenario, reason, inside = _text(x, "scenario"), _text(x, "reason"), _text(x, "set")
+    numbered = f"scenario {scenario}" if scenario else ""
+    if _text(x, "property") not in ("", "claim"):
+        name = "-".join(filter(None, (_text(x, "property"), _text(x, "part"))))
+        task = find_task(_text(x, "claim"), inside)
+        head = " ".join(filter(None, (name, numbered, "" if task is None else task.title)))
+    elif "a" in x and "b" in x:
+        head = f"scenarios {_text(x, 'a')} and {_text(x, 'b')}"
+    else:
+        named = next(filter(None, (_text(x, key) for key in ("name", "claim", "formula", "description"))), "")
+        head = ": ".join(filter(None, (numbered, named)))
+    of = f" in {inside}" if inside else ""
+    return excerpt(f"{head}{of}{f': {reason}' if reason else ''}", 240)
+
+
+def _is_expected(x: Mapping[str, Json], result: Result) -> bool | None:
+    """Whether a claim has the verdict that the answer or the list of properties expects."""
+    if result.kind not in ("index", "verdicts"):
+        return None
+    if isinstance(x.get("expected"), str):
+        return x.get("expected") == x.get("verdict")
+    task = find_task(_text(x, "claim"), _text(x, "set"))
+    return task is not None and not x.get("assuming") and task.expected == x.get("verdict")
+
+
+def _subject(result: Result, statements: Iterable[Mapping[str, Json]]) -> str:
+    """What a result speaks of: scenarios, spec sets, recordings."""
+    entries = [result.data, *statements]
+    settings = result.data.get("settings")
+    entries += [settings] if isinstance(settings, dict) else []
+    numbers = {n for x in entries for key in ("scenario", "scenarios", "a", "b") for n in _whole(x.get(key))}
+    sets = [y for x in entries for key in ("set", "sets", "set_a", "set_b") for y in _texts(x.get(key))]
+    named = dict.fromkeys(sets)
+    parts = [f"scenario{'s' if len(numbers) > 1 else ''} {spans(numbers)}"] if numbers else []
+    parts += [f"set{'s' if len(named) > 1 else ''} {', '.join(named)}"] if named else []
+    return excerpt("; ".join(parts), 200)
+
+
+def _whole(value: Json) -> list[int]:
+    found = value if isinstance(value, list) else [value]
+    return [x for x in found if isinstance(x, int) and not isinstance(x, bool)]
+
+
+def _texts(value: Json) -> list[str]:
+    return [x for x in (value if isinstance(value, list) else [value]) if isinstance(x, str)]
+
+
+def _counts_of(result: Result) -> str:
+    """Of recordings and catalogues, what was counted."""
+    data = result.data
+    if result.kind == "catalogue":
+        counts = (("tests", "test"), *((key, words) for key, words in _REMARKS.items()))
+        found = [(len(x) if isinstance(x := data.get(key), list) else 0, words) for key, words in counts]
+        told = [f"{n} {_plural(words, n)}" for n, words in found if n]
+        told += [
+            f"{x.total - x.tested} of {x.total} {x.kind} untested (set {x.set_name})"
+            for x in _figures(result)
+            if x.tested < x.total
+        ]
+        return ", ".join(told)
+    if result.kind != "traffic-results":
+        return ""
+    table = data.get("table")
+    rows = [x for x in table if isinstance(x, dict)] if isinstance(table, list) else []
+    sums: dict[str, Counter[str]] = {}
+    for x in rows:
+        if x.get("min_danger") == rows[0].get("min_danger"):
+            numbers = {key: x[key] for key in ("matching", "traces") if isinstance(x.get(key), int)}
+            sums.setdefault(str(x.get("set")), Counter()).update(numbers)
+    many = data.get("recordings")
+    read = f"{many} {_plural('recording', many)}, {data.get('vehicles')} vehicles"
+    matches = [f"{n['matching']} of {n['traces']} critical traces match in {of}" for of, n in sums.items()]
+    return excerpt("; ".join([read, *matches]), 300)
+
+
+def _figures(result: Result) -> list[Figure]:
+    """The figures of a catalogue for all road sectors."""
+    found = result.data.get("figures")
+    every = [read(Figure, x, result.name) for x in found] if isinstance(found, list) else []
+    return [x for x in every if not x.sector]
+
+
+def _plural(word: str, count: object) -> str:
+    return word if count == 1 else f"{word}s"
+
+
+def summary_section(
+    overviews: Sequence[Overview],
+    findings: Sequence[Finding],
+    solver: str,
+    results: Sequence[Result],
+    lines: Iterable[tuple[str, str]],
+) -> str:
+    """The head of a page as HTML: a row for each section, findings by importance, versions and digests.
+
+    ``solver`` checked the ``findings``; ``lines`` are names with values that stand before the versions.
+    """
+    said = [x for section in overviews for x in section.statements]
+    return render(
+        "summary.html",
+        overviews=overviews,
+        checked=summary(findings, solver) if any(x.kind != NO_EVIDENCE for x in findings) else "",
+        remarked=[x for x in overviews if x.remarked],
+        wrong=[x for x in findings if x.outcome is not Acceptance.ACCEPTED and x.kind != NO_EVIDENCE],
+        open=[x for x in said if x.verdict in OPEN],
+        unshown=sorted(
+            (x for x in said if x.verdict in NOT_SHOWN), key=lambda x: -NOT_SHOWN.index(x.verdict)
+        ),
+        traced=bool(results) and all(x.kind == "trace" for x in results),
+        refuted=[x for x in said if x.verdict == "REFUTED" and x.expected is False],
+        controls=[x for x in said if x.verdict == "REFUTED" and x.expected],
+        lines=[*lines, *_origins(results)],
+        files=[(x.name, x.digest) for x in results],
+    )
+
+
+def _origins(results: Sequence[Result]) -> Iterator[tuple[str, str]]:
+    """Versions, definitions and settings of results."""
+    for name, key in (("results made by roadproof", "roadproof"), ("definitions", "library")):
+        found = dict.fromkeys(str(x.data[key]) for x in results if isinstance(x.data.get(key), str))
+        if found:
+            yield name, ", ".join(found)
+    for options in dict.fromkeys(map(_equations, results)):
+        if options:
+            yield "readings", options
+    specs = dict.fromkeys(str(y) for x in results for y in _texts(x.data.get("specs")))
+    if specs:
+        yield "specification files", ", ".join(specs)
+
+
+def _equations(result: Result) -> str:
+    options = result.data.get("options")
+    return ", ".join(f"{k}={v}" for k, v in options.items()) if isinstance(options, dict) else ""

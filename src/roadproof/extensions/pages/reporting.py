@@ -1,0 +1,151 @@
+"""Results of any kind as one page that needs no network."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Unpack
+
+from roadproof.errors import RoadproofError, UsageError
+from roadproof.evidence.finding import Acceptance, Finding
+from roadproof.extensions.pages.page.page_context import PageContext
+from roadproof.extensions.pages.page.results import Result, read_results
+from roadproof.extensions.pages.page.sections import drive_section, evidence_section, section
+from roadproof.extensions.pages.page.summary import summary_section
+from roadproof.extensions.pages.page.templates import page as page_of
+from roadproof.frontends.api.checking import CheckReport, take_over
+from roadproof.frontends.report.sheet import excerpt
+from roadproof.frontends.settings import questions as settings
+from roadproof.frontends.settings.keywords import CheckKeywords, PageKeywords
+from roadproof.frontends.settings.option import takes
+from roadproof.library.loading import load_library
+from roadproof.library.scenarios import numbers_of
+from roadproof.library.specification import Library
+from roadproof.library.words import words_of
+from roadproof.questions.data import QUESTION
+from roadproof.runtime.files import utf8, whole_file
+from roadproof.runtime.records import dataclass
+from roadproof.runtime.version import VERSION
+from roadproof.verdict import ExitCode
+
+
+@dataclass(frozen=True, repr=False)
+class Page:
+    """A page, as a ``text`` and where it was written; ``checked``: what was found of the evidence in it."""
+
+    path: Path
+    text: str
+    drives: int
+    results: int
+    checked: CheckReport | None
+
+    @property
+    def exit_code(self) -> ExitCode:
+        """That of the evidence: a page shows what is not accepted, and says so."""
+        return max((x.outcome.exit_code for x in self._findings), default=ExitCode.AS_EXPECTED)
+
+    @property
+    def _findings(self) -> tuple[Finding, ...]:
+        return () if self.checked is None else self.checked.findings
+
+    def __repr__(self) -> str:
+        return f"<Page: {self.path}>"
+
+    def __str__(self) -> str:
+        counts = [(self.results, "result"), (self.drives, "drive")]
+        told = ", ".join(f"{n} {word}{'s' if n != 1 else ''}" for n, word in counts)
+        wrong = sum(x.outcome is not Acceptance.ACCEPTED for x in self._findings)
+        bad = (
+            f"; {wrong} of {len(self._findings)} claims are not accepted, and the page says why"
+            if wrong
+            else ""
+        )
+        size = f"{len(utf8(self.text)) / 1e6:.1f} MB"
+        return f"{self.path}: {told}, {size}, in one file that needs no network{bad}"
+
+
+@takes(settings.Page)
+def page(*results: str | Path, out: str | Path, **options: Unpack[PageKeywords]) -> Page:
+    """One HTML file about results: folders of ``out``, evidence, and answers as JSON.
+
+    Evidence is checked again while the page is made, and each claim says what was found. ``specs``:
+    specification files that the results were made with. Raises ``InputError`` for what is no result or cannot
+    be written, ``UsageError``.
+    """
+    asked = settings.Page.of(options)
+    if not results:
+        raise UsageError("name at least one result: a folder, a JSON answer, or evidence")
+    paths = [Path(x) for x in results]
+    target = Path(out)
+    if target.suffix.lower() not in (".html", ".htm"):
+        raise UsageError(f"out={target}: name a file that ends with .html")
+    named = tuple(Path(x) for x in asked.specs)
+    given = read_results(paths, named)
+    checked = None
+    if given.checkable:
+        told = CheckKeywords(solver=asked.solver, specs=named, jobs=asked.jobs, progress=asked.progress)
+        checked = take_over(*given.checkable, **told)
+    library = load_library((*named, *(checked.specs if checked else ())))
+    findings = () if checked is None else checked.findings
+    book = PageContext(library, _by_file(findings), _rejected(findings))
+    wanted = {path.resolve() for path in given.evidence}
+    alone = [x for x in findings if Path(x.where).is_file() and Path(x.where).resolve() in wanted]
+    sections = sorted(
+        [
+            *(
+                [drive_section(alone, book)]
+                if any(x.kind == "drive" and x.outcome is Acceptance.ACCEPTED for x in alone)
+                else []
+            ),
+            *(section(x, book, _words(x, library)) for x in given.results),
+        ],
+        key=lambda x: x.overview.rank,
+    )
+    sections += [evidence_section(alone, book, asked.solver)] if alone else []
+    said = asked.title or excerpt(f"roadproof: {', '.join(x.stem or str(x) for x in paths)}", 120)
+    summary = summary_section(
+        [x.overview for x in sections], findings, asked.solver, given.results, _made(checked, library)
+    )
+    text = page_of(said, summary, [x.html for x in sections], book.documents)
+    with whole_file(target) as file:
+        file.write(utf8(text))
+    return Page(target, text, len(book.documents), len(given.results) + bool(alone), checked)
+
+
+def _made(checked: CheckReport | None, library: Library) -> Iterator[tuple[str, str]]:
+    """What made the page, and what nothing was compared with."""
+    yield "page made by", f"roadproof {VERSION} with definitions {library.fingerprint}"
+    if checked is not None:
+        for folder, fields in checked.not_checked.items():
+            yield f"not checked in {folder}", ", ".join(fields)
+
+
+def _rejected(findings: Sequence[Finding]) -> dict[str, list[str]]:
+    """Return what is not accepted of each question itself, in words, by its path."""
+    found: dict[str, list[str]] = {}
+    for x in findings:
+        if x.outcome is not Acceptance.ACCEPTED and Path(x.where).name == QUESTION:
+            found.setdefault(x.where, []).append(f"{x.label}: {x.reason}" if x.label else x.reason)
+    return found
+
+
+def _by_file(findings: Sequence[Finding]) -> dict[Path, Finding]:
+    """What was found of each file of evidence; of several claims of one file the first that is refused."""
+    found: dict[Path, Finding] = {}
+    for finding in findings:
+        path = Path(finding.where)
+        if not path.is_file():
+            continue
+        known = found.get(path.resolve())
+        if known is None or known.outcome is Acceptance.ACCEPTED:
+            found[path.resolve()] = finding
+    return found
+
+
+def _words(result: Result, library: Library) -> Mapping[int, str]:
+    """What scenarios are called in the set of a result."""
+    said = result.data.get("set") or result.data.get("sets") or "base"
+    first = said[0] if isinstance(said, list) else said
+    try:
+        home = library.select(str(first).partition(",")[0])
+    except RoadproofError:
+        home = library.select()
+    return {n: words_of(home, n).name for n in numbers_of(home)}

@@ -1,0 +1,164 @@
+"""The files that the browser is given, from a fixed list: no name that it sends is looked up on a disk."""
+
+import json
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import asdict, dataclass
+from functools import cache
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from roadproof.errors import InputError, RoadproofError
+from roadproof.evidence.drive_file import SCHEMAS_READ
+from roadproof.evidence.strict import read_json
+from roadproof.extensions.pages.studio.examples import EXAMPLES
+from roadproof.extensions.pages.studio.requests import form
+from roadproof.extensions.pages.viewer_page import viewer_modules, viewer_style
+from roadproof.library.specification import read_specification
+from roadproof.runtime.files import read_text
+
+_SCRIPT, _STYLE = "text/javascript; charset=utf-8", "text/css; charset=utf-8"
+_OWN = (
+    *("store", "server", "address", "state", "history", "recent", "editor", "actions", "live"),
+    *("picture", "gallery", "tour", "bar", "side", "app"),
+)
+MOST_FILES, LARGEST_FILE = 200, 1_000_000  # of a folder that is looked through; bytes
+LARGEST_TOGETHER = 60_000_000  # bytes of named recordings, as of dropped ones
+OPENED = (".json", ".csv", ".xosc", ".xodr", ".xml", ".toml")
+
+
+@dataclass(frozen=True)
+class StaticFile:
+    """A file: its text and media type."""
+
+    text: str
+    kind: str
+
+
+@cache
+def served() -> dict[str, StaticFile]:
+    """Every file by its name below /page/."""
+    modules = {f"{name}.js": StaticFile(text, _SCRIPT) for name, text in _modules().items()}
+    return {
+        **modules,
+        "viewer.css": StaticFile(viewer_style(), _STYLE),
+        "studio.css": StaticFile(_read("studio.css"), _STYLE),
+    }
+
+
+def page_of(nonce: str) -> str:
+    """The page, whose scripts carry ``nonce``; all are asked for at once, not when they are met."""
+    addresses = {name: f"/page/{name}.js" for name in _modules()}
+    early = "\n".join(f'<link rel="modulepreload" href="{x}" nonce="{nonce}">' for x in addresses.values())
+    page = _read("index.html").replace("{{early}}", early).replace("{{nonce}}", nonce)
+    return page.replace("{{imports}}", json.dumps({"imports": addresses}))
+
+
+@cache
+def _modules() -> dict[str, str]:
+    editor = (
+        resources.files("roadproof.frontends.report")
+        .joinpath("viewer", "vendor", "edit.js")
+        .read_text("utf-8")
+    )
+    own = {f"studio/{name}": _read(f"{name}.js") for name in _OWN}
+    return {**viewer_modules(), "vendor/edit": editor, **own}
+
+
+@cache
+def _read(name: str) -> str:
+    return resources.files("roadproof.extensions.pages.studio").joinpath("page", name).read_text("utf-8")
+
+
+# --- what the page begins with ---------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Begun:
+    """``text``: the definitions that the editor begins with; ``drives``, ``specs``: the contents of drive
+    files and the texts of specification files that the page lists, by name; ``files``: the texts of other
+    named files, which the page opens as if they were dropped on it; ``shows``: whether the page begins with
+    the first drive.
+    """
+
+    text: str = ""
+    drives: tuple[tuple[str, Any], ...] = ()
+    specs: tuple[tuple[str, str], ...] = ()
+    files: tuple[tuple[str, str], ...] = ()
+    shows: bool = True
+
+    def as_data(self) -> dict[str, object]:
+        """As plain data, with the options that the page offers."""
+        return {
+            "text": self.text,
+            "drives": [{"name": name, "drive": x} for name, x in self.drives],
+            "specs": [{"name": name, "text": x} for name, x in self.specs],
+            "files": [{"name": name, "content": x} for name, x in self.files],
+            "shows": self.shows and bool(self.drives),
+            "form": form(),
+            "examples": [asdict(x) for x in EXAMPLES],
+        }
+
+
+def begin_with(paths: Sequence[Path]) -> Begun:
+    """Read the files that the studio starts with, and the drives and definitions of folders.
+
+    The editor begins with the definitions of the files that are named, not with those of folders.
+    Raises ``InputError`` for other kinds of file, and for more than ``LARGEST_TOGETHER`` bytes of recordings.
+    """
+    texts: list[str] = []
+    drives: list[tuple[str, Any]] = []
+    specs: list[tuple[str, str]] = []
+    files: list[tuple[str, str]] = []
+    for path in paths:
+        if path.is_dir():
+            inside = found_in(path)
+            drives += inside.drives
+            specs += inside.specs
+        elif path.suffix == ".spec":
+            texts.append(read_specification(path).text)
+            specs.append((path.name, texts[-1]))
+        elif path.suffix == ".json" and is_drive(content := read_json(path)):
+            drives.append((path.name, content))
+        elif path.suffix in OPENED:
+            files.append((path.name, _text_of(path)))
+        else:
+            raise InputError(
+                f"{path}: the studio opens specification files (.spec), drives and certificates (.json), "
+                "samples (.csv, .xosc), the files of a recording, and folders"
+            )
+    if sum(len(text) for _, text in files) > LARGEST_TOGETHER:
+        raise InputError(
+            f"the named recordings have more than {LARGEST_TOGETHER // 1_000_000} MB together: "
+            "use roadproof evaluate"
+        )
+    return Begun("\n".join(texts), tuple(drives), tuple(specs), tuple(files))
+
+
+def is_drive(content: object) -> bool:
+    """Return whether plain data say that they are a drive file."""
+    return isinstance(content, dict) and content.get("schema") in SCHEMAS_READ
+
+
+def _text_of(path: Path) -> str:
+    return read_text(path, LARGEST_TOGETHER, "use roadproof evaluate")
+
+
+def found_in(folder: Path) -> Begun:
+    """The specification and drive files of a folder, to choose from.
+
+    Other files, large ones, those that cannot be read, and all beyond ``MOST_FILES`` are left out.
+    """
+    drives: list[tuple[str, Any]] = []
+    specs: list[tuple[str, str]] = []
+    for path in sorted(folder.glob("*.spec"))[:MOST_FILES]:
+        with suppress(RoadproofError, OSError, UnicodeDecodeError):
+            if path.stat().st_size <= LARGEST_FILE:
+                specs.append((path.name, read_specification(path).text))
+    for path in sorted(folder.glob("*.json"))[:MOST_FILES]:
+        with suppress(RoadproofError, OSError):
+            content = read_json(path, LARGEST_FILE)
+            if is_drive(content):
+                drives.append((path.name, content))
+    return Begun("", tuple(drives), tuple(specs), shows=False)

@@ -1,0 +1,28 @@
+"""Questions about whole sets of scenarios, for those who write definitions."""
+
+from roadproof.extension import Extension
+
+EXTENSION = Extension(
+    title="Surveys of sets of scenarios: redundancy, gaps, classes, limits",
+    audience="researchers",
+    needs=("traffic",),
+    functions={
+        "redundancy": "redundancies:redundancy",
+        "coverage": "covering:coverage",
+        "classify": "classifying:classify",
+        "explore": "exploring:explore",
+        "ask": "surveying:ask",
+    },
+    questions={
+        "classify": "classify.question:ClassifyQuestion",
+        "coverage": "coverage.question:CoverageQuestion",
+        "explore": "explore.question:ExploreQuestion",
+        "redundancy": "redundancy:RedundancyQuestion",
+    },
+    answers={
+        "classify": "classifying:Classifications",
+        "coverage": "covering:Coverages",
+        "explore": "exploring:Explorations",
+        "redundancy": "redundancies:Redundancies",
+    },
+)

@@ -1,0 +1,159 @@
+"""For which values there is a drive, where that changes, and how far a measure can go."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Unpack
+
+from roadproof.engines.search.measure import Sense
+from roadproof.engines.search.outcome import Search
+from roadproof.engines.search.question import SearchOptions
+from roadproof.errors import UsageError
+from roadproof.evidence.drive_file import road_said
+from roadproof.evidence.kinds import Evidence
+from roadproof.extensions.drivers.restricting import restricted
+from roadproof.extensions.surveys.explore.asking import ask_for
+from roadproof.extensions.surveys.explore.data import AskedFormula, AskedVariation, Exploring, SearchedPlace
+from roadproof.extensions.surveys.explore.question import ExploreQuestion, ExploreView
+from roadproof.extensions.surveys.explore.values import ExplorationResult
+from roadproof.extensions.surveys.report import explore as report
+from roadproof.frontends.api.answer import Picture, picture
+from roadproof.frontends.api.definitions import Definitions, What, definitions_of
+from roadproof.frontends.api.phrases import Term
+from roadproof.frontends.api.pictures import drawn
+from roadproof.frontends.api.questioned import QuestionAnswers
+from roadproof.frontends.api.settings import basis_of, searches_of, setting
+from roadproof.frontends.report.sheet import Sheet
+from roadproof.frontends.settings.keywords import ExploreKeywords
+from roadproof.frontends.settings.option import takes
+from roadproof.frontends.settings.questions import Explore
+from roadproof.library.bind import Number
+from roadproof.library.scenario_references import names_scenarios
+from roadproof.verdict import ExitCode, Verdict, exit_code
+from roadproof.world.road import Road
+
+
+class Explorations(QuestionAnswers[ExploreView]):
+    """What was explored, a formula after the other."""
+
+    question: ExploreQuestion
+    pieces = "formulas"
+
+    @property
+    def explored(self) -> Mapping[str, ExplorationResult]:
+        """What was found, by the name of the formula."""
+        return self.view.explored
+
+    @property
+    def _entries(self) -> list[report.Entry]:
+        return [*report.entries_of(self.question.named, self.explored)]
+
+    @property
+    def verdicts(self) -> dict[str, Verdict]:
+        entries = ((name, kind, ", ".join(map(report.show, x.at)), x) for name, kind, x, _ in self._entries)
+        return {f"{name}, {kind} {at}": x.verdict for name, kind, at, x in entries}
+
+    @property
+    def evidence(self) -> tuple[Evidence, ...]:
+        return tuple(y for _, _, x, _ in self._entries if (y := x.certificate or x.drive) is not None)
+
+    @property
+    def road(self) -> Road | None:
+        return self.question.road
+
+    @property
+    def exit_code(self) -> ExitCode:
+        return exit_code((x, x) for each in self.explored.values() for x in each.verdicts)
+
+    @property
+    def _sheet(self) -> Sheet[report.Entry]:
+        return report.sheet_of(self._entries)
+
+    def each_picture(self) -> Iterator[tuple[str, Picture]]:
+        """A strip or a map of each formula that was varied."""
+        for name, asked in self.question.named.items():
+            if self.explored[name].findings:
+                yield name, picture(report.draw_exploration(asked, self.explored[name]))
+
+    def files(self, pictures: bool) -> dict[str, bytes]:
+        """Pictures of all, and of the drives at boundaries and extremes."""
+        named = self.question.named.items() if pictures else ()
+        every = (x for name, asked in named for x in report.draw_all(name, asked, self.explored[name]))
+        return drawn({file: picture(figure) for file, figure in every})
+
+    def __str__(self) -> str:
+        named = self.question.named.items()
+        return "\n".join(
+            report.as_text(asked, self.explored[name], self._seconds_of(name)) for name, asked in named
+        )
+
+    def _seconds_of(self, name: str) -> float:
+        """How long the claims of a formula took."""
+        return sum(cost.seconds for claim, cost in self.found.costs.items() if name in claim)
+
+
+@takes(Explore)
+def explore(
+    *what: What, using: Definitions | None = None, **options: Unpack[ExploreKeywords]
+) -> Explorations:
+    """For which values of parameters or limits there is a drive, and how far a measure can go.
+
+    ``vary``: least and greatest value by name, ``{"minDanger": (0, 3)}`` or ``{"POV.a_lon.min": (-6, -1)}``,
+    one or two. ``least``, ``greatest``: a term, at time 0 or ``when`` a formula holds. ``steps``: values of
+    each; ``precision``: width of a bracket, SI units. The rest as for ``witness``. Raises as that does.
+    """
+    given = Explore.of(options)
+    plain = definitions_of(using)
+    each = plain.each(what)
+    home = restricted(plain, given, what=each)
+    vary = given.vary or {}
+    for name in {*vary} & {*home.values}:
+        raise UsageError(f"{name} is given a value and varied: leave one out")
+    question = explore_question(home, each, given, [(name, *ends) for name, ends in vary.items()])
+    return Explorations.settled(question, given)
+
+
+def explore_question(
+    home: Definitions, what: Sequence[What], given: Explore, ranges: Sequence[tuple[str, Number, Number]]
+) -> ExploreQuestion:
+    """What is asked of each formula in each spec set, varied over ``ranges``. Raises as ``explore``."""
+    place = setting(home, given)
+    basis = replace(basis_of(home, given), vehicles=place.vehicles, horizon=place.horizon)
+    searches = [*searches_of(home, what, place, SearchOptions(engine=given.engine, solver=given.solver))]
+    formulas = tuple(_asked_formula(home, x, given.when) for x in searches)
+    measures: dict[Sense, Term | None] = {"least": given.least, "greatest": given.greatest}
+    wanted = [(sense, str(x)) for sense, x in measures.items() if x is not None]
+    first = ask_for(searches[0], ranges, given.steps, given.precision, wanted, formulas[0].when)
+    asked = Exploring(
+        formulas=formulas,
+        vary=tuple(AskedVariation(name=x.name, low=x.low, high=x.high) for x in first.knobs),
+        steps=given.steps,
+        precision=first.precision,
+        **dict(wanted),
+        place=SearchedPlace(
+            road=None if place.road is None else road_said(place.road),
+            lanes=place.lanes,
+            dt=place.dt,
+            reach=place.reach,
+            collisions=place.collisions,
+            engine=given.engine,
+            solver=given.solver,
+        ),
+    )
+    question = ExploreQuestion(basis, asked)
+    _ = question.named
+    return question
+
+
+def _asked_formula(home: Definitions, search: Search, when: What | None) -> AskedFormula:
+    """A formula, and the moment at which is measured, in the words of its spec set."""
+    here = replace(home, specification=search.specification)
+    if when is None or (isinstance(when, str) and not names_scenarios(here.specification, when)):
+        moment = when or ""
+    else:
+        moment = here.read(when).text
+    return AskedFormula(
+        scenario=search.scenario,
+        set=search.specification.set_name,
+        formula=search.query.text,
+        when=moment,
+    )

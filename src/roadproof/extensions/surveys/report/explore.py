@@ -1,0 +1,326 @@
+"""An exploration to look at: a strip or a map as text, the ends of what was found, and pictures."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from functools import partial
+from itertools import pairwise
+from textwrap import wrap
+from typing import Any, TypeAlias
+
+from roadproof.engines.search.extreme import Extreme
+from roadproof.engines.search.points import PointFinding
+from roadproof.extensions.surveys.explore.asking import Explorable, Variable
+from roadproof.extensions.surveys.explore.values import Boundary, ExplorationResult
+from roadproof.frontends.report.drive import draw_drive
+from roadproof.frontends.report.figures import draw_cell, legend_beside, make_figure, name_cells
+from roadproof.frontends.report.numbers import took
+from roadproof.frontends.report.overlap import COLOURS, SIGNS
+from roadproof.frontends.report.sheet import Cell, Column, Sheet
+from roadproof.library.words import words_of
+from roadproof.verdict import Verdict
+from roadproof.world.units import unit_text
+
+MOST_NOTES = 2  # for one verdict on a map or strip; JSON has them all
+# Reasons, each with its number.
+Notes: TypeAlias = dict[str, int]
+_MEANING = {
+    Verdict.WITNESSED: "a drive, judged at this value",
+    Verdict.IMPOSSIBLE: "no drive exists: proved for all values",
+    Verdict.NONE_WITHIN: "no drive within the printed limits",
+    Verdict.UNKNOWN: "not decided",
+}
+
+_THERE = "proved that there is none, with the parameters at their values here"
+
+
+def _meaning(verdict: Verdict, findings: Sequence[PointFinding]) -> str:
+    there = any(x.assuming for x in findings if x.verdict is verdict)
+    return _THERE if there else _MEANING[verdict]
+
+
+def as_text(asked: Explorable, explored: ExplorationResult, seconds: float = 0.0) -> str:
+    """One explored formula for the terminal: its map, the ends, the extremes; reasons as notes below.
+
+    ``seconds``: how long it took.
+    """
+    notes: Notes = {}
+    lines = [_title(asked)]
+    if asked.knobs:
+        lines += _strip(asked, explored) if len(asked.knobs) == 1 else _map(asked, explored)
+        lines += _legend(explored.findings, notes)
+    if len(asked.knobs) == 1:
+        lines += _ends(asked.knobs[0], explored, notes)
+    for extreme in explored.extremes:
+        lines += _extreme(asked, extreme, notes)
+    for reason, number in notes.items():
+        lines += wrap(reason, 108, initial_indent=f"  [{number}] ", subsequent_indent="      ")
+    counts = [f"{explored.searches} searches"]
+    if explored.findings:
+        counts = [f"{len(explored.findings)} values", *counts, f"{explored.drives} drives"]
+    return "\n".join([*lines, f"  {', '.join(counts)}{took(seconds)}"])
+
+
+def _title(asked: Explorable) -> str:
+    search = asked.search
+    name = search.query.text
+    if search.scenario is not None:
+        name = str(words_of(search.specification, search.scenario))
+    return f"{name}, set {search.specification.set_name}"
+
+
+def _note(finding: PointFinding, notes: Notes) -> str:
+    """The verdict with the number of the note that says why."""
+    return f"{finding.verdict} {_number(finding, notes)}"
+
+
+def _number(finding: PointFinding, notes: Notes) -> str:
+    return f"[{notes.setdefault(finding.reason, len(notes) + 1)}]"
+
+
+def _strip(asked: Explorable, explored: ExplorationResult) -> list[str]:
+    [knob] = asked.knobs
+    signs = "".join(SIGNS[x.verdict] for x in explored.findings)
+    return [f"  {knob.name}  {show(knob.low)} {signs} {show(knob.high)} {_unit(knob.unit)}"]
+
+
+def _map(asked: Explorable, explored: ExplorationResult) -> list[str]:
+    """Rows are values of the second knob, the greatest on top; columns those of the first."""
+    across, up = asked.knobs
+    columns, rows = (knob.values(asked.steps) for knob in asked.knobs)
+    signs = {x.at: SIGNS[x.verdict] for x in explored.findings}
+    width = max(len(show(row)) for row in rows)
+    lines = [f"  {up.name} ({_unit(up.unit)})"]
+    for row in reversed(rows):
+        lines.append(f"  {show(row):>{width}} |" + "".join(f" {signs[column, row]}" for column in columns))
+    lines.append(" " * (width + 4) + f" {show(columns[0])} … {show(columns[-1])}  ")
+    lines[-1] += f"{across.name} ({_unit(across.unit)})"
+    return lines
+
+
+def _legend(findings: Sequence[PointFinding], notes: Notes) -> list[str]:
+    lines: list[str] = []
+    for verdict, sign in SIGNS.items():
+        here = [x for x in findings if x.verdict is verdict]
+        if here:
+            unlike = list({x.reason: x for x in here if x.reason}.values())
+            why = [_number(x, notes) for x in unlike[:MOST_NOTES]]
+            why += [f"and {len(unlike) - MOST_NOTES} more"] if len(unlike) > MOST_NOTES else []
+            line = (
+                f"  {sign} {verdict}: {_meaning(verdict, findings)}, at {len(here)} of {len(findings)} values"
+            )
+            lines.append(" ".join([line, *why]))
+    return lines
+
+
+def _ends(knob: Variable, explored: ExplorationResult, notes: Notes) -> list[str]:
+    """The least and the greatest value with a drive, and what is beyond; then gaps between."""
+    held = [x.at[0] for x in explored.findings if x.found]
+    held += [x.held.at[0] for x in explored.boundaries]
+    if not held:
+        return []
+    places = sorted(set(held))
+    lines: list[str] = []
+    for word, place, end in (("least", places[0], knob.low), ("greatest", places[-1], knob.high)):
+        line = f"  {word} {knob.name} with a drive: {_value(place, knob.unit)}"
+        if place == end:
+            lines.append(f"{line}, the end of the range")
+        else:
+            boundary = next(x for x in explored.boundaries if x.held.at[0] == place)
+            lines.append(f"{line}; {_beyond(boundary.missed, boundary.surely, knob.unit, notes)}")
+    for boundary in explored.boundaries:
+        if places[0] < boundary.missed.at[0] < places[-1]:
+            beside = _value(boundary.held.at[0], knob.unit)
+            beyond = _beyond(boundary.missed, boundary.surely, knob.unit, notes)
+            lines.append(f"  a gap beside {beside}; {beyond}")
+    return lines
+
+
+def _beyond(missed: PointFinding, surely: PointFinding | None, unit: str, notes: Notes) -> str:
+    """What is known of the other side of a bracket."""
+    text = f"at {_value(missed.at[0], unit)} {_note(missed, notes)}"
+    if surely is not None and surely.at != missed.at:
+        text += f", at {_value(surely.at[0], unit)} {_note(surely, notes)}"
+    return text
+
+
+def _extreme(asked: Explorable, extreme: Extreme, notes: Notes) -> list[str]:
+    """The best value reached, and what is beyond."""
+    measure, unit = extreme.measure, unit_text(extreme.measure.dimension)
+    when = f"when {measure.when}" if measure.when else "at the start"
+    head = f"  {measure.sense} {measure.text} {when}"
+    if extreme.point:
+        head += f", {asked.knobs[0].name} = {show(extreme.point[0])}"
+    best, missed = extreme.best, extreme.missed
+    if best is None:
+        return [f"{head}: no drive" + ("" if missed is None else f": {_note(missed, notes)}")]
+    if extreme.endless:
+        return [f"{head}: no end; the judged drive goes past {_value(best.at[0], unit)}"]
+    line = f"{head}: {_value(best.at[0], unit)} on a judged drive"
+    return [line if missed is None else f"{line}; {_beyond(missed, extreme.surely, unit, notes)}"]
+
+
+Entry: TypeAlias = tuple[str, str, PointFinding, tuple[str, ...]]
+"""The name of a formula, the kind of a value, what was found, and the names of the values that it is at."""
+
+
+def entries_of(named: Mapping[str, Explorable], explored: Mapping[str, ExplorationResult]) -> Iterator[Entry]:
+    """Each value, and both sides of each boundary and extreme."""
+    for name, found in explored.items():
+        knobs = tuple(knob.name for knob in named[name].knobs)
+        yield from ((name, "value", x, knobs) for x in found.findings)
+        for boundary in found.boundaries:
+            yield name, "boundary, held", boundary.held, knobs
+            yield name, "boundary, missed", boundary.missed, knobs
+        for extreme in found.extremes:
+            sense = f"{extreme.measure.sense} {extreme.measure.text}"
+            for side, x in (("best", extreme.best), ("missed", extreme.missed)):
+                if x is not None:
+                    yield name, f"{sense}, {side}", x, tuple(f"at {k}" for k, _ in enumerate(x.at, 1))
+
+
+def sheet_of(entries: Sequence[Entry]) -> Sheet[Entry]:
+    """An entry for each value, and for both sides of each boundary and extreme; values in SI units."""
+    names = dict.fromkeys(name for *_, at in entries for name in at)
+    values: tuple[Column[Entry], ...] = tuple(Column(name, partial(_value_of, name)) for name in names)
+    return Sheet(
+        (
+            Column("formula", lambda x: x[0]),
+            Column("kind", lambda x: x[1]),
+            *values,
+            Column("verdict", lambda x: x[2].verdict, look="verdict"),
+            Column("reason", lambda x: x[2].reason),
+        ),
+        entries,
+    )
+
+
+def _value_of(name: str, entry: Entry) -> Cell:
+    return dict(zip(entry[3], entry[2].at, strict=True)).get(name)
+
+
+def draw_all(name: str, asked: Explorable, explored: ExplorationResult) -> Iterator[tuple[str, Any]]:
+    """Pictures of an exploration, and of the drives at its boundaries and extremes, with names of files."""
+    if explored.findings:
+        yield name, draw_exploration(asked, explored)
+    for file, finding in _ends_of(name, explored):
+        if finding.drive is not None:
+            yield file, draw_drive(finding.drive.file, asked.search.specification.library)
+
+
+def _ends_of(name: str, explored: ExplorationResult) -> Iterator[tuple[str, PointFinding]]:
+    """What was found at boundaries and as extremes, each with the name of its picture."""
+    for k, boundary in enumerate(explored.boundaries, 1):
+        yield f"{name}-boundary-{k}-held", boundary.held
+    for k, x in enumerate(explored.extremes, 1):
+        if x.best is not None:
+            yield f"{name}-{x.measure.sense}-{k}-best", x.best
+
+
+def draw_exploration(asked: Explorable, explored: ExplorationResult) -> Any:
+    """The strip or map of an exploration, measures over the strip."""
+    return (_draw_strip if len(asked.knobs) == 1 else _draw_map)(asked, explored)
+
+
+def _draw_strip(asked: Explorable, explored: ExplorationResult) -> Any:
+    [knob] = asked.knobs
+    measured = [x for x in explored.extremes if x.best is not None and x.point]
+    figure, made = make_figure([2.6, 0.7, 0.7] if measured else [0.7, 0.7], width=8.0)
+    *above, axes, below = made
+    places = [x.at[0] for x in explored.findings]
+    edges = [float(x) for x in (places[0], *_edges(places, explored.boundaries), places[-1])]
+    for x, low, high in zip(explored.findings, edges, edges[1:], strict=False):
+        axes.fill((low, high, high, low), (0, 0, 1, 1), color=COLOURS[x.verdict], ec="white", lw=0.8)
+    axes.plot([float(x) for x in places], [0.08] * len(places), color="#333333", marker="|", ms=6, lw=0)
+    for boundary in explored.boundaries:
+        held, missed = float(boundary.held.at[0]), float(boundary.missed.at[0])
+        axes.plot((held, held), (0, 1), color="#222222", lw=1.4)
+        axes.plot((missed, missed), (0, 1), color="#222222", ls=":", lw=1.4)
+        axes.text(held, 1.05, f"{held:g}", fontsize=7, ha="center")
+    axes.set_yticks([])
+    axes.set_ylim(0, 1)
+    axes.set_xlabel(f"{knob.name}, {_unit(knob.unit)}", fontsize=8)
+    for one in (*above, axes):
+        one.set_xlim(float(places[0]), float(places[-1]))
+        one.tick_params(labelsize=7)
+    if measured:
+        _draw_measures(above[0], measured)
+    _finish(figure, below, asked, explored)
+    return figure
+
+
+def _edges(places: Sequence[Fraction], boundaries: Sequence[Boundary]) -> Iterator[Fraction]:
+    """Where one colour ends: inside the bracket of a boundary, else halfway between two values."""
+    brackets = [(x.held.at[0], x.missed.at[0]) for x in boundaries]
+    for low, high in pairwise(places):
+        here = [pair for pair in brackets if all(low <= end <= high for end in pair)]
+        yield sum(here[0] if here else (low, high), Fraction(0)) / 2
+
+
+def _draw_measures(axes: Any, measured: Sequence[Extreme]) -> None:
+    """Each measure over the knob: what judged drives reach, and the nearest value that none was found for."""
+    for sense, colour in (("least", "#1f5fbf"), ("greatest", "#c8641e")):
+        here = [x for x in measured if x.measure.sense == sense and not x.endless]
+        if not here:
+            continue
+        reached = [(float(x.point[0]), float(x.best.at[0])) for x in here if x.best is not None]
+        axes.plot(
+            *zip(*reached, strict=True),
+            color=colour,
+            marker="o",
+            ms=3,
+            lw=1,
+            label=f"{sense}, on judged drives",
+        )
+        beyond = [(float(x.point[0]), float(x.missed.at[0])) for x in here if x.missed is not None]
+        axes.plot(*zip(*beyond, strict=True), color=colour, marker="x", ms=4, lw=0, label="not found")
+    measure = measured[0].measure
+    axes.set_ylabel(f"{measure.text}, {unit_text(measure.dimension)}", fontsize=7)
+    legend_beside(axes)
+
+
+def _draw_map(asked: Explorable, explored: ExplorationResult) -> Any:
+    across, up = asked.knobs
+    columns, rows = (knob.values(asked.steps) for knob in asked.knobs)
+    found = {x.at: x for x in explored.findings}
+    width = max(5.0, 0.42 * len(columns) + 2.5)
+    figure, [axes, below] = make_figure([0.42 * len(rows) + 1.0, 0.7], width)
+    for y, row in enumerate(rows):
+        for x, column in enumerate(columns):
+            cell = found[column, row]
+            draw_cell(axes, x, y, COLOURS[cell.verdict], cell.number, "white")
+            if x and cell.found != found[columns[x - 1], row].found:
+                axes.plot((x, x), (y, y + 1), color="#222222", lw=1.6)
+            if y and cell.found != found[column, rows[y - 1]].found:
+                axes.plot((x, x + 1), (y, y), color="#222222", lw=1.6)
+    axes.set_xlim(0, len(columns))
+    axes.set_ylim(0, len(rows))
+    name_cells(axes, [*map(show, columns)], [*map(show, rows)], 7)
+    axes.set_xlabel(f"{across.name}, {_unit(across.unit)}; numbers in cells tell drives apart", fontsize=8)
+    axes.set_ylabel(f"{up.name}, {_unit(up.unit)}", fontsize=8)
+    _finish(figure, below, asked, explored)
+    return figure
+
+
+def _finish(figure: Any, below: Any, asked: Explorable, explored: ExplorationResult) -> None:
+    """Title, and what colours mean."""
+    present = {x.verdict for x in explored.findings}
+    for verdict in (v for v in SIGNS if v in present):
+        below.fill([], [], color=COLOURS[verdict], label=f"{verdict}: {_meaning(verdict, explored.findings)}")
+    if len({x.found for x in explored.findings}) > 1:
+        below.plot([], [], color="#222222", lw=1.6, label="between values with and without a drive")
+    below.legend(fontsize=7, loc="upper left", frameon=False)
+    below.axis("off")
+    figure.suptitle("\n".join(wrap(_title(asked), 80)), fontsize=9)
+
+
+def _value(value: Fraction, unit: str) -> str:
+    return f"{show(value)} {_unit(unit)}".rstrip()
+
+
+def _unit(unit: str) -> str:
+    return "" if unit == "unitless" else unit
+
+
+def show(value: Fraction) -> str:
+    """A value in decimals, to six digits."""
+    return f"{float(value):.6g}"

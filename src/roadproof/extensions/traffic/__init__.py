@@ -1,0 +1,20 @@
+"""Recordings of traffic: read, monitored, evaluated and simulated, for those who have data."""
+
+from roadproof.extension import Extension
+
+EXTENSION = Extension(
+    title="Recorded and simulated traffic: monitors and evaluations",
+    audience="researchers",
+    needs=(
+        "maps",
+        "drivers",
+    ),
+    functions={
+        "monitor": "monitoring:monitor",
+        "trace": "monitoring:trace",
+        "evaluate": "evaluating:evaluate",
+        "roads": "evaluating:roads",
+        "convert": "converting:convert",
+        "simulate": "simulating:simulate",
+    },
+)

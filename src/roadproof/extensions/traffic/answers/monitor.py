@@ -1,0 +1,113 @@
+"""The answer of ``roadproof monitor``: where a formula holds on one trace."""
+
+from collections.abc import Mapping
+from dataclasses import field
+from typing import Annotated, Final, Literal, TypeAlias
+
+from roadproof.evidence.answers.shared import Formula, OnRoad, PlainHeading, Rational, SetName
+from roadproof.evidence.codec import LEFT_OUT, Doc, Key, Rule
+from roadproof.extensions.drivers.verdict import DriverVerdict
+from roadproof.runtime.records import dataclass
+
+SCHEMA: Final = "roadproof/monitor/2"
+Truth: TypeAlias = Literal["true", "false", "undecided"]
+View: TypeAlias = Literal["dense", "recorded"]
+Spans: TypeAlias = tuple[tuple[float, float | None], ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Part:
+    """When a part of the formula is true."""
+
+    formula: str
+    true: Annotated[
+        Spans,
+        Doc("When it is true: begin and end in s from the first sample on, ends included; null is for ever."),
+    ]
+    undecided: Annotated[Spans, Doc("When that depends on what comes after the trace: as above.")]
+    exact: Annotated[
+        str, LEFT_OUT, Doc("When it is true, with open and closed ends, in s; where the view is dense.")
+    ] = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Override:
+    """What was asked for otherwise than a drive file says."""
+
+    what: Annotated[str, Rule(pattern="^(set|parameter .+|option .+)$")]
+    asked: str
+    said: Annotated[str, Doc("What the file says; parameters in SI units.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Place:
+    """On which trace a formula was monitored, and with what."""
+
+    trace: Annotated[str, Doc("Where the trace was read.")]
+    start: Annotated[str, Doc("When its first sample is, as the source counts: seconds, or a frame.")]
+    set_name: Annotated[SetName, Key("set")]
+    road: Annotated[str, Doc("Name of the road.")]
+    lanes: Annotated[Mapping[str, str], Doc("The lane that each free lane of the formula stands for.")]
+    overruled: Annotated[tuple[Override, ...], Doc("What was asked for otherwise than a drive file says.")]
+    roles: Annotated[
+        Mapping[str, str],
+        LEFT_OUT,
+        Doc("What the trace calls the vehicle of each role, where that is not the role."),
+    ] = field(default_factory=dict)
+
+    def __str__(self) -> str:
+        parts = [f"trace: {self.trace}", f"start: {self.start}"]
+        parts += [f"{role}: vehicle {name}" for role, name in self.roles.items()]
+        parts += [f"set: {self.set_name}", f"road: {self.road}"]
+        parts += [f"lane {name}: {lane}" for name, lane in self.lanes.items()]
+        for x in self.overruled:
+            asked = f"{x.asked} (the file says {x.said})"
+            parts.append(f"set of the file: {x.said}" if x.what == "set" else f"{x.what}: {asked}")
+        return "; ".join(parts)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Observation(PlainHeading):
+    """What a formula is on one trace."""
+
+    formula: Formula
+    view: Annotated[View, Doc("dense: a drive, judged exactly; recorded: samples.")]
+    end: Annotated[
+        Literal["truncated", "clip"] | None,
+        Doc("What the end of the trace means; null where the view is dense, since a drive has no end."),
+    ]
+    verdict: Annotated[Truth, Doc("At the first sample.")]
+    under_the_other_end: Annotated[
+        Truth | None, Doc("The verdict with the other of truncated and clip; null where the view is dense.")
+    ]
+    robustness: Annotated[
+        tuple[float | None, float | None],
+        Doc("Bounds of the margin by which it holds, in the SI units of what is compared; null is no bound."),
+    ]
+    decides: Annotated[
+        bool,
+        Doc(
+            "Whether the robustness has a sign, which is then that of the verdict; of a drive it is 0 where "
+            "samples and judge disagree."
+        ),
+    ]
+    seconds: Annotated[float, Rule(minimum=0), Doc("How long the trace is, in s; of a drive its horizon.")]
+    dt: Annotated[Rational, Doc("Time between samples, in s; of a drive those of the margin.")]
+    parts: Annotated[tuple[Part, ...], Rule(least=1), Doc("The formula, then the definitions in it.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Answer(Place, OnRoad, Observation):
+    """Where a formula holds on one trace."""
+
+    notes: Annotated[
+        tuple[str, ...],
+        LEFT_OUT,
+        Doc("What is odd in the recording, what was computed, and which vehicles were left out."),
+    ] = ()
+    drivers: Annotated[
+        tuple[DriverVerdict, ...],
+        LEFT_OUT,
+        Doc("What becomes of the trace from its start on where driver models drive SV."),
+    ] = ()
+    schema: Literal["roadproof/monitor/2"] = SCHEMA

@@ -1,0 +1,70 @@
+"""What a formula is on one trace: a few lines, and strips that show when each part of it is true."""
+
+from textwrap import wrap
+from typing import Any
+
+from roadproof.extensions.traffic.evaluate.observed import FirstAnswer
+from roadproof.frontends.report.figures import legend_beside, make_figure, name_rows
+from roadproof.frontends.report.sheet import excerpt
+
+_TRUE, _UNDECIDED, _WIDEST = "#4b8b3b", "#bbbbbb", 60
+
+
+def as_text(observed: FirstAnswer) -> str:
+    """Verdict, how it is meant, and a line for each part."""
+    lines = [f"{observed.formula}: {observed.verdict}", f"  {_promise(observed)}", f"  {_margin(observed)}"]
+    lines.append("when true, in seconds from the start:")
+    width = min(48, max(len(strip.name) for strip in observed.strips))
+    for strip in observed.strips:
+        told = strip.exact or " ∪ ".join(map(_interval, strip.true)) or "never"
+        if strip.undecided:
+            told += "; undecided " + " ∪ ".join(map(_interval, strip.undecided))
+        lines.append(f"  {strip.name:<{width}}  {told}")
+    return "\n".join(lines)
+
+
+def _promise(observed: FirstAnswer) -> str:
+    if observed.view == "dense":
+        return "view: dense, every instant of an unbounded drive, judged exactly"
+    other = "clip" if observed.convention == "truncated" else "truncated"
+    return (
+        f"view: recorded, samples every {float(observed.dt):g} s for {observed.seconds:g} s; "
+        f"end of the trace: {observed.convention} ({other}: {observed.other})"
+    )
+
+
+def _margin(observed: FirstAnswer) -> str:
+    low, high = observed.margin
+    grid = f", on a grid of {float(observed.dt):g} s" if observed.view == "dense" else ""
+    whether = "" if observed.decides else "; it does not decide"
+    if low == high:
+        return f"robustness {low + 0.0:.6g}{grid}{whether}"
+    return f"robustness between {low:.6g} and {high:.6g}, whatever comes after the trace{grid}{whether}"
+
+
+def _interval(span: tuple[float, float]) -> str:
+    begin, end = span
+    return f"{{{begin:g}}}" if begin == end else f"[{begin:g}, {end:g}]"
+
+
+def draw_strips(observed: FirstAnswer) -> Any:
+    """A strip a part, each below what it is part of: green where it is true, grey where undecided."""
+    strips = observed.strips
+    figure, (axes,) = make_figure([0.6 + 0.2 * len(strips)])
+    end = max(observed.seconds, float(observed.dt))
+    sample = 0.0 if observed.view == "dense" else float(observed.dt)
+    for row, strip in enumerate(strips):
+        for spans, colour in ((strip.true, _TRUE), (strip.undecided, _UNDECIDED)):
+            for begin, last in spans:
+                if begin <= end:
+                    width = max(min(last, end) - begin + sample, end / 300)
+                    axes.barh(row, width, left=begin, height=0.7, color=colour)
+    name_rows(axes, ["  " * strip.depth + excerpt(strip.name, _WIDEST) for strip in strips])
+    axes.set_xlim(0, end + sample)
+    axes.set_xlabel("s", fontsize=8)
+    axes.fill([], [], color=_TRUE, label="true")
+    if any(strip.undecided for strip in strips):
+        axes.fill([], [], color=_UNDECIDED, label="depends on what\ncomes after")
+    legend_beside(axes)
+    figure.suptitle("\n".join(wrap(f"{observed.formula}: {observed.verdict}", 120)), fontsize=9)
+    return figure

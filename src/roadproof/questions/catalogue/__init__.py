@@ -1,1 +1,0 @@
-"""What tests show and mean."""
