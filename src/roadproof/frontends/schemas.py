@@ -18,17 +18,7 @@ from roadproof.evidence.json_schema import (
     tagged_schema,
 )
 from roadproof.evidence.strict import JsonObject
-from roadproof.extensions.assurance.answers import assurance, bundle, trace, trace_changes, trace_lock
-from roadproof.extensions.catalogue import kept as catalogue_index
-from roadproof.extensions.drivers.preventable.data import PreventableData
-from roadproof.extensions.drivers.preventable.plate import BoundaryFile
-from roadproof.extensions.maps import answer as road_map
-from roadproof.extensions.surveys.classify.data import ClassesData
-from roadproof.extensions.surveys.coverage import kept as coverage
-from roadproof.extensions.surveys.explore.data import ExploreData
-from roadproof.extensions.surveys.redundancy import RedundancyData
-from roadproof.extensions.surveys.survey import SurveyData
-from roadproof.extensions.traffic.answers import monitor, traffic
+from roadproof.extension import imported, listed
 from roadproof.library.motion import INDUCTIONS
 from roadproof.questions import overlap as overlap_question
 from roadproof.questions.compare import ComparisonData
@@ -38,39 +28,19 @@ from roadproof.questions.overlap import OverlapData
 from roadproof.questions.prove import ClaimsData
 from roadproof.questions.witness import WitnessData
 
-TITLES: Mapping[type, str] = {
+CORE: Mapping[type, str] = {
     ClaimsData: "roadproof prove --json: claims, proved or refuted",
     ComparisonData: "roadproof compare --json: which of two formulas implies the other",
     library.Answer: "roadproof list --json: what the library holds",
     show.Answer: "roadproof show --format json: a scenario, a definition or a formula",
     check.Answer: "roadproof check --json: what evidence shows",
-    assurance.Answer: "roadproof assurance --json: an argument in GSN, and which of its parts hold",
-    monitor.Answer: "roadproof monitor --json: where a formula holds on one trace",
-    traffic.Answer: (
-        "results.json of roadproof evaluate, and its --json: dangers in recordings, and what matches them"
-    ),
-    catalogue_index.Index: ("roadproof catalogue --json: what tests show and mean, and what nobody tests"),
-    ClassesData: "roadproof classify --json: classes that exclude each other",
-    coverage.CoverageData: "roadproof coverage --json: which disturbances a set misses",
-    SurveyData: "the surveys of contributors, --json: which of some formulas can hold on a drive",
     WitnessData: "roadproof witness --json: drives for scenarios and formulas",
-    ExploreData: "roadproof explore --json: for which values there is a drive",
     OrderData: "roadproof order --json: which scenarios imply which",
     OverlapData: "roadproof overlap --json: which scenarios hold together",
     QuestionFile: "question.json: a question, from which its claims are listed",
     Undecided: "NAME.json in a folder of answers: why a claim is undecided",
     JudgedFile: "NAME.json in a folder of answers: what a given trace shows",
     RefutationFile: "NAME.json in a folder of answers: a trace on which a claim is false",
-    PreventableData: (
-        "roadproof preventable --json: from which initial values a driver prevents a collision"
-    ),
-    BoundaryFile: "NAME.json in a folder of answers: where on the lines of a plate a formula holds",
-    bundle.Manifest: "manifest.json of roadproof bundle: what is in it, and what checks it",
-    road_map.Answer: "roadproof road --json: the roads of a map",
-    trace.Answer: "roadproof trace --json: which requirements are shown",
-    trace_changes.Changes: "roadproof trace --baseline --json: what changed between two states",
-    trace_lock.Lock: "requirements.lock.json: what every link of a trace rested on when it was accepted",
-    RedundancyData: ("roadproof redundancy --json: which parts could be left out"),
 }
 WITHOUT_ASSUMPTION: JsonObject = {
     "dependentRequired": {"assuming": ["axioms"], "unused": ["assuming"]},
@@ -91,9 +61,14 @@ def shared_types() -> JsonObject:
     return {note.name: x for x in kinds for note in notes_of(x) if isinstance(note, Shared)}
 
 
+def titles() -> Mapping[type, str]:
+    """What each schema is called, by the definition that it follows from."""
+    return {**CORE, **{kind: title for x in listed("schemas") for kind, title in imported(x).items()}}
+
+
 def schemas() -> Iterator[tuple[str, JsonObject]]:
     """The name and the content of each schema."""
-    for kind, title in TITLES.items():
+    for kind, title in titles().items():
         [schema] = get_args(next(x.type for x in fields_of(kind) if x.name == "schema"))
         name = file_of(schema)
         yield name, schema_of(kind, name, title)

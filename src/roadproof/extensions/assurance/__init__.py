@@ -17,4 +17,5 @@ EXTENSION = Extension(
         "requirements": "tracing:requirements",
         "requirement_changes": "tracing:requirement_changes",
     },
+    schemas=("schemas:TITLES",),
 )

@@ -14,4 +14,5 @@ EXTENSION = Extension(
     functions={"catalogue": "cataloguing:catalogue"},
     questions={"catalogue": "question:CatalogueQuestion"},
     answers={"catalogue": "cataloguing:CatalogueAnswer"},
+    schemas=("schemas:TITLES",),
 )

@@ -9,4 +9,5 @@ EXTENSION = Extension(
     functions={"preventable": "preventing:preventable"},
     questions={"preventable": "preventable.question:PreventableQuestion"},
     answers={"preventable": "preventing:Plates"},
+    schemas=("schemas:TITLES",),
 )

@@ -6,4 +6,5 @@ EXTENSION = Extension(
     title="Roads of OpenDRIVE, Lanelet2 and CommonRoad maps",
     audience="testers",
     functions={"road": "roads:road", "stretches": "roads:stretches"},
+    schemas=("schemas:TITLES",),
 )

@@ -25,4 +25,5 @@ EXTENSION = Extension(
         "explore": "exploring:Explorations",
         "redundancy": "redundancies:Redundancies",
     },
+    schemas=("schemas:TITLES",),
 )

@@ -17,4 +17,5 @@ EXTENSION = Extension(
         "convert": "converting:convert",
         "simulate": "simulating:simulate",
     },
+    schemas=("schemas:TITLES",),
 )

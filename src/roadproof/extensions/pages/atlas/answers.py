@@ -15,6 +15,7 @@ from roadproof.extensions.drivers.preventable.data import PreventableData
 from roadproof.extensions.surveys import classifying, covering
 from roadproof.extensions.surveys.classify.data import ClassesData
 from roadproof.extensions.surveys.coverage.kept import CoverageData
+from roadproof.extensions.surveys.redundancies import redundancy
 from roadproof.extensions.surveys.redundancy import RedundancyData
 from roadproof.frontends.api import drives, studies
 from roadproof.frontends.api import proofs as proving
@@ -167,7 +168,7 @@ class _Questions:
         self.answers.order = read(OrderData, found.as_data(), "order")
 
     def redundancy(self) -> None:
-        found = studies.redundancy(self.among, self.answers.home, **self._keywords("redundancy"))
+        found = redundancy(self.among, self.answers.home, **self._keywords("redundancy"))
         self.answers.redundancy = read(RedundancyData, found.as_data(), "redundancy")
 
     def gaps(self) -> None:

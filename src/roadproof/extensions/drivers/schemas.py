@@ -1,0 +1,13 @@
+"""What the schemas of the JSON files of this extension are called."""
+
+from collections.abc import Mapping
+
+from roadproof.extensions.drivers.preventable.data import PreventableData
+from roadproof.extensions.drivers.preventable.plate import BoundaryFile
+
+TITLES: Mapping[type, str] = {
+    PreventableData: (
+        "roadproof preventable --json: from which initial values a driver prevents a collision"
+    ),
+    BoundaryFile: "NAME.json in a folder of answers: where on the lines of a plate a formula holds",
+}
