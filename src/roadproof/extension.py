@@ -43,6 +43,8 @@ class Extension:
     """Classes of questions, by their kind."""
     answers: Entries = field(default_factory=dict)
     """Classes of the answers to questions in Python, by the kind of the question."""
+    evidence: Entries = field(default_factory=dict)
+    """Classes of evidence (``evidence.answer_files.OwnEvidence``), by the schema of their files."""
     schemas: tuple[str, ...] = ()
     """Mappings of definitions of JSON files to their titles."""
 

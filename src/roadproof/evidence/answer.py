@@ -6,7 +6,7 @@ A file is read as the answer to a claim only where it is about that claim, compa
 
 from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TypeAlias
 
 from roadproof.errors import InputError, RoadproofError, StaleError
@@ -18,13 +18,14 @@ from roadproof.evidence.answer_files import (
     AboutClaim,
     JudgedFile,
     OpenVerdict,
+    OwnEvidence,
     RefutationFile,
     Undecided,
 )
 from roadproof.evidence.answers.doubt import Doubt
 from roadproof.evidence.answers.none_within import Model
 from roadproof.evidence.certificate import Certificate, certificate_data, read_certificate_data
-from roadproof.evidence.claim import Beside, Claim, Exists, Judgement, Lines, Mode, On, Valid
+from roadproof.evidence.claim import Claim, Exists, Judgement, Mode, On, OwnMode, Valid
 from roadproof.evidence.codec import read, write
 from roadproof.evidence.countermodel import Countermodel, read_trace, trace_data
 from roadproof.evidence.drive_file import DriveFile, natural_of, read_drive
@@ -32,7 +33,7 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.none_within import NoneWithinFile, none_within_data, read_none_within
 from roadproof.evidence.refutation import fault_of
 from roadproof.evidence.strict import Fields, JsonObject
-from roadproof.extensions.drivers.preventable.plate import BOUNDARY, BoundaryFile
+from roadproof.extension import entries, imported
 from roadproof.library.bind import values_with
 from roadproof.library.compose import denied_premise, never
 from roadproof.library.motion import under_limits, value_texts
@@ -62,7 +63,7 @@ class Judged:
 
 
 Evidence: TypeAlias = (
-    Certificate | JudgedDrive | Refutation | NoneWithinFile | BoundaryFile | Judged | Undecided
+    Certificate | JudgedDrive | Refutation | NoneWithinFile | OwnEvidence | Judged | Undecided
 )
 
 
@@ -98,10 +99,10 @@ class Answer:
                 return Verdict.REFUTED
             case Valid(), Refutation():
                 raise ValueError("it is a trace, but only a drive refutes the claim")
-            case Exists() | Beside(), JudgedDrive():
+            case OwnMode() as own, evidence if (verdict := own.verdict_of(evidence)) is not None:
+                return verdict
+            case Exists(), JudgedDrive():
                 return Verdict.WITNESSED
-            case Lines(), BoundaryFile():
-                return Verdict.DERIVED
             case Exists(), Certificate():
                 return Verdict.IMPOSSIBLE
             case Exists(trees=True), NoneWithinFile():
@@ -211,7 +212,7 @@ def answer_data(answer: Answer) -> JsonObject:
             return drive.as_data()
         case NoneWithinFile() as trees:
             return none_within_data(trees)
-        case Undecided() | BoundaryFile() as own:
+        case Undecided() | OwnEvidence() as own:
             return write(own)
         case Judged(shows):
             mode = answer.claim.mode
@@ -239,9 +240,7 @@ def read_answer(claim: Claim, content: object, where: str, is_judged: bool = Fal
     """
     schema = Fields(content, where).text("schema")
     try:
-        if schema not in _READERS:
-            raise InputError(f"{where}: schema='{schema[:60]}' is none of {', '.join(_READERS)}")
-        reader = _trace if is_judged and schema == REFUTATION else _READERS[schema]
+        reader = _reader(schema, where, is_judged)
         return Answer(claim, reader(claim, content, where))
     except ValueError as error:
         raise InputError(f"{where}: {error}") from None
@@ -301,13 +300,9 @@ def _is_given(mode: Exists, file: DriveFile) -> bool:
 
 
 def _shows(claim: Claim, file: DriveFile) -> bool:
-    """Return whether a drive is about a claim: its formula, or the place of a plate that it begins at."""
-    if isinstance(claim.mode, Beside):
-        from roadproof.extensions.drivers.preventable.boundary import (
-            start_of,  # here: other answers need no driver model
-        )
-
-        return start_of(claim, file) is not None
+    """Return whether a drive is about a claim."""
+    if isinstance(claim.mode, OwnMode):
+        return claim.mode.is_shown_by(claim, file)
     return claim.read(file.formula) == sought_by(claim)
 
 
@@ -373,13 +368,13 @@ def _moves_as(one: Vehicle, other: Vehicle) -> bool:
     return all(getattr(one, x) == getattr(other, x) for x in Model.__annotations__)
 
 
-def _boundary(claim: Claim, content: object, where: str) -> BoundaryFile:
-    file = read(BoundaryFile, content, where)
+def _own(claim: Claim, content: object, where: str, schema: str) -> OwnEvidence:
+    """Return evidence of a kind that an extension adds."""
+    kind: type[OwnEvidence] = imported(entries("evidence")[schema])
+    file = read(kind, content, where)
     _require_about(claim, file, where)
-    known = {x.name: x.value for x in claim.parameters}
-    _require(file.parameters == known, where, "its parameters have other values")
-    about = claim.mode.plate if isinstance(claim.mode, Lines) else None
-    _require(file.plate == about, where, "it is about another plate")
+    fault = file.fault_for(claim)
+    _require(not fault, where, fault)
     return file
 
 
@@ -405,12 +400,25 @@ _READERS: Mapping[str, Callable[[Claim, object, str], Evidence]] = {
     **dict.fromkeys(drive_file.SCHEMAS_READ, _drive),
     none_within.SCHEMA: _none_within,
     REFUTATION: _refutation,
-    BOUNDARY: _boundary,
     UNDECIDED: _undecided,
     JUDGED: _judged,
 }
-SCHEMAS = tuple(_READERS)
-"""The schemas of files that are answers."""
+
+
+def is_answer(schema: str) -> bool:
+    """Whether files of a schema are answers."""
+    return schema in _READERS or schema in entries("evidence")
+
+
+def _reader(schema: str, where: str, is_judged: bool) -> Callable[[Claim, object, str], Evidence]:
+    if is_judged and schema == REFUTATION:
+        return _trace
+    if schema in _READERS:
+        return _READERS[schema]
+    own = entries("evidence")
+    if schema not in own:
+        raise InputError(f"{where}: schema='{schema[:60]}' is none of {', '.join((*_READERS, *own))}")
+    return partial(_own, schema=schema)
 
 
 def _require_about(claim: Claim, file: AboutClaim, where: str) -> None:

@@ -1,12 +1,18 @@
 """Files of answers that are neither certificate, drive nor tree: what is undecided, and refuting traces."""
 
-from typing import Annotated, Final, Literal, TypeAlias
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Final, Literal, TypeAlias
 
 from roadproof.evidence.answers import shared
 from roadproof.evidence.answers.doubt import Doubt
 from roadproof.evidence.codec import LEFT_OUT, Doc
+from roadproof.library.specification import Library
 from roadproof.runtime.records import dataclass
 from roadproof.verdict import Verdict
+
+if TYPE_CHECKING:
+    from roadproof.evidence.claim import Claim
+    from roadproof.evidence.finding import Finding
 
 UNDECIDED: Final = "roadproof/undecided/1"
 REFUTATION: Final = "roadproof/refutation/1"
@@ -60,3 +66,16 @@ class RefutationFile(AboutClaim):
     schema: Literal["roadproof/refutation/1"] = REFUTATION
     drive_sought: Annotated[bool, LEFT_OUT, Doc("Whether a drive was looked for in vain, too.")] = False
     trace: Annotated[object, Doc("The trace: instants, values and a road.")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class OwnEvidence(AboutClaim):
+    """Evidence of a kind that an extension adds, whose record names the class by its schema."""
+
+    def fault_for(self, claim: "Claim") -> str:
+        """Return why it is about another claim; nothing where it is about this one."""
+        raise NotImplementedError
+
+    def check(self, path: Path, library: Library) -> "Finding":
+        """Return what the file shows, worked out again. Raises ``RoadproofError`` where it shows nothing."""
+        raise NotImplementedError

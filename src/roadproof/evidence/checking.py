@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from roadproof.errors import InputError, MissingSolverError, RoadproofError
 from roadproof.evidence import certificate, drive_file, none_within
-from roadproof.evidence.answer_files import JUDGED, REFUTATION, RefutationFile
+from roadproof.evidence.answer_files import JUDGED, REFUTATION, OwnEvidence, RefutationFile
 from roadproof.evidence.answers.proofs import misnamed, shown
 from roadproof.evidence.certificate import Certificate
 from roadproof.evidence.codec import read
@@ -19,7 +19,7 @@ from roadproof.evidence.none_within import Derive, Derived, NoneWithinFile
 from roadproof.evidence.refutation import judge_trace
 from roadproof.evidence.strict import Fields, read_json
 from roadproof.evidence.subject import SubjectKind
-from roadproof.extensions.drivers.preventable.plate import BOUNDARY, BoundaryFile
+from roadproof.extension import entries, imported
 from roadproof.library.bind import default_values, values_with
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import is_moving, statement
@@ -33,7 +33,6 @@ from roadproof.runtime.budget import BudgetExceeded
 from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.exact import Judgement
 from roadproof.semantics.exact.replay import first_overlap
-from roadproof.verdict import Verdict
 
 FindLabel: TypeAlias = Callable[[str, str], "tuple[str, str, int | None] | None"]
 """Property, part and scenario of a claim in a set, where it is a template property."""
@@ -70,11 +69,13 @@ class Checker:
                 return Finding(str(path), "test", Acceptance.UNREADABLE, why)
             if schema == REFUTATION:
                 return self._refutation(path, read(RefutationFile, content, str(path)))
-            if schema == BOUNDARY:
-                return self._boundary(path, read(BoundaryFile, content, str(path)))
             if schema == none_within.SCHEMA and self.derive is not None:
                 file = none_within.read_none_within(content, str(path))
                 return self._none_within(path, file, self.derive(file, self.library))
+            own = entries("evidence")
+            if schema in own:
+                kind: type[OwnEvidence] = imported(own[schema])
+                return read(kind, content, str(path)).check(path, self.library)
             raise InputError(f"its schema is {schema[:60]!r}, but must be {' or '.join(SCHEMAS)}")
         except MissingSolverError:
             raise
@@ -99,7 +100,7 @@ class Checker:
         named = shown(label, file.set_name)
         told = statement(file.assumed.said, file.claim)
         ruled = self.ruled or OtherVerdict(outcome, reason, "")
-        read = (*ruled.checked, *self._readings(file.options))
+        read = (*ruled.checked, *other_readings(file.options, self.library))
         more = (read, ruled.unchecked) if outcome is Acceptance.ACCEPTED else ((), ())
         return Finding(
             str(path),
@@ -132,20 +133,6 @@ class Checker:
         said = Finding(str(path), "trace", outcome, reason, "REFUTED", "", claim, checked)
         return replace(said, kernel=word)
 
-    def _boundary(self, path: Path, file: BoundaryFile) -> Finding:
-        """Lines are worked out again from the formula or the motion of their model."""
-        from roadproof.extensions.drivers.preventable.boundary import (
-            fault_of,  # here: other evidence needs no driver model
-        )
-
-        reason = Why.TOLD(fault) if (fault := fault_of(file, self.library)) else NO_REASON
-        outcome = Acceptance.REJECTED if reason else Acceptance.ACCEPTED
-        declared = default_values(self.library)
-        other = [f"{name}={x}" for name, x in sorted(file.parameters.items()) if declared.get(name) != x]
-        told = f"with {', '.join(other)}" if other else "declared parameters"
-        checked = () if reason else ("worked out again", told, *self._readings(file.options))
-        return Finding(str(path), "boundary", outcome, reason, Verdict.DERIVED, "", file.claim, checked)
-
     def _none_within(self, path: Path, file: NoneWithinFile, derived: Derived) -> Finding:
         """Trees are checked against programs that the encoder derives again from the question."""
         fault = none_within.first_fault(file, derived)
@@ -155,7 +142,7 @@ class Checker:
         if self.ruled is not None and not reason:
             outcome, reason = self.ruled.outcome, self.ruled.reason
         label = shown(None if file.scenario is None else ("", "", file.scenario), file.set_name)
-        limits = (derived.limits, *none_within.own_parts(file), *self._readings(file.options))
+        limits = (derived.limits, *none_within.own_parts(file), *other_readings(file.options, self.library))
         checked, unchecked = ((), ()) if reason else (limits, ("the encoder",))
         word = "" if self.ruled is None else self.ruled.word
         return Finding(
@@ -180,7 +167,7 @@ class Checker:
             outcome, reason = Acceptance.UNREADABLE, with_hint(reason, file.formula)
         label = shown(None if file.scenario is None else ("", "", file.scenario), file.set_name)
         checked, unchecked = ((), ()) if reason else said_of(file, self.library)
-        checked += self._readings(file.options) if checked else ()
+        checked += other_readings(file.options, self.library) if checked else ()
         word = ""
         if self.ruled is not None:
             word = self.ruled.word
@@ -217,12 +204,6 @@ class Checker:
         if said.has("times") and judgement is not None and said.get("times") != times_data(judgement):
             return Why.OTHER_TIMES()
         return NO_REASON
-
-    def _readings(self, options: Mapping[str, str]) -> tuple[str, ...]:
-        """Readings of a file that are not those by default, in words."""
-        usual = self.library.select().options
-        other = [f"{name}={value}" for name, value in sorted(options.items()) if usual.get(name) != value]
-        return (f"read with {', '.join(other)}",) if other else ()
 
     def _question_fault(self, file: DriveFile | NoneWithinFile, query: Query) -> Reason:
         """Which value a file lacks, or why its formula is not that of the scenario that it names."""
@@ -265,6 +246,13 @@ def said_of(file: DriveFile, library: Library) -> tuple[tuple[str, ...], tuple[s
     else:
         checked.append(f"boxes apart up to {_seconds(file.horizon)} s; after that {overlap}")
     return tuple(checked), tuple(unchecked)
+
+
+def other_readings(options: Mapping[str, str], library: Library) -> tuple[str, ...]:
+    """Readings of a file that are not those by default, in words."""
+    usual = library.select().options
+    other = [f"{name}={value}" for name, value in sorted(options.items()) if usual.get(name) != value]
+    return (f"read with {', '.join(other)}",) if other else ()
 
 
 def other_values(file: DriveFile, library: Library) -> list[str]:

@@ -6,12 +6,12 @@ trace, or of initial values of a driver model. Two claims are equal where an eng
 a digest is a sound key for answers that are kept. ``text`` is for people: no answer depends on it.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
 from dataclasses import field
 from fractions import Fraction
-from typing import Any, Final, Literal, Protocol, TypeAlias, runtime_checkable
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Literal, Protocol, TypeAlias, runtime_checkable
 
-from roadproof.extensions.drivers.preventable.plate import Plate
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import is_moving, under_limits, values_said
 from roadproof.library.specification import Library, Query, Specification
@@ -25,6 +25,10 @@ from roadproof.world.drive import Drive
 from roadproof.world.road import Road
 from roadproof.world.units import UNITS
 from roadproof.world.vehicle import Vehicle
+
+if TYPE_CHECKING:
+    from roadproof.evidence.answer import Answer
+    from roadproof.evidence.drive_file import DriveFile
 
 Objective: TypeAlias = Literal["any", "smooth", "margin", "mild", "severe", "short"]
 Engine: TypeAlias = Literal["milp", "smt"]
@@ -131,33 +135,28 @@ class On:
     judge: Judge = field(compare=False, repr=False)
 
 
-@dataclass(frozen=True)
-class Lines:
-    """On each line of a plate it is to be worked out where the formula holds.
+class OwnMode(ABC):
+    """How a claim of an extension is asked: a frozen dataclass, of which the digest of the claim is made.
 
-    ``readings``: options on which the motion of the model depends, where no formula describes it.
+    ``is_open``: whether the evidence says numbers that the formula leaves open.
     """
 
-    plate: Plate
-    readings: Mapping[str, str] = field(default_factory=dict)
+    is_open: ClassVar[bool] = False
+
+    @abstractmethod
+    def settle(self, claim: "Claim") -> "Answer":
+        """Return the answer to a claim of this mode. Raises ``BudgetExceeded``."""
+
+    @abstractmethod
+    def verdict_of(self, evidence: object) -> Verdict | None:
+        """Return the verdict that this evidence shows; None where it decides no claim of this mode."""
+
+    def is_shown_by(self, claim: "Claim", drive: "DriveFile") -> bool:
+        """Return whether a drive is about a claim of this mode."""
+        return claim.read(drive.formula) == claim.formula
 
 
-@dataclass(frozen=True)
-class Beside:
-    """A drive of the model of a plate is to be found that begins there, and shows the formula.
-
-    The formula leaves open which numbers the initial values are. ``readings``: options on which the motion of
-    the model depends. ``of``: what the drive should be of besides, the first before the others.
-    """
-
-    plate: Plate
-    side: Literal["unpreventable", "preventable"]
-    readings: Mapping[str, str] = field(default_factory=dict)
-    of: tuple[Formula, ...] = ()
-    of_texts: tuple[str, ...] = field(default=(), compare=False)
-
-
-Mode: TypeAlias = Valid | Exists | On | Lines | Beside
+Mode: TypeAlias = Valid | Exists | On | OwnMode
 
 
 @dataclass(frozen=True)

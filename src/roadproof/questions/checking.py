@@ -10,7 +10,7 @@ from typing import Any
 
 from roadproof.errors import InputError, StaleError
 from roadproof.evidence.answer import Answer, Judged, assumed_by, read_answer, undecided
-from roadproof.evidence.claim import HELP, Beside, Claim, Confirming, Exists, Judge, Judgement, On
+from roadproof.evidence.claim import HELP, Claim, Confirming, Exists, Judge, Judgement, On, OwnMode
 from roadproof.evidence.codec import write
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding
 from roadproof.evidence.heading import library_of
@@ -98,7 +98,7 @@ class QuestionFolder:
             verdict=str(answer.verdict),
             unchecked=(*found.unchecked, *(OTHER_LIBRARY,) * self.is_other_library),
         )
-        if isinstance(answer.claim.mode, Beside):
+        if isinstance(answer.claim.mode, OwnMode) and answer.claim.mode.is_open:
             told = replace(told, claim=found.claim)  # which says the numbers that the claim leaves open
         return self.question.tell(name, answer, told) if isinstance(self.question, Telling) else told
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from roadproof.errors import InputError, UsageError
-from roadproof.evidence.answer import SCHEMAS, Answer, Refutation, answer_data, read_answer
+from roadproof.evidence.answer import Answer, Refutation, answer_data, is_answer, read_answer
 from roadproof.evidence.answer_files import Undecided
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.heading import library_of
@@ -178,7 +178,7 @@ class Store:
         for path in every:
             if path.stem not in answers and path.name != QUESTION and not path.is_symlink():
                 content = read_json(path, LARGEST_EVIDENCE)
-                if isinstance(content, dict) and content.get("schema") in SCHEMAS:
+                if isinstance(content, dict) and is_answer(str(content.get("schema"))):
                     path.unlink()
                     if say is not None:
                         say(f"a stored answer is asked for no more and is removed: {path}")

@@ -14,7 +14,7 @@ from roadproof.engines.search.question import zones_of
 from roadproof.evidence.answer import Answer, Judged, Refutation, undecided
 from roadproof.evidence.answer_files import Undecided
 from roadproof.evidence.certificate import Certificate
-from roadproof.evidence.claim import Beside, Claim, Exists, Lines, Means, On, Valid
+from roadproof.evidence.claim import Claim, Exists, Means, On, OwnMode, Valid
 from roadproof.evidence.countermodel import Countermodel
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.refutation import fault_of
@@ -133,16 +133,8 @@ class Engines:
                     return seek(claim, self.work)
                 case Exists():
                     return self._drive(claim, claim.mode.by), NO_COST
-                case Lines():
-                    from roadproof.extensions.drivers.preventable.beside import (
-                        settle_lines,  # here: others need no driver
-                    )
-
-                    return settle_lines(claim), NO_COST
-                case Beside():
-                    from roadproof.extensions.drivers.preventable.beside import settle_beside
-
-                    return settle_beside(claim), NO_COST
+                case OwnMode() as own:
+                    return own.settle(claim), NO_COST
                 case On(judge=judge):
                     return Answer(claim, Judged(judge())), NO_COST
                 case _:

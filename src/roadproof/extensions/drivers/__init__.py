@@ -9,5 +9,6 @@ EXTENSION = Extension(
     functions={"preventable": "preventing:preventable"},
     questions={"preventable": "preventable.question:PreventableQuestion"},
     answers={"preventable": "preventing:Plates"},
+    evidence={"roadproof/boundary/1": "preventable.plate:BoundaryFile"},
     schemas=("schemas:TITLES",),
 )

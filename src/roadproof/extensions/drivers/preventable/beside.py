@@ -9,7 +9,7 @@ from math import ceil
 
 from roadproof.errors import InputError
 from roadproof.evidence.answer import Answer, undecided
-from roadproof.evidence.claim import Beside, Claim, Lines, parameters_in
+from roadproof.evidence.claim import Claim, parameters_in
 from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.extensions.drivers.driving import PARAMETERS, DriverSettings, drive_of
 from roadproof.extensions.drivers.gradual import RATE
@@ -25,6 +25,7 @@ from roadproof.extensions.drivers.preventable.boundary import (
     reading_of,
     side_file,
 )
+from roadproof.extensions.drivers.preventable.claims import Beside, Lines
 from roadproof.extensions.drivers.preventable.plate import BoundaryFile, Plate
 from roadproof.extensions.drivers.stepped import beside_change, labels_of
 from roadproof.library.elaborate import read_claim

@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import TypeAlias
 
 from roadproof.errors import InputError
-from roadproof.evidence.claim import Beside, Claim
+from roadproof.evidence.claim import Claim
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.extensions.drivers.driving import OWN_LANE, DriverSettings, drive_of, rest_of, road_of
 from roadproof.extensions.drivers.lines import Line as Drawn
@@ -31,6 +31,7 @@ from roadproof.extensions.drivers.manoeuvres import (
     signals_of,
 )
 from roadproof.extensions.drivers.models import MODELS, ModelName
+from roadproof.extensions.drivers.preventable.claims import Beside
 from roadproof.extensions.drivers.preventable.plate import BoundaryFile, Line, Plate
 from roadproof.extensions.drivers.stepped import labels_of, places_of, spans_of
 from roadproof.library.bind import values_with

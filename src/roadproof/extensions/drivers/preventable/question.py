@@ -8,7 +8,7 @@ from typing import Any, ClassVar, get_args
 
 from roadproof.errors import InputError, UsageError
 from roadproof.evidence.answer import Answer
-from roadproof.evidence.claim import Beside, Claim, Lines, Mode, parameters_in, valid_under
+from roadproof.evidence.claim import Claim, Mode, parameters_in, valid_under
 from roadproof.evidence.codec import read
 from roadproof.evidence.subject import OTHER, Subject, SubjectKind
 from roadproof.extensions.drivers import gradual
@@ -18,6 +18,7 @@ from roadproof.extensions.drivers.lines import SIDES, Side, boundary_text, open_
 from roadproof.extensions.drivers.manoeuvres import MANOEUVRES, Manoeuvre, Values
 from roadproof.extensions.drivers.models import Model, manoeuvre_of, models_for, parts_of
 from roadproof.extensions.drivers.preventable import data
+from roadproof.extensions.drivers.preventable.claims import Beside, Lines
 from roadproof.extensions.drivers.preventable.plate import Plate as Asked
 from roadproof.extensions.drivers.preventable.view import (
     LemmaResult,

@@ -79,14 +79,14 @@ def _read(path: Path) -> "Iterator[DriveFile]":
 
 def _may_be_drive(path: Path) -> bool:
     """Whether a file of a folder is no other evidence, as ``roadproof witness`` writes beside drives."""
-    from roadproof.evidence.answer import SCHEMAS
+    from roadproof.evidence.answer import is_answer
     from roadproof.evidence.drive_file import SCHEMAS_READ
     from roadproof.evidence.strict import read_json
     from roadproof.questions.data import SCHEMA as QUESTION
 
     content = read_json(path)
     kind = content.get("schema") if isinstance(content, dict) else None
-    return kind in SCHEMAS_READ or kind not in (*SCHEMAS, QUESTION)
+    return kind in SCHEMAS_READ or not (kind == QUESTION or is_answer(str(kind)))
 
 
 def _found(text: str, set_name: str) -> "Iterator[DriveFile]":

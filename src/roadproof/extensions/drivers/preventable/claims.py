@@ -1,0 +1,67 @@
+"""How claims about plates are asked: where a formula holds on lines, and for drives beside that boundary."""
+
+from collections.abc import Mapping
+from dataclasses import field
+from typing import ClassVar, Literal
+
+from roadproof.evidence.answer import Answer
+from roadproof.evidence.claim import Claim, OwnMode
+from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.judged import JudgedDrive
+from roadproof.extensions.drivers.preventable.plate import BoundaryFile, Plate
+from roadproof.logic.formula import Formula
+from roadproof.runtime.records import dataclass
+from roadproof.verdict import Verdict
+
+
+@dataclass(frozen=True)
+class Lines(OwnMode):
+    """On each line of a plate it is to be worked out where the formula holds.
+
+    ``readings``: options on which the motion of the model depends, where no formula describes it.
+    """
+
+    plate: Plate
+    readings: Mapping[str, str] = field(default_factory=dict)
+
+    def settle(self, claim: Claim) -> Answer:
+        """Return where on the lines of the plate the formula of a claim holds."""
+        from roadproof.extensions.drivers.preventable.beside import settle_lines  # loads the models
+
+        return settle_lines(claim)
+
+    def verdict_of(self, evidence: object) -> Verdict | None:
+        """DERIVED where a file says so for the lines."""
+        return Verdict.DERIVED if isinstance(evidence, BoundaryFile) else None
+
+
+@dataclass(frozen=True)
+class Beside(OwnMode):
+    """A drive of the model of a plate is to be found that begins there, and shows the formula.
+
+    The formula leaves open which numbers the initial values are. ``readings``: options on which the motion of
+    the model depends. ``of``: what the drive should be of besides, the first before the others.
+    """
+
+    is_open: ClassVar[bool] = True
+    plate: Plate
+    side: Literal["unpreventable", "preventable"]
+    readings: Mapping[str, str] = field(default_factory=dict)
+    of: tuple[Formula, ...] = ()
+    of_texts: tuple[str, ...] = field(default=(), compare=False)
+
+    def settle(self, claim: Claim) -> Answer:
+        """Return a drive on the side of the boundary of the plate."""
+        from roadproof.extensions.drivers.preventable.beside import settle_beside  # loads the models
+
+        return settle_beside(claim)
+
+    def verdict_of(self, evidence: object) -> Verdict | None:
+        """WITNESSED by a drive."""
+        return Verdict.WITNESSED if isinstance(evidence, JudgedDrive) else None
+
+    def is_shown_by(self, claim: Claim, drive: DriveFile) -> bool:
+        """Return whether it is the drive of the model from a place of the plate."""
+        from roadproof.extensions.drivers.preventable.boundary import start_of  # loads the models
+
+        return start_of(claim, drive) is not None
