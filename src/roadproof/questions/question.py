@@ -3,13 +3,13 @@
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from typing import Any, ClassVar, Protocol, Self, TypeAlias, TypeVar, runtime_checkable
 
+from roadproof.engines.modifier import modifier_of
 from roadproof.evidence.answer import Answer, undecided
 from roadproof.evidence.claim import Claim
 from roadproof.evidence.finding import Finding
 from roadproof.evidence.heading import heading
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.subject import Subject
-from roadproof.extensions.drivers import restriction
 from roadproof.questions.basis import Basis
 from roadproof.reasons import NO_REASON, Reason
 from roadproof.runtime.budget import Work
@@ -184,4 +184,5 @@ def seen(asking: Generator[tuple[str, Claim], Answer, T], known: Answers) -> T:
 
 def heading_of(schema: str, basis: Basis) -> dict[str, Any]:
     """Return how a view begins as plain data: its kind, the version, the library, what begins so."""
-    return {**heading(schema, basis.library), **restriction.told(basis.specification.options, schema)}
+    modifier = modifier_of(basis.specification.options)
+    return heading(schema, basis.library) | ({} if modifier is None else modifier.as_data(schema))

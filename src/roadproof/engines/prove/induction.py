@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator, Sequence
 
+from roadproof.engines.modifier import left_open
 from roadproof.engines.prove.prover import Result, prove
 from roadproof.errors import InputError
-from roadproof.extensions.drivers.restriction import left_open
 from roadproof.library.elaborate import read_claim
 from roadproof.library.motion import Assumption, Axiom, axiom_formula
 from roadproof.library.specification import Query, Specification

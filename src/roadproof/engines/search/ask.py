@@ -1,16 +1,16 @@
 """A search for drives of values, and its typed outcome."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from roadproof.engines.modifier import Modifier, modifier_of
 from roadproof.engines.search.initial_candidates import is_read
 from roadproof.engines.search.outcome import Outcome, Search, undecided
 from roadproof.engines.search.question import FoundDrive, SearchProblem, pose
 from roadproof.engines.search.siblings import find_once, offered
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.extensions.drivers.objection import Driven
-from roadproof.extensions.drivers.restriction import restriction_of
 from roadproof.library.bind import telling_values
 from roadproof.reasons import NO_REASON, Why
 from roadproof.runtime.budget import BudgetExceeded, Effort
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from roadproof.engines.search.search import Attempt
 
 TRIES, AGAIN = 5, 8.0
-"""Drives of a restricted search to which a driver model may object, and units of work for each after one."""
+"""Drives to which a modifier of the question may object, and units of work for each after one."""
 # Units of work for a proof that there is none; and where no engine reads all, which is hard to prove, too.
 NEVER, NEVER_UNREAD = 10.0, 2.0
 
@@ -91,13 +91,14 @@ def _ask(search: Search) -> Outcome:
 def _attempt(question: SearchProblem, search: Search, objections: list[str]) -> "Attempt":
     """What a search comes to; a scenario takes the drive of its sibling where that answers it too.
 
-    ``objections`` of a driver model to drives that were found are added.
+    ``objections`` of a modifier to drives that were found are added.
     """
     from roadproof.engines.search.search import find_witness  # here: what is known needs no numpy
 
-    restriction = restriction_of(search.specification.options)
-    if restriction is not None and restriction.scenarios:
-        return _driven(question, search, Driven(search, question, restriction), objections)
+    modifier = modifier_of(search.specification.options)
+    objector = None if modifier is None else modifier.objector(search, question)
+    if modifier is not None and objector is not None:
+        return _modified(question, search, modifier, objector, objections)
     if search.unlike or search.scenario is None or search.setting.road is not None:
         return find_witness(question, search.search_options, search.unlike)
     begun, options = search.search_options.effort.meter(), search.search_options
@@ -107,8 +108,14 @@ def _attempt(question: SearchProblem, search: Search, objections: list[str]) -> 
     return sibling or find_once(question, options)
 
 
-def _driven(question: SearchProblem, search: Search, driven: Driven, objections: list[str]) -> "Attempt":
-    """What a search comes to without drives to which a driver model objects."""
+def _modified(
+    question: SearchProblem,
+    search: Search,
+    modifier: Modifier,
+    objector: Callable[[FoundDrive], str],
+    objections: list[str],
+) -> "Attempt":
+    """What a search comes to without drives to which a modifier of the question objects."""
     from roadproof.engines.search.search import Attempt, find_witness
 
     drives = list(search.unlike)
@@ -127,12 +134,12 @@ def _driven(question: SearchProblem, search: Search, driven: Driven, objections:
                 return attempt
             break
         drives.append(attempt.found.drive)
-        objection = driven.objection(attempt.found)
+        objection = objector(attempt.found)
         if not objection:
             return attempt
         objections.append(objection)
-    model = driven.restriction.model
-    return Attempt(Verdict.UNKNOWN, None, Why.NOT_DRIVEN(len(objections), model, "; ".join(objections)))
+    reason = Why.NOT_DRIVEN(len(objections), modifier.word, "; ".join(objections))
+    return Attempt(Verdict.UNKNOWN, None, reason)
 
 
 def judge_found(search: Search, question: SearchProblem, found: FoundDrive) -> JudgedDrive:

@@ -4,11 +4,11 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeAlias
 
+from roadproof.engines.modifier import left_open
 from roadproof.engines.prove.induction import prove_of_scenarios
 from roadproof.engines.prove.prover import ProofHeuristic, Result, prove
 from roadproof.evidence.certificate import Certificate, certificate_data
 from roadproof.evidence.strict import JsonObject
-from roadproof.extensions.drivers.restriction import left_open
 from roadproof.library.compose import negation, of_parts
 from roadproof.library.elaborate import read_claim
 from roadproof.library.specification import Query, Specification

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import replace
 
+from roadproof.engines.modifier import modifier_of
 from roadproof.engines.prove.doubt import doubt_of
 from roadproof.engines.prove.induction import prove_of_scenarios
 from roadproof.engines.search.known_drive import KnownDrive, against, first_refuting
@@ -12,7 +13,6 @@ from roadproof.engines.search.settle import Settlement, settle, settle_bounded
 from roadproof.engines.search.shipped_drives import shipped_drives
 from roadproof.evidence.answer import Answer, Refutation, assumed_by, undecided, vacuities
 from roadproof.evidence.claim import Claim, Valid
-from roadproof.extensions.drivers.restriction import restriction_of
 from roadproof.logic.formula import FALSE
 from roadproof.reasons import Reason, Why
 from roadproof.runtime.budget import Work
@@ -37,7 +37,7 @@ def settle_valid(
     if shown is not None:
         return Answer(claim, shown), NO_COST
     effort = work.effort if work.seek_drive else work.effort.of(work.proof)
-    if not work.seek_drive and not assumed_by(claim) and restriction_of(claim.home.options) is not None:
+    if not work.seek_drive and not assumed_by(claim) and modifier_of(claim.home.options) is not None:
         return _answer(claim, work, Settlement(prove_of_scenarios(claim.home, claim.query, effort))), NO_COST
     found = settle(claim.home, claim.query, effort, seek_drive=work.seek_drive, said=assumed_by(claim))
     return _answer(claim, work, found), Cost(work=found.result.work or None)

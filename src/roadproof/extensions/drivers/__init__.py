@@ -9,6 +9,7 @@ EXTENSION = Extension(
     functions={"preventable": "preventing:preventable"},
     questions={"preventable": "preventable.question:PreventableQuestion"},
     answers={"preventable": "preventing:Plates"},
+    modifiers={"prevention": "restriction:restriction_of"},
     evidence={"roadproof/boundary/1": "preventable.plate:BoundaryFile"},
     schemas=("schemas:TITLES",),
 )

@@ -4,10 +4,10 @@ What that is, ``prevention.spec`` says. Which driver, which side and what begins
 options are told with every answer: so evidence is about the question that was asked, and ``check`` reads it.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Literal, TypeAlias, get_args
+from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 from roadproof.errors import InputError, UsageError
 from roadproof.extensions.drivers import models
@@ -29,6 +29,10 @@ from roadproof.logic.restore import as_syntax
 from roadproof.logic.rewrite import without_names
 from roadproof.logic.syntax import Claim, Definition
 from roadproof.runtime.records import dataclass
+
+if TYPE_CHECKING:
+    from roadproof.engines.search.outcome import Search
+    from roadproof.engines.search.question import FoundDrive, SearchProblem
 
 Side: TypeAlias = Literal["preventable", "unpreventable"]
 About: TypeAlias = Literal["scenarios", "drives"]
@@ -52,11 +56,33 @@ class Restriction:
         """The scenarios that begin so; all others are as they are."""
         return models.courses_of(self.model) if self.about == "scenarios" else ()
 
+    @property
+    def word(self) -> str:
+        """The name of the driver model."""
+        return self.model
+
+    def left_open(self, home: Specification) -> Specification:
+        """Return the same definitions, but what a driver prevents is left open.
+
+        What is proved of the scenarios alone is proved of these, too, and what is not is quickly refuted,
+        where the formulas of a driver, cubic in the state, would keep a prover busy to no end.
+        """
+        found = {x.name: x for x in parse_library(_OPEN, models.PREVENTION) if isinstance(x, Definition)}
+        return Specification(home.library, home.set_name, home.options, {**home.definitions, **found})
+
+    def objector(self, search: "Search", problem: "SearchProblem") -> "Callable[[FoundDrive], str] | None":
+        """Return who puts the model into drives of scenarios that begin so, if any do."""
+        if not self.scenarios:
+            return None
+        from roadproof.extensions.drivers.objection import Driven  # loads what drives are replayed with
+
+        return Driven(search, problem, self).objection
+
     def as_data(self, schema: str) -> dict[str, object]:
         """Return what an answer of this schema says of it, as plain data."""
         by = "formula" if self.about == "drives" or schema in _BY_FORMULA else "model"
         said = {"side": self.side, "driver": self.model, "of": self.about}
-        return {**said, "scenarios": list(self.scenarios), "drives_by": by}
+        return {"prevention": {**said, "scenarios": list(self.scenarios), "drives_by": by}}
 
     def __str__(self) -> str:
         said = f"{self.side} ({models.MODELS[self.model].title}; by the formula of a state)"
@@ -84,12 +110,6 @@ _BY_FORMULA = ("roadproof/explore/2", "roadproof/coverage/2")
 """Answers whose drives are restricted by the formula of a state alone."""
 
 
-def told(options: Mapping[str, str], schema: str) -> dict[str, object]:
-    """Return what the heading of an answer says of a restriction; nothing where there is none."""
-    found = restriction_of(options)
-    return {} if found is None else {"prevention": found.as_data(schema)}
-
-
 # Of signals that no scenario speaks of: any drive may begin so, or not.
 _OPEN = """
 def begins_cutIn(a, b: vehicle) "left open" := a_lat(a) > a_lat(b)
@@ -97,19 +117,6 @@ def begins_cutOut(a, b, c: vehicle) "left open" := a_lat(a) > a_lat(b)
 def begins_deceleration(a, b: vehicle) "left open" := j_lon(a) > j_lon(b)
 def begins_between(a, b: vehicle) "left open" := a_lat(a) > a_lat(b)
 """
-
-
-def left_open(specification: Specification) -> Specification | None:
-    """The same definitions, but what a driver prevents is left open; None where none is asked for.
-
-    What is proved of the scenarios alone is proved of these, too, and what is not is quickly refuted, where
-    the formulas of a driver, cubic in the state, would keep a prover busy to no end.
-    """
-    if restriction_of(specification.options) is None:
-        return None
-    found = {x.name: x for x in parse_library(_OPEN, models.PREVENTION) if isinstance(x, Definition)}
-    definitions = {**specification.definitions, **found}
-    return Specification(specification.library, specification.set_name, specification.options, definitions)
 
 
 def unrestricted(specification: Specification) -> Specification:

@@ -6,11 +6,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import ClassVar, Generic, Self, TypeVar
 
+from roadproof.engines.modifier import modifier_of
 from roadproof.evidence import answer as answers
 from roadproof.evidence.answer_files import Undecided
 from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
-from roadproof.extensions.drivers.restriction import restriction_of
 from roadproof.frontends.api.answer import Answer
 from roadproof.frontends.settings.groups import Run
 from roadproof.library.specification import Library
@@ -66,8 +66,8 @@ class QuestionAnswers(Answer, Generic[View]):
 
     @property
     def supposed(self) -> tuple[str, ...]:
-        """What begins so that is asked about, where a driver model says it."""
-        found = restriction_of(self.question.basis.specification.options)
+        """What a modifier of the question supposes of the drives that are asked about."""
+        found = modifier_of(self.question.basis.specification.options)
         return () if found is None else (str(found),)
 
     @property
