@@ -45,6 +45,8 @@ class Extension:
     """Classes of the answers to questions in Python, by the kind of the question."""
     evidence: Entries = field(default_factory=dict)
     """Classes of evidence (``evidence.answer_files.OwnEvidence``), by the schema of their files."""
+    kernels: tuple[str, ...] = ()
+    """Those who check evidence again (``evidence.kernels.Kernels``)."""
     modifiers: Entries = field(default_factory=dict)
     """Functions that find the modifier of a question (``engines.modifier``), by the option that says it."""
     schemas: tuple[str, ...] = ()

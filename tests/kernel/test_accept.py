@@ -9,8 +9,9 @@ from cli.test_schemas import validator
 from kernel.needs import needs_coq
 from roadproof.evidence.certificate import read_certificate, to_json
 from roadproof.evidence.finding import Acceptance
+from roadproof.evidence.kernels import Word
 from roadproof.extensions.kernel import accept
-from roadproof.extensions.kernel.accept import Word, find_tableau, judge, prepare
+from roadproof.extensions.kernel.accept import find_tableau, judge, prepare
 from roadproof.extensions.kernel.coq import ready
 from roadproof.frontends.api.checking import check
 from roadproof.library.loading import bundled_library

@@ -8,9 +8,9 @@ import pytest
 import roadproof as rp
 from kernel.needs import needs_coq
 from kernel.reading import answers, compared
+from roadproof.evidence.kernels import Word
 from roadproof.extensions.drivers.manoeuvres import MANOEUVRES
 from roadproof.extensions.drivers.models import unpreventable
-from roadproof.extensions.kernel.accept import Word
 from roadproof.extensions.kernel.boundary import Boundary, settle, theorem_for
 from roadproof.extensions.kernel.coq import Coq, CoqRun, ready
 from roadproof.extensions.kernel.printer import CLOSE, Printer

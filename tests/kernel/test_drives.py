@@ -16,7 +16,8 @@ from kernel.needs import needs_coq
 from roadproof.evidence.drive_file import load_drive
 from roadproof.evidence.finding import Acceptance
 from roadproof.evidence.judged import judge_file
-from roadproof.extensions.kernel.accept import AXIOMS, CoqModule, Ruling, Word, axioms_of, batches
+from roadproof.evidence.kernels import Ruling, Word
+from roadproof.extensions.kernel.accept import AXIOMS, CoqModule, axioms_of, batches
 from roadproof.extensions.kernel.accept import file as theory_file
 from roadproof.extensions.kernel.accept import judge as accept_judge
 from roadproof.extensions.kernel.coq import CoqRun, ready

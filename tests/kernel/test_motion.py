@@ -12,8 +12,9 @@ from exporting.kept import kept
 from kernel.needs import needs_coq, needs_ocaml
 from kernel.reading import answers
 from kernel.test_accept import ruling
+from roadproof.evidence.kernels import Word
 from roadproof.extensions.kernel import extracted, ocaml
-from roadproof.extensions.kernel.accept import CoqModule, Word, find_tableau, judge, prepare
+from roadproof.extensions.kernel.accept import CoqModule, find_tableau, judge, prepare
 from roadproof.extensions.kernel.coq import ready
 from roadproof.extensions.kernel.drive import shown
 from roadproof.extensions.kernel.printer import CLOSE, Printer

@@ -11,9 +11,10 @@ from evidence.trees import RIGHT, WRONG
 from kernel.needs import needs_coq, needs_ocaml
 from kernel.reading import sort_out
 from roadproof.engines.search.none_within import derive
+from roadproof.evidence.kernels import Word
 from roadproof.evidence.program import Cases, Cut, Sum, refutes
 from roadproof.extensions.kernel import accept, coq, extracted, ocaml
-from roadproof.extensions.kernel.accept import AXIOMS, Word
+from roadproof.extensions.kernel.accept import AXIOMS
 from roadproof.extensions.kernel.programs import form, prepare
 from roadproof.frontends.cli.main import main
 from roadproof.library.loading import bundled_library

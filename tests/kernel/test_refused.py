@@ -11,7 +11,8 @@ import roadproof as rp
 from kernel.needs import needs_coq
 from roadproof.engines.prove.properties import template_properties
 from roadproof.evidence.certificate import read_certificate
-from roadproof.extensions.kernel.accept import Word, find_tableau, prepare
+from roadproof.evidence.kernels import Word
+from roadproof.extensions.kernel.accept import find_tableau, prepare
 from roadproof.extensions.kernel.coq import ready
 from roadproof.extensions.kernel.source import HEAD, module
 from roadproof.extensions.kernel.statement import state

@@ -9,7 +9,8 @@ from examples import some
 from judge.cases import formulas, jerk_comparisons, jerk_drives
 from kernel.drives import HEAD, ROAD, agrees_with_the_judge, cases, derived, example, own_asked, own_drives
 from kernel.needs import needs_coq
-from roadproof.extensions.kernel.accept import Word, judge, prepare
+from roadproof.evidence.kernels import Word
+from roadproof.extensions.kernel.accept import judge, prepare
 from roadproof.extensions.kernel.coq import ready
 from roadproof.library.bind import bind
 from roadproof.semantics.exact import judge as judge_drive

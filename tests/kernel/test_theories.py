@@ -12,8 +12,9 @@ from kernel import raw
 from kernel.needs import needs_coq
 from kernel.reading import SOURCES, answers, compared, monitor_theory
 from roadproof.errors import InputError, RoadproofError, TextError
+from roadproof.evidence.kernels import Ruling, Word
 from roadproof.extensions.kernel import coq as coq_module
-from roadproof.extensions.kernel.accept import AXIOMS, CoqModule, Ruling, Word, axioms_of
+from roadproof.extensions.kernel.accept import AXIOMS, CoqModule, axioms_of
 from roadproof.extensions.kernel.coq import THEORIES, ready
 from roadproof.extensions.kernel.derivations import prepare as module
 from roadproof.extensions.kernel.derivations.parts import NoDerivationError

@@ -14,8 +14,8 @@ from kernel.drives import HEAD
 from kernel.needs import needs_coq, needs_ocaml
 from roadproof.evidence.countermodel import Countermodel, Instant, Loop, trace_data
 from roadproof.evidence.finding import Acceptance
+from roadproof.evidence.kernels import Word
 from roadproof.evidence.refutation import when_true
-from roadproof.extensions.kernel.accept import Word
 from roadproof.extensions.kernel.coq import ready
 from roadproof.extensions.kernel.derivation import Later, Step, coq_derivation, sign, timed
 from roadproof.extensions.kernel.derivations.derive import derive_on

@@ -12,12 +12,12 @@ import pytest
 from roadproof.engines.search.extreme import Extreme
 from roadproof.engines.search.points import PointFinding
 from roadproof.evidence.finding import Acceptance
+from roadproof.evidence.kernels import Word
 from roadproof.extensions.assurance.assuring import AssuranceReport
 from roadproof.extensions.catalogue.cataloguing import CatalogueAnswer
 from roadproof.extensions.drivers.lines import SIDES, Line, end_of, sides_in
 from roadproof.extensions.drivers.preventable.view import Plate, Shown
 from roadproof.extensions.drivers.preventing import Plates
-from roadproof.extensions.kernel.accept import Word
 from roadproof.extensions.pages.reporting import Page
 from roadproof.extensions.surveys.classifying import Classifications
 from roadproof.extensions.surveys.coverage.answers import ClassAnswer, is_covered, verdict_on, with_counts

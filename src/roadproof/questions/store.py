@@ -156,7 +156,7 @@ class Store:
         proof = answer.certificate
         if self.folder is None or proof is None or proof.tableau is not None:
             return answer
-        from roadproof.extensions.kernel.accept import find_tableau  # here: most answers are written nowhere
+        from roadproof.evidence.kernels import find_tableau  # here: most answers are written nowhere
 
         tableau = find_tableau(proof, answer.claim.home.library)
         return replace(answer, evidence=replace(proof, tableau=tableau))

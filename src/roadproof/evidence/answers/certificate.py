@@ -4,12 +4,11 @@ from collections.abc import Iterator, Mapping
 from functools import reduce
 from itertools import groupby
 from operator import or_
-from typing import Annotated, Final, Literal, TypeAlias
+from typing import Annotated, Final, Literal, TypeAlias, get_args
 
 from roadproof.evidence.answers.shared import Assuming, Dense, Formula, OneScenario, Options, SetName
 from roadproof.evidence.codec import LEFT_OUT, Doc, Remedy, Rule
 from roadproof.evidence.json_schema import Plain
-from roadproof.extensions.kernel.tableau import RULES
 from roadproof.library.motion import ALL_SCHEMAS
 from roadproof.runtime.records import dataclass
 
@@ -21,7 +20,28 @@ NamedSite: TypeAlias = tuple[str, Place, Sign, str] | tuple[str, Place, Sign, st
 InstancedSite: TypeAlias = (
     tuple[Place, Sign, str, tuple[str, ...]] | tuple[Place, Sign, str, str, tuple[str, ...]]
 )
-TableauLine: TypeAlias = Annotated[str, Rule(pattern=rf"^({'|'.join(RULES)}) [A-Za-z0-9_ ,*/-]+$")]
+TableauRule: TypeAlias = Literal[
+    "Close",
+    "CloseTruth",
+    "CloseLinear",
+    "CloseRoad",
+    "CloseRoads",
+    "CloseZones",
+    "Alpha",
+    "Beta",
+    "Timing",
+    "New",
+    "Inst",
+    "InstUntil",
+    "NewRoad",
+    "InstRoad",
+    "Cut",
+    "Fact",
+]
+"""The rules of proofs/kernel/Tableau.v."""
+TableauLine: TypeAlias = Annotated[
+    str, Rule(pattern=rf"^({'|'.join(get_args(TableauRule))}) [A-Za-z0-9_ ,*/-]+$")
+]
 
 
 @dataclass(frozen=True, kw_only=True)

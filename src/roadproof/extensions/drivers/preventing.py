@@ -6,6 +6,7 @@ from fractions import Fraction
 from typing import ClassVar, Unpack
 
 from roadproof.errors import UsageError
+from roadproof.evidence.kernels import Word
 from roadproof.extensions.assurance.build_result import BuildResult
 from roadproof.extensions.assurance.build_results.cases import Case
 from roadproof.extensions.assurance.build_results.questions import plate_cases
@@ -15,7 +16,6 @@ from roadproof.extensions.drivers.models import DRIVERS, GRADUAL, manoeuvre_of, 
 from roadproof.extensions.drivers.preventable import report
 from roadproof.extensions.drivers.preventable.question import PreventableQuestion
 from roadproof.extensions.drivers.preventable.view import LemmaResult, Plate, PreventableView, evidence_names
-from roadproof.extensions.kernel.accept import Word
 from roadproof.extensions.kernel.boundary import Boundary, BoundaryRuling, settle
 from roadproof.extensions.kernel.coq import ready
 from roadproof.frontends.api.answer import Picture, picture

@@ -5,4 +5,5 @@ from roadproof.extension import Extension
 EXTENSION = Extension(
     title="Proofs checked by Coq",
     audience="researchers",
+    kernels=("asking:KERNELS",),
 )

@@ -7,18 +7,18 @@ without it; what is accepted has been in a file that Coq accepted whole, and tha
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from enum import StrEnum
 
 from roadproof.errors import RoadproofError
 from roadproof.evidence.certificate import Certificate
+from roadproof.evidence.kernels import Ruling, Word
 from roadproof.extensions.kernel.branch import NotFoundError
 from roadproof.extensions.kernel.coq import Coq, CoqRun
 from roadproof.extensions.kernel.search import find
 from roadproof.extensions.kernel.source import Module, UnreasonedError, file, module
-from roadproof.extensions.kernel.statement import Statement, counted, state
+from roadproof.extensions.kernel.statement import Statement, state
 from roadproof.extensions.kernel.tableau import Tableau, lines, read_lines
 from roadproof.library.specification import Library
-from roadproof.reasons import NO_REASON, Reason, Why
+from roadproof.reasons import NO_REASON, Why
 
 # Those of Coq's real numbers and of classical logic; nothing else may be relied on.
 AXIOMS = frozenset(
@@ -32,34 +32,6 @@ AXIOMS = frozenset(
 ALL = "all_that_is_proved"
 _PLACE = re.compile(r'^File "[^"\n]*evidence\.v", line (\d+), characters [^\n]*\n((?:.|\n)*)', re.MULTILINE)
 _AXIOM = re.compile(r"^([A-Za-z_][\w.']*)(?: :|$)", re.MULTILINE)
-
-
-class Word(StrEnum):
-    ACCEPTED = "accepted"
-    REFUSED = "refused"
-    UNKNOWN = "unknown"
-
-
-@dataclass(frozen=True)
-class Ruling:
-    """What Coq says of a certificate. ``lemma``: which fact about one instant was not proved, from 1.
-
-    ``limits``: how many limits of vehicles, which the claim assumes, the theorem has as premises.
-    """
-
-    word: Word
-    reason: Reason = NO_REASON
-    lemma: int | None = None
-    limits: int = 0
-    axioms: tuple[str, ...] = ()
-
-    @property
-    def told(self) -> str:
-        """The word, with the premises."""
-        return f"{self} under {counted(self.limits)}, as premises" if self.limits else str(self)
-
-    def __str__(self) -> str:
-        return f"{self.word} (lemma {self.lemma})" if self.lemma is not None else str(self.word)
 
 
 @dataclass(frozen=True)

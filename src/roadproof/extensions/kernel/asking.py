@@ -3,33 +3,36 @@
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import field
 from functools import partial
 from pathlib import Path
 
 from roadproof.errors import RoadproofError
 from roadproof.evidence import drive_file
 from roadproof.evidence.answer_files import REFUTATION, RefutationFile
-from roadproof.evidence.answers.shared import Kernel
 from roadproof.evidence.certificate import SCHEMA, Certificate, read_certificate_data
 from roadproof.evidence.codec import read
 from roadproof.evidence.drive_file import DriveFile, read_drive
-from roadproof.evidence.finding import Acceptance, OtherVerdict
+from roadproof.evidence.kernels import (
+    KernelAnswer,
+    KernelName,
+    KernelQuestion,
+    Kernels,
+    Ruling,
+    Word,
+)
 from roadproof.evidence.none_within import SCHEMA as NONE_WITHIN
 from roadproof.evidence.none_within import NoneWithinFile, read_none_within
 from roadproof.evidence.strict import read_json
 from roadproof.extensions.kernel import accept, coq, extracted, ocaml, programs
-from roadproof.extensions.kernel.accept import CoqModule, KernelRulings, Ruling, Word
+from roadproof.extensions.kernel.accept import CoqModule, KernelRulings
 from roadproof.extensions.kernel.derivations.prepare import prepare as prepare_drive
 from roadproof.extensions.kernel.derivations.prepare import prepare_trace
 from roadproof.extensions.kernel.drive import module as source_drive
 from roadproof.extensions.kernel.names import WORDS
 from roadproof.extensions.kernel.source import file
 from roadproof.extensions.kernel.source import module as source_proof
-from roadproof.extensions.kernel.statement import counted
 from roadproof.extensions.kernel.trace import Refutation
 from roadproof.extensions.kernel.trace import trace_module as source_trace
-from roadproof.frontends.settings.value_types import KernelName
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library
 from roadproof.reasons import NO_REASON, Reason
@@ -39,69 +42,6 @@ from roadproof.runtime.files import make_folder, write_whole
 from roadproof.runtime.package_data import shipped
 from roadproof.runtime.pool import Progress
 from roadproof.runtime.records import dataclass
-from roadproof.verdict import ExitCode
-
-_OUTCOMES = {
-    Word.ACCEPTED: Acceptance.ACCEPTED,
-    Word.REFUSED: Acceptance.REJECTED,
-    Word.UNKNOWN: Acceptance.UNDECIDED,
-}
-_EXIT = {
-    Word.ACCEPTED: ExitCode.AS_EXPECTED,
-    Word.UNKNOWN: ExitCode.UNKNOWN,
-    Word.REFUSED: ExitCode.CROSSCHECK_FAILED,
-}
-
-
-@dataclass(frozen=True)
-class KernelQuestion:
-    """A certificate, a trace, or the file of a certificate or drive; ``home``: its library, or its files."""
-
-    name: str
-    certificate: Certificate | Path | Refutation
-    home: Library | tuple[Path, ...]
-
-
-@dataclass(frozen=True)
-class KernelAnswer:
-    """Rulings by name; seconds of the processor for all files, megabytes of the largest, axioms used.
-
-    ``version``: of Coq, or of the OCaml that compiled the extracted program.
-    """
-
-    version: str
-    rulings: Mapping[str, Ruling] = field(default_factory=dict)
-    seconds: float = 0.0
-    megabytes: float = 0.0
-    kernel: KernelName = "coq"
-
-    @property
-    def exit_code(self) -> ExitCode:
-        """A proof of ours that Coq refuses is a cross-check that failed."""
-        return max((_EXIT[x.word] for x in self.rulings.values()), default=ExitCode.AS_EXPECTED)
-
-    @property
-    def axioms(self) -> tuple[str, ...]:
-        return tuple(sorted({name for x in self.rulings.values() for name in x.axioms}))
-
-    @property
-    def kept(self) -> Kernel:
-        """As answers have it."""
-        return Kernel(
-            coqc=self.version if self.kernel == "coq" else "",
-            ocaml=self.version if self.kernel == "extracted" else "",
-            seconds=round(self.seconds, 1),
-            megabytes=round(self.megabytes),
-            axioms=self.axioms,
-        )
-
-    def __str__(self) -> str:
-        if self.kernel == "extracted":
-            spent = f"{self.seconds:.2f} s of processor time" if self.seconds else "nothing asked"
-            return f"extracted program, OCaml {self.version}: {spent}"
-        held = f"at most {self.megabytes:.0f} MB" if self.megabytes else "nothing asked"
-        axioms = ", ".join(self.axioms) or "none"
-        return f"coqc {self.version}: {self.seconds:.1f} s of processor time, {held}; axioms: {axioms}"
 
 
 def find(kernel: KernelName) -> None:
@@ -266,9 +206,32 @@ def _lost(part: Mapping[str, CoqModule], reason: Reason) -> KernelRulings:
     return KernelRulings({name: Ruling(Word.UNKNOWN, reason) for name in part})
 
 
-def ruled(ruling: Ruling) -> OtherVerdict:
-    """What Coq says, for a finding."""
-    words = "that is a premise" if ruling.limits == 1 else "that are premises"
-    said = (f"under {counted(ruling.limits)} {words}",) if ruling.limits else ()
-    why, unchecked = ruling.reason, ("queries for solvers",)
-    return OtherVerdict(_OUTCOMES[ruling.word], why, str(ruling), said, unchecked)
+@dataclass(frozen=True)
+class CoqAndExtracted(Kernels):
+    """Coq, and the program that it makes of its checkers."""
+
+    def find(self, kernel: KernelName) -> None:
+        find(kernel)
+
+    def put(
+        self,
+        asked: Sequence[KernelQuestion],
+        jobs: Jobs,
+        progress: Progress | None = None,
+        kernel: KernelName = "coq",
+    ) -> KernelAnswer:
+        return put(asked, jobs, progress, kernel)
+
+    def write(
+        self, asked: Sequence[KernelQuestion], folder: Path, jobs: Jobs, kernel: KernelName = "coq"
+    ) -> dict[str, Reason]:
+        return write(asked, folder, jobs, kernel)
+
+    def names_of(self, paths: Iterable[Path]) -> dict[Path, str]:
+        return names_of(paths)
+
+    def find_tableau(self, proof: Certificate, library: Library) -> tuple[str, ...] | None:
+        return accept.find_tableau(proof, library)
+
+
+KERNELS = CoqAndExtracted()

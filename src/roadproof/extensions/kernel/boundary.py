@@ -7,7 +7,8 @@ about numbers that a proof rests on is in proofs/kernel/Boundary.v, Following.v 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from roadproof.extensions.kernel.accept import AXIOMS, Word, axioms_of
+from roadproof.evidence.kernels import Word
+from roadproof.extensions.kernel.accept import AXIOMS, axioms_of
 from roadproof.extensions.kernel.coq import Coq
 from roadproof.extensions.kernel.names import literal
 from roadproof.extensions.kernel.printer import Printer

@@ -6,7 +6,8 @@ proved. The rest is a certificate, which the program checks.
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from roadproof.extensions.kernel.accept import CoqModule, KernelRulings, Ruling, Word
+from roadproof.evidence.kernels import Ruling, Word
+from roadproof.extensions.kernel.accept import CoqModule, KernelRulings
 from roadproof.extensions.kernel.constructors import Writer, term
 from roadproof.extensions.kernel.derivation import Step, coq_derivation
 from roadproof.extensions.kernel.drive import Shown

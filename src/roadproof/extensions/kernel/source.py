@@ -6,13 +6,14 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from roadproof.errors import InputError, RoadproofError
+from roadproof.evidence.kernels import limits_told
 from roadproof.extensions.kernel.constructors import term
 from roadproof.extensions.kernel.derivation import rational
 from roadproof.extensions.kernel.instant import Reason, reason
 from roadproof.extensions.kernel.names import comment, literal, q
 from roadproof.extensions.kernel.plain import comparisons
 from roadproof.extensions.kernel.printer import CLOSE, Printer
-from roadproof.extensions.kernel.statement import Instance, Statement, counted
+from roadproof.extensions.kernel.statement import Instance, Statement
 from roadproof.extensions.kernel.tableau import WIDTH, Tableau, coq_tree
 from roadproof.logic import terms as t
 from roadproof.logic.custom_names import own_of
@@ -216,7 +217,7 @@ def _said(statement: Statement) -> Iterator[str]:
     if any(not x.is_induction for x in statement.instances):
         yield "It holds of every motion (Motion.v)."
     if statement.limits:
-        yield f"Premises: {counted(statement.limits)} of vehicles, which the claim assumes."
+        yield f"Premises: {limits_told(statement.limits)} of vehicles, which the claim assumes."
 
 
 def comment_lines(said: Iterable[str]) -> list[str]:

@@ -45,14 +45,6 @@ SCHEMAS: Mapping[str, str] = {
 """What proofs/kernel/Schemas.v calls the schemas of ``library.motion``."""
 
 
-def counted(limits: int) -> str:
-    """
-    >>> counted(1), counted(2)
-    ('1 limit', '2 limits')
-    """
-    return f"{limits} limit{'s' * (limits != 1)}"
-
-
 @dataclass(frozen=True)
 class Instance:
     """An instance of a schema: its name in Coq, and its ``arguments``, values of parameters put in."""

@@ -6,12 +6,13 @@ of any content become a tree or a refusal, and Coq checks the tree.
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TypeAlias
+from typing import TypeAlias, get_args
 
 from roadproof.errors import InputError
+from roadproof.evidence.answers.certificate import TableauRule
 from roadproof.extensions.kernel.names import q
 
 # A linear expression: coefficients of 1 and of the numbered moments; multipliers: numbers of constraints.
@@ -21,7 +22,7 @@ Argument: TypeAlias = int | str | Row | Multipliers
 
 # What a rule is told, and how many children it has. i: a fact or a number; m: a moment; w: multipliers;
 # c: the name of a lane or lanelet.
-RULES: dict[str, tuple[str, int]] = {
+_RULES: Mapping[TableauRule, tuple[str, int]] = {
     "Close": ("iiww", 0),
     "CloseTruth": ("i", 0),
     "CloseLinear": ("w", 0),
@@ -39,6 +40,8 @@ RULES: dict[str, tuple[str, int]] = {
     "Cut": ("m", 2),
     "Fact": ("im", 1),
 }
+RULES: Mapping[str, tuple[str, int]] = {**_RULES}
+assert {*RULES} == {*get_args(TableauRule)}  # the rules that certificates may name
 MOST_NODES = 50_000
 WIDTH = 110  # of a line of Coq
 _WHOLE = re.compile(r"0|[1-9][0-9]{0,4}", re.ASCII)

@@ -20,6 +20,7 @@ from roadproof.evidence.codec import write
 from roadproof.evidence.files import files_of
 from roadproof.evidence.finding import Acceptance, Finding, OtherVerdict, exit_code, summary
 from roadproof.evidence.heading import heading
+from roadproof.evidence.kernels import KernelName
 from roadproof.evidence.none_within import Derived, NoneWithinFile
 from roadproof.evidence.strict import JsonObject
 from roadproof.extensions.assurance.build_result import BuildResult
@@ -30,7 +31,6 @@ from roadproof.frontends.api.table import Row, Table
 from roadproof.frontends.settings.keywords import CheckKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Check
-from roadproof.frontends.settings.value_types import KernelName
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library, read_specification
 from roadproof.library.words import called_by, legend
@@ -46,7 +46,7 @@ from roadproof.runtime.records import dataclass
 from roadproof.verdict import ExitCode
 
 if TYPE_CHECKING:
-    from roadproof.extensions.kernel.asking import KernelAnswer, KernelQuestion
+    from roadproof.evidence.kernels import KernelAnswer, KernelQuestion
     from roadproof.frontends.api.questioned import QuestionAnswers
 
 Solver: TypeAlias = Literal["z3", "cvc5"]
@@ -164,9 +164,9 @@ def _check(paths: Sequence[str | Path], asked: Check, takes_over: bool) -> Check
         # A solver that is missing is said once, before any work.
         ask("(set-logic QF_UF)(check-sat)", asked.solver)
     else:
-        from roadproof.extensions.kernel.asking import find
+        from roadproof.evidence.kernels import kernels
 
-        find(asked.kernel)
+        kernels().find(asked.kernel)
     named = tuple(Path(x) for x in asked.specs)
     library = load_library(named)
     there = _Evidence.read([Path(x) for x in paths], named)
@@ -255,10 +255,10 @@ def _put_to_kernel(
     kernel: Kernel, given: _Given, asked: Check
 ) -> tuple["KernelAnswer", dict[str, OtherVerdict]]:
     """What a kernel says of all files, and of each by its path."""
-    from roadproof.extensions.kernel.asking import names_of, put, ruled
+    from roadproof.evidence.kernels import kernels, ruled
 
-    answered = put(_asked(given), asked.jobs, asked.progress, kernel)
-    names = [(str(path), name) for path, name in names_of(path for path, _ in given).items()]
+    answered = kernels().put(_asked(given), asked.jobs, asked.progress, kernel)
+    names = [(str(path), name) for path, name in kernels().names_of(path for path, _ in given).items()]
     said = answered.rulings
     return answered, {path: ruled(said[name]) for path, name in names if name in said}
 
@@ -282,21 +282,20 @@ def write_sources(
 
     Raises ``InputError`` for a path that holds nothing, and where it cannot be written.
     """
-    from roadproof.extensions.kernel.asking import names_of
-    from roadproof.extensions.kernel.asking import write as write_all
+    from roadproof.evidence.kernels import kernels
 
     named = tuple(Path(x) for x in specs)
     given = _Evidence.read([Path(x) for x in paths], named).given
     questions = _asked(given)
-    reasons = write_all(questions, Path(folder), jobs, kernel)
-    by_name = {name: path for path, name in names_of(path for path, _ in given).items()}
+    reasons = kernels().write(questions, Path(folder), jobs, kernel)
+    by_name = {name: path for path, name in kernels().names_of(path for path, _ in given).items()}
     return Sources(len(questions) - len(reasons), {by_name[x]: reason for x, reason in reasons.items()})
 
 
 def _asked(given: _Given) -> list["KernelQuestion"]:
-    from roadproof.extensions.kernel.asking import KernelQuestion, names_of
+    from roadproof.evidence.kernels import KernelQuestion, kernels
 
-    names = names_of(path for path, _ in given)
+    names = kernels().names_of(path for path, _ in given)
     return [KernelQuestion(names[path], path, specs) for path, specs in given]
 
 

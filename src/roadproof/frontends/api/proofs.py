@@ -56,9 +56,7 @@ from roadproof.world.road import Road
 from roadproof.world.vehicle import Vehicle
 
 if TYPE_CHECKING:
-    from roadproof.extensions.kernel.accept import Ruling
-    from roadproof.extensions.kernel.asking import KernelAnswer
-    from roadproof.frontends.settings.value_types import KernelName
+    from roadproof.evidence.kernels import KernelAnswer, KernelName, Ruling
 
 REQUIRES_MOTION = "limits of vehicles require assume=motion, or 'assuming motion:' before the claim"
 _PROPERTY = re.compile(r"[A-Z]\d+")
@@ -123,12 +121,12 @@ class Proofs(QuestionAnswers[ClaimsView], BuildResult):
         self, kernel: "KernelName", jobs: Jobs = None, progress: Progress | None = None
     ) -> Self:
         """The same, with what a kernel says of each proof. Raises ``MissingSolverError``."""
-        from roadproof.extensions.kernel import asking as kernels
+        from roadproof.evidence.kernels import KernelQuestion, kernels
 
         asked = {x.name: x.certificate for x in self.answers if x.certificate is not None}
         names = {f"claim_{number}": name for number, name in enumerate(asked, 1)}
-        found = kernels.put(
-            [kernels.KernelQuestion(x, asked[y], self.library) for x, y in names.items()],
+        found = kernels().put(
+            [KernelQuestion(x, asked[y], self.library) for x, y in names.items()],
             hands_of(jobs).processes,
             progress,
             kernel,
@@ -236,9 +234,9 @@ def claims_asked(
             raise UsageError(f"engine={given.engine!r} makes no certificates for Coq: omit kernel")
         return _within_limits(asked, home, given.engine, given)
     if given.kernel is not None:
-        from roadproof.extensions.kernel import asking as kernels
+        from roadproof.evidence.kernels import kernels
 
-        kernels.find(given.kernel)
+        kernels().find(given.kernel)
     return asked
 
 

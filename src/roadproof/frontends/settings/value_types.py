@@ -23,6 +23,3 @@ Expected: TypeAlias = Literal["PROVED", "REFUTED"]
 
 Assumed: TypeAlias = Literal["motion"]
 """What claims may be asked under."""
-
-KernelName: TypeAlias = Literal["coq", "extracted"]
-"""Coq itself, or the program that it makes of its checkers."""

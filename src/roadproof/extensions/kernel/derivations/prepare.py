@@ -4,8 +4,9 @@ from collections.abc import Callable
 
 from roadproof.errors import RoadproofError
 from roadproof.evidence.drive_file import DriveFile
+from roadproof.evidence.kernels import Ruling, Word
 from roadproof.evidence.refutation import numbered
-from roadproof.extensions.kernel.accept import CoqModule, Ruling, Word, without_question, without_text
+from roadproof.extensions.kernel.accept import CoqModule, without_question, without_text
 from roadproof.extensions.kernel.derivation import Step
 from roadproof.extensions.kernel.derivations.derive import derive, derive_on
 from roadproof.extensions.kernel.derivations.parts import NoDerivationError
