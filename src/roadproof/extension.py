@@ -45,6 +45,8 @@ class Extension:
     """Classes of the answers to questions in Python, by the kind of the question."""
     evidence: Entries = field(default_factory=dict)
     """Classes of evidence (``evidence.answer_files.OwnEvidence``), by the schema of their files."""
+    build_results: Entries = field(default_factory=dict)
+    """Writers of files for build servers (``frontends.api.build_result.Writer``), by their format."""
     kernels: tuple[str, ...] = ()
     """Those who check evidence again (``evidence.kernels.Kernels``)."""
     modifiers: Entries = field(default_factory=dict)

@@ -11,14 +11,14 @@ from types import SimpleNamespace
 from typing import Any, ClassVar
 
 import pytest
+from roadproof.extensions.assurance.build_results.questions import finding_cases, recording_cases
 
 import roadproof as rp
 from roadproof.evidence.finding import NO_EVIDENCE, Acceptance, Finding, exit_code
-from roadproof.extensions.assurance.build_result import BuildResult
-from roadproof.extensions.assurance.build_results.cases import Case, State
-from roadproof.extensions.assurance.build_results.cases import test_location as location_of
 from roadproof.extensions.assurance.build_results.junit import as_junit
-from roadproof.extensions.assurance.build_results.questions import finding_cases, recording_cases
+from roadproof.frontends.api.build_result import BuildResult
+from roadproof.frontends.report.cases import Case, State
+from roadproof.frontends.report.cases import test_location as location_of
 from roadproof.reasons import NO_REASON, Why
 from roadproof.verdict import ExitCode, Verdict
 from roadproof.verdict import exit_code as code_of
@@ -199,7 +199,7 @@ def test_recordings_that_are_read_lost_skipped_or_contradictory() -> None:
 
 
 def verdict_cases(verdicts: Sequence[tuple[Verdict, Verdict]]) -> list[State]:
-    from roadproof.extensions.assurance.build_results.cases import state_of
+    from roadproof.frontends.report.cases import state_of
 
     return [state_of(verdict, (expected,)) for verdict, expected in verdicts]
 
@@ -222,7 +222,7 @@ def answer(**fields: Any) -> Any:
 
 
 def test_plates_and_lemmas_beside_each_other() -> None:
-    from roadproof.extensions.assurance.build_results.questions import plate_cases
+    from roadproof.extensions.drivers.preventable.cases import plate_cases
     from roadproof.library.loading import bundled_library
     from roadproof.logic.parse import parse_claim
 
@@ -240,7 +240,7 @@ def test_plates_and_lemmas_beside_each_other() -> None:
 
 
 def test_drives_that_were_found_and_that_were_not() -> None:
-    from roadproof.extensions.assurance.build_results.questions import search_cases
+    from roadproof.frontends.report.question_cases import search_cases
     from roadproof.library.elaborate import read_claim
     from roadproof.library.loading import bundled_library
 
@@ -270,7 +270,7 @@ def test_claims_that_are_expected_to_be_false() -> None:
 
 def test_claims_and_classes_of_coverage() -> None:
     """A claim that is refuted passes, since the classes say why; a class with a drive is a gap."""
-    from roadproof.extensions.assurance.build_results.questions import coverage_cases
+    from roadproof.extensions.surveys.coverage.cases import coverage_cases
     from roadproof.library.elaborate import read_claim
     from roadproof.library.loading import bundled_library
 
@@ -294,7 +294,7 @@ def test_claims_and_classes_of_coverage() -> None:
 
 
 def test_tests_and_targets_of_a_catalogue() -> None:
-    from roadproof.extensions.assurance.build_results.questions import catalogue_cases
+    from roadproof.extensions.catalogue.cases import catalogue_cases
 
     remark = {name: [answer(tests=(name,), told=name)] for name in ("doubt", "fault", "contradiction")}
     targets = [answer(name=x, words=x) for x in ("tested", "missing")]
@@ -325,7 +325,7 @@ def test_where_a_test_is_written(tmp_path: Path) -> None:
 
 
 def test_definitions_of_the_user_come_first() -> None:
-    from roadproof.extensions.assurance.build_results.cases import named_definitions
+    from roadproof.frontends.report.cases import named_definitions
     from roadproof.logic.parse import parse_claim
 
     home = rp.load(specs=["def mine(a, b: vehicle) := danger(a, b)\n"]).specification

@@ -17,5 +17,6 @@ EXTENSION = Extension(
         "requirements": "tracing:requirements",
         "requirement_changes": "tracing:requirement_changes",
     },
+    build_results={"junit": "build_results.junit:junit", "sarif": "build_results.sarif:sarif"},
     schemas=("schemas:TITLES",),
 )

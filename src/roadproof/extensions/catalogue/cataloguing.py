@@ -7,11 +7,8 @@ from typing import ClassVar, Unpack
 
 from roadproof.errors import UsageError
 from roadproof.evidence.claim import Objective
-from roadproof.extensions.assurance.build_result import BuildResult
-from roadproof.extensions.assurance.build_results.cases import Case
-from roadproof.extensions.assurance.build_results.junit import as_junit
-from roadproof.extensions.assurance.build_results.questions import catalogue_cases
 from roadproof.extensions.catalogue import kept, report
+from roadproof.extensions.catalogue.cases import catalogue_cases
 from roadproof.extensions.catalogue.completing import PriorResults, complete
 from roadproof.extensions.catalogue.decisions import Decision
 from roadproof.extensions.catalogue.driven import driven_name
@@ -27,10 +24,12 @@ from roadproof.extensions.catalogue.writing import CompletionAnswer, write_compl
 from roadproof.extensions.drivers.models import MODELS
 from roadproof.extensions.drivers.restricting import restricted
 from roadproof.frontends.api.answer import Picture, picture
+from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.definitions import Definitions, definitions_of
 from roadproof.frontends.api.pictures import drawn
 from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.settings import basis_of, one_of
+from roadproof.frontends.report.cases import Case
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import CatalogueKeywords
@@ -189,10 +188,6 @@ class CatalogueAnswer(QuestionAnswers[CatalogueView], BuildResult):
     def to_csv(self) -> str:
         """A row a test, a column a scenario, class, gap: x shown or implied, o by some drives of the test."""
         return report.as_csv(self.tests, self.tested, self.view.in_force)
-
-    def to_junit(self) -> str:
-        """Tests that fail where they are not what they claim, and what is to be tested, as JUnit XML."""
-        return as_junit(f"roadproof {self.command}", tuple(self.all_cases()), self.view.in_force)
 
     def __str__(self) -> str:
         drivers, view = report.driver_lines(self.decisions), self.view

@@ -7,8 +7,7 @@ from itertools import groupby
 from textwrap import indent
 from typing import Any
 
-from roadproof.extensions.assurance.build_results import junit
-from roadproof.extensions.assurance.build_results.questions import catalogue_cases
+from roadproof.extensions.catalogue.cases import catalogue_cases
 from roadproof.extensions.catalogue.decisions import Decision
 from roadproof.extensions.catalogue.gaps import PREFIX
 from roadproof.extensions.catalogue.kept import Figure, Remark, Target
@@ -17,12 +16,13 @@ from roadproof.extensions.catalogue.tested import CLASSES, SCENARIOS, Targets, k
 from roadproof.extensions.catalogue.view import CatalogueView
 from roadproof.extensions.drivers.models import MODELS
 from roadproof.extensions.drivers.outcome import told_faster
+from roadproof.frontends.api.build_result import formats, written
 from roadproof.frontends.report.figures import count_axis, make_figure
 from roadproof.frontends.report.sheet import Column, Mark, Sheet, csv_text
 from roadproof.frontends.report.sheet import as_csv as csv_of
 from roadproof.library.scenarios import number_in
 from roadproof.runtime.files import utf8
-from roadproof.verdict import Verdict
+from roadproof.verdict import ExitCode, Verdict
 
 MOST_TOLD, MOST_ALIKE = 40, 8
 _STARTS = ("Ve0", "dV0", "Vf0", "Vy", "Gx", "headway", "dx0", "dx0_f", "dy0")
@@ -154,7 +154,7 @@ def tables(result: CatalogueView) -> dict[str, bytes]:
         "matrix.csv": as_csv(tests, found, in_force),
         "figures.csv": figures_csv(result.figures),
         "drivers.csv": drivers_csv(result.decisions),
-        "junit.xml": as_junit(tests, found, in_force),
+        **dict(build_results(tests, found, in_force)),
     }
     return {name: utf8(text) for name, text in made.items()}
 
@@ -253,12 +253,16 @@ def _mark(test: str, target: Target) -> str:
     return "x" if test in target.tested else "o" if test in target.possible else ""
 
 
-def as_junit(tests: Sequence[str], found: Targets, in_force: Sequence[str] = ()) -> str:
-    """A suite of the tests, which fail where they are not what they claim, and one of all targets.
+def build_results(
+    tests: Sequence[str], found: Targets, in_force: Sequence[str] = ()
+) -> Iterator[tuple[str, str]]:
+    """Yield ``junit.xml`` where JUnit XML is installed: a suite of the tests, and one of all targets.
 
     ``in_force``: what was asked otherwise than by default, a property of each suite.
     """
-    return junit.as_junit("roadproof catalogue", tuple(catalogue_cases(tests, found)), in_force)
+    if "junit" in formats():
+        cases = tuple(catalogue_cases(tests, found))
+        yield "junit.xml", written("junit", "catalogue", cases, ExitCode.AS_EXPECTED, in_force)
 
 
 def draw_matrix(tests: Sequence[str], found: Targets, in_force: Sequence[str] = ()) -> Any:

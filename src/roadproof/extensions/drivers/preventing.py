@@ -7,22 +7,22 @@ from typing import ClassVar, Unpack
 
 from roadproof.errors import UsageError
 from roadproof.evidence.kernels import Word
-from roadproof.extensions.assurance.build_result import BuildResult
-from roadproof.extensions.assurance.build_results.cases import Case
-from roadproof.extensions.assurance.build_results.questions import plate_cases
 from roadproof.extensions.drivers.driving import require
 from roadproof.extensions.drivers.manoeuvres import MANOEUVRES, Course, Manoeuvre
 from roadproof.extensions.drivers.models import DRIVERS, GRADUAL, manoeuvre_of, models_for, unpreventable
 from roadproof.extensions.drivers.preventable import report
+from roadproof.extensions.drivers.preventable.cases import plate_cases
 from roadproof.extensions.drivers.preventable.question import PreventableQuestion
 from roadproof.extensions.drivers.preventable.view import LemmaResult, Plate, PreventableView, evidence_names
 from roadproof.extensions.kernel.boundary import Boundary, BoundaryRuling, settle
 from roadproof.extensions.kernel.coq import ready
 from roadproof.frontends.api.answer import Picture, picture
+from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.definitions import Definitions, load
 from roadproof.frontends.api.pictures import drawn, drive_pictures
 from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.settings import basis_of
+from roadproof.frontends.report.cases import Case
 from roadproof.frontends.report.numbers import count, took
 from roadproof.frontends.report.sheet import Sheet, as_csv
 from roadproof.frontends.settings import studies as settings

@@ -40,7 +40,7 @@ _RULES: Mapping[TableauRule, tuple[str, int]] = {
     "Cut": ("m", 2),
     "Fact": ("im", 1),
 }
-RULES: Mapping[str, tuple[str, int]] = {**_RULES}
+RULES: Mapping[str, tuple[str, int]] = {str(name): told for name, told in _RULES.items()}
 assert {*RULES} == {*get_args(TableauRule)}  # the rules that certificates may name
 MOST_NODES = 50_000
 WIDTH = 110  # of a line of Coq

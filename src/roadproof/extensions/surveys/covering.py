@@ -12,12 +12,10 @@ from roadproof.errors import UsageError
 from roadproof.evidence.codec import write
 from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
-from roadproof.extensions.assurance.build_result import BuildResult
-from roadproof.extensions.assurance.build_results.cases import Case
-from roadproof.extensions.assurance.build_results.questions import coverage_cases
 from roadproof.extensions.drivers.restricting import restricted
 from roadproof.extensions.drivers.restriction import check_drives
 from roadproof.extensions.surveys.coverage.answers import ClassAnswer, GapTraffic, Survey, with_traffic
+from roadproof.extensions.surveys.coverage.cases import coverage_cases
 from roadproof.extensions.surveys.coverage.classes import sets_between
 from roadproof.extensions.surveys.coverage.data import CoverageData
 from roadproof.extensions.surveys.coverage.kept import Claim, CountedClass
@@ -25,9 +23,11 @@ from roadproof.extensions.surveys.coverage.question import CoverageQuestion, Cov
 from roadproof.extensions.surveys.coverage.traffic import count_in_traffic, recordings_in
 from roadproof.extensions.surveys.report import coverage as report
 from roadproof.frontends.api.answer import Picture, picture
+from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.definitions import Definitions, definitions_of
 from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.settings import as_road, basis_of
+from roadproof.frontends.report.cases import Case
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings import studies as settings
 from roadproof.frontends.settings.keywords import CoverageKeywords

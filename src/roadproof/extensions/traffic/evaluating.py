@@ -10,9 +10,6 @@ from typing import ClassVar, Unpack
 
 from roadproof.errors import UsageError
 from roadproof.evidence.strict import JsonObject
-from roadproof.extensions.assurance.build_result import BuildResult
-from roadproof.extensions.assurance.build_results.cases import Case
-from roadproof.extensions.assurance.build_results.questions import recording_cases
 from roadproof.extensions.drivers.models import DRIVERS
 from roadproof.extensions.traffic.evaluate.evaluate import Findings
 from roadproof.extensions.traffic.evaluate.experiment import (
@@ -36,13 +33,16 @@ from roadproof.extensions.traffic.formats.clock import rate_text
 from roadproof.extensions.traffic.formats.recording import Recording
 from roadproof.extensions.traffic.formats.sources import find_sources
 from roadproof.extensions.traffic.formats.table import Frame, frame_of
+from roadproof.extensions.traffic.report.cases import recording_cases
 from roadproof.extensions.traffic.report.figures import draw_figures, remove_report, write_report
 from roadproof.extensions.traffic.report.research_questions import facts
 from roadproof.extensions.traffic.report.traffic import comparison_table, drivers_table, results_tables
 from roadproof.extensions.traffic.settings import Evaluate
 from roadproof.frontends.api.answer import Picture, picture
+from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.definitions import Definitions, load
 from roadproof.frontends.api.table import Row, Table
+from roadproof.frontends.report.cases import Case
 from roadproof.frontends.report.tables import as_text
 from roadproof.frontends.settings.keywords import EvaluateKeywords
 from roadproof.frontends.settings.option import takes

@@ -23,11 +23,11 @@ from roadproof.evidence.heading import heading
 from roadproof.evidence.kernels import KernelName
 from roadproof.evidence.none_within import Derived, NoneWithinFile
 from roadproof.evidence.strict import JsonObject
-from roadproof.extensions.assurance.build_result import BuildResult
-from roadproof.extensions.assurance.build_results.cases import Case
-from roadproof.extensions.assurance.build_results.questions import finding_cases
+from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.settings import work_of
 from roadproof.frontends.api.table import Row, Table
+from roadproof.frontends.report.cases import Case
+from roadproof.frontends.report.question_cases import finding_cases
 from roadproof.frontends.settings.keywords import CheckKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Check

@@ -15,17 +15,17 @@ from roadproof.evidence.codec import write
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
-from roadproof.extensions.assurance.build_result import BuildResult
-from roadproof.extensions.assurance.build_results.cases import Case
-from roadproof.extensions.assurance.build_results.questions import search_cases
 from roadproof.extensions.drivers.restricting import restricted
 from roadproof.extensions.pages.animation import ENDINGS
 from roadproof.frontends.api.answer import Picture
+from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
 from roadproof.frontends.api.pictures import drive_pictures
 from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.settings import searches_of, setting, work_of
+from roadproof.frontends.report.cases import Case
 from roadproof.frontends.report.numbers import took
+from roadproof.frontends.report.question_cases import search_cases
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.report.witness import EVERY_VIEW, Views, as_line, sheet_of
 from roadproof.frontends.settings.keywords import WitnessKeywords

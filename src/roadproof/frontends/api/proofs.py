@@ -15,16 +15,16 @@ from roadproof.evidence.codec import write
 from roadproof.evidence.heading import heading
 from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
-from roadproof.extensions.assurance.build_result import BuildResult
-from roadproof.extensions.assurance.build_results.cases import Case, Location
-from roadproof.extensions.assurance.build_results.questions import claim_cases
 from roadproof.frontends.api.answer import Picture
+from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
 from roadproof.frontends.api.pictures import drive_pictures
 from roadproof.frontends.api.questioned import QuestionAnswers, evidence_of
 from roadproof.frontends.api.settings import models_of, setting, work_of
 from roadproof.frontends.report import claims as claims_text
+from roadproof.frontends.report.cases import Case, Location
 from roadproof.frontends.report.numbers import count, took
+from roadproof.frontends.report.question_cases import claim_cases
 from roadproof.frontends.report.sheet import Sheet
 from roadproof.frontends.settings.groups import Run, SearchPlace
 from roadproof.frontends.settings.keywords import ProveKeywords

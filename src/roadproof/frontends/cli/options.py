@@ -3,11 +3,12 @@
 import argparse
 import json
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from roadproof.errors import UsageError
+from roadproof.extension import entries
 from roadproof.frontends.cli.streams import takes_everything
 from roadproof.frontends.settings.flags import section
 from roadproof.runtime.files import utf8, whole_file, write_whole
@@ -23,36 +24,33 @@ class _Answer(Protocol):
 
 
 def write_build_results(args: argparse.Namespace, found: object) -> None:
-    """JUnit XML and SARIF to the files of ``--junit`` and ``--sarif``, where a command has them.
+    """Write files for build servers, such as that of ``--junit``, where a command has them.
 
     Raises ``InputError``.
     """
-    if not (vars(args).get("junit") or vars(args).get("sarif")):
-        return
-    from roadproof.extensions.assurance.build_result import BuildResult
+    wanted = _build_results(args)
+    if wanted:
+        from roadproof.frontends.api.build_result import BuildResult
 
-    assert isinstance(found, BuildResult)
-    _write_files(args, found.to_junit, found.to_sarif)
+        assert isinstance(found, BuildResult)
+        for format, file in wanted.items():
+            write_whole(file, utf8(found.to(format)))
 
 
 def write_ended(args: argparse.Namespace, command: str, code: ExitCode, message: str) -> None:
-    """JUnit XML and SARIF of a command that ends without an answer, so that no earlier file stands for it."""
-    if not (vars(args).get("junit") or vars(args).get("sarif")):
-        return
-    from roadproof.extensions.assurance.build_results.cases import ended_case
-    from roadproof.extensions.assurance.build_results.junit import as_junit
-    from roadproof.extensions.assurance.build_results.sarif import as_sarif
+    """Write the same of a command that ends without an answer, so that no earlier file stands for it."""
+    wanted = _build_results(args)
+    if wanted:
+        from roadproof.frontends.api.build_result import written
+        from roadproof.frontends.report.cases import ended_case
 
-    cases = (ended_case(command, code, message),)
-    title = f"roadproof {command}"
-    _write_files(args, lambda: as_junit(title, cases), lambda: as_sarif(command, cases, code))
+        for format, file in wanted.items():
+            write_whole(file, utf8(written(format, command, (ended_case(command, code, message),), code)))
 
 
-def _write_files(args: argparse.Namespace, junit: Callable[[], str], sarif: Callable[[], str]) -> None:
-    if args.junit is not None:
-        write_whole(args.junit, utf8(junit()))
-    if args.sarif is not None:
-        write_whole(args.sarif, utf8(sarif()))
+def _build_results(args: argparse.Namespace) -> dict[str, Path]:
+    """The files that are asked for, by format."""
+    return {x: file for x in entries("build_results") if (file := vars(args).get(x)) is not None}
 
 
 def print_answer(found: _Answer, target: str | None) -> None:

@@ -14,7 +14,7 @@ from roadproof.runtime.progress import listening
 
 if TYPE_CHECKING:
     from roadproof.engines.prove.properties import WrittenClaim
-    from roadproof.extensions.assurance.build_results.cases import Location
+    from roadproof.frontends.report.cases import Location
     from roadproof.questions.prove import ClaimResult, ProveQuestion
 
 SUMMARY = "prove claims for all time, or refute them"
@@ -102,7 +102,7 @@ def _written(args: argparse.Namespace) -> "list[WrittenClaim]":
 
 def _places(args: argparse.Namespace, asked: "ProveQuestion") -> "dict[str, Location]":
     """Where the claims of a file are written, by ``task.name``."""
-    from roadproof.extensions.assurance.build_results.cases import Location
+    from roadproof.frontends.report.cases import Location
 
     written = _written(args)
     tasks = asked.tasks[len(asked.tasks) - len(written) :]

@@ -4,7 +4,8 @@ from collections.abc import Iterable, Sequence
 from itertools import groupby
 from xml.etree import ElementTree as xml
 
-from roadproof.extensions.assurance.build_results.cases import Case, State
+from roadproof.frontends.report.cases import Case, State
+from roadproof.verdict import ExitCode
 
 _ELEMENTS: dict[State, str] = {"failed": "failure", "undecided": "error", "skipped": "skipped"}
 _FORBIDDEN = {code: "\N{REPLACEMENT CHARACTER}" for code in range(32) if chr(code) not in "\t\n\r"}
@@ -22,6 +23,11 @@ def as_junit(title: str, cases: Sequence[Case], in_force: Sequence[str] = ()) ->
     for name, those in groupby(sorted(cases, key=lambda x: order.index(x.suite)), lambda x: x.suite):
         _add_suite(suites, name, list(those), in_force)
     return as_text(suites)
+
+
+def junit(command: str, cases: Sequence[Case], code: ExitCode, in_force: Sequence[str]) -> str:
+    """The cases of a command as JUnit XML."""
+    return as_junit(f"roadproof {command}", cases, in_force)
 
 
 def as_text(suites: xml.Element) -> str:

@@ -11,8 +11,8 @@ from roadproof.extensions.assurance.answers.trace import (
     TracedLink,
     TracedRequirement,
 )
-from roadproof.extensions.assurance.build_results.cases import Case, Location, Rule, State
 from roadproof.extensions.assurance.requirements.report import reason_of
+from roadproof.frontends.report.cases import Case, Location, Rule, State
 from roadproof.verdict import Verdict
 
 _RULES: Mapping[LinkState, Verdict | Rule] = {

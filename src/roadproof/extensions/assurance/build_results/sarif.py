@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from urllib.parse import quote
 
-from roadproof.extensions.assurance.build_results.cases import MEANINGS, Case, Location
+from roadproof.frontends.report.cases import MEANINGS, Case, Location
 from roadproof.runtime.version import VERSION
 from roadproof.verdict import ExitCode
 
@@ -39,6 +39,11 @@ def as_sarif(command: str, cases: Sequence[Case], code: ExitCode) -> str:
     }
     content = {"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
+
+
+def sarif(command: str, cases: Sequence[Case], code: ExitCode, in_force: Sequence[str]) -> str:
+    """The cases of a command as SARIF."""
+    return as_sarif(command, cases, code)
 
 
 def _result(case: Case) -> dict[str, object]:
