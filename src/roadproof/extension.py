@@ -51,6 +51,18 @@ class Extension:
     """Those who check evidence again (``evidence.kernels.Kernels``)."""
     modifiers: Entries = field(default_factory=dict)
     """Functions that find the modifier of a question (``engines.modifier``), by the option that says it."""
+    roads: Entries = field(default_factory=dict)
+    """Functions that read a road from a text that names it, by the ending of the file in it."""
+    frames: tuple[str, ...] = ()
+    """A function that makes a data frame of rows."""
+    words: tuple[str, ...] = ()
+    """Functions that say what parts of a formula mean that scenarios have no words for."""
+    checked_files: Entries = field(default_factory=dict)
+    """Functions that check a file for ``roadproof check``, by its ending; they return the exit code."""
+    animations: Entries = field(default_factory=dict)
+    """Animations of drives (``frontends.report.witness.Animation``), by the name of their format."""
+    completions: Entries = field(default_factory=dict)
+    """Functions that give words with descriptions, with which a shell completes a value, by flag."""
     schemas: tuple[str, ...] = ()
     """Mappings of definitions of JSON files to their titles."""
 

@@ -14,7 +14,6 @@ from typing import Any
 import pytest
 
 from roadproof.evidence.drive_file import load_drive
-from roadproof.extensions.exchange.export.csv_table import csv_of
 from roadproof.extensions.traffic import monitoring as traces
 from roadproof.extensions.traffic.evaluate import results, totals
 from roadproof.extensions.traffic.evaluate.evaluate import evaluate_recording
@@ -24,6 +23,7 @@ from roadproof.extensions.traffic.formats.write_highd import write_highd
 from roadproof.extensions.traffic.simulate.simulate import simulate
 from roadproof.extensions.traffic.simulate.traffic import Traffic
 from roadproof.frontends.cli.main import main
+from roadproof.frontends.report.samples import csv_of
 from traffic.faults import plant_fault
 
 ROADPROOF = Path(sys.executable).parent / "roadproof"

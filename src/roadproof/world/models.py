@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TypeAlias, cast, get_args
 
 from roadproof.errors import InputError
+from roadproof.extension import entries, imported
 from roadproof.runtime.files import read_text
 from roadproof.runtime.package_data import shipped
 from roadproof.world.lanelet_rules import check_lanelets, shared_boundaries
@@ -31,24 +32,15 @@ def names_of(kind: str) -> tuple[str, ...]:
 def load_road(name_or_path: str | Path) -> Road:
     """A bundled road by name, or a user's by path: TOML, or a stretch of a map.
 
-    Raises ``InputError``; ``UsageError`` for a stretch that is not well said (``maps.selection``).
+    Raises ``InputError``; ``UsageError`` for a stretch that is not well said.
     """
-    if "." in str(name_or_path):  # no name of a bundled road
-        from roadproof.extensions.maps.selection import is_map
-
-        if is_map(name_or_path):
-            return _of_map(str(name_or_path))
+    text = str(name_or_path)
+    if "." in text:  # no name of a bundled road
+        reader = entries("roads").get(Path(text.partition("#")[0]).suffix)
+        if reader is not None:
+            road: Road = imported(reader)(text)
+            return road
     return load_recorded_road(name_or_path)[0]
-
-
-def _of_map(text: str) -> Road:
-    """A stretch of a map. Raises ``InputError``, ``UsageError``."""
-    from roadproof.extensions.maps.selection import read_selection, select
-
-    path, selection = read_selection(text)
-    found = select(path, selection)
-    beside = shared_boundaries(found.lanelets)
-    return Road(path.stem, found.lanelets, beside, found.line, text, found.unread)
 
 
 def load_recorded_road(name_or_path: str | Path, directions: tuple[int, ...] = ()) -> tuple[Road, int]:

@@ -19,4 +19,5 @@ EXTENSION = Extension(
     },
     build_results={"junit": "build_results.junit:junit", "sarif": "build_results.sarif:sarif"},
     schemas=("schemas:TITLES",),
+    checked_files={".toml": "checking:check_case"},
 )

@@ -10,7 +10,9 @@ from roadproof.extensions.catalogue.completing import Completion, catalogue_text
 from roadproof.extensions.catalogue.entries import Concrete, Freedom
 from roadproof.extensions.catalogue.listing import FILE_NAME
 from roadproof.extensions.catalogue.showing import show
-from roadproof.extensions.exchange.exporting import ExportedDrive, can_export, export, formats_in
+from roadproof.extensions.exchange.exporting import ExportedDrive, can_export, export
+from roadproof.extensions.exchange.exporting import names as format_names
+from roadproof.frontends.settings.readers import formats_in
 from roadproof.runtime.files import hold_folder, json_bytes, write_whole
 from roadproof.runtime.records import dataclass
 from roadproof.world.models import read_toml
@@ -65,7 +67,7 @@ def write_completions(
 
     ``titles``: what each drive is, by its name. Raises ``InputError``, ``UsageError``.
     """
-    names = formats_in(formats) if formats else []
+    names = formats_in(formats, format_names()) if formats else []
     made = {x.name: x for x in completions if x.drive is not None}
     with hold_folder(folder):
         files = {name: _write(folder, name, x) for name, x in made.items()}

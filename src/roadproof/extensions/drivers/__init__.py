@@ -12,4 +12,8 @@ EXTENSION = Extension(
     modifiers={"prevention": "restriction:restriction_of"},
     evidence={"roadproof/boundary/1": "preventable.plate:BoundaryFile"},
     schemas=("schemas:TITLES",),
+    words=("words:words_of_parts",),
+    completions=dict.fromkeys(
+        ("--preventable", "--unpreventable", "--drivers", "--model"), "completion:models"
+    ),
 )

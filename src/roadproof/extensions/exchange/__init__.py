@@ -10,4 +10,5 @@ EXTENSION = Extension(
         "traffic",
     ),
     functions={"export": "exporting:export", "compile": "compiling:compile"},
+    completions=dict.fromkeys(("--to", "--format"), "completion:formats"),
 )

@@ -1,6 +1,6 @@
 """Drives for other people's tools."""
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TypeAlias, Unpack
 
@@ -10,22 +10,27 @@ from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.evidence.strict import read_json
 from roadproof.extensions.exchange.export.registry import FORMATS, numbers_in
 from roadproof.extensions.exchange.export.subject import Subject, subject_of
-from roadproof.extensions.pages.animation import ENDINGS, draw_animation
 from roadproof.extensions.traffic.settings import Export
 from roadproof.frontends.api.table import Row, Table
+from roadproof.frontends.report.animations import animations
 from roadproof.frontends.settings.keywords import ExportKeywords
 from roadproof.frontends.settings.option import takes
+from roadproof.frontends.settings.readers import formats_in
 from roadproof.library.loading import load_library
-from roadproof.library.specification import Library, unknown
+from roadproof.library.specification import Library
 from roadproof.runtime.files import hold_folder, write_whole
 from roadproof.runtime.records import dataclass
 
 ANIMATIONS = {"animation": "svg", "gif": "gif", "mp4": "mp4"}
+"""Animations by the name that ``export`` has for them."""
 """Animations, which show RSS distances of the library too, and so are made here."""
-NAMES = (*FORMATS, *ANIMATIONS)
-"""The formats by name."""
 # A drive, a drive file, or the path of one or of a folder of them.
 DriveLike: TypeAlias = JudgedDrive | DriveFile | str | Path
+
+
+def names() -> tuple[str, ...]:
+    """The formats by name; animations where an extension draws them."""
+    return (*FORMATS, *(name for name, x in ANIMATIONS.items() if x in animations()))
 
 
 @dataclass(frozen=True)
@@ -84,7 +89,7 @@ def export(
     made with. In highD's format the drives are the recordings 01, 02 and so on. Raises ``InputError`` for
     drives that do not stand and roads that a format cannot say, ``UsageError``.
     """
-    given, formats = Export.of(options), formats_in(to)
+    given, formats = Export.of(options), formats_in(to, names())
     library = load_library(Path(x) for x in given.specs)
     each = [drives] if isinstance(drives, str | Path | JudgedDrive | DriveFile) else drives
     files = _named(_judged(each, library))
@@ -115,8 +120,8 @@ def _refuse_clash(made: Mapping[tuple[str, str], Mapping[str, bytes]]) -> None:
 def _files(subject: Subject, name: str, library: Library) -> dict[str, bytes]:
     """The files of a drive in a format: their contents by name."""
     if name in ANIMATIONS:
-        kind = ANIMATIONS[name]
-        return {f"{subject.name}{ENDINGS[kind]}": draw_animation(subject.file, library, kind)}
+        animation = animations()[ANIMATIONS[name]]
+        return {f"{subject.name}{animation.ending}": animation.draw(subject.file, library)}
     return FORMATS[name](subject)
 
 
@@ -131,18 +136,6 @@ def can_export(drive: str | Path, to: str, specs: Iterable[str | Path] = ()) -> 
     library = load_library(Path(x) for x in specs)
     [(name, file, _)] = _judged([drive], library)
     _files(subject_of(name, 1, file, 25), to, library)
-
-
-def formats_in(to: str | Iterable[str], known: Collection[str] = NAMES) -> list[str]:
-    """Formats by name, each once, from names with commas. Raises ``UsageError``."""
-    texts = to.split(",") if isinstance(to, str) else [x for text in to for x in text.split(",")]
-    names = list(dict.fromkeys(text.strip() for text in texts))
-    for name in names:
-        if name not in known:
-            raise UsageError(unknown("format", name, known))
-    if not names:
-        raise UsageError(f"to: name a format: {', '.join(known)}")
-    return names
 
 
 def _judged(drives: Iterable[DriveLike], library: Library) -> Iterator[tuple[str, DriveFile, Path | None]]:

@@ -7,4 +7,5 @@ EXTENSION = Extension(
     audience="testers",
     functions={"road": "roads:road", "stretches": "roads:stretches"},
     schemas=("schemas:TITLES",),
+    roads={".xodr": "stretch:road_of", ".osm": "stretch:road_of", ".xml": "stretch:road_of"},
 )

@@ -12,4 +12,6 @@ EXTENSION = Extension(
         "traffic",
     ),
     functions={"page": "reporting:page", "atlas": "atlas.atlas:atlas"},
+    animations={"svg": "animation:SVG", "gif": "animation:GIF", "mp4": "animation:MP4"},
+    completions={"--animate": "completion:formats"},
 )

@@ -5,7 +5,7 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from fractions import Fraction
 from io import BytesIO
 from itertools import pairwise
@@ -36,9 +36,9 @@ class Film:
     still: int
 
 
-def need(formats: Iterable[str]) -> None:
-    """Nothing; raises ``MissingSolverError`` where formats need a program that is not there."""
-    if "mp4" in formats and shutil.which("ffmpeg") is None:
+def need(ending: str) -> None:
+    """Raises ``MissingSolverError`` where files of this ending need a program that is not there."""
+    if ending == ".mp4" and shutil.which("ffmpeg") is None:
         raise MissingSolverError(_MISSING)
 
 
@@ -81,7 +81,7 @@ def _colours(film: Film) -> list[bytes]:
 
 def as_mp4(film: Film) -> bytes:
     """An MP4 file. Raises ``MissingSolverError`` where ffmpeg is missing or cannot write one."""
-    need(["mp4"])
+    need(".mp4")
     raw = ("-f", "rawvideo", "-pix_fmt", "rgba", "-s", f"{film.size[0]}x{film.size[1]}")
     rate = ("-r", f"{1 / film.grain}", "-i", "-")
     with tempfile.TemporaryDirectory() as folder:

@@ -9,10 +9,10 @@ from collections.abc import Iterator, Sequence
 from xml.etree.ElementTree import Element, tostring
 
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.extensions.exchange.export.xml import element
 from roadproof.extensions.pages.bent_scene import BentScene, scene_of
 from roadproof.extensions.pages.scene import DASH, Polygon, Scene, Strokes
 from roadproof.frontends.report.plane import Points
+from roadproof.frontends.report.xml import element
 from roadproof.library.specification import Library
 
 WIDTH, MARGIN, LANE_PIXELS, LEAST = 320.0, 12.0, 5.0, 8.0  # pixels; of a vehicle along, at least ``LEAST``

@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from xml.etree.ElementTree import Element
 
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.extensions.exchange.export.xml import document, element
 from roadproof.extensions.pages.bent_scene import scene_of
 from roadproof.extensions.pages.scene import (
     PAUSE,
@@ -22,6 +21,7 @@ from roadproof.extensions.pages.scene import (
 from roadproof.frontends.report.drive import DANGER
 from roadproof.frontends.report.drive_data import GRAIN
 from roadproof.frontends.report.plane import Points
+from roadproof.frontends.report.xml import document, element
 from roadproof.library.specification import Library
 
 _BOX, _ENDS = ("x", "y", "width", "height"), ("x1", "x2", "y1", "y2")

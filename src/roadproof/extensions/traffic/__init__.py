@@ -18,4 +18,5 @@ EXTENSION = Extension(
         "simulate": "simulating:simulate",
     },
     schemas=("schemas:TITLES",),
+    frames=("formats.table:frame_of",),
 )

@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from roadproof.frontends.settings.value_types import RoadLike
     from roadproof.library.bind import Number
     from roadproof.runtime.pool import Say
-    from roadproof.world.signals import Kind
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -159,15 +158,6 @@ class Simulate(groups.Workers):
     )
     out: str | Path | None = groups.folder_for("recordings", command_line_only=True, required=True)
     tell: Say | None = option(None)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Motion(Settings):
-    """Options of ``motion``, which exists in Python only."""
-
-    length: Number = option(Fraction(9, 2))
-    width: Number = option(Fraction(9, 5))
-    kind: Kind | None = option(None)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,7 +8,6 @@ from typing import Unpack
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.extensions.exchange.export.csv_table import road_toml
 from roadproof.extensions.traffic.formats.table import Frame, frame_of
 from roadproof.extensions.traffic.formats.write_highd import write_highd
 from roadproof.extensions.traffic.settings import Simulate
@@ -22,6 +21,7 @@ from roadproof.extensions.traffic.simulate.planting import (
 from roadproof.extensions.traffic.simulate.simulate import markings_of
 from roadproof.extensions.traffic.simulate.simulate import simulate as simulate_one
 from roadproof.extensions.traffic.simulate.traffic import Traffic, road_of
+from roadproof.frontends.report.samples import road_toml
 from roadproof.frontends.report.sheet import csv_text
 from roadproof.frontends.settings.keywords import SimulateKeywords
 from roadproof.frontends.settings.option import takes

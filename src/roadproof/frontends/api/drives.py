@@ -16,21 +16,22 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
 from roadproof.extensions.drivers.restricting import restricted
-from roadproof.extensions.pages.animation import ENDINGS
 from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
 from roadproof.frontends.api.pictures import drive_pictures
 from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.settings import searches_of, setting, work_of
+from roadproof.frontends.report.animations import animations
 from roadproof.frontends.report.cases import Case
 from roadproof.frontends.report.numbers import took
 from roadproof.frontends.report.question_cases import search_cases
 from roadproof.frontends.report.sheet import Sheet
-from roadproof.frontends.report.witness import EVERY_VIEW, Views, as_line, sheet_of
+from roadproof.frontends.report.witness import Views, as_line, every_view, sheet_of
 from roadproof.frontends.settings.keywords import WitnessKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.questions import Witness
+from roadproof.frontends.settings.readers import formats_in
 from roadproof.library.specification import Library
 from roadproof.questions.basis import Basis
 from roadproof.questions.question import walk
@@ -69,7 +70,7 @@ class DriveFolder:
         for ending, content in self.views.of(judged, self.library):
             write_whole(self.folder / f"{name}{ending}", content)
         if samples.read_bytes() != former:  # the other files are those of a former drive
-            for ending in {*EVERY_VIEW.endings} - {*self.views.endings}:
+            for ending in {*every_view().endings} - {*self.views.endings}:
                 (self.folder / f"{name}{ending}").unlink(missing_ok=True)
 
     def lacks(self, name: str) -> bool:
@@ -294,13 +295,12 @@ def views_of(given: Witness) -> Views:
     """The files that are wanted beside each drive. Raises ``UsageError``, ``MissingSolverError``."""
     if not given.animate:
         return Views(given.pictures, ())
-    from roadproof.extensions.exchange.exporting import formats_in
-    from roadproof.extensions.pages.film import need
-
-    wanted = formats_in(given.animate, ENDINGS)
+    known = animations()
+    wanted = formats_in(given.animate, known)
     if given.out is None:
         raise UsageError(f"animate={','.join(wanted)}: name a folder for the animations with --out DIR")
-    need(wanted)
+    for name in wanted:
+        known[name].need()
     return Views(given.pictures, tuple(wanted))
 
 

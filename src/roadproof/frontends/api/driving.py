@@ -7,9 +7,9 @@ from typing import Unpack
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive, RejectedError
-from roadproof.extensions.traffic import settings
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
 from roadproof.frontends.api.settings import as_road, positive
+from roadproof.frontends.settings import questions as settings
 from roadproof.frontends.settings.keywords import MotionKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.value_types import RoadLike

@@ -1,12 +1,11 @@
 """Answers as tables: rows, frames, and what a notebook shows."""
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, TypeAlias
+from typing import Any, TypeAlias
 
+from roadproof.errors import MissingSolverError
+from roadproof.extension import imported, listed
 from roadproof.frontends.report.sheet import Value
-
-if TYPE_CHECKING:
-    from roadproof.extensions.traffic.formats.table import Frame
 
 Row: TypeAlias = dict[str, Value]
 """Values by the name of their column."""
@@ -19,11 +18,12 @@ class Table(ABC):
     def rows(self) -> list[Row]:
         """The rows of ``to_frame``."""
 
-    def to_frame(self) -> "Frame":
+    def to_frame(self) -> Any:
         """The rows as a frame of polars. Raises ``MissingSolverError`` where polars is not installed."""
-        from roadproof.extensions.traffic.formats.table import frame_of
-
-        return frame_of(self.rows())
+        makers = listed("frames")
+        if not makers:
+            raise MissingSolverError("to_frame needs an extension with data frames; rows() has the rows")
+        return imported(makers[0])(self.rows())
 
     def _repr_html_(self) -> str:
         import html

@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 
 from roadproof.errors import UsageError
+from roadproof.extension import entries, imported
 from roadproof.frontends.cli.options import print_answer, write_build_results
 from roadproof.frontends.cli.progress import Counter
 from roadproof.frontends.settings.flags import read_keywords
@@ -54,24 +55,15 @@ def run(args: argparse.Namespace) -> int:
 
     if args.kernel is not None and args.solver != "z3":
         raise UsageError(f"--kernel {args.kernel} uses no solver: omit --solver or --kernel")
-    if any(x.suffix == ".toml" for x in args.paths):
-        return _check_case(args)
+    others = entries("checked_files")
+    for path in args.paths:
+        if path.suffix in others:
+            code: int = imported(others[path.suffix])(args)
+            return code
     if args.write is not None:
         return _write(args)
     checked = check(*args.paths, **read_keywords(args, Check) | {"progress": Counter()})
     write_build_results(args, checked)
-    print_answer(checked, args.json)
-    return checked.exit_code
-
-
-def _check_case(args: argparse.Namespace) -> int:
-    from roadproof.extensions.assurance.assuring import assurance
-
-    if len(args.paths) > 1 or args.kernel or args.junit or args.sarif:
-        told = "name one CASE, and omit --kernel, --junit and --sarif"
-        raise UsageError(f"an assurance case is checked alone and with a solver: {told}")
-    keywords = {name: x for name, x in read_keywords(args, Check).items() if name != "kernel"}
-    checked = assurance(args.paths[0], **keywords | {"progress": Counter()})
     print_answer(checked, args.json)
     return checked.exit_code
 

@@ -4,8 +4,10 @@ import argparse
 import os
 import re
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import TypeAlias
 
+from roadproof.extension import entries, imported
 from roadproof.frontends.cli.help import CommandParser, fill
 from roadproof.frontends.cli.overview import COMMANDS
 from roadproof.verdict import ExitCode
@@ -56,7 +58,8 @@ def _attach(action: argparse.Action) -> None:
     from argcomplete.completers import FilesCompleter, SuppressCompleter
 
     metavar = action.metavar if isinstance(action.metavar, str) else ""
-    known = next((_VALUES[x] for x in (*action.option_strings, metavar) if x in _VALUES), None)
+    values = {**_VALUES, **_of_extensions()}
+    known = next((values[x] for x in (*action.option_strings, metavar) if x in values), None)
     completer: object = FilesCompleter() if _FILES.search(metavar) or metavar == "R" else SuppressCompleter()
     if known is not None:
         completer = _completer(known, files=metavar in _OR_FILES)
@@ -113,22 +116,13 @@ def _parameters(prefix: str) -> Values:
     return {f"{name}=": declared.doc for name, declared in bundled_library().parameters.items()}
 
 
-def _drivers(prefix: str) -> Values:
-    from roadproof.extensions.drivers.models import MODELS
+def _of_extensions() -> Mapping[str, Callable[[str], Values]]:
+    """How extensions complete values, by flag."""
 
-    return _listed(prefix, {name: model.title for name, model in MODELS.items()})
+    def completed(entry: str, prefix: str) -> Values:
+        return _listed(prefix, imported(entry)())
 
-
-def _formats(prefix: str) -> Values:
-    from roadproof.extensions.exchange.exporting import NAMES
-
-    return _listed(prefix, dict.fromkeys(NAMES, ""))
-
-
-def _animations(prefix: str) -> Values:
-    from roadproof.extensions.pages.animation import ENDINGS
-
-    return _listed(prefix, dict.fromkeys(ENDINGS, ""))
+    return {flag: partial(completed, entry) for flag, entry in entries("completions").items()}
 
 
 def _listed(prefix: str, values: Values, mark: str = ",") -> Values:
@@ -164,9 +158,6 @@ _VALUES: Mapping[str, Callable[[str], Values]] = {
     **dict.fromkeys(("--set", "--plant-set", "--wider"), _sets),
     "--option": _readings,
     **dict.fromkeys(("--param", "--vary"), _parameters),
-    **dict.fromkeys(("--preventable", "--unpreventable", "--drivers", "--model"), _drivers),
-    **dict.fromkeys(("--to", "--format"), _formats),
-    "--animate": _animations,
     "--road": _models("roads"),
     "--vehicle": _models("vehicles"),
     "--spec": _files_on_request,

@@ -10,13 +10,13 @@ from typing import Literal, TypeAlias
 
 from roadproof.errors import RoadproofError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.extensions.drivers.words import words_of_parts
+from roadproof.extension import imported, listed
 from roadproof.library.bind import bind, values_with
 from roadproof.library.roles import vehicle_order
 from roadproof.library.scenarios import danger, too_near_ahead, too_near_left
 from roadproof.library.specification import Library, Query, Specification
 from roadproof.library.words import words_of
-from roadproof.logic.formula import Compare, Formula, nesting, subformulas
+from roadproof.logic.formula import Application, Compare, Formula, nesting, subformulas
 from roadproof.runtime.records import dataclass
 from roadproof.semantics.exact.algebraic import approximate
 from roadproof.semantics.exact.exact import Judgement, judge
@@ -111,9 +111,17 @@ def times_of(file: DriveFile, grain: Fraction = GRAIN) -> list[Fraction]:
     return [k * grain for k in range(int(file.horizon / grain) + 1)]
 
 
+def _words_of(formula: Formula) -> dict[Application, str]:
+    """What parts of a formula mean that an extension has words for."""
+    found: dict[Application, str] = {}
+    for entry in listed("words"):
+        found |= imported(entry)(formula)
+    return found
+
+
 def strips_of(judgement: Judgement, horizon: Fraction) -> tuple[Strip, ...]:
     """Every named part of a judged formula, each below the one that it is part of."""
-    depths, words = nesting(judgement.formula), words_of_parts(judgement.formula)
+    depths, words = nesting(judgement.formula), _words_of(judgement.formula)
     return tuple(
         Strip(
             words.get(part) or f"{part.name}({', '.join(part.arguments)})",

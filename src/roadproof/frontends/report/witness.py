@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from roadproof.evidence.judged import JudgedDrive
-from roadproof.extensions.pages.animation import ENDINGS, draw_animation
+from roadproof.frontends.report.animations import animations
 from roadproof.frontends.report.sheet import Column, Sheet
 from roadproof.library.scenarios import LANE
 from roadproof.library.specification import Library
@@ -82,11 +82,11 @@ class Views:
     def endings(self) -> tuple[str, ...]:
         """How the names of the files end."""
         drawn = (".png", ".svg") if self.pictures else ()
-        return (".csv", *drawn, *(ENDINGS[x] for x in self.animations))
+        return (".csv", *drawn, *(animations()[x].ending for x in self.animations))
 
     def of(self, judged: JudgedDrive, library: Library) -> Iterator[tuple[str, bytes]]:
         """The same, with their contents; the samples come first."""
-        from roadproof.extensions.exchange.export.csv_table import csv_of
+        from roadproof.frontends.report.samples import csv_of
 
         yield ".csv", csv_of(judged.file).encode()
         if self.pictures:
@@ -96,7 +96,10 @@ class Views:
             for kind, content in as_bytes(draw_drive(judged.file, library)).items():
                 yield f".{kind}", content
         for name in self.animations:
-            yield ENDINGS[name], draw_animation(judged.file, library, name)
+            animation = animations()[name]
+            yield animation.ending, animation.draw(judged.file, library)
 
 
-EVERY_VIEW = Views(True, tuple(ENDINGS))
+def every_view() -> Views:
+    """All files that there can be beside a drive file."""
+    return Views(True, tuple(animations()))

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.frontends.settings import groups
-from roadproof.frontends.settings.option import option, output, search
+from roadproof.frontends.settings.option import Settings, option, output, search
 from roadproof.frontends.settings.readers import file_names, named, seconds, text_or_none, whole
 from roadproof.runtime.records import dataclass
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from roadproof.frontends.settings.value_types import Assumed, Expected, ProofEngine, RoadLike, Vehicles
     from roadproof.library.bind import Number
     from roadproof.runtime.pool import Progress
+    from roadproof.world.signals import Kind
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,6 +50,15 @@ class Witness(groups.DriveSearch, groups.Reported):
     animate: str | Iterable[str] = output(
         (), "--animate FORMAT", "with --out: write animations: svg, gif or mp4", gather=list
     )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Motion(Settings):
+    """Options of ``motion``, which exists in Python only."""
+
+    length: Number = option(Fraction(9, 2))
+    width: Number = option(Fraction(9, 5))
+    kind: Kind | None = option(None)
 
 
 @dataclass(frozen=True, kw_only=True)

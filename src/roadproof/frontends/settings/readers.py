@@ -2,7 +2,7 @@
 
 import re
 from argparse import ArgumentTypeError
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -167,3 +167,17 @@ def flat(lists: Iterable[Iterable[str]]) -> list[str]:
 def file_names(text: str) -> tuple[str, ...]:
     """Names of files or folders with commas between them."""
     return tuple(x for x in text.split(",") if x)
+
+
+def formats_in(to: str | Iterable[str], known: Collection[str]) -> list[str]:
+    """Formats by name, each once, from names with commas. Raises ``UsageError``."""
+    texts = to.split(",") if isinstance(to, str) else [x for text in to for x in text.split(",")]
+    names = list(dict.fromkeys(text.strip() for text in texts))
+    from roadproof.library.specification import unknown  # most commands name no format
+
+    for name in names:
+        if name not in known:
+            raise UsageError(unknown("format", name, known))
+    if not names:
+        raise UsageError(f"to: name a format: {', '.join(known)}")
+    return names

@@ -14,8 +14,8 @@ from roadproof.extensions.assurance.argument.layout import DIAMOND, SLANT, Label
 from roadproof.extensions.assurance.argument.measured_text import FONT, LEADING
 from roadproof.extensions.assurance.case.case import Element, Kind
 from roadproof.extensions.assurance.case.states import State
-from roadproof.extensions.exchange.export.xml import document, element
 from roadproof.extensions.pages.viewer_page import design
+from roadproof.frontends.report.xml import document, element
 
 MARGIN, HEAD = 14.0, 9.0
 SIGNS: Mapping[State, str] = {

@@ -6,7 +6,7 @@ from datetime import datetime
 
 from roadproof.extensions.assurance.answers.trace import Answer, TracedRequirement
 from roadproof.extensions.assurance.requirements.requirement import FIELDS
-from roadproof.extensions.exchange.export.xml import Element, document, element
+from roadproof.frontends.report.xml import Element, document, element
 from roadproof.runtime.version import VERSION
 
 _NAMESPACE = "http://www.omg.org/spec/ReqIF/20110401/reqif.xsd"

@@ -57,12 +57,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from roadproof.extensions.catalogue.cataloguing import catalogue
-    from roadproof.extensions.exchange.exporting import formats_in
+    from roadproof.extensions.exchange.exporting import names
+    from roadproof.frontends.settings.readers import formats_in
 
     for name in ("objective", "spread", "formats"):
         if getattr(args, name) and args.complete is None:
             raise UsageError(f"--{name.removesuffix('s')} requires --complete DIR")
-    formats_in(args.formats or "csv")
+    formats_in(args.formats or "csv", names())
     home = read_definitions(args, OPTIONS)
     given = study_keywords(args, OPTIONS, beside_json=True)
     found = catalogue(*args.paths, using=home, **given)

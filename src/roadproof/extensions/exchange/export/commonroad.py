@@ -17,18 +17,11 @@ from itertools import pairwise
 from pathlib import Path
 
 from roadproof.extensions.exchange.export.points import centre, centre_in_plane
-from roadproof.extensions.exchange.export.subject import (
-    WRITTEN,
-    Layout,
-    Section,
-    Subject,
-    crossed,
-    kind_of,
-    together,
-)
+from roadproof.extensions.exchange.export.subject import WRITTEN, Layout, Section, Subject, crossed, together
 from roadproof.extensions.exchange.export.user_map import checked_map
-from roadproof.extensions.exchange.export.xml import Element, decimal, document, element
 from roadproof.extensions.maps.network import ZONES_ENDING, zones_beside
+from roadproof.frontends.report.samples import kind_of
+from roadproof.frontends.report.xml import Element, decimal, document, element
 from roadproof.runtime.xml_reader import read_xml
 from roadproof.world.drive import Motion
 from roadproof.world.motion import State

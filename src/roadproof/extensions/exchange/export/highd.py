@@ -12,14 +12,14 @@ from math import ceil, floor
 
 import numpy as np
 
-from roadproof.extensions.exchange.export.csv_table import road_toml
 from roadproof.extensions.exchange.export.points import upper_left
-from roadproof.extensions.exchange.export.subject import Subject, class_of
+from roadproof.extensions.exchange.export.subject import Subject
 from roadproof.extensions.traffic.formats.highd import LOWER, lanes_of_markings
 from roadproof.extensions.traffic.formats.recording import Floats, Recording
 from roadproof.extensions.traffic.formats.straight import of_bands, record
 from roadproof.extensions.traffic.formats.table import table_bytes
 from roadproof.extensions.traffic.formats.write_highd import highd_tables
+from roadproof.frontends.report.samples import class_of, road_toml
 from roadproof.world.road import Road
 from roadproof.world.signals import RECORDED
 

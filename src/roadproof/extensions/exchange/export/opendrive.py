@@ -16,7 +16,7 @@ from math import ceil
 from roadproof.extensions.exchange.export import plan_view
 from roadproof.extensions.exchange.export.subject import WRITTEN, Layout, Section, Subject, crossed
 from roadproof.extensions.exchange.export.user_map import checked_map, map_path
-from roadproof.extensions.exchange.export.xml import Element, decimal, document, element
+from roadproof.frontends.report.xml import Element, decimal, document, element
 from roadproof.world.motion import monotone_starts, state_at
 from roadproof.world.road import Attribute, Lanelet
 

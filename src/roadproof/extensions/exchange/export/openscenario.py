@@ -26,10 +26,11 @@ from fractions import Fraction
 from roadproof.errors import InputError
 from roadproof.extensions.exchange.export import opendrive
 from roadproof.extensions.exchange.export.points import OVERHANG, axle_to_centre, heading, rear_axle_in_plane
-from roadproof.extensions.exchange.export.subject import WRITTEN, Subject, kind_of
+from roadproof.extensions.exchange.export.subject import WRITTEN, Subject
 from roadproof.extensions.exchange.export.user_map import map_path
-from roadproof.extensions.exchange.export.xml import Element, decimal, document, element
 from roadproof.extensions.maps.selection import STRETCH
+from roadproof.frontends.report.samples import kind_of
+from roadproof.frontends.report.xml import Element, decimal, document, element
 from roadproof.world.drive import Motion
 from roadproof.world.motion import State, advance, monotone_starts
 from roadproof.world.reference_line import ReferenceLine

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from itertools import pairwise
 
-from roadproof.extensions.exchange.export.xml import Element, decimal, element
+from roadproof.frontends.report.xml import Element, decimal, element
 from roadproof.world.reference_line import ReferenceLine
 
 _SPACING = 5

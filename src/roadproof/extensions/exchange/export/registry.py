@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 
-from roadproof.extensions.exchange.export import commonroad, csv_table, highd, opendrive, openscenario
+from roadproof.extensions.exchange.export import commonroad, csv_files, highd, opendrive, openscenario
 from roadproof.extensions.exchange.export.subject import Subject
 
 FORMATS: Mapping[str, Callable[[Subject], dict[str, bytes]]] = {
@@ -10,7 +10,7 @@ FORMATS: Mapping[str, Callable[[Subject], dict[str, bytes]]] = {
     "opendrive": opendrive.files,
     "commonroad": commonroad.files,
     "highd": highd.files,
-    "csv": csv_table.files,
+    "csv": csv_files.files,
 }
 """By name, what makes the files of a drive: their contents by name. Each raises ``InputError``."""
 

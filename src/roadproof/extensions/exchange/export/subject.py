@@ -18,7 +18,6 @@ from roadproof.semantics.exact.robust import MOST_SAMPLES
 from roadproof.world.drive import Motion
 from roadproof.world.motion import State, advance, monotone_starts, states_at
 from roadproof.world.road import Lanelet, Road
-from roadproof.world.signals import Kind
 
 MARGIN = 100
 """Metres of road beyond the drive and beyond the ends of lanelets, where lanelets have no end."""
@@ -137,8 +136,6 @@ def crossed(one: Lanelet, other: Lanelet, road: Road) -> bool:
     return one.zone == other.zone and together(one, other, road)
 
 
-TRUCK_LENGTH = 7
-"""A vehicle longer than that (m) is a truck, as in recordings."""
 WRITTEN = "1970-01-01"
 """The date in files that must have one: a drive has none, and the same drive gives the same file."""
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
@@ -210,15 +207,3 @@ def subject_of(name: str, number: int, file: DriveFile, rate: int) -> Subject:
             f"rate={rate}: {name} lasts {file.horizon} s, which makes more than {MOST_SAMPLES:,} samples"
         )
     return Subject(name, number, file, rate)
-
-
-def kind_of(motion: Motion) -> Kind:
-    """What the drive says that it is; where it says nothing, ``car`` or ``truck``."""
-    if motion.kind is not None:
-        return motion.kind
-    return "car" if motion.length <= TRUCK_LENGTH else "truck"
-
-
-def class_of(motion: Motion) -> str:
-    """As recordings have it that know two classes: ``Car`` or ``Truck``."""
-    return "Truck" if kind_of(motion) in ("truck", "bus") else "Car"

@@ -7,12 +7,13 @@ from fractions import Fraction
 
 from roadproof.errors import InputError
 from roadproof.evidence.drive_file import DriveFile
-from roadproof.extensions.exchange.export.subject import Subject, kind_of
-from roadproof.extensions.exchange.export.xml import decimal
-from roadproof.world.drive import value_at
+from roadproof.frontends.report.xml import decimal
+from roadproof.library.roles import vehicle_order
+from roadproof.world.drive import Motion, value_at
 from roadproof.world.lanelet_rules import check_lanelets, shared_boundaries
+from roadproof.world.motion import states_at
 from roadproof.world.road import Lanelet, Road
-from roadproof.world.signals import RECORDED, SIZES
+from roadproof.world.signals import RECORDED, SIZES, Kind
 
 
 def road_toml(road: Road, s: Fraction = Fraction(0), d: Fraction = Fraction(0)) -> str:
@@ -54,32 +55,40 @@ def _number(value: Fraction) -> str:
 HEADER = ("time", "vehicle", *RECORDED, *SIZES)
 
 
-def files(subject: Subject) -> dict[str, bytes]:
-    """NAME.csv, and NAME_road.toml, the road that it is on. Raises ``InputError``."""
-    table = _table(subject)
-    road = road_toml(subject.file.road)
-    return {f"{subject.name}.csv": table.encode(), f"{subject.name}_road.toml": road.encode()}
-
-
-def csv_of(file: DriveFile) -> str:
-    """The drive of a drive file, 25 samples a second up to its horizon."""
-    return _table(Subject("drive", 1, file))
-
-
-def _table(subject: Subject) -> str:
+def csv_of(file: DriveFile, rate: int = 25) -> str:
+    """The drive of a drive file, ``rate`` samples a second up to its horizon."""
+    vehicles = {name: file.drive.vehicles[name] for name in vehicle_order(file.drive.vehicles)}
+    times = [Fraction(k, rate) for k in range(int(file.horizon * rate) + 1)]
+    samples = {name: [*states_at(motion, times)] for name, motion in vehicles.items()}
     out = io.StringIO()
     writer = csv.writer(out, lineterminator="\n")
-    kinds = {name: kind_of(motion) for name, motion in subject.vehicles.items()}
+    kinds = {name: kind_of(motion) for name, motion in vehicles.items()}
     told = ["kind"] if any(kind != "car" for kind in kinds.values()) else []
-    courses = subject.file.drive.own
+    courses = file.drive.own
     own = list(dict.fromkeys(name for name, _ in courses))
     writer.writerow([*HEADER, *told, *own])
-    for k, time in enumerate(subject.times):
-        for name, motion in subject.vehicles.items():
+    for k, time in enumerate(times):
+        for name, motion in vehicles.items():
             known = [courses.get((x, name), courses.get((x, ""))) for x in own]
             more = ["" if course is None else decimal(value_at(course, time)) for course in known]
-            signals = [getattr(subject.samples[name][k], signal) for signal in RECORDED]
+            signals = [getattr(samples[name][k], signal) for signal in RECORDED]
             sizes = [getattr(motion, size) for size in SIZES]
             kind = [kinds[name].title()] if told else []
             writer.writerow([decimal(time), name, *map(decimal, (*signals, *sizes)), *kind, *more])
     return out.getvalue()
+
+
+TRUCK_LENGTH = 7
+"""A vehicle longer than that (m) is a truck, as in recordings."""
+
+
+def kind_of(motion: Motion) -> Kind:
+    """What the drive says that it is; where it says nothing, ``car`` or ``truck``."""
+    if motion.kind is not None:
+        return motion.kind
+    return "car" if motion.length <= TRUCK_LENGTH else "truck"
+
+
+def class_of(motion: Motion) -> str:
+    """As recordings have it that know two classes: ``Car`` or ``Truck``."""
+    return "Truck" if kind_of(motion) in ("truck", "bus") else "Car"
