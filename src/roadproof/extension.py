@@ -63,6 +63,8 @@ class Extension:
     """Animations of drives (``frontends.report.witness.Animation``), by the name of their format."""
     completions: Entries = field(default_factory=dict)
     """Functions that give words with descriptions, with which a shell completes a value, by flag."""
+    options: Entries = field(default_factory=dict)
+    """Classes of further options (``frontends.settings.option.Settings``), by the command that has them."""
     schemas: tuple[str, ...] = ()
     """Mappings of definitions of JSON files to their titles."""
 
@@ -99,6 +101,12 @@ def entries(slot: str) -> Mapping[str, str]:
     """Return the entries of a slot of all extensions, each as ``module:name``."""
     found = ((x, getattr(x.record, slot)) for x in installed().values())
     return {name: x.whole(entry) for x, named in found for name, entry in named.items()}
+
+
+def added(slot: str, name: str) -> list[str]:
+    """Return the entries that extensions have for one name in a slot, each as ``module:name``."""
+    found = ((x, getattr(x.record, slot)) for x in installed().values())
+    return [x.whole(named[name]) for x, named in found if name in named]
 
 
 def listed(slot: str) -> list[str]:

@@ -15,10 +15,10 @@ from roadproof.evidence.drive_file import load_drive
 from roadproof.extensions.catalogue.entries import Abstract
 from roadproof.extensions.drivers.manoeuvres import MANOEUVRES, Plane, line
 from roadproof.extensions.drivers.models import MODELS, SCENARIOS, foreseen, unpreventable
+from roadproof.extensions.drivers.options import Prevention
 from roadproof.extensions.drivers.restricting import restricted
 from roadproof.extensions.drivers.restriction import Restriction, Side, restriction_of
 from roadproof.frontends.cli.main import main
-from roadproof.frontends.settings.groups import Prevention
 from roadproof.library.bind import bind
 from roadproof.library.compose import both, negation
 from roadproof.library.elaborate import read_claim

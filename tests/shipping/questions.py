@@ -11,8 +11,8 @@ from roadproof.evidence.claim import Claim
 from roadproof.extensions.surveys.classify.division import DivisionQuestion, ToDivide
 from roadproof.extensions.surveys.classify.question import question_of
 from roadproof.extensions.surveys.classify.simulated import shares_key, shares_text, simulated_shares
+from roadproof.extensions.surveys.settings import Classify
 from roadproof.frontends.api.settings import basis_of
-from roadproof.frontends.settings.studies import Classify
 from roadproof.library.scenarios import numbers_of
 from roadproof.questions.question import Answers, Batch, Question, walk
 from roadproof.questions.settle import settle, store_of

@@ -20,4 +20,7 @@ EXTENSION = Extension(
     build_results={"junit": "build_results.junit:junit", "sarif": "build_results.sarif:sarif"},
     schemas=("schemas:TITLES",),
     checked_files={".toml": "checking:check_case"},
+    options=dict.fromkeys(
+        ("prove", "check", "witness", "evaluate", "coverage", "catalogue", "preventable"), "options:Reported"
+    ),
 )

@@ -20,11 +20,12 @@ from roadproof.extensions.assurance.case.case import Case, Element, Kind
 from roadproof.extensions.assurance.case.limits import Limit
 from roadproof.extensions.assurance.case.reading import read_case
 from roadproof.extensions.assurance.case.states import OpenPoint, State, open_points, propagate
+from roadproof.extensions.assurance.keywords import AssuranceKeywords
+from roadproof.extensions.assurance.settings import Assurance
 from roadproof.extensions.assurance.solutions import SolutionCheck, check_evidence, digest_of, judge_solution
 from roadproof.frontends.api.checking import Solver
-from roadproof.frontends.settings.keywords import AssuranceKeywords, CheckKeywords
+from roadproof.frontends.settings.keywords import CheckKeywords
 from roadproof.frontends.settings.option import takes
-from roadproof.frontends.settings.questions import Assurance
 from roadproof.library.loading import load_library
 from roadproof.library.specification import Library
 from roadproof.reasons import Reason, Why

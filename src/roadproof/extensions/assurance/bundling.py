@@ -20,15 +20,15 @@ from roadproof.extensions.assurance import pins as packages
 from roadproof.extensions.assurance.answers.bundle import Argument, Manifest, Package
 from roadproof.extensions.assurance.assuring import assurance
 from roadproof.extensions.assurance.case.case import Kind
+from roadproof.extensions.assurance.keywords import BundleKeywords
 from roadproof.extensions.assurance.requirements.fingerprints import lock_path
+from roadproof.extensions.assurance.settings import Bundle as Options
 from roadproof.extensions.assurance.tracing import requirements
 from roadproof.extensions.catalogue.kept import SCHEMA as CATALOGUE
 from roadproof.extensions.pages.page.results import read_results
 from roadproof.extensions.pages.reporting import page
 from roadproof.frontends.api.checking import CheckReport
-from roadproof.frontends.settings.keywords import BundleKeywords
 from roadproof.frontends.settings.option import takes
-from roadproof.frontends.settings.questions import Bundle as Options
 from roadproof.runtime.files import refuse_name, utf8, whole_file
 from roadproof.runtime.pool import Progress
 from roadproof.runtime.records import dataclass

@@ -15,6 +15,7 @@ from roadproof.evidence.strict import LARGEST_INDEX, JsonObject, read_json
 from roadproof.extensions.assurance.answers import trace as kept
 from roadproof.extensions.assurance.answers import trace_changes
 from roadproof.extensions.assurance.build_results.requirements import requirement_cases
+from roadproof.extensions.assurance.keywords import RequirementsKeywords
 from roadproof.extensions.assurance.requirements import report
 from roadproof.extensions.assurance.requirements.changes import changes_between, counts_between
 from roadproof.extensions.assurance.requirements.checked_evidence import read_findings
@@ -28,15 +29,15 @@ from roadproof.extensions.assurance.requirements.requirement import Requirements
 from roadproof.extensions.assurance.requirements.sources import read_requirements
 from roadproof.extensions.assurance.requirements.states import States, Targets, read_targets, states_of
 from roadproof.extensions.assurance.requirements.write_reqif import as_reqif
+from roadproof.extensions.assurance.settings import Requirements as Settings
 from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.checking import take_over
 from roadproof.frontends.api.definitions import values_of
 from roadproof.frontends.api.table import Row, Table
 from roadproof.frontends.report.cases import Case
 from roadproof.frontends.report.sheet import as_csv, as_rows
-from roadproof.frontends.settings.keywords import CheckKeywords, RequirementsKeywords
+from roadproof.frontends.settings.keywords import CheckKeywords
 from roadproof.frontends.settings.option import takes
-from roadproof.frontends.settings.questions import Requirements as Settings
 from roadproof.library.bind import values_with
 from roadproof.library.diagnose import checked_library
 from roadproof.library.specification import Library

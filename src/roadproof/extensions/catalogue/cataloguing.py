@@ -7,12 +7,13 @@ from typing import ClassVar, Unpack
 
 from roadproof.errors import UsageError
 from roadproof.evidence.claim import Objective
-from roadproof.extensions.catalogue import kept, report
+from roadproof.extensions.catalogue import kept, report, settings
 from roadproof.extensions.catalogue.cases import catalogue_cases
 from roadproof.extensions.catalogue.completing import PriorResults, complete
 from roadproof.extensions.catalogue.decisions import Decision
 from roadproof.extensions.catalogue.driven import driven_name
 from roadproof.extensions.catalogue.entries import Catalogue, Concrete, Request
+from roadproof.extensions.catalogue.keywords import CatalogueKeywords
 from roadproof.extensions.catalogue.question import AskedTests, CatalogueQuestion
 from roadproof.extensions.catalogue.ranges import Span
 from roadproof.extensions.catalogue.report_drives import DrivePicture, draw_tests
@@ -31,8 +32,6 @@ from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.settings import basis_of, one_of
 from roadproof.frontends.report.cases import Case
 from roadproof.frontends.report.sheet import Sheet
-from roadproof.frontends.settings import studies as settings
-from roadproof.frontends.settings.keywords import CatalogueKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.library.scenarios import number_in, numbers_of
 from roadproof.runtime.executors import Jobs

@@ -16,4 +16,11 @@ EXTENSION = Extension(
     completions=dict.fromkeys(
         ("--preventable", "--unpreventable", "--drivers", "--model"), "completion:models"
     ),
+    options={
+        "witness": "options:Prevention",
+        "overlap": "options:Prevention",
+        "explore": "options:Prevention",
+        "classify": "options:Prevention",
+        "coverage": "options:PreventionOfDrives",
+    },
 )

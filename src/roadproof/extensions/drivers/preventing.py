@@ -7,7 +7,9 @@ from typing import ClassVar, Unpack
 
 from roadproof.errors import UsageError
 from roadproof.evidence.kernels import Word
+from roadproof.extensions.drivers import settings
 from roadproof.extensions.drivers.driving import require
+from roadproof.extensions.drivers.keywords import PreventableKeywords
 from roadproof.extensions.drivers.manoeuvres import MANOEUVRES, Course, Manoeuvre
 from roadproof.extensions.drivers.models import DRIVERS, GRADUAL, manoeuvre_of, models_for, unpreventable
 from roadproof.extensions.drivers.preventable import report
@@ -25,8 +27,6 @@ from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.report.cases import Case
 from roadproof.frontends.report.numbers import count, took
 from roadproof.frontends.report.sheet import Sheet, as_csv
-from roadproof.frontends.settings import studies as settings
-from roadproof.frontends.settings.keywords import PreventableKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.library.bind import Number, exact
 from roadproof.library.specification import unknown

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, get_args
 
 from roadproof.errors import UsageError
 from roadproof.extensions.drivers.models import check_courses, check_formulas
+from roadproof.extensions.drivers.options import Prevention
 from roadproof.extensions.drivers.restriction import About, Restriction, Side, check_library, files_for
 from roadproof.frontends.api.definitions import Among, Definitions, What
-from roadproof.frontends.settings.groups import Prevention
 from roadproof.library.diagnose import checked_library
 from roadproof.library.scenarios import number_in, numbers_of
 from roadproof.library.specification import Query

@@ -6,14 +6,14 @@ from pathlib import Path
 from typing import Literal, TypeAlias, Unpack
 
 from roadproof.errors import UsageError
+from roadproof.extensions.exchange.keywords import CompileKeywords
+from roadproof.extensions.exchange.settings import Compile
 from roadproof.extensions.exchange.streaming.c_files import FLAGS, CSource, compile_c
 from roadproof.extensions.exchange.streaming.functions import StreamMonitor
-from roadproof.extensions.traffic.settings import Compile
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
 from roadproof.frontends.api.settings import as_road, positive
 from roadproof.frontends.api.table import Row, Table
 from roadproof.frontends.report.sheet import aligned
-from roadproof.frontends.settings.keywords import CompileKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.library.bind import bind, refuse_variables
 from roadproof.library.scenarios import name_of

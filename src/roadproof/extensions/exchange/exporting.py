@@ -10,10 +10,10 @@ from roadproof.evidence.judged import JudgedDrive, RejectedError
 from roadproof.evidence.strict import read_json
 from roadproof.extensions.exchange.export.registry import FORMATS, numbers_in
 from roadproof.extensions.exchange.export.subject import Subject, subject_of
-from roadproof.extensions.traffic.settings import Export
+from roadproof.extensions.exchange.keywords import ExportKeywords
+from roadproof.extensions.exchange.settings import Export
 from roadproof.frontends.api.table import Row, Table
 from roadproof.frontends.report.animations import animations
-from roadproof.frontends.settings.keywords import ExportKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.readers import formats_in
 from roadproof.library.loading import load_library

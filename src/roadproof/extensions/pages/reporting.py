@@ -6,6 +6,8 @@ from typing import Unpack
 
 from roadproof.errors import RoadproofError, UsageError
 from roadproof.evidence.finding import Acceptance, Finding
+from roadproof.extensions.pages import settings
+from roadproof.extensions.pages.keywords import PageKeywords
 from roadproof.extensions.pages.page.page_context import PageContext
 from roadproof.extensions.pages.page.results import Result, read_results
 from roadproof.extensions.pages.page.sections import drive_section, evidence_section, section
@@ -13,8 +15,7 @@ from roadproof.extensions.pages.page.summary import summary_section
 from roadproof.extensions.pages.page.templates import page as page_of
 from roadproof.frontends.api.checking import CheckReport, take_over
 from roadproof.frontends.report.sheet import excerpt
-from roadproof.frontends.settings import questions as settings
-from roadproof.frontends.settings.keywords import CheckKeywords, PageKeywords
+from roadproof.frontends.settings.keywords import CheckKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.library.loading import load_library
 from roadproof.library.scenarios import numbers_of

@@ -9,7 +9,7 @@ from typing import ClassVar, Unpack
 
 from roadproof.evidence.codec import write
 from roadproof.evidence.strict import JsonObject
-from roadproof.extensions.drivers.restricting import restricted
+from roadproof.extensions.surveys import settings
 from roadproof.extensions.surveys.classify.classes import plan_of
 from roadproof.extensions.surveys.classify.data import ClassData, ClassesData, counted
 from roadproof.extensions.surveys.classify.division import divide
@@ -18,6 +18,7 @@ from roadproof.extensions.surveys.classify.shares import SHARES, shares_table
 from roadproof.extensions.surveys.classify.simulated import simulated_shares
 from roadproof.extensions.surveys.classify.text import claims_text
 from roadproof.extensions.surveys.classify.traffic_shares import Shares, count_shares
+from roadproof.extensions.surveys.keywords import ClassifyKeywords
 from roadproof.extensions.surveys.report import classify as report
 from roadproof.extensions.traffic.formats.sources import find_sources
 from roadproof.frontends.api.answer import Picture, picture
@@ -26,8 +27,6 @@ from roadproof.frontends.api.pictures import drawn
 from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.report.sheet import Sheet
-from roadproof.frontends.settings import studies as settings
-from roadproof.frontends.settings.keywords import ClassifyKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.words import Called, called
@@ -126,7 +125,7 @@ def classify(
     """
     begun = time.monotonic()
     given = settings.Classify.of(options)
-    home = restricted(definitions_of(using), given, among)
+    home = given.modified(definitions_of(using), among)
     basis = basis_of(home, given, given.vehicles)
     plan = plan_of(home.alone, home.among(among) or numbers_of(home.alone))
     folder = None if given.out is None else Path(given.out)

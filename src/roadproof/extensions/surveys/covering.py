@@ -12,8 +12,8 @@ from roadproof.errors import UsageError
 from roadproof.evidence.codec import write
 from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
-from roadproof.extensions.drivers.restricting import restricted
 from roadproof.extensions.drivers.restriction import check_drives
+from roadproof.extensions.surveys import settings
 from roadproof.extensions.surveys.coverage.answers import ClassAnswer, GapTraffic, Survey, with_traffic
 from roadproof.extensions.surveys.coverage.cases import coverage_cases
 from roadproof.extensions.surveys.coverage.classes import sets_between
@@ -21,6 +21,7 @@ from roadproof.extensions.surveys.coverage.data import CoverageData
 from roadproof.extensions.surveys.coverage.kept import Claim, CountedClass
 from roadproof.extensions.surveys.coverage.question import CoverageQuestion, CoverageView, gaps_of
 from roadproof.extensions.surveys.coverage.traffic import count_in_traffic, recordings_in
+from roadproof.extensions.surveys.keywords import CoverageKeywords
 from roadproof.extensions.surveys.report import coverage as report
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.build_result import BuildResult
@@ -29,8 +30,6 @@ from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.settings import as_road, basis_of
 from roadproof.frontends.report.cases import Case
 from roadproof.frontends.report.sheet import Sheet
-from roadproof.frontends.settings import studies as settings
-from roadproof.frontends.settings.keywords import CoverageKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.library.words import Called, called
 from roadproof.questions.views import placing
@@ -172,7 +171,7 @@ def coverage(
     begun = time.monotonic()
     given = settings.Coverage.of(options)
     wider = given.wider
-    home = restricted(definitions_of(using), given, about="drives")
+    home = given.modified(definitions_of(using))
     check_drives(home.specification.options)
     basis = basis_of(home, given, given.vehicles)
     name = home.alone.set_name

@@ -10,12 +10,13 @@ from roadproof.engines.search.question import SearchOptions
 from roadproof.errors import UsageError
 from roadproof.evidence.drive_file import road_said
 from roadproof.evidence.kinds import Evidence
-from roadproof.extensions.drivers.restricting import restricted
 from roadproof.extensions.surveys.explore.asking import ask_for
 from roadproof.extensions.surveys.explore.data import AskedFormula, AskedVariation, Exploring, SearchedPlace
 from roadproof.extensions.surveys.explore.question import ExploreQuestion, ExploreView
 from roadproof.extensions.surveys.explore.values import ExplorationResult
+from roadproof.extensions.surveys.keywords import ExploreKeywords
 from roadproof.extensions.surveys.report import explore as report
+from roadproof.extensions.surveys.settings import Explore
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
 from roadproof.frontends.api.phrases import Term
@@ -23,9 +24,7 @@ from roadproof.frontends.api.pictures import drawn
 from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.settings import basis_of, searches_of, setting
 from roadproof.frontends.report.sheet import Sheet
-from roadproof.frontends.settings.keywords import ExploreKeywords
 from roadproof.frontends.settings.option import takes
-from roadproof.frontends.settings.questions import Explore
 from roadproof.library.bind import Number
 from roadproof.library.scenario_references import names_scenarios
 from roadproof.verdict import ExitCode, Verdict, exit_code
@@ -104,7 +103,7 @@ def explore(
     given = Explore.of(options)
     plain = definitions_of(using)
     each = plain.each(what)
-    home = restricted(plain, given, what=each)
+    home = given.modified(plain, what=each)
     vary = given.vary or {}
     for name in {*vary} & {*home.values}:
         raise UsageError(f"{name} is given a value and varied: leave one out")

@@ -5,6 +5,8 @@ from functools import cached_property
 from typing import Unpack
 
 from roadproof.evidence.kinds import Evidence
+from roadproof.extensions.surveys import settings
+from roadproof.extensions.surveys.keywords import RedundancyKeywords
 from roadproof.extensions.surveys.redundancy import (
     ChangeFinding,
     Changes,
@@ -18,8 +20,6 @@ from roadproof.frontends.api.definitions import Among, Definitions, definitions_
 from roadproof.frontends.api.questioned import QuestionAnswers, evidence_of
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.report.sheet import Sheet
-from roadproof.frontends.settings import studies as settings
-from roadproof.frontends.settings.keywords import RedundancyKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.words import Called, called

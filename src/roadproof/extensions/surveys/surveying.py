@@ -6,15 +6,15 @@ from typing import Unpack
 from roadproof.errors import UsageError
 from roadproof.evidence.answer import Answer
 from roadproof.extensions.surveys import survey
+from roadproof.extensions.surveys.keywords import AskKeywords
+from roadproof.extensions.surveys.settings import Ask
 from roadproof.extensions.surveys.survey import Survey, verdict_of
 from roadproof.frontends.api.definitions import Among, Definitions, definitions_of
 from roadproof.frontends.api.questioned import QuestionAnswers
 from roadproof.frontends.api.settings import basis_of
 from roadproof.frontends.report.numbers import count, took
 from roadproof.frontends.report.sheet import Column, Sheet
-from roadproof.frontends.settings.keywords import AskKeywords
 from roadproof.frontends.settings.option import takes
-from roadproof.frontends.settings.studies import Ask
 from roadproof.library.scenarios import numbers_of
 from roadproof.questions.basis import Basis
 from roadproof.verdict import Verdict

@@ -33,6 +33,7 @@ from roadproof.extensions.traffic.formats.clock import rate_text
 from roadproof.extensions.traffic.formats.recording import Recording
 from roadproof.extensions.traffic.formats.sources import find_sources
 from roadproof.extensions.traffic.formats.table import Frame, frame_of
+from roadproof.extensions.traffic.keywords import EvaluateKeywords
 from roadproof.extensions.traffic.report.cases import recording_cases
 from roadproof.extensions.traffic.report.figures import draw_figures, remove_report, write_report
 from roadproof.extensions.traffic.report.research_questions import facts
@@ -44,7 +45,6 @@ from roadproof.frontends.api.definitions import Definitions, load
 from roadproof.frontends.api.table import Row, Table
 from roadproof.frontends.report.cases import Case
 from roadproof.frontends.report.tables import as_text
-from roadproof.frontends.settings.keywords import EvaluateKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.library.bind import exact
 from roadproof.library.scenarios import COMPARISON, MIN_DANGER

@@ -40,13 +40,13 @@ from roadproof.extensions.traffic.evaluate.one_trace import (
 )
 from roadproof.extensions.traffic.formats.sources import has_numbers
 from roadproof.extensions.traffic.formats.table import Frame, columns_of
+from roadproof.extensions.traffic.keywords import MonitorKeywords
 from roadproof.extensions.traffic.report.one_trace import as_text, draw_strips
 from roadproof.extensions.traffic.settings import Monitor
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of, load
 from roadproof.frontends.api.settings import as_road, positive
 from roadproof.frontends.api.table import Row, Table
-from roadproof.frontends.settings.keywords import MonitorKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.frontends.settings.value_types import RoadLike
 from roadproof.library.bind import bind, values_with

@@ -7,7 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.frontends.settings import groups
-from roadproof.frontends.settings.option import Settings, option, output
+from roadproof.frontends.settings.groups import (
+    Workers,
+    folder_for,
+    map_road,
+    strict_reading,
+)
+from roadproof.frontends.settings.option import extensible, option, output
 from roadproof.frontends.settings.readers import (
     LARGEST_SEED,
     decimal,
@@ -34,6 +40,7 @@ if TYPE_CHECKING:
     from roadproof.runtime.pool import Say
 
 
+@extensible("monitor")
 @dataclass(frozen=True, kw_only=True)
 class Monitor(groups.Definitions, groups.Traces):
     """Options of ``monitor``."""
@@ -84,8 +91,9 @@ class Monitor(groups.Definitions, groups.Traces):
     )
 
 
+@extensible("evaluate")
 @dataclass(frozen=True, kw_only=True)
-class Evaluate(groups.Definitions, groups.Sharing, groups.Traces, groups.Reported):
+class Evaluate(groups.Definitions, groups.Sharing, groups.Traces):
     """Options of ``evaluate``."""
 
     sets: tuple[str, ...] = groups.several_sets("base", "extA", "ext")
@@ -126,6 +134,7 @@ class Evaluate(groups.Definitions, groups.Sharing, groups.Traces, groups.Reporte
     tell: Say | None = option(None)
 
 
+@extensible("simulate")
 @dataclass(frozen=True, kw_only=True)
 class Simulate(groups.Workers):
     """Options of ``simulate``."""
@@ -161,42 +170,9 @@ class Simulate(groups.Workers):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Export(Settings):
-    """Options of ``export``."""
+class Convert(Workers):
+    """Options of ``roadproof convert``."""
 
-    to: Iterable[str] = option(
-        (),
-        "--to FORMAT",
-        "openscenario, opendrive, commonroad, highd, csv, animation, gif or mp4; may be repeated",
-        gather=list,
-        keyword=False,
-        required=True,
-    )
-    rate: int = option(
-        25, "--rate N", "samples per second of commonroad, highd and csv (default: 25)", read=whole(1)
-    )
-    specs: Iterable[str | Path] = groups.specifications_of("the drives")
-    out: str | Path | None = groups.folder_for("files", command_line_only=True, required=True)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Compile(groups.Values):
-    """Options of ``compile``."""
-
-    sets: tuple[str, ...] = groups.one_set("base")
-    to: str = option("c", "--to TARGET", "c: C99 (default)", choices=("c",), keyword=False)
-    dt: Number = option(Fraction(1, 25), "--dt S", "seconds between samples (default: 1/25)", read=seconds)
-    road: RoadLike | None = option(
-        None,
-        "--road R",
-        "road on which lanes are found from positions (default: samples have flags for them)",
-    )
-    lanes: Mapping[str, str] | None = option(
-        None, "--lane [L=]LANE", "with --road: lane that L means", read=named("L"), gather=dict
-    )
-    strict: bool = groups.strict_reading()
-    memory: int = option(
-        65_536, "--memory N", "bytes that the state of a monitor may take (default: 65536)", read=whole(1)
-    )
-    name: str = option("monitor", "--name NAME", "name of the files and of types (default: monitor)")
-    out: str | Path | None = groups.folder_for("NAME.h and NAME.c", command_line_only=True, required=True)
+    out: str | Path | None = folder_for("the data set", required=True)
+    strict: bool = strict_reading()
+    road: str | None = map_road()

@@ -10,6 +10,7 @@ from roadproof.evidence.drive_file import DriveFile
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.extensions.traffic.formats.table import Frame, frame_of
 from roadproof.extensions.traffic.formats.write_highd import write_highd
+from roadproof.extensions.traffic.keywords import SimulateKeywords
 from roadproof.extensions.traffic.settings import Simulate
 from roadproof.extensions.traffic.simulate.planting import (
     PLANTED_COLUMNS,
@@ -23,7 +24,6 @@ from roadproof.extensions.traffic.simulate.simulate import simulate as simulate_
 from roadproof.extensions.traffic.simulate.traffic import Traffic, road_of
 from roadproof.frontends.report.samples import road_toml
 from roadproof.frontends.report.sheet import csv_text
-from roadproof.frontends.settings.keywords import SimulateKeywords
 from roadproof.frontends.settings.option import takes
 from roadproof.library.loading import bundled_library
 from roadproof.runtime import pool

@@ -15,7 +15,6 @@ from roadproof.evidence.codec import write
 from roadproof.evidence.judged import JudgedDrive
 from roadproof.evidence.kinds import Evidence
 from roadproof.evidence.strict import JsonObject
-from roadproof.extensions.drivers.restricting import restricted
 from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.build_result import BuildResult
 from roadproof.frontends.api.definitions import Definitions, What, definitions_of
@@ -195,7 +194,7 @@ def witness(
     ``count`` clearly different drives are looked for.
     ``objective``: what a drive should be like: any, smooth, margin, mild, severe or short. ``preventable``,
     ``unpreventable``: the name of a driver model, for scenarios that begin with a manoeuvre whose collision
-    it prevents, or cannot prevent (``preventing.restriction``). ``effort``: units
+    it prevents, or cannot prevent . ``effort``: units
     of work for a search, each about a second of a solver; ``timeout``: seconds after which the clock ends it.
     ``out``: a folder in which drives are kept as they come, with samples and ``pictures``; ``animate``:
     formats of animations there, such as "svg,gif" (mp4 needs the program ffmpeg). ``stage`` is told
@@ -227,7 +226,7 @@ def known_drives(numbers: Sequence[int], using: Definitions) -> dict[int, Judged
 def drives_asked(what: Sequence[What], using: Definitions, given: Witness) -> WitnessQuestion:
     """The question that ``witness`` asks. Raises as that does."""
     each = using.each(what)
-    home = restricted(using, given, what=each)
+    home = given.modified(using, what=each)
     options = SearchOptions(given.objective, given.engine, given.solver)
     place = setting(home, given)
     within, trees = exists(place, options), given.out is not None

@@ -7,7 +7,6 @@ from typing import Unpack
 
 from roadproof.errors import UsageError
 from roadproof.evidence.kinds import Evidence
-from roadproof.extensions.drivers.restricting import restricted
 from roadproof.frontends.api.answer import Picture, picture
 from roadproof.frontends.api.definitions import Among, Definitions, definitions_of, load
 from roadproof.frontends.api.pictures import drawn
@@ -92,7 +91,7 @@ def overlap(
     ``InputError``, ``UsageError``.
     """
     given = settings.Overlap.of(options)
-    home = restricted(definitions_of(using), given, among)
+    home = given.modified(definitions_of(using), among)
     if len(home.sets) > 2:
         raise UsageError(f"{', '.join(home.sets)}: name one spec set, or two different ones")
     # What happens one after the other takes longer than what happens at once.

@@ -25,24 +25,13 @@ def read_definitions(args: argparse.Namespace, settings: type[Readings]) -> "Def
     from roadproof.frontends.api.definitions import chosen_in
     from roadproof.library.diagnose import checked_library
 
-    if vars(args).get("preventable") or vars(args).get("unpreventable"):
-        from roadproof.extensions.drivers.restriction import names_for
-
-        args.specs = names_for(args.specs or [])
+    args.specs = settings.with_files(args, args.specs or [])
     sets = read_flag(args, settings, "sets") or ("base",)
     library, readings = checked_library(args.specs or ()), read_flag(args, settings, "readings")
     if len({*sets}) < len(sets):
         raise UsageError(f"--set {','.join(sets)}: a spec set is repeated; name each once")
     params = read_flag(args, settings, "params") if "params" in args else None
     return chosen_in(library, sets, readings, params, "--param ")
-
-
-def add_drivers(args: argparse.Namespace) -> None:
-    """Add the definitions of driver models to the files of ``--spec``."""
-    from roadproof.extensions.drivers.models import DRIVERS
-
-    specs = args.specs or []
-    args.specs = specs if Path(DRIVERS) in specs else [Path(DRIVERS), *specs]
 
 
 def study_keywords(args: argparse.Namespace, settings: type[Settings], beside_json: bool = False) -> Any:

@@ -74,12 +74,6 @@ def checker_of(what: str) -> Any:
     return option("z3", "--solver", f"{what} (default: z3)", choices=("z3", "cvc5"))
 
 
-def driver_model(side: str, does: str, what: str = "scenarios") -> Any:
-    """A driver model that restricts ``what`` to those whose first collision it prevents, or cannot."""
-    text = f"only {what} whose first collision a driver model (careful) {does}"
-    return option(None, f"--{side} MODEL", text, rare=True)
-
-
 def scenarios_such_as(example: str = "1,3-8", keyword: bool = False) -> Any:
     """``--among``, which is the first argument in Python where it is no ``keyword``."""
     return option(None, "--among N-M", f"only these scenarios, such as {example}", keyword=keyword)
@@ -124,23 +118,6 @@ class Answered(Settings):
         read=file_name,
         keyword=False,
         last=True,
-    )
-
-
-@dataclass(frozen=True, kw_only=True)
-class Reported(Settings):
-    """An answer whose parts pass or fail, for build servers."""
-
-    junit: Path | None = output(
-        None, "--junit FILE", "write JUnit XML for a build server", read=Path, keyword=False, rare=True
-    )
-    sarif: Path | None = output(
-        None,
-        "--sarif FILE",
-        "write what did not pass as SARIF, with file, line and column",
-        read=Path,
-        keyword=False,
-        rare=True,
     )
 
 
@@ -329,18 +306,10 @@ class Sharing(Workers):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Prevention(Settings):
-    """Driver models that restrict the question."""
-
-    preventable: str | None = driver_model("preventable", "prevents")
-    unpreventable: str | None = driver_model("unpreventable", "cannot prevent")
-
-
-@dataclass(frozen=True, kw_only=True)
 class Survey(Definitions, Models, Budget, Sharing, Run):
     """Options of every question about several scenarios."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class DriveSearch(SeveralSets, SearchPlace, Method, Prevention, Budget, Sharing, Run):
+class DriveSearch(SeveralSets, SearchPlace, Method, Budget, Sharing, Run):
     """Options of every question about drives of some scenarios or formulas."""

@@ -1,17 +1,24 @@
 """Settings classes: what each field says of its option, and functions that take them as keywords."""
 
+import argparse
 import dataclasses
 import inspect
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from functools import partial
 from numbers import Integral
-from typing import Any, Literal, Self, TypeAlias, TypeVar
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, Self, TypeAlias, TypeVar
 
 from roadproof.errors import UsageError
+from roadproof.extension import added, imported
 from roadproof.runtime.records import dataclass
 
+if TYPE_CHECKING:
+    from roadproof.frontends.api.definitions import Among, Definitions, What
+
 F = TypeVar("F", bound=Callable[..., object])
+S = TypeVar("S", bound="Settings")
 Group: TypeAlias = Literal["question", "definitions", "search", "effort", "work", "output"]
 
 
@@ -74,6 +81,20 @@ class Settings:
         """The options by the names of the fields."""
         return {x.name: x.metadata["option"] for x in dataclasses.fields(cls)}
 
+    def modified(
+        self, home: "Definitions", among: "Among" = None, what: "Sequence[What] | None" = None
+    ) -> "Definitions":
+        """Return the definitions that the question is asked in; options of extensions may change them.
+
+        ``among`` or ``what``: the scenarios, or scenarios and formulas, that are asked for.
+        """
+        return home
+
+    @classmethod
+    def with_files(cls, args: argparse.Namespace, files: list[Path]) -> list[Path]:
+        """Return specification files with those that flags of extensions need."""
+        return files
+
     @classmethod
     def of(cls, given: Mapping[str, object]) -> Self:
         """The settings that keyword arguments give. Raises ``TypeError``, ``UsageError``."""
@@ -89,6 +110,26 @@ class Settings:
                     shown = repr(value)[:60]
                     raise UsageError(f"{name}={shown}: write a list, such as {name}=[{shown}]")
         return cls(**given)
+
+
+def extensible(command: str) -> Callable[[type[S]], type[S]]:
+    """Adds the options to the settings of a command that extensions have for it."""
+
+    def extended(settings: type[S]) -> type[S]:
+        more = [imported(x) for x in added("options", command)]
+        if not more:
+            return settings
+        about: dict[str, Any] = {
+            "__doc__": settings.__doc__,
+            "__module__": settings.__module__,
+            "__annotations__": {},
+        }
+        made: type[S] = dataclass(frozen=True, kw_only=True)(
+            type(settings.__name__, (settings, *more), about)
+        )
+        return made
+
+    return extended
 
 
 def _lists(settings: type[Settings]) -> set[str]:

@@ -4,10 +4,10 @@ import argparse
 from pathlib import Path
 
 from roadproof.errors import UsageError
+from roadproof.extensions.assurance.settings import Assurance
 from roadproof.frontends.cli.options import print_answer
 from roadproof.frontends.cli.progress import Counter, clear
 from roadproof.frontends.settings.flags import read_keywords
-from roadproof.frontends.settings.questions import Assurance
 from roadproof.runtime.files import write_whole
 from roadproof.verdict import ExitCode
 

@@ -3,10 +3,10 @@
 import argparse
 from pathlib import Path
 
+from roadproof.extensions.assurance.settings import Bundle
 from roadproof.frontends.cli.options import print_answer
 from roadproof.frontends.cli.progress import Counter, clear
 from roadproof.frontends.settings.flags import read_keywords, section
-from roadproof.frontends.settings.questions import Bundle
 
 SUMMARY = "pack evidence for auditors, with a script that checks it again"
 

@@ -4,10 +4,10 @@ import argparse
 from pathlib import Path
 
 from roadproof.errors import UsageError
+from roadproof.extensions.assurance.settings import Requirements
 from roadproof.frontends.cli.options import print_answer, write_build_results
 from roadproof.frontends.cli.progress import Counter, clear
 from roadproof.frontends.settings.flags import read_keywords
-from roadproof.frontends.settings.questions import Requirements
 
 SUMMARY = "link requirements to evidence, and say which are shown"
 

@@ -3,10 +3,10 @@
 import argparse
 
 from roadproof.errors import UsageError
+from roadproof.extensions.catalogue.settings import Catalogue
 from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
 from roadproof.frontends.cli.progress import Counter
 from roadproof.frontends.settings.flags import read_flag
-from roadproof.frontends.settings.studies import Catalogue
 
 SUMMARY = "list which scenarios a catalogue of tests covers, and complete it"
 

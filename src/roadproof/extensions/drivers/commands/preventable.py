@@ -3,9 +3,10 @@
 import argparse
 
 from roadproof.errors import UsageError
-from roadproof.frontends.cli.basis import add_drivers, hand_over, read_definitions, study_keywords
+from roadproof.extensions.drivers.options import add_drivers
+from roadproof.extensions.drivers.settings import Preventable
+from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
 from roadproof.frontends.settings.readers import flat
-from roadproof.frontends.settings.studies import Preventable
 
 SUMMARY = "map the initial values from which a driver prevents a collision"
 

@@ -2,7 +2,7 @@
 
 import argparse
 
-from roadproof.extensions.traffic.settings import Compile
+from roadproof.extensions.exchange.settings import Compile
 from roadproof.frontends.cli.basis import read_definitions
 from roadproof.frontends.cli.progress import tell_road
 from roadproof.frontends.settings.flags import read_keywords

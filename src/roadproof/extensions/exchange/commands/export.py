@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from roadproof.extensions.traffic.settings import Export
+from roadproof.extensions.exchange.settings import Export
 from roadproof.frontends.settings.flags import read_keywords
 from roadproof.verdict import ExitCode
 

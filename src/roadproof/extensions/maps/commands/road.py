@@ -4,9 +4,9 @@ import argparse
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from roadproof.extensions.maps.settings import Road
 from roadproof.frontends.cli.options import write_json
 from roadproof.frontends.cli.progress import warn
-from roadproof.frontends.settings.commands import Road
 from roadproof.verdict import ExitCode
 
 if TYPE_CHECKING:

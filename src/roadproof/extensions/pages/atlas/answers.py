@@ -12,6 +12,7 @@ from roadproof.evidence.drive_file import DriveFile
 from roadproof.extensions.drivers import preventing
 from roadproof.extensions.drivers.manoeuvres import MANOEUVRES
 from roadproof.extensions.drivers.preventable.data import PreventableData
+from roadproof.extensions.pages.settings import Atlas
 from roadproof.extensions.surveys import classifying, covering
 from roadproof.extensions.surveys.classify.data import ClassesData
 from roadproof.extensions.surveys.coverage.kept import CoverageData
@@ -23,7 +24,6 @@ from roadproof.frontends.api.answer import Picture
 from roadproof.frontends.api.definitions import Definitions
 from roadproof.frontends.settings.flags import flags_of
 from roadproof.frontends.settings.groups import Readings
-from roadproof.frontends.settings.studies import Atlas
 from roadproof.library.scenarios import numbers_of
 from roadproof.library.specification import Library
 from roadproof.questions.data import QUESTION

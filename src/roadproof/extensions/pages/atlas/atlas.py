@@ -10,11 +10,11 @@ from roadproof.extensions.pages.atlas import overview_pages as overviews
 from roadproof.extensions.pages.atlas.answers import EVIDENCE, Answers, ask
 from roadproof.extensions.pages.atlas.pictures import DrivePicture, draw_all
 from roadproof.extensions.pages.atlas.scenario_page import scenario_values
+from roadproof.extensions.pages.keywords import AtlasKeywords
 from roadproof.extensions.pages.page.templates import render, style_without_scripts
+from roadproof.extensions.pages.settings import Atlas as Settings
 from roadproof.frontends.api.definitions import Definitions, load
-from roadproof.frontends.settings.keywords import AtlasKeywords
 from roadproof.frontends.settings.option import takes
-from roadproof.frontends.settings.studies import Atlas as Settings
 from roadproof.runtime.files import make_folder, write_whole
 from roadproof.runtime.version import VERSION
 from roadproof.verdict import ExitCode

@@ -11,8 +11,8 @@ from roadproof.evidence.judged import JudgedDrive
 from roadproof.extensions.pages.atlas.answers import EVIDENCE, OBJECTIVES, Answers, name_in
 from roadproof.extensions.pages.atlas.notation import shown
 from roadproof.extensions.pages.miniature import miniature, small_scene
+from roadproof.extensions.pages.settings import Atlas
 from roadproof.frontends.report.drive_data import Span, strips_of
-from roadproof.frontends.settings.studies import Atlas
 from roadproof.library.specification import Library
 from roadproof.runtime import pool
 from roadproof.verdict import Verdict

@@ -2,11 +2,11 @@
 
 import argparse
 
+from roadproof.extensions.pages.settings import Atlas
 from roadproof.frontends.cli.basis import read_definitions
 from roadproof.frontends.cli.options import read_hands
 from roadproof.frontends.cli.progress import Counter, clear
 from roadproof.frontends.settings.flags import read_keywords
-from roadproof.frontends.settings.studies import Atlas
 
 SUMMARY = "write pages about all scenarios, with drives and proofs"
 

@@ -3,9 +3,9 @@
 import argparse
 from pathlib import Path
 
+from roadproof.extensions.pages.settings import Page
 from roadproof.frontends.cli.progress import Counter, clear
 from roadproof.frontends.settings.flags import read_keywords, section
-from roadproof.frontends.settings.questions import Page
 
 SUMMARY = "make one HTML page from results, to be read without a network"
 

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from roadproof.frontends.settings import commands as settings
+from roadproof.extensions.pages import settings
 
 SUMMARY = "write and try formulas on a page in the browser"
 

@@ -16,6 +16,7 @@ from roadproof.extensions.catalogue.kept import (
     KeptRequest,
 )
 from roadproof.extensions.catalogue.report import sheet_of
+from roadproof.extensions.catalogue.settings import Catalogue
 from roadproof.extensions.drivers.manoeuvres import MANOEUVRES
 from roadproof.extensions.drivers.models import MODELS
 from roadproof.extensions.drivers.restriction import restriction_of
@@ -23,7 +24,6 @@ from roadproof.extensions.pages.page.page_context import PageContext, ShownDrive
 from roadproof.extensions.pages.page.results import Result, Words
 from roadproof.extensions.pages.viewer_data import ShownFormula
 from roadproof.frontends.settings.flags import command_line
-from roadproof.frontends.settings.studies import Catalogue
 from roadproof.library.bind import values_with
 from roadproof.library.scenarios import danger_comes, number_in, numbers_of, roles
 from roadproof.library.specification import Specification, on_request

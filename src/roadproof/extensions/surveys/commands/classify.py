@@ -3,8 +3,8 @@
 import argparse
 
 from roadproof.errors import UsageError
+from roadproof.extensions.surveys.settings import Classify
 from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
-from roadproof.frontends.settings.studies import Classify
 
 SUMMARY = "partition scenarios into exclusive classes, and count them"
 

@@ -2,9 +2,9 @@
 
 import argparse
 
+from roadproof.extensions.surveys.settings import Coverage
 from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
 from roadproof.frontends.cli.progress import Counter, tell
-from roadproof.frontends.settings.studies import Coverage
 
 SUMMARY = "find disturbances that a spec set misses, or prove it has no gap"
 

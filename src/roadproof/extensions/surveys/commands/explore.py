@@ -3,9 +3,9 @@
 import argparse
 
 from roadproof.errors import UsageError
+from roadproof.extensions.surveys.settings import Explore
 from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
 from roadproof.frontends.cli.options import add_what_arguments, some_or_all
-from roadproof.frontends.settings.questions import Explore
 
 SUMMARY = "find the parameter values for which a scenario has a drive"
 
@@ -40,14 +40,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from roadproof.extensions.drivers.restricting import restricted
     from roadproof.extensions.surveys.exploring import Explorations, explore_question
 
     named, ranges = some_or_all(args), [_varied(text) for text in args.vary or ()]
     given = Explore.of(study_keywords(args, Explore, beside_json=True))
     home = read_definitions(args, Explore)
     what = home.each(named)
-    home = restricted(home, given, what=what)
+    home = given.modified(home, what=what)
     for name, _, _ in ranges:
         if name in home.values:
             raise UsageError(f"{name} is given by --param and varied by --vary: leave one out")

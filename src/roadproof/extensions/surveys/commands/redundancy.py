@@ -2,8 +2,8 @@
 
 import argparse
 
+from roadproof.extensions.surveys.settings import Redundancy
 from roadproof.frontends.cli.basis import hand_over, read_definitions, study_keywords
-from roadproof.frontends.settings.studies import Redundancy
 
 SUMMARY = "find the parts of scenarios that can be left out"
 

@@ -3,8 +3,8 @@
 import argparse
 from pathlib import Path
 
+from roadproof.extensions.traffic.settings import Convert
 from roadproof.frontends.cli.progress import Counter
-from roadproof.frontends.settings.commands import Convert
 from roadproof.verdict import ExitCode
 
 SUMMARY = "convert recordings to Parquet, checked, for quicker reading"

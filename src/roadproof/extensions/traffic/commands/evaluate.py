@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.errors import UsageError
+from roadproof.extensions.drivers.options import add_drivers
 from roadproof.extensions.traffic.settings import Evaluate
-from roadproof.frontends.cli.basis import add_drivers, read_definitions
+from roadproof.frontends.cli.basis import read_definitions
 from roadproof.frontends.cli.options import print_answer, read_hands, write_build_results
 from roadproof.frontends.cli.progress import note
 from roadproof.frontends.settings.flags import read_keywords

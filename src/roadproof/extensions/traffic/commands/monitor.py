@@ -5,8 +5,9 @@ import sys
 from pathlib import Path
 
 from roadproof.errors import UsageError
+from roadproof.extensions.drivers.options import add_drivers
 from roadproof.extensions.traffic.settings import Monitor
-from roadproof.frontends.cli.basis import add_drivers, read_definitions
+from roadproof.frontends.cli.basis import read_definitions
 from roadproof.frontends.cli.options import print_answer
 from roadproof.frontends.cli.progress import tell_bends
 from roadproof.frontends.settings.flags import read_keywords

@@ -1,0 +1,22 @@
+"""Keyword arguments of each question; made by ``roadproof.frontends.settings.keywords_file``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypedDict
+
+from roadproof.frontends.settings.keywords import BudgetKeywords, RunKeywords, SharingKeywords
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from roadproof.frontends.api.checking import Kernel
+    from roadproof.library.bind import Number
+
+
+class PreventableKeywords(BudgetKeywords, SharingKeywords, RunKeywords, total=False):
+    at: Mapping[str, Number | Sequence[Number]] | None
+    along: tuple[Number, Number] | None
+    across: tuple[Number, Number] | None
+    lines: int
+    lemmas: bool
+    kernel: Kernel | None

@@ -1,0 +1,64 @@
+"""The options of exports and of compiled monitors."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from roadproof.frontends.settings import groups
+from roadproof.frontends.settings.option import Settings, option
+from roadproof.frontends.settings.readers import (
+    named,
+    seconds,
+    whole,
+)
+from roadproof.runtime.records import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from roadproof.frontends.settings.value_types import RoadLike
+    from roadproof.library.bind import Number
+
+
+@dataclass(frozen=True, kw_only=True)
+class Export(Settings):
+    """Options of ``export``."""
+
+    to: Iterable[str] = option(
+        (),
+        "--to FORMAT",
+        "openscenario, opendrive, commonroad, highd, csv, animation, gif or mp4; may be repeated",
+        gather=list,
+        keyword=False,
+        required=True,
+    )
+    rate: int = option(
+        25, "--rate N", "samples per second of commonroad, highd and csv (default: 25)", read=whole(1)
+    )
+    specs: Iterable[str | Path] = groups.specifications_of("the drives")
+    out: str | Path | None = groups.folder_for("files", command_line_only=True, required=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Compile(groups.Values):
+    """Options of ``compile``."""
+
+    sets: tuple[str, ...] = groups.one_set("base")
+    to: str = option("c", "--to TARGET", "c: C99 (default)", choices=("c",), keyword=False)
+    dt: Number = option(Fraction(1, 25), "--dt S", "seconds between samples (default: 1/25)", read=seconds)
+    road: RoadLike | None = option(
+        None,
+        "--road R",
+        "road on which lanes are found from positions (default: samples have flags for them)",
+    )
+    lanes: Mapping[str, str] | None = option(
+        None, "--lane [L=]LANE", "with --road: lane that L means", read=named("L"), gather=dict
+    )
+    strict: bool = groups.strict_reading()
+    memory: int = option(
+        65_536, "--memory N", "bytes that the state of a monitor may take (default: 65536)", read=whole(1)
+    )
+    name: str = option("monitor", "--name NAME", "name of the files and of types (default: monitor)")
+    out: str | Path | None = groups.folder_for("NAME.h and NAME.c", command_line_only=True, required=True)

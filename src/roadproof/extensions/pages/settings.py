@@ -1,0 +1,50 @@
+"""The options of pages, atlas and studio."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from roadproof.frontends.settings import groups, readers
+from roadproof.frontends.settings.option import Settings, option, output
+from roadproof.runtime.records import dataclass
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from roadproof.frontends.api.checking import Solver
+    from roadproof.frontends.api.definitions import Among
+    from roadproof.runtime.pool import Progress
+
+
+@dataclass(frozen=True, kw_only=True)
+class Atlas(groups.Readings, groups.Run):
+    """Options of ``atlas``."""
+
+    among: Among = groups.scenarios_such_as("1-8", keyword=True)
+    topics: Sequence[str] = option(
+        (),
+        "--topics NAME,…",
+        "only these: proofs, drives, overlaps, implications, redundancy, gaps, classes or plates "
+        "(default: all)",
+        read=readers.items_of("topics", ", such as drives,overlaps"),
+    )
+    out: str | Path | None = groups.folder_for("pages and evidence", required=True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Page(groups.Workers):
+    """Options of ``report``, which is ``page`` in Python."""
+
+    title: str | None = output(None, "--title TEXT", "title of the page")
+    solver: Solver = groups.checker_of("solver that checks certificates")
+    specs: Iterable[str | Path] = groups.specifications_of("the results")
+    progress: Progress | None = option(None)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Studio(Settings):
+    """Options of ``roadproof studio``."""
+
+    port: int | None = option(None, "--port N", "default: 8642, or any that is free", read=int)
+    browser: bool = option(True, "--no-browser", "print the address, and open nothing")
