@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypedDict
+from typing import TYPE_CHECKING
 
 from roadproof.frontends.settings.keywords import BudgetKeywords, RunKeywords, SharingKeywords
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypedDict
+from typing import TYPE_CHECKING
 
 from roadproof.frontends.settings.keywords import RunKeywords, WorkersKeywords
 
@@ -25,8 +25,3 @@ class PageKeywords(WorkersKeywords, total=False):
     solver: Solver
     specs: Iterable[str | Path]
     progress: Progress | None
-
-
-class StudioKeywords(TypedDict, total=False):
-    port: int | None
-    browser: bool

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.frontends.settings import groups, readers
-from roadproof.frontends.settings.option import Settings, option, output
+from roadproof.frontends.settings.option import option, output
 from roadproof.runtime.records import dataclass
 
 if TYPE_CHECKING:
@@ -40,11 +40,3 @@ class Page(groups.Workers):
     solver: Solver = groups.checker_of("solver that checks certificates")
     specs: Iterable[str | Path] = groups.specifications_of("the results")
     progress: Progress | None = option(None)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Studio(Settings):
-    """Options of ``roadproof studio``."""
-
-    port: int | None = option(None, "--port N", "default: 8642, or any that is free", read=int)
-    browser: bool = option(True, "--no-browser", "print the address, and open nothing")

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypedDict
+from typing import TYPE_CHECKING
 
 from roadproof.frontends.settings.keywords import SharingKeywords, TracesKeywords, WorkersKeywords
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
-    from pathlib import Path
 
     from roadproof.evidence.drive_file import DriveFile
     from roadproof.evidence.judged import JudgedDrive
@@ -57,9 +56,3 @@ class SimulateKeywords(WorkersKeywords, total=False):
     ramp_flow: float
     plant: Iterable[JudgedDrive | DriveFile]
     tell: Say | None
-
-
-class ConvertKeywords(WorkersKeywords, total=False):
-    out: str | Path | None
-    strict: bool
-    road: str | None

@@ -7,12 +7,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from roadproof.frontends.settings import groups
-from roadproof.frontends.settings.groups import (
-    Workers,
-    folder_for,
-    map_road,
-    strict_reading,
-)
 from roadproof.frontends.settings.option import extensible, option, output
 from roadproof.frontends.settings.readers import (
     LARGEST_SEED,
@@ -167,12 +161,3 @@ class Simulate(groups.Workers):
     )
     out: str | Path | None = groups.folder_for("recordings", command_line_only=True, required=True)
     tell: Say | None = option(None)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Convert(Workers):
-    """Options of ``roadproof convert``."""
-
-    out: str | Path | None = folder_for("the data set", required=True)
-    strict: bool = strict_reading()
-    road: str | None = map_road()

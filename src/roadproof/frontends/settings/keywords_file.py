@@ -126,6 +126,8 @@ def text(homes: tuple[ModuleType, ...]) -> str:
         )
     if not lines:
         head = head.replace("\nif TYPE_CHECKING:\n", "").replace("TYPE_CHECKING, ", "")
+    if core is False and not any("(TypedDict" in x for x in parts):
+        head = head.replace(", TypedDict\n", "\n").replace("import TypedDict\n", "import TYPE_CHECKING\n")
     return head + "".join([*outer, *(["\n"] if outer and inner else []), *inner]) + "".join(parts)
 
 

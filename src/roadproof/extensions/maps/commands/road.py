@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from roadproof.extensions.maps.settings import Road
+from roadproof.extensions.maps.options import Road
 from roadproof.frontends.cli.options import write_json
 from roadproof.frontends.cli.progress import warn
 from roadproof.verdict import ExitCode

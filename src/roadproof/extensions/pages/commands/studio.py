@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from roadproof.extensions.pages import settings
+from roadproof.extensions.pages import options as settings
 
 SUMMARY = "write and try formulas on a page in the browser"
 

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from roadproof.extensions.traffic.settings import Convert
+from roadproof.extensions.traffic.options import Convert
 from roadproof.frontends.cli.progress import Counter
 from roadproof.verdict import ExitCode
 

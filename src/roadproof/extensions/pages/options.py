@@ -1,0 +1,19 @@
+"""The options of commands that have no function of their own in Python."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from roadproof.frontends.settings.option import Settings, option
+from roadproof.runtime.records import dataclass
+
+if TYPE_CHECKING:
+    pass
+
+
+@dataclass(frozen=True, kw_only=True)
+class Studio(Settings):
+    """Options of ``roadproof studio``."""
+
+    port: int | None = option(None, "--port N", "default: 8642, or any that is free", read=int)
+    browser: bool = option(True, "--no-browser", "print the address, and open nothing")
